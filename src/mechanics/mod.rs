@@ -1,0 +1,3 @@
+//! Mechanics of the ring: pure functions, no time, no files.
+pub mod field;
+pub mod ring;
