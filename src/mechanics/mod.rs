@@ -1,3 +1,8 @@
 //! Mechanics of the ring: pure functions, no time, no files.
 pub mod field;
+pub mod impact;
+pub mod limit;
+pub mod mechanism;
+pub mod resultant;
 pub mod ring;
+mod search;

@@ -1,0 +1,288 @@
+//! Impact at the closure of all hinges: momentum theorems, restitution, and the mechanism that follows.
+//!
+//! The restitution coefficient `r` is the kinetic energy after the impact over that before it, as in the
+//! paper and in Housner.
+
+use nalgebra::{Matrix5, Vector2, Vector5};
+
+use super::field::{Field, Momentum, Side, Twist};
+use super::mechanism::{EDGES, FourLink, HingeSites};
+use super::resultant::ResultantLine;
+use super::ring::Ring;
+use super::search::{Lattice, Objective, Quadruple, ascend, edge_index};
+
+/// How the mechanism after an impact is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ImpactModel {
+    /// The mechanism that keeps the most kinetic energy (the paper).
+    MaxRestitution,
+    /// Hinges at the opposite edges of the sections that close, as in Housner's column and in Fig. 3
+    /// of the paper.
+    SameSections,
+    /// Hinges at the mirror image of those that close.
+    Mirrored,
+    /// Mirrored hinges, and a given restitution coefficient in place of the momentum theorems.
+    Prescribed {
+        /// Energy after the impact over energy before it, from 0 to 1.
+        restitution: f64,
+    },
+}
+
+/// An impact: what follows when a mechanism closes at unit rate.
+///
+/// The mechanism after the impact sways to the other side; it is given in the frame in which that is the
+/// right, the mirror image of the frame of the mechanism before.
+#[derive(Clone, Debug)]
+pub struct Impact {
+    /// The mechanism after the impact, in its own frame.
+    pub mechanism: FourLink,
+    /// Rate of the mechanism after the impact for a unit closing rate before it.
+    pub rate_ratio: f64,
+    /// Restitution coefficient: kinetic energy after over before.
+    pub restitution: f64,
+}
+
+/// The velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism
+/// that follows.
+#[must_use]
+pub fn closing_field(mechanism: &FourLink, ring: &Ring) -> Field {
+    mechanism.field().scaled(-1.0).mirrored(ring)
+}
+
+/// What follows when `mechanism` closes, by the given model; `None` when no admissible mechanism takes
+/// the motion over.
+#[must_use]
+pub fn impact(
+    mechanism: &FourLink,
+    ring: &Ring,
+    sites: HingeSites,
+    model: ImpactModel,
+) -> Option<Impact> {
+    let closing = closing_field(mechanism, ring);
+    let next = match model {
+        ImpactModel::MaxRestitution => most_energetic(&closing, ring, sites)?,
+        ImpactModel::SameSections => {
+            let [a, b, c, d] = mechanism
+                .hinges_rad()
+                .map(|angle| ring.embrace_rad() - angle);
+            FourLink::new(ring, [d, c, b, a])?
+        }
+        // The mirror image of a mechanism has, in its own frame, the same hinges.
+        ImpactModel::Mirrored | ImpactModel::Prescribed { .. } => *mechanism,
+    };
+    let (rate_ratio, restitution) = match model {
+        ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
+        _ => projection(&next, &closing, ring),
+    };
+    (rate_ratio > 0.0).then_some(Impact {
+        mechanism: next,
+        rate_ratio,
+        restitution,
+    })
+}
+
+/// Rate of `mechanism` after the impact and restitution coefficient, as the orthogonal projection of the
+/// velocity field `before` onto the mechanism in the kinetic-energy metric.
+///
+/// The impulses act at hinges of the new mechanism and so do no work on it: `<u', u' q'> = <u', before>`.
+/// The restitution coefficient is then a squared cosine. Equal to [`MomentumTheorems::solve`], and faster.
+#[must_use]
+pub fn projection(mechanism: &FourLink, before: &Field, ring: &Ring) -> (f64, f64) {
+    let field = mechanism.field();
+    let (own, shared) = (field.product(&field, ring), field.product(before, ring));
+    (
+        shared / own,
+        shared * shared / (own * before.product(before, ring)),
+    )
+}
+
+/// The solution of the five equations (7)-(10) of the paper.
+///
+/// Masses are in units of `rho d R^2` and lengths in `R`: impulses are per unit rate of the closing
+/// mechanism times `rho d R^3`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MomentumTheorems {
+    /// Impulse on the ring at the first hinge of the new mechanism.
+    pub impulse_first: Vector2<f64>,
+    /// Impulse on the ring at the last hinge of the new mechanism.
+    pub impulse_last: Vector2<f64>,
+    /// Rate of the new mechanism.
+    pub rate: f64,
+}
+
+impl MomentumTheorems {
+    /// Solves Eqs. (7)-(10) for a ring that moves with `before` when the hinges of `mechanism` form.
+    ///
+    /// Linear momentum along x and y and angular momentum about the centre for the part between the
+    /// outer hinges, angular momentum of each end body about its inner hinge.
+    #[must_use]
+    pub fn solve(mechanism: &FourLink, before: &Field, ring: &Ring) -> Self {
+        let [a, b, c, d] = mechanism.hinges_rad();
+        let [point_a, point_b, point_c, point_d] = mechanism.points();
+        let after = mechanism.field();
+        let part = |field: &Field, from: f64, to: f64| {
+            field.momentum_to(ring, to) - field.momentum_to(ring, from)
+        };
+        let theorems = |whole: Momentum, first: Momentum, last: Momentum| {
+            Vector5::new(
+                whole.linear.x,
+                whole.linear.y,
+                whole.angular,
+                first.about(point_b),
+                last.about(point_c),
+            )
+        };
+        let of_field =
+            |field: &Field| theorems(part(field, a, d), part(field, a, b), part(field, c, d));
+        let at_first = |direction| {
+            let impulse = Momentum::applied_at(point_a, direction);
+            theorems(impulse, impulse, Momentum::ZERO)
+        };
+        let at_last = |direction| {
+            let impulse = Momentum::applied_at(point_d, direction);
+            theorems(impulse, Momentum::ZERO, impulse)
+        };
+        let matrix = Matrix5::from_columns(&[
+            at_first(Vector2::x()),
+            at_first(Vector2::y()),
+            at_last(Vector2::x()),
+            at_last(Vector2::y()),
+            -of_field(&after),
+        ]);
+        let solution = matrix
+            .lu()
+            .solve(&-of_field(before))
+            .expect("an admissible mechanism is determinate: its hinges are in convex position");
+        Self {
+            impulse_first: Vector2::new(solution[0], solution[1]),
+            impulse_last: Vector2::new(solution[2], solution[3]),
+            rate: solution[4],
+        }
+    }
+}
+
+/// The admissible mechanism that keeps the most of the kinetic energy of `before`.
+fn most_energetic(before: &Field, ring: &Ring, sites: HingeSites) -> Option<FourLink> {
+    let lattice = Lattice::new(ring, sites);
+    let table = ProductTable::new(&lattice, before, ring);
+    let score = |rotations: &[f64; 4], quadruple: &Quadruple| table.retained(rotations, quadruple);
+    let objective = RetainedEnergy { before, ring };
+    let candidates = lattice.maxima(&score).into_iter().filter_map(|quadruple| {
+        let start = quadruple.map(|i| lattice.sections_rad[i]);
+        match sites {
+            HingeSites::Anywhere => ascend(ring, start, &objective),
+            HingeSites::Voussoirs(_) => {
+                let mechanism = FourLink::new(ring, start)?;
+                Some((objective.value(&mechanism).0, mechanism))
+            }
+        }
+    });
+    candidates
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map(|(_, mechanism)| mechanism)
+}
+
+/// `<u', before>^2 / <u', u'>`: twice the kinetic energy that a mechanism keeps.
+struct RetainedEnergy<'a> {
+    before: &'a Field,
+    ring: &'a Ring,
+}
+
+impl RetainedEnergy<'_> {
+    /// The retained energy and the rate of the mechanism.
+    fn value(&self, mechanism: &FourLink) -> (f64, f64) {
+        let field = mechanism.field();
+        let shared = field.product(self.before, self.ring);
+        let rate = shared / field.product(&field, self.ring);
+        // A mechanism that would have to move backwards keeps nothing.
+        (if rate > 0.0 { shared * rate } else { -f64::MAX }, rate)
+    }
+}
+
+impl Objective for RetainedEnergy<'_> {
+    fn kinks_rad(&self) -> &[f64] {
+        self.before.cuts_rad()
+    }
+
+    /// The retained energy is the maximum over the rate `s` of `2 s <u', before> - s^2 <u', u'>`, so its
+    /// derivative is `2 s` times that of the power of the load `before - s u'`: the moments of the
+    /// impulse line. At a hinge the new field counts with the mean of both sides.
+    fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]) {
+        let (value, rate) = self.value(mechanism);
+        let after = mechanism.field().scaled(rate);
+        let angles = mechanism.hinges_rad();
+        let local: [Twist; 4] = std::array::from_fn(|i| {
+            let side = if above[i] { Side::After } else { Side::Before };
+            let mean = (after.at(angles[i], Side::Before) + after.at(angles[i], Side::After)) * 0.5;
+            self.before.at(angles[i], side) - mean
+        });
+        let line = ResultantLine::through_hinges(self.ring, mechanism, self.before.minus(&after));
+        let gradient = line.power_gradient(mechanism, local);
+        (value, gradient.map(|slope| 2.0 * rate * slope))
+    }
+}
+
+/// Products of unit rotations about the edge points of a lattice, each moving all that lies to its right.
+///
+/// A mechanism is a sum of four of them, and its products follow by a few multiplications.
+struct ProductTable {
+    /// With the field before the impact: `with_before[2 section + edge]`.
+    with_before: Vec<f64>,
+    /// With each other: `mutual[(2 section + edge) * size + (2 section + edge)]`.
+    mutual: Vec<f64>,
+}
+
+impl ProductTable {
+    fn new(lattice: &Lattice, before: &Field, ring: &Ring) -> Self {
+        let end = ring.embrace_rad();
+        let whole = before.momentum_to(ring, end);
+        let rotations: Vec<_> = lattice
+            .sections_rad
+            .iter()
+            .flat_map(|angle| {
+                let moments = ring.sector(*angle, end);
+                let momentum = whole - before.momentum_to(ring, *angle);
+                [EDGES[0], EDGES[1]].map(|edge| (ring.point(*angle, edge), moments, momentum))
+            })
+            .collect();
+        let with_before = rotations
+            .iter()
+            .map(|(point, _, momentum)| momentum.about(*point))
+            .collect();
+        let size = rotations.len();
+        let mut mutual = vec![0.0; size * size];
+        for (i, (point, _, _)) in rotations.iter().enumerate() {
+            for (j, (other, moments, _)) in rotations.iter().enumerate().skip(i - i % 2) {
+                let product = Twist::rotation(*point, 1.0)
+                    .power(&Twist::rotation(*other, 1.0).momentum(moments));
+                mutual[i * size + j] = product;
+                mutual[j * size + i] = product;
+            }
+        }
+        Self {
+            with_before,
+            mutual,
+        }
+    }
+
+    /// Twice the kinetic energy that the mechanism keeps.
+    fn retained(&self, rotations: &[f64; 4], quadruple: &Quadruple) -> f64 {
+        let size = self.with_before.len();
+        let index: [usize; 4] = std::array::from_fn(|i| 2 * quadruple[i] + edge_index(EDGES[i]));
+        let (mut shared, mut own) = (0.0, 0.0);
+        for i in 0..4 {
+            shared += rotations[i] * self.with_before[index[i]];
+            let row = &self.mutual[index[i] * size..][..size];
+            let mut sum = 0.5 * rotations[i] * row[index[i]];
+            for j in i + 1..4 {
+                sum += rotations[j] * row[index[j]];
+            }
+            own += 2.0 * rotations[i] * sum;
+        }
+        if shared > 0.0 {
+            shared * shared / own
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Incipient rocking: the least horizontal acceleration that moves the ring, by limit analysis.
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::field::{Field, Side, Twist};
+use super::mechanism::{EDGES, FourLink, HingeSites};
+use super::resultant::ResultantLine;
+use super::ring::{Edge, Ring};
+use super::search::{Lattice, Objective, Quadruple, ascend, edge_index};
+
+/// Onset of rocking under a push to the right.
+#[derive(Clone, Debug)]
+pub struct Incipient {
+    /// Incipient acceleration `A_L`, in units of gravity.
+    pub acceleration_g: f64,
+    /// The mechanism that starts.
+    pub mechanism: FourLink,
+    /// The thrust line under gravity and the push `A_L`.
+    pub thrust_line: ResultantLine,
+}
+
+/// Why a ring does not start to rock as a four-link mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum LimitError {
+    /// The ring cannot carry its own weight.
+    #[error("the arch cannot carry its own weight")]
+    CannotStand,
+    /// Statics does not confirm the best four-link mechanism: its thrust line leaves the ring, or two
+    /// of its hinges merge into one section that would part altogether.
+    #[error(
+        "the best four-link mechanism moves at {acceleration_g:.4} g, but statics does not confirm it: \
+         another mechanism governs, as in thick shallow rings"
+    )]
+    OtherMechanism {
+        /// Acceleration of the best four-link mechanism found, in units of gravity: not below the true
+        /// one.
+        acceleration_g: f64,
+    },
+    /// No push moves the ring as a four-link mechanism.
+    #[error("no horizontal push moves the ring as a four-link mechanism")]
+    NoPush,
+}
+
+/// A thrust line may leave the ring by this much of the thickness, on account of rounding: hinges
+/// are placed to about 1e-8 rad, and the line touches the edges there.
+const CERTIFICATE_TOLERANCE: f64 = 1e-6;
+
+/// Sections at which the thrust line is compared with the ring where hinges sit anywhere.
+const CERTIFICATE_SECTIONS: usize = 1440;
+
+/// The incipient acceleration, its mechanism and the thrust line that proves it.
+///
+/// Kinematic theorem: `A_L` is the least of `int v_y / int v_x` over the admissible mechanisms that
+/// move the ring to the right. Static theorem: it is the true one when the thrust line under that push
+/// passes inside the ring at every section (at every joint, for voussoirs).
+///
+/// # Errors
+/// When the ring cannot stand, is too thick for a four-link mechanism to govern, or cannot be moved.
+pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError> {
+    let (acceleration_g, mechanism) = least_acceleration(ring, sites).ok_or(LimitError::NoPush)?;
+    if acceleration_g <= 0.0 {
+        return Err(LimitError::CannotStand);
+    }
+    let thrust_line = ResultantLine::through_hinges(ring, &mechanism, push(acceleration_g));
+    let excess_ratio = thrust_line.largest_excess(sections(ring, sites).into_iter());
+    if excess_ratio > CERTIFICATE_TOLERANCE {
+        return Err(LimitError::OtherMechanism { acceleration_g });
+    }
+    Ok(Incipient {
+        acceleration_g,
+        mechanism,
+        thrust_line,
+    })
+}
+
+/// The least thickness ratio at which a ring of this embrace angle carries its own weight, to
+/// `1e-6`; `None` when no thickness does.
+#[must_use]
+pub fn least_thickness_ratio(embrace_rad: f64, sites: HingeSites) -> Option<f64> {
+    let stands = |thickness_ratio: f64| {
+        Ring::new(thickness_ratio, embrace_rad)
+            .ok()
+            .is_some_and(|ring| !matches!(incipient(&ring, sites), Err(LimitError::CannotStand)))
+    };
+    let (mut low, mut high) = (1e-9, 1.0);
+    if !stands(high) {
+        return None;
+    }
+    while high - low > 1e-6 {
+        let middle = 0.5 * (low + high);
+        if stands(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(high)
+}
+
+/// Sections at which a thrust line has to be inside the ring.
+fn sections(ring: &Ring, sites: HingeSites) -> Vec<f64> {
+    let count = match sites {
+        HingeSites::Anywhere => CERTIFICATE_SECTIONS,
+        HingeSites::Voussoirs(count) => count,
+    };
+    #[expect(clippy::cast_precision_loss, reason = "section counts are small")]
+    (0..=count)
+        .map(|i| ring.embrace_rad() * (i as f64 / count as f64))
+        .collect()
+}
+
+/// Gravity and a push of `acceleration_g` to the right, as load per unit mass.
+fn push(acceleration_g: f64) -> Field {
+    Field::uniform(Twist::translation(Vector2::new(acceleration_g, -1.0)))
+}
+
+/// Minimum of `int v_y / int v_x`, the kinematic theorem.
+fn least_acceleration(ring: &Ring, sites: HingeSites) -> Option<(f64, FourLink)> {
+    let lattice = Lattice::new(ring, sites);
+    // Moments of the area before each section about both edge points, for a unit load along x and y.
+    let moments: Vec<[Vector2<f64>; 2]> = lattice
+        .sections_rad
+        .iter()
+        .map(|angle| {
+            let part = ring.moments_to(*angle);
+            [Edge::Intrados, Edge::Extrados].map(|edge| {
+                let arm = part.first - ring.point(*angle, edge) * part.mass;
+                Vector2::new(-arm.y, arm.x)
+            })
+        })
+        .collect();
+    let score = |rotations: &[f64; 4], quadruple: &Quadruple| {
+        let mut power = Vector2::zeros();
+        for i in 0..4 {
+            power -= moments[quadruple[i]][edge_index(EDGES[i])] * rotations[i];
+        }
+        if power.x > 0.0 {
+            -power.y / power.x
+        } else {
+            f64::NEG_INFINITY
+        }
+    };
+    let objective = Weakness { ring };
+    let candidates = lattice.maxima(&score).into_iter().filter_map(|quadruple| {
+        let start = quadruple.map(|i| lattice.sections_rad[i]);
+        match sites {
+            HingeSites::Anywhere => ascend(ring, start, &objective),
+            HingeSites::Voussoirs(_) => {
+                let mechanism = FourLink::new(ring, start)?;
+                Some((objective.evaluate(&mechanism, [true; 4]).0, mechanism))
+            }
+        }
+    });
+    candidates
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map(|(value, mechanism)| (-value, mechanism))
+}
+
+/// Minus the acceleration at which a mechanism starts to move.
+struct Weakness<'a> {
+    ring: &'a Ring,
+}
+
+impl Objective for Weakness<'_> {
+    fn kinks_rad(&self) -> &[f64] {
+        &[]
+    }
+
+    fn evaluate(&self, mechanism: &FourLink, _: [bool; 4]) -> (f64, [f64; 4]) {
+        let field = mechanism.field();
+        let sway = field.product(&push_only(), self.ring);
+        let acceleration_g = acceleration_g(mechanism, self.ring);
+        let load = push(acceleration_g);
+        let local = [load.at(0.0, Side::After); 4];
+        let line = ResultantLine::through_hinges(self.ring, mechanism, load);
+        let gradient = line.power_gradient(mechanism, local);
+        (-acceleration_g, gradient.map(|slope| slope / sway))
+    }
+}
+
+/// A unit push to the right without gravity.
+fn push_only() -> Field {
+    Field::uniform(Twist::translation(Vector2::new(1.0, 0.0)))
+}
+
+/// The push, in units of gravity, at which `mechanism` starts to move.
+#[must_use]
+pub fn acceleration_g(mechanism: &FourLink, ring: &Ring) -> f64 {
+    let field = mechanism.field();
+    let rise = field.product(
+        &Field::uniform(Twist::translation(Vector2::new(0.0, 1.0))),
+        ring,
+    );
+    rise / field.product(&push_only(), ring)
+}

@@ -1,0 +1,219 @@
+//! The four-link mechanism in the undeformed configuration.
+//!
+//! A ring is its own mirror image, so one orientation is enough: everything in [`crate::mechanics`] speaks
+//! of the mechanism that **sways right**, with hinges on intrados, extrados, intrados, extrados from
+//! the left springing. A sway to the left is the same mechanism seen in a mirror ([`Sway`]);
+//! left and right thus agree to the last bit.
+
+use nalgebra::Vector2;
+
+use super::field::{Field, Twist};
+use super::ring::{Edge, Ring};
+
+/// Direction in which a mechanism carries the structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sway {
+    /// Towards +x, as started by a ground acceleration towards -x.
+    Right,
+    /// Towards -x, as started by a ground acceleration towards +x.
+    Left,
+}
+
+impl Sway {
+    /// The other direction.
+    #[must_use]
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
+
+    /// +1 to the right, -1 to the left: the sign of x in the frame in which this sway goes right.
+    #[must_use]
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Right => 1.0,
+            Self::Left => -1.0,
+        }
+    }
+
+    /// `right` or `left`, as in scenarios and results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Left => "left",
+        }
+    }
+}
+
+/// Edges of the hinges A, B, C, D of a mechanism that sways right.
+pub const EDGES: [Edge; 4] = [
+    Edge::Intrados,
+    Edge::Extrados,
+    Edge::Intrados,
+    Edge::Extrados,
+];
+
+/// Relative rotations at four hinges that leave both ends of the ring at rest, up to a common
+/// factor; `None` unless every hinge opens.
+///
+/// The closure `sum rho_i (1, x_i, y_i) = 0` is solved by the signed areas of the triangles of the
+/// other three hinges. Hinges that alternate between the edges as in [`EDGES`] open when their
+/// rotations alternate in sign, that is, when A, B, C, D go round a convex quadrilateral. The
+/// orientation returned is the opening one: `rho_A < 0`.
+pub(crate) fn openings(points: &[Vector2<f64>; 4]) -> Option<[f64; 4]> {
+    let area =
+        |i: usize, j: usize, k: usize| (points[j] - points[i]).perp(&(points[k] - points[i]));
+    let areas = [area(1, 2, 3), area(0, 2, 3), area(0, 1, 3), area(0, 1, 2)];
+    let turn = -areas[0].signum();
+    areas.iter().all(|area| turn * area < 0.0).then(|| {
+        [
+            turn * areas[0],
+            -turn * areas[1],
+            turn * areas[2],
+            -turn * areas[3],
+        ]
+    })
+}
+
+/// A kinematically admissible four-link mechanism that sways right.
+///
+/// The hinges A, B, C, D part the ring into bodies that stand (before A, after D) and move: left
+/// (A-B), middle (B-C) and right (C-D). Its rate `q'` is the clockwise rate of the right body, the
+/// one that turns about the last hinge; see [`super::linkage`] for the reason.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FourLink {
+    hinges_rad: [f64; 4],
+    openings: [f64; 4],
+    points: [Vector2<f64>; 4],
+}
+
+impl FourLink {
+    /// The mechanism with hinges at the given sections, in radians from the left springing.
+    ///
+    /// `None` when the sections are not in ascending order within the ring, or when a hinge would
+    /// have to close.
+    #[must_use]
+    pub fn new(ring: &Ring, hinges_rad: [f64; 4]) -> Option<Self> {
+        let [first, .., last] = hinges_rad;
+        if !(first >= 0.0 && last <= ring.embrace_rad() && hinges_rad.is_sorted_by(|a, b| a < b)) {
+            return None;
+        }
+        let points = std::array::from_fn(|i| ring.point(hinges_rad[i], EDGES[i]));
+        let openings = openings(&points)?;
+        Some(Self {
+            hinges_rad,
+            openings: openings.map(|opening| opening / openings[3]),
+            points,
+        })
+    }
+
+    /// Sections of the hinges A, B, C, D, in radians from the left springing.
+    #[must_use]
+    pub const fn hinges_rad(&self) -> [f64; 4] {
+        self.hinges_rad
+    }
+
+    /// Positions of the hinges.
+    #[must_use]
+    pub const fn points(&self) -> [Vector2<f64>; 4] {
+        self.points
+    }
+
+    /// Relative rotation rate of the part after each hinge to the part before it, at `q' = 1`:
+    /// negative at intrados hinges, positive at extrados hinges, 1 at the last.
+    #[must_use]
+    pub const fn openings(&self) -> [f64; 4] {
+        self.openings
+    }
+
+    /// The velocity field at `q' = 1`.
+    ///
+    /// Every hinge adds a rotation about itself to the motion of all that lies to its right; this
+    /// needs no division by distances between centres, unlike Eq. (2) of the paper.
+    #[must_use]
+    pub fn field(&self) -> Field {
+        let jumps: [(f64, Twist); 4] = std::array::from_fn(|i| {
+            (
+                self.hinges_rad[i],
+                Twist::rotation(self.points[i], self.openings[i]),
+            )
+        });
+        Field::from_jumps(&jumps)
+    }
+}
+
+/// Where hinges may form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HingeSites {
+    /// At any section.
+    Anywhere,
+    /// At the joints of this many equal voussoirs, the springings included; at least three.
+    Voussoirs(usize),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::field::Side;
+
+    fn semicircle() -> (Ring, FourLink) {
+        let ring = Ring::new(0.15, std::f64::consts::PI).unwrap();
+        let hinges = [24.0_f64, 82.0, 140.0, 180.0].map(f64::to_radians);
+        (ring, FourLink::new(&ring, hinges).unwrap())
+    }
+
+    #[test]
+    fn the_field_is_continuous_at_hinges_and_zero_outside() {
+        let (_, mechanism) = semicircle();
+        let field = mechanism.field();
+        for (angle, point) in mechanism.hinges_rad().into_iter().zip(mechanism.points()) {
+            let jump =
+                field.at(angle, Side::After).at(point) - field.at(angle, Side::Before).at(point);
+            assert!(jump.norm() < 1e-15);
+        }
+        let after = field.at(3.2, Side::After);
+        assert!(after.rate.abs() < 1e-15 && after.at_center.norm() < 1e-15);
+        assert!((field.at(3.0, Side::After).rate + 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn rates_agree_with_the_centres_of_rotation() {
+        // Eq. (2) of the paper with all rotations anticlockwise: the middle body's centre C3 is where
+        // AB and CD meet, k31 = (x_B - x_A) / (x_B - x_C3), and likewise from the right.
+        let (_, mechanism) = semicircle();
+        let [a, b, c, d] = mechanism.points();
+        let (ab, cd) = (b - a, d - c);
+        let center = a + ab * ((c - a).perp(&cd) / ab.perp(&cd));
+        let field = mechanism.field();
+        let rate = |angle: f64| field.at(angle.to_radians(), Side::After).rate;
+        let k31 = (b.x - a.x) / (b.x - center.x);
+        let k32 = (c.x - d.x) / (c.x - center.x);
+        assert!((rate(100.0) / rate(50.0) - k31).abs() < 1e-12);
+        assert!((rate(100.0) / rate(170.0) - k32).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_hinge_opens() {
+        let (ring, mechanism) = semicircle();
+        let field = mechanism.field();
+        for (angle, edge) in mechanism.hinges_rad().into_iter().zip(EDGES) {
+            let far = ring.point(angle, edge.opposite());
+            let gap = field.at(angle, Side::After).at(far) - field.at(angle, Side::Before).at(far);
+            assert!(gap.dot(&ring.tangent(angle)) > 0.0);
+        }
+    }
+
+    #[test]
+    fn unordered_or_closing_hinges_are_no_mechanism() {
+        let ring = Ring::new(0.15, std::f64::consts::PI).unwrap();
+        let mechanism = |hinges: [f64; 4]| FourLink::new(&ring, hinges.map(f64::to_radians));
+        assert!(mechanism([24.0, 24.0, 140.0, 180.0]).is_none());
+        assert!(mechanism([24.0, 82.0, 140.0, 180.1]).is_none());
+        assert!(mechanism([f64::NAN, 82.0, 140.0, 180.0]).is_none());
+        // The extrados hinge B lies below the line from A to C.
+        assert!(mechanism([0.0, 2.0, 140.0, 180.0]).is_none());
+    }
+}
