@@ -81,8 +81,8 @@ pub(crate) fn openings(points: &[Vector2<f64>; 4]) -> Option<[f64; 4]> {
 /// A kinematically admissible four-link mechanism that sways right.
 ///
 /// The hinges A, B, C, D part the ring into bodies that stand (before A, after D) and move: left
-/// (A-B), middle (B-C) and right (C-D). Its rate `q'` is the clockwise rate of the right body, the
-/// one that turns about the last hinge; see [`super::linkage`] for the reason.
+/// (A-B), middle (B-C) and right (C-D). Its rate `q'` is the clockwise rate of the left body, the one
+/// that turns about the first hinge; see [`super::linkage`] for the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FourLink {
     hinges_rad: [f64; 4],
@@ -105,7 +105,7 @@ impl FourLink {
         let openings = openings(&points)?;
         Some(Self {
             hinges_rad,
-            openings: openings.map(|opening| opening / openings[3]),
+            openings: openings.map(|opening| opening / -openings[0]),
             points,
         })
     }
@@ -123,7 +123,7 @@ impl FourLink {
     }
 
     /// Relative rotation rate of the part after each hinge to the part before it, at `q' = 1`:
-    /// negative at intrados hinges, positive at extrados hinges, 1 at the last.
+    /// negative at intrados hinges, positive at extrados hinges, -1 at the first.
     #[must_use]
     pub const fn openings(&self) -> [f64; 4] {
         self.openings
@@ -176,7 +176,7 @@ mod tests {
         }
         let after = field.at(3.2, Side::After);
         assert!(after.rate.abs() < 1e-15 && after.at_center.norm() < 1e-15);
-        assert!((field.at(3.0, Side::After).rate + 1.0).abs() < 1e-15);
+        assert!((field.at(1.0, Side::After).rate + 1.0).abs() < 1e-15);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 pub mod field;
 pub mod impact;
 pub mod limit;
+pub mod linkage;
 pub mod mechanism;
 pub mod resultant;
 pub mod ring;
