@@ -1,3 +1,4 @@
 //! wip
 #![allow(missing_docs)]
+pub mod dynamics;
 pub mod mechanics;

@@ -12,23 +12,7 @@ use nalgebra::Vector2;
 use super::field::turned;
 use super::mechanism::FourLink;
 use super::ring::{MassMoments, Ring};
-
-/// Coefficients of the equation of motion of a system with one degree of freedom,
-/// `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`, at some `q`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
-    /// `M`: generalised mass.
-    pub inertia: f64,
-    /// `M'`: derivative of the generalised mass with respect to `q`.
-    pub inertia_slope: f64,
-    /// `S_x`: sum of the masses times the derivatives of their horizontal positions.
-    pub sway: f64,
-    /// `S_y`: sum of the masses times the derivatives of their vertical positions.
-    pub rise: f64,
-}
-
-/// Rotations of the left, middle and right body, anticlockwise, in radians; or their rates.
-pub type Rotations = [f64; 3];
+use super::structure::{Coefficients, Mechanism};
 
 /// A rigid body that is part of the linkage, about a point of its own.
 #[derive(Clone, Copy, Debug)]
@@ -136,9 +120,35 @@ impl Linkage {
         (-1.0, middle, right)
     }
 
-    /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
+    /// The limit position: the least `q` at which A, B, C, or else C, D, A, are on one line, so that
+    /// the right body or the ground bar cannot follow any further.
     #[must_use]
-    pub fn coefficients(&self, q_rad: f64) -> Coefficients {
+    pub fn limit_rad(&self) -> f64 {
+        let ground = self.pivot_right - self.pivot_left;
+        let [left, middle, right, base] =
+            [self.bar_left, self.bar_middle, self.bar_right, ground].map(|bar| bar.norm());
+        let cosine = |near: f64, other: f64, opposite: f64| {
+            (near * near + other * other - opposite * opposite) / (2.0 * near * other)
+        };
+        // Angle from A-D to A-B, undeformed and at the limit.
+        let start = ground
+            .perp(&self.bar_left)
+            .atan2(ground.dot(&self.bar_left));
+        let end = if left + middle < right + base {
+            cosine(left + middle, base, right).acos()
+        } else {
+            cosine(left, right + base, middle).acos()
+        };
+        start - end
+    }
+}
+
+impl Mechanism for Linkage {
+    /// Left, middle and right body.
+    type Rotations = [f64; 3];
+
+    /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
+    fn coefficients(&self, q_rad: f64) -> Coefficients {
         let pose = self.pose(q_rad);
         let (left_rate, middle_rate, right_rate) = Self::rates(&pose);
         // Second derivatives: the loop's accelerations, with those along the bars on the right.
@@ -176,8 +186,7 @@ impl Linkage {
 
     /// Mass times displacement of the common centre of gravity at `q`: the integrals of `S_x` and
     /// `S_y` from zero. Times gravity the second is the potential energy.
-    #[must_use]
-    pub fn displacement(&self, q_rad: f64) -> Vector2<f64> {
+    fn displacement(&self, q_rad: f64) -> Vector2<f64> {
         let pose = self.pose(q_rad);
         let left = rotate(pose.turn_left, self.left.arm) - self.left.arm;
         let middle = pose.bar_left - self.bar_left + rotate(pose.turn_middle, self.middle.arm)
@@ -187,40 +196,16 @@ impl Linkage {
     }
 
     /// Rotations of the three bodies at `q`.
-    #[must_use]
-    pub fn rotations(&self, q_rad: f64) -> Rotations {
+    fn rotations(&self, q_rad: f64) -> [f64; 3] {
         let pose = self.pose(q_rad);
         let angle = |turn: Vector2<f64>| turn.y.atan2(turn.x);
         [-q_rad, angle(pose.turn_middle), angle(pose.turn_right)]
     }
 
     /// Rotation rates of the three bodies at `q` for `q' = 1`.
-    #[must_use]
-    pub fn rotation_rates(&self, q_rad: f64) -> Rotations {
+    fn rotation_rates(&self, q_rad: f64) -> [f64; 3] {
         let (left, middle, right) = Self::rates(&self.pose(q_rad));
         [left, middle, right]
-    }
-
-    /// The limit position: the least `q` at which A, B, C, or else C, D, A, are on one line, so that
-    /// the right body or the ground bar cannot follow any further.
-    #[must_use]
-    pub fn limit_rad(&self) -> f64 {
-        let ground = self.pivot_right - self.pivot_left;
-        let [left, middle, right, base] =
-            [self.bar_left, self.bar_middle, self.bar_right, ground].map(|bar| bar.norm());
-        let cosine = |near: f64, other: f64, opposite: f64| {
-            (near * near + other * other - opposite * opposite) / (2.0 * near * other)
-        };
-        // Angle from A-D to A-B, undeformed and at the limit.
-        let start = ground
-            .perp(&self.bar_left)
-            .atan2(ground.dot(&self.bar_left));
-        let end = if left + middle < right + base {
-            cosine(left + middle, base, right).acos()
-        } else {
-            cosine(left, right + base, middle).acos()
-        };
-        start - end
     }
 }
 

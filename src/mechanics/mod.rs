@@ -1,4 +1,6 @@
 //! Mechanics of the ring: pure functions, no time, no files.
+pub mod arch;
+pub mod chain;
 pub mod field;
 pub mod impact;
 pub mod limit;
@@ -7,3 +9,4 @@ pub mod mechanism;
 pub mod resultant;
 pub mod ring;
 mod search;
+pub mod structure;

@@ -1,0 +1,474 @@
+//! The engine: time integration of a hybrid system.
+//!
+//! A hybrid system moves smoothly in one of several **modes** until a **guard** fires; a **reset** then
+//! puts it into another mode. The engine knows nothing else about it. It restarts at the corners of the
+//! forcing, looks into every step for guards, and lands on the instant of an event.
+
+use std::ops::ControlFlow;
+
+use thiserror::Error;
+
+use super::integrator::{Cost, IntegratorError, State, Step, Task, integrate};
+
+/// Value of a guard, positive until the event, and its rate of change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The guard's value.
+    pub value: f64,
+    /// Its rate of change, per second.
+    pub rate: f64,
+}
+
+/// A system that moves smoothly in modes and jumps between them.
+///
+/// The forcing is cut into consecutive pieces, starting at time zero, within which it is smooth.
+pub trait HybridSystem<const N: usize> {
+    /// Discrete state.
+    type Mode: Copy;
+    /// Name of an event.
+    type Guard: Copy + 'static;
+
+    /// End of a piece of the forcing, in seconds; infinite for the last.
+    fn piece_end_s(&self, piece: usize) -> f64;
+
+    /// Whether nothing can happen any more in this mode from this piece on.
+    fn is_over(&self, mode: Self::Mode, piece: usize) -> bool;
+
+    /// Whether the state stays as it is in this mode.
+    fn is_still(&self, mode: Self::Mode) -> bool;
+
+    /// Rate of change of the state, per second. Called with times in the piece, its ends included.
+    fn slope(&self, mode: Self::Mode, piece: usize, time_s: f64, state: &State<N>) -> State<N>;
+
+    /// State within a step, at least as exact as the step's ends.
+    fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
+
+    /// Magnitudes of the state's components in the motion to come, to which tolerances refer.
+    fn scale(&self, mode: Self::Mode, state: &State<N>) -> State<N>;
+
+    /// A good first step from here in seconds, and the longest one that a search for guards can bear.
+    fn step_sizes_s(
+        &self,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &State<N>,
+        relative_tolerance: f64,
+    ) -> (f64, f64);
+
+    /// The guards of a mode.
+    fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
+
+    /// Level of a guard. It fires when it falls below zero.
+    fn level(
+        &self,
+        guard: Self::Guard,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &State<N>,
+    ) -> Level;
+
+    /// The guard that has fired already where a piece begins or a mode is entered, if any.
+    fn fired_at_once(
+        &self,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &State<N>,
+    ) -> Option<Self::Guard>;
+
+    /// Mode and state after the event of a guard.
+    fn reset(
+        &self,
+        guard: Self::Guard,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &State<N>,
+    ) -> (Self::Mode, State<N>);
+}
+
+/// An event: a guard that fired and what it did.
+#[derive(Clone, Copy, Debug)]
+pub struct Transition<M, G, const N: usize> {
+    /// Instant, in seconds.
+    pub time_s: f64,
+    /// The guard.
+    pub guard: G,
+    /// Mode before.
+    pub from: M,
+    /// Mode after.
+    pub to: M,
+    /// State before.
+    pub before: State<N>,
+    /// State after.
+    pub after: State<N>,
+}
+
+/// Listener to a simulation. Steps and transitions come in the order of time.
+pub trait Observer<S: HybridSystem<N>, const N: usize> {
+    /// A stretch of motion without event.
+    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>);
+    /// An event.
+    fn transition(
+        &mut self,
+        system: &S,
+        piece: usize,
+        transition: &Transition<S::Mode, S::Guard, N>,
+    );
+}
+
+impl<S: HybridSystem<N>, A: Observer<S, N>, B: Observer<S, N>, const N: usize> Observer<S, N>
+    for (&mut A, &mut B)
+{
+    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>) {
+        self.0.step(system, mode, piece, step);
+        self.1.step(system, mode, piece, step);
+    }
+
+    fn transition(
+        &mut self,
+        system: &S,
+        piece: usize,
+        transition: &Transition<S::Mode, S::Guard, N>,
+    ) {
+        self.0.transition(system, piece, transition);
+        self.1.transition(system, piece, transition);
+    }
+}
+
+/// What an integration needs beside the system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// End of the simulation, in seconds.
+    pub end_s: f64,
+    /// Error allowed in a step, relative to the state's components or to their scales.
+    pub relative_tolerance: f64,
+    /// More transitions than this are an error.
+    pub most_transitions: usize,
+}
+
+/// Final state and cost of a simulation.
+#[derive(Clone, Copy, Debug)]
+pub struct Finish<M, const N: usize> {
+    /// Time of the last transition, or the end of the simulation, in seconds.
+    pub time_s: f64,
+    /// Last mode.
+    pub mode: M,
+    /// Last state.
+    pub state: State<N>,
+    /// Work done.
+    pub cost: Cost,
+}
+
+/// Why a simulation failed.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum EngineError {
+    /// The integration broke down.
+    #[error(transparent)]
+    Integrator(#[from] IntegratorError),
+    /// Too many events.
+    #[error("more than {most} transitions by {time_s} s")]
+    TooManyTransitions {
+        /// Time in seconds.
+        time_s: f64,
+        /// The bound that was hit.
+        most: usize,
+    },
+}
+
+/// Parts of a step in which guards are looked at.
+const PROBES: i32 = 4;
+
+/// Runs `system` from time zero until it is over, or until the end in the settings.
+///
+/// # Errors
+/// When the integration breaks down or the number of transitions passes its bound.
+pub fn simulate<S: HybridSystem<N>, const N: usize>(
+    system: &S,
+    mode: S::Mode,
+    state: State<N>,
+    settings: &Settings,
+    observer: &mut impl Observer<S, N>,
+) -> Result<Finish<S::Mode, N>, EngineError> {
+    let mut now = Finish {
+        time_s: 0.0,
+        mode,
+        state,
+        cost: Cost::default(),
+    };
+    let mut piece = 0;
+    let mut transitions = 0;
+    loop {
+        while now.time_s >= system.piece_end_s(piece) {
+            piece += 1;
+        }
+        if now.time_s >= settings.end_s || system.is_over(now.mode, piece) {
+            return Ok(now);
+        }
+        let at_once = system.fired_at_once(now.mode, piece, now.time_s, &now.state);
+        let fired = match at_once {
+            Some(guard) => Some(guard),
+            None => advance(system, piece, &mut now, settings, observer)?,
+        };
+        if let Some(guard) = fired {
+            transitions += 1;
+            if transitions > settings.most_transitions {
+                return Err(EngineError::TooManyTransitions {
+                    time_s: now.time_s,
+                    most: settings.most_transitions,
+                });
+            }
+            let (to, after) = system.reset(guard, now.mode, piece, now.time_s, &now.state);
+            let transition = Transition {
+                time_s: now.time_s,
+                guard,
+                from: now.mode,
+                to,
+                before: now.state,
+                after,
+            };
+            observer.transition(system, piece, &transition);
+            (now.mode, now.state) = (to, after);
+        }
+    }
+}
+
+/// Moves on to the next event (which is returned) or to the end of the piece.
+fn advance<S: HybridSystem<N>, const N: usize>(
+    system: &S,
+    piece: usize,
+    now: &mut Finish<S::Mode, N>,
+    settings: &Settings,
+    observer: &mut impl Observer<S, N>,
+) -> Result<Option<S::Guard>, EngineError> {
+    let end_s = system.piece_end_s(piece).min(settings.end_s);
+    let mode = now.mode;
+    if system.is_still(mode) {
+        let mut step = Step {
+            start_s: now.time_s,
+            end_s,
+            start: now.state,
+            end: now.state,
+            start_slope: State::zeros(),
+            end_slope: State::zeros(),
+        };
+        let event = first_event(system, mode, piece, &step);
+        if let Some((_, time_s)) = event {
+            step.end_s = time_s;
+        }
+        observer.step(system, mode, piece, &step);
+        now.time_s = step.end_s;
+        return Ok(event.map(|(guard, _)| guard));
+    }
+
+    let slope = |time_s: f64, state: &State<N>| system.slope(mode, piece, time_s, state);
+    let (first_step_s, longest_step_s) = system.step_sizes_s(
+        mode,
+        piece,
+        now.time_s,
+        &now.state,
+        settings.relative_tolerance,
+    );
+    let task = Task {
+        start_s: now.time_s,
+        end_s,
+        start: now.state,
+        scale: system.scale(mode, &now.state),
+        relative_tolerance: settings.relative_tolerance,
+        first_step_s,
+        longest_step_s,
+    };
+    let mut event = None;
+    let watch = |step: &Step<N>| match first_event(system, mode, piece, step) {
+        Some((guard, time_s)) => {
+            event = Some((guard, time_s, *step));
+            ControlFlow::Break(())
+        }
+        None => {
+            observer.step(system, mode, piece, step);
+            ControlFlow::Continue(())
+        }
+    };
+    let last = integrate(&task, slope, watch, &mut now.cost)?;
+    let Some((guard, time_s, step)) = event else {
+        (now.time_s, now.state) = (end_s, last);
+        return Ok(None);
+    };
+    let landed = land(
+        system,
+        mode,
+        piece,
+        &task,
+        guard,
+        time_s,
+        &step,
+        &mut now.cost,
+    )?;
+    observer.step(system, mode, piece, &landed);
+    (now.time_s, now.state) = (landed.end_s, landed.end);
+    Ok(Some(guard))
+}
+
+/// The step again, cut off where the guard fires.
+///
+/// Interpolation tells the instant almost; integrating up to there tells the state as exactly as every
+/// other step, and what is left of the guard's value is closed along the tangent. That last bit is so
+/// short (`d`, about 1e-10 of the step) that its curvature, of the order `d^2`, is below rounding.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the pieces of one call of `advance`"
+)]
+fn land<S: HybridSystem<N>, const N: usize>(
+    system: &S,
+    mode: S::Mode,
+    piece: usize,
+    task: &Task<N>,
+    guard: S::Guard,
+    time_s: f64,
+    step: &Step<N>,
+    cost: &mut Cost,
+) -> Result<Step<N>, EngineError> {
+    let span_s = time_s - step.start_s;
+    let mut landed = Step {
+        end_s: time_s,
+        end: system.between(step, time_s),
+        ..*step
+    };
+    // The solver needs a step that changes the time in its last digits.
+    if span_s > 4.0 * f64::EPSILON * time_s {
+        let again = Task {
+            start_s: step.start_s,
+            end_s: time_s,
+            start: step.start,
+            first_step_s: span_s,
+            longest_step_s: span_s,
+            ..*task
+        };
+        let slope = |time_s: f64, state: &State<N>| system.slope(mode, piece, time_s, state);
+        landed.end = integrate(&again, slope, |_| ControlFlow::Continue(()), cost)?;
+    }
+    landed.end_slope = system.slope(mode, piece, time_s, &landed.end);
+    cost.evaluations += 1;
+    let level = system.level(guard, mode, piece, time_s, &landed.end);
+    let rest_s = -level.value / level.rate;
+    if rest_s.abs() < CLOSED_BY_TANGENT * span_s {
+        landed.end_s += rest_s;
+        landed.end += landed.end_slope * rest_s;
+    }
+    Ok(landed)
+}
+
+/// Largest part of a step that may be closed along the tangent on landing.
+const CLOSED_BY_TANGENT: f64 = 1e-4;
+
+/// The first guard to fire within a step, and when.
+fn first_event<S: HybridSystem<N>, const N: usize>(
+    system: &S,
+    mode: S::Mode,
+    piece: usize,
+    step: &Step<N>,
+) -> Option<(S::Guard, f64)> {
+    let mut first: Option<(S::Guard, f64)> = None;
+    for guard in system.guards(mode) {
+        let level = |time_s: f64| {
+            let state = system.between(step, time_s);
+            system.level(*guard, mode, piece, time_s, &state)
+        };
+        if let Some(time_s) = first_crossing(step.start_s, step.end_s, level)
+            && first.is_none_or(|(_, earliest)| time_s < earliest)
+        {
+            first = Some((*guard, time_s));
+        }
+    }
+    first
+}
+
+/// The first instant in `(start, end]` at which `level` falls below zero.
+///
+/// The step is probed at equal intervals, and between two probes where the level has a minimum. A
+/// level that is zero at the start and rises is positive at first; one that is negative at the start
+/// cannot fall below zero before it has risen above.
+fn first_crossing(start_s: f64, end_s: f64, level: impl Fn(f64) -> Level) -> Option<f64> {
+    let mut earlier = (start_s, level(start_s));
+    for probe in 1..=PROBES {
+        let time_s = if probe == PROBES {
+            end_s
+        } else {
+            start_s + (end_s - start_s) * f64::from(probe) / f64::from(PROBES)
+        };
+        let later = (time_s, level(time_s));
+        if earlier.1.value >= 0.0 {
+            let low = if later.1.value < 0.0 {
+                Some(later.0)
+            } else if earlier.1.rate < 0.0 && later.1.rate > 0.0 {
+                let bottom = bisect(earlier.0, later.0, |t| level(t).rate < 0.0);
+                (level(bottom).value < 0.0).then_some(bottom)
+            } else {
+                None
+            };
+            if let Some(low) = low {
+                return Some(crossing_before(earlier.0, low, &level));
+            }
+        }
+        earlier = later;
+    }
+    None
+}
+
+/// The crossing between a time at which the level is not negative and a later one at which it is.
+fn crossing_before(start_s: f64, negative_s: f64, level: &impl Fn(f64) -> Level) -> f64 {
+    // Starting from zero the level may first rise: step back until it is positive.
+    let (mut positive_s, mut negative_s) = (start_s, negative_s);
+    if level(start_s).value <= 0.0 {
+        loop {
+            let middle_s = 0.5 * (start_s + negative_s);
+            if middle_s <= start_s || middle_s >= negative_s {
+                return start_s;
+            }
+            if level(middle_s).value > 0.0 {
+                positive_s = middle_s;
+                break;
+            }
+            negative_s = middle_s;
+        }
+    }
+    // Newton's method from the negative side, kept inside the bracket by bisection.
+    let mut guess_s = negative_s;
+    for _ in 0..200 {
+        let at_guess = level(guess_s);
+        if at_guess.value < 0.0 {
+            negative_s = guess_s;
+        } else {
+            positive_s = guess_s;
+        }
+        let newton_s = guess_s - at_guess.value / at_guess.rate;
+        let next_s = if newton_s > positive_s && newton_s < negative_s {
+            newton_s
+        } else {
+            0.5 * (positive_s + negative_s)
+        };
+        if (next_s - guess_s).abs() <= f64::EPSILON * guess_s.abs() {
+            return next_s;
+        }
+        guess_s = next_s;
+    }
+    guess_s
+}
+
+/// The time at which `early` turns from true to false.
+fn bisect(start_s: f64, end_s: f64, early: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (start_s, end_s);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if early(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}

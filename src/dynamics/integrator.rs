@@ -1,0 +1,189 @@
+//! The one place that deals with [`ode_solvers`].
+//!
+//! Only `Dopri5` with sparse output is used. In `ode_solvers` 0.6.2 `Dop853` evaluates its last two
+//! stages at the wrong time, `OutputType::Dense` can return an extrapolated last point and hands
+//! `solout` a state and a time that do not belong together, and continuous output takes the absolute
+//! value of the time; sparse `Dopri5` has none of these. The solver's `solout` is told of every
+//! accepted step and can only stop, so looking inside steps is left to the caller.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+
+use nalgebra::SVector;
+use ode_solvers::dop_shared::{IntegrationError, OutputType};
+use ode_solvers::{Dopri5, System};
+use thiserror::Error;
+
+/// Continuous state of a system: a vector of `N` numbers.
+pub type State<const N: usize> = SVector<f64, N>;
+
+/// A smooth stretch of motion between two instants, with the states and their rates at both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<const N: usize> {
+    /// Start, in seconds.
+    pub start_s: f64,
+    /// End, in seconds.
+    pub end_s: f64,
+    /// State at the start.
+    pub start: State<N>,
+    /// State at the end.
+    pub end: State<N>,
+    /// Rate of change of the state at the start, per second.
+    pub start_slope: State<N>,
+    /// Rate of change of the state at the end, per second.
+    pub end_slope: State<N>,
+}
+
+/// What an integration is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<const N: usize> {
+    /// Start, in seconds.
+    pub start_s: f64,
+    /// End, in seconds.
+    pub end_s: f64,
+    /// State at the start.
+    pub start: State<N>,
+    /// Magnitudes of the components: what falls below them is held to an absolute error.
+    pub scale: State<N>,
+    /// Error allowed in a step, relative to the larger of a component and its scale.
+    pub relative_tolerance: f64,
+    /// First step to try, in seconds.
+    pub first_step_s: f64,
+    /// Longest step, in seconds.
+    pub longest_step_s: f64,
+}
+
+/// Work done by an integration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Evaluations of the right-hand side.
+    pub evaluations: u64,
+    /// Accepted steps.
+    pub steps: u64,
+}
+
+/// Why an integration broke down.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum IntegratorError {
+    /// The right-hand side gave no finite number however short the step.
+    #[error("the motion has no finite acceleration at {time_s} s")]
+    NotFinite {
+        /// Time in seconds.
+        time_s: f64,
+    },
+    /// The step fell below the spacing of numbers, or too many were needed.
+    #[error("the relative tolerance cannot be met at {time_s} s: allow a larger one")]
+    ToleranceNotMet {
+        /// Time in seconds.
+        time_s: f64,
+    },
+}
+
+/// Steps of one call of the solver: far more than any stretch of motion needs.
+const MOST_STEPS: u32 = 1_000_000;
+
+/// Integrates `slope(time_s, state)` as the task says, and shows every accepted step to `watch`, which
+/// may end the integration. Returns the last state.
+///
+/// The solver sees time from the start of the task, so that a motion does not depend on when it happens,
+/// and the state in units of its scale, so that one tolerance serves all components.
+///
+/// # Errors
+/// When the right-hand side is not finite, or the tolerance cannot be met.
+pub fn integrate<const N: usize>(
+    task: &Task<N>,
+    slope: impl Fn(f64, &State<N>) -> State<N>,
+    watch: impl FnMut(&Step<N>) -> ControlFlow<()>,
+    cost: &mut Cost,
+) -> Result<State<N>, IntegratorError> {
+    let span_s = task.end_s - task.start_s;
+    let start_slope = slope(task.start_s, &task.start);
+    let not_finite = Cell::new(false);
+    let problem = Problem {
+        task,
+        slope,
+        watch,
+        last: (task.start_s, task.start, start_slope),
+        not_finite: &not_finite,
+    };
+    let tolerance = task.relative_tolerance;
+    let (safety, beta, least_factor, largest_factor) = (0.9, 0.04, 0.2, 10.0);
+    let never_test_stiffness = u32::MAX;
+    let mut solver = Dopri5::from_param(
+        problem,
+        0.0,
+        span_s,
+        span_s,
+        task.start.component_div(&task.scale),
+        tolerance,
+        tolerance,
+        safety,
+        beta,
+        least_factor,
+        largest_factor,
+        task.longest_step_s.min(span_s),
+        task.first_step_s.min(task.longest_step_s).min(span_s),
+        MOST_STEPS,
+        never_test_stiffness,
+        OutputType::Sparse,
+    );
+    let result = solver.integrate();
+    cost.evaluations += 1;
+    match result {
+        Ok(stats) => {
+            cost.evaluations += u64::from(stats.num_eval);
+            cost.steps += u64::from(stats.accepted_steps);
+            let last = solver.y_out().last().expect("the start is always stored");
+            Ok(last.component_mul(&task.scale))
+        }
+        Err(error) => {
+            let (IntegrationError::MaxNumStepReached { x, .. }
+            | IntegrationError::StepSizeUnderflow { x }
+            | IntegrationError::StiffnessDetected { x }) = error;
+            let time_s = task.start_s + x;
+            Err(if not_finite.get() {
+                IntegratorError::NotFinite { time_s }
+            } else {
+                IntegratorError::ToleranceNotMet { time_s }
+            })
+        }
+    }
+}
+
+/// A task as `ode_solvers` wants it.
+struct Problem<'a, F, W, const N: usize> {
+    task: &'a Task<N>,
+    slope: F,
+    watch: W,
+    /// Time, state and slope at the end of the last accepted step.
+    last: (f64, State<N>, State<N>),
+    not_finite: &'a Cell<bool>,
+}
+
+impl<F, W, const N: usize> System<f64, State<N>> for Problem<'_, F, W, N>
+where
+    F: Fn(f64, &State<N>) -> State<N>,
+    W: FnMut(&Step<N>) -> ControlFlow<()>,
+{
+    fn system(&self, x: f64, y: &State<N>, dy: &mut State<N>) {
+        let state = y.component_mul(&self.task.scale);
+        *dy = (self.slope)(self.task.start_s + x, &state).component_div(&self.task.scale);
+        // A trial step may go too far and is then rejected and shortened, as the error estimate is not
+        // a number either. If that never ends, this tells why.
+        self.not_finite.set(!dy.iter().all(|rate| rate.is_finite()));
+    }
+
+    fn solout(&mut self, x: f64, y: &State<N>, dy: &State<N>) -> bool {
+        let (start_s, start, start_slope) = self.last;
+        let step = Step {
+            start_s,
+            end_s: self.task.start_s + x,
+            start,
+            end: y.component_mul(&self.task.scale),
+            start_slope,
+            end_slope: dy.component_mul(&self.task.scale),
+        };
+        self.last = (step.end_s, step.end, step.end_slope);
+        (self.watch)(&step).is_break()
+    }
+}

@@ -1,0 +1,6 @@
+//! Motion in time: the engine, the ground, and the rocking structure that the engine runs.
+pub mod engine;
+pub mod ground;
+pub mod history;
+pub mod integrator;
+pub mod rocking;

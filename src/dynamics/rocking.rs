@@ -1,0 +1,400 @@
+//! Rocking under ground motion, as a hybrid system.
+//!
+//! | mode | moves by | until |
+//! |---|---|---|
+//! | rest | not at all | the ground passes the incipient acceleration on either side |
+//! | rocking | the equation of motion of one mechanism | its hinges close, or it is lost |
+//! | overturned | - | - |
+//!
+//! Which structure rocks does not matter here: see [`Structure`].
+
+use super::engine::{HybridSystem, Level};
+use super::ground::{GroundMotion, Piece};
+use super::integrator::{State, Step};
+use crate::mechanics::mechanism::Sway;
+use crate::mechanics::structure::{Coefficients, Link, Mechanism, Structure};
+
+/// Discrete state of a rocking structure.
+#[derive(Debug)]
+pub enum Mode<'a, M> {
+    /// Undeformed, carried by the ground.
+    Rest,
+    /// One mechanism moves.
+    Rocking {
+        /// To which side.
+        sway: Sway,
+        /// Impacts since it last left the rest: the index of the link.
+        impacts: usize,
+        /// The mechanism.
+        link: &'a Link<M>,
+    },
+    /// Lost.
+    Overturned {
+        /// To which side.
+        sway: Sway,
+        /// The mechanism.
+        link: &'a Link<M>,
+    },
+}
+
+// Not derived: a copy of the mode does not need a copy of the mechanism.
+impl<M> Clone for Mode<'_, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M> Copy for Mode<'_, M> {}
+
+/// Events of a rocking structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guard {
+    /// At rest: `A_L g - push`, where the ground pushes the structure to this side.
+    Uplift(Sway),
+    /// Rocking: `q`, all hinges close.
+    Closing,
+    /// Rocking on ground that is quiet for good: `q_c - q`, from here on gravity pulls it over.
+    Critical,
+    /// Rocking: `q_limit - q`, the linkage cannot go any further.
+    Limit,
+}
+
+/// The coordinate `q`, its rate, and the work done by the ground since time zero.
+pub type RockingState = State<3>;
+
+/// A structure on moving ground.
+#[derive(Debug)]
+pub struct Rocking<'a, S: Structure> {
+    structure: &'a S,
+    ground: &'a GroundMotion,
+    gravity_m_s2: f64,
+    rest_energy_ratio: f64,
+    barrier: f64,
+}
+
+impl<'a, S: Structure> Rocking<'a, S> {
+    /// The structure on the given ground. It comes to rest when an impact leaves less than
+    /// `rest_energy_ratio` of the energy barrier of its first mechanism.
+    #[must_use]
+    pub fn new(
+        structure: &'a S,
+        ground: &'a GroundMotion,
+        gravity_m_s2: f64,
+        rest_energy_ratio: f64,
+    ) -> Self {
+        let mut rocking = Self {
+            structure,
+            ground,
+            gravity_m_s2,
+            rest_energy_ratio,
+            barrier: 0.0,
+        };
+        rocking.barrier = structure
+            .link(0)
+            .map_or(0.0, |link| rocking.potential(link, link.critical_rad));
+        rocking
+    }
+
+    /// The structure.
+    #[must_use]
+    pub const fn structure(&self) -> &'a S {
+        self.structure
+    }
+
+    /// The ground motion.
+    #[must_use]
+    pub const fn ground(&self) -> &'a GroundMotion {
+        self.ground
+    }
+
+    /// Energy that the first mechanism has to gain to overturn. Energies are in the structure's unit of
+    /// mass times the square of its unit of length, per s2.
+    #[must_use]
+    pub const fn barrier(&self) -> f64 {
+        self.barrier
+    }
+
+    /// Potential energy of a mechanism at `q`.
+    #[must_use]
+    pub fn potential(&self, link: &Link<S::Mechanism>, q_rad: f64) -> f64 {
+        self.gravity_m_s2 / self.structure.length_m() * link.mechanism.displacement(q_rad).y
+    }
+
+    /// Kinetic and potential energy of a mechanism.
+    #[must_use]
+    pub fn energy(&self, link: &Link<S::Mechanism>, state: &RockingState) -> f64 {
+        let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];
+        kinetic + self.potential(link, state[0])
+    }
+
+    /// The mode of a structure released on one side.
+    #[must_use]
+    pub fn released(&self, sway: Sway) -> Mode<'a, S::Mechanism> {
+        self.structure
+            .link(0)
+            .map_or(Mode::Rest, |link| Mode::Rocking {
+                sway,
+                impacts: 0,
+                link,
+            })
+    }
+
+    fn piece(&self, piece: usize) -> &'a Piece {
+        &self.ground.pieces()[piece]
+    }
+
+    /// `q''` under gravity and a ground acceleration in the mechanism's own frame.
+    fn acceleration(&self, coefficients: &Coefficients, rate: f64, ground_m_s2: f64) -> f64 {
+        let force = self.gravity_m_s2 * coefficients.rise + ground_m_s2 * coefficients.sway;
+        let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
+        -(force / self.structure.length_m() + inertial) / coefficients.inertia
+    }
+
+    /// Inverse time scale of a fall from `q = 0`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
+    fn fall_rate_s(&self, link: &Link<S::Mechanism>, at_zero: &Coefficients) -> f64 {
+        let stiffness =
+            self.gravity_m_s2 * at_zero.rise / (self.structure.length_m() * link.critical_rad);
+        (stiffness / at_zero.inertia).sqrt()
+    }
+
+    /// Height of motion: largest `q` and rate that the energy of `state` can reach, as orders of magnitude.
+    fn reach(&self, link: &Link<S::Mechanism>, state: &RockingState) -> (f64, f64) {
+        let at_zero = link.mechanism.coefficients(0.0);
+        let energy = match self.energy(link, state) {
+            energy if energy > 0.0 && energy < self.barrier => energy,
+            _ => self.barrier,
+        };
+        let weight = self.gravity_m_s2 * at_zero.rise / self.structure.length_m();
+        (
+            (energy / weight).min(link.critical_rad),
+            (2.0 * energy / at_zero.inertia).sqrt(),
+        )
+    }
+}
+
+impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
+    type Mode = Mode<'a, S::Mechanism>;
+    type Guard = Guard;
+
+    fn piece_end_s(&self, piece: usize) -> f64 {
+        self.piece(piece).end_s
+    }
+
+    fn is_over(&self, mode: Self::Mode, piece: usize) -> bool {
+        match mode {
+            Mode::Rest => self.piece(piece).is_quiet_for_good(),
+            Mode::Rocking { .. } => false,
+            Mode::Overturned { .. } => true,
+        }
+    }
+
+    fn is_still(&self, mode: Self::Mode) -> bool {
+        !matches!(mode, Mode::Rocking { .. })
+    }
+
+    fn slope(
+        &self,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+    ) -> RockingState {
+        let Mode::Rocking { sway, link, .. } = mode else {
+            return RockingState::zeros();
+        };
+        let ground_m_s2 = sway.sign() * self.piece(piece).acceleration_m_s2(time_s);
+        let (q, rate) = (state[0], state[1]);
+        let coefficients = link.mechanism.coefficients(q);
+        let work = -ground_m_s2 * coefficients.sway * rate / self.structure.length_m();
+        RockingState::new(
+            rate,
+            self.acceleration(&coefficients, rate, ground_m_s2),
+            work,
+        )
+    }
+
+    fn between(&self, step: &Step<3>, time_s: f64) -> RockingState {
+        let span = step.end_s - step.start_s;
+        if span <= 0.0 {
+            return step.start;
+        }
+        let x = (time_s - step.start_s) / span;
+        // q by the polynomial of degree five with the coordinates, rates and accelerations of both
+        // ends, in the time over the span; its error is span^6/46080 times the sixth derivative.
+        let (q, rate, bend) = (
+            step.start[0],
+            step.start[1] * span,
+            step.start_slope[1] * span * span,
+        );
+        let miss = step.end[0] - (q + rate + 0.5 * bend);
+        let miss_rate = step.end[1] * span - (rate + bend);
+        let miss_bend = step.end_slope[1] * span * span - bend;
+        let cubic = 10.0 * miss - 4.0 * miss_rate + 0.5 * miss_bend;
+        let quartic = -15.0 * miss + 7.0 * miss_rate - miss_bend;
+        let quintic = 6.0 * miss - 3.0 * miss_rate + 0.5 * miss_bend;
+        let coordinate =
+            q + x * (rate + x * (0.5 * bend + x * (cubic + x * (quartic + x * quintic))));
+        let slope = rate + x * (bend + x * (3.0 * cubic + x * (4.0 * quartic + x * 5.0 * quintic)));
+        // Work by the cubic with values and rates of both ends.
+        let (work, power) = (step.start[2], step.start_slope[2] * span);
+        let miss = step.end[2] - (work + power);
+        let miss_power = step.end_slope[2] * span - power;
+        let work =
+            work + x * (power + x * (3.0 * miss - miss_power + x * (miss_power - 2.0 * miss)));
+        RockingState::new(coordinate, slope / span, work)
+    }
+
+    fn scale(&self, mode: Self::Mode, state: &RockingState) -> RockingState {
+        let Mode::Rocking { link, .. } = mode else {
+            return RockingState::repeat(1.0);
+        };
+        let (reach_rad, rate_rad_s) = self.reach(link, state);
+        let inertia = link.mechanism.coefficients(0.0).inertia;
+        RockingState::new(
+            reach_rad,
+            rate_rad_s,
+            0.5 * inertia * rate_rad_s * rate_rad_s,
+        )
+    }
+
+    fn step_sizes_s(
+        &self,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+        relative_tolerance: f64,
+    ) -> (f64, f64) {
+        let Mode::Rocking { link, .. } = mode else {
+            return (f64::INFINITY, f64::INFINITY);
+        };
+        let at_zero = link.mechanism.coefficients(0.0);
+        let fall_s = 1.0 / self.fall_rate_s(link, &at_zero);
+        // Time until q is back at zero if the acceleration stayed as it is.
+        let (q, rate) = (state[0], state[1]);
+        let acceleration = self.slope(mode, piece, time_s, state)[1];
+        let back_s = (rate + (rate * rate - 2.0 * acceleration * q).sqrt()) / -acceleration;
+        let hop_s = if acceleration < 0.0 && back_s > 0.0 {
+            (1.05 * back_s).min(fall_s)
+        } else {
+            fall_s
+        };
+        // A hop is a parabola but for terms of the relative size of its height: the sixth derivative,
+        // which the method feels, is of the order of its square. The error of a step h is taken as
+        // height^2 (h/hop)^6.
+        let (reach_rad, _) = self.reach(link, state);
+        let height = reach_rad / link.critical_rad;
+        let part = (relative_tolerance / (height * height))
+            .powf(1.0 / 6.0)
+            .min(1.0);
+        let longest_s = hop_s.min(self.piece(piece).longest_step_s());
+        (part * hop_s, longest_s)
+    }
+
+    fn guards(&self, mode: Self::Mode) -> &'static [Guard] {
+        match mode {
+            Mode::Rest => &[Guard::Uplift(Sway::Right), Guard::Uplift(Sway::Left)],
+            Mode::Rocking { .. } => &[Guard::Closing, Guard::Critical, Guard::Limit],
+            Mode::Overturned { .. } => &[],
+        }
+    }
+
+    fn level(
+        &self,
+        guard: Guard,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+    ) -> Level {
+        let piece = self.piece(piece);
+        match (guard, mode) {
+            (Guard::Uplift(sway), _) => Level {
+                value: self.structure.incipient_g() * self.gravity_m_s2
+                    + sway.sign() * piece.acceleration_m_s2(time_s),
+                rate: sway.sign() * piece.jerk_m_s3(time_s),
+            },
+            (Guard::Closing, _) => Level {
+                value: state[0],
+                rate: state[1],
+            },
+            (Guard::Critical, Mode::Rocking { link, .. }) if piece.is_quiet_for_good() => Level {
+                value: link.critical_rad - state[0],
+                rate: -state[1],
+            },
+            (Guard::Limit, Mode::Rocking { link, .. }) => Level {
+                value: link.limit_rad - state[0],
+                rate: -state[1],
+            },
+            (Guard::Critical | Guard::Limit, _) => Level {
+                value: 1.0,
+                rate: 0.0,
+            },
+        }
+    }
+
+    fn fired_at_once(
+        &self,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+    ) -> Option<Guard> {
+        match mode {
+            Mode::Rest => self.guards(mode).iter().copied().find(|guard| {
+                let level = self.level(*guard, mode, piece, time_s, state);
+                // At the threshold to rounding only a growing push lifts: else a structure that has
+                // just closed there would start again for ever.
+                let rounding = 1e-12 * self.structure.incipient_g() * self.gravity_m_s2;
+                level.value < -rounding || (level.value <= 0.0 && level.rate < 0.0)
+            }),
+            Mode::Rocking { link, .. } => {
+                let lost = self.piece(piece).is_quiet_for_good()
+                    && state[0] >= link.critical_rad
+                    && state[1] >= 0.0;
+                lost.then_some(Guard::Critical)
+            }
+            Mode::Overturned { .. } => None,
+        }
+    }
+
+    fn reset(
+        &self,
+        guard: Guard,
+        mode: Self::Mode,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+    ) -> (Self::Mode, RockingState) {
+        let work = state[2];
+        let still = RockingState::new(0.0, 0.0, work);
+        match (guard, mode) {
+            (Guard::Uplift(sway), _) => (self.released(sway), still),
+            (Guard::Critical | Guard::Limit, Mode::Rocking { sway, link, .. }) => {
+                (Mode::Overturned { sway, link }, *state)
+            }
+            (Guard::Closing, Mode::Rocking { sway, impacts, .. }) => {
+                // The closing rate is negative, but for rounding at the end of a vanishing hop.
+                let closing_rate = (-state[1]).max(0.0);
+                let Some(link) = self.structure.link(impacts + 1) else {
+                    return (Mode::Rest, still);
+                };
+                let rate = link.rate_ratio * closing_rate;
+                let coefficients = link.mechanism.coefficients(0.0);
+                let sway = sway.opposite();
+                let ground_m_s2 = sway.sign() * self.piece(piece).acceleration_m_s2(time_s);
+                let energy = 0.5 * coefficients.inertia * rate * rate;
+                let held_up = self.acceleration(&coefficients, rate, ground_m_s2) > 0.0;
+                if energy < self.rest_energy_ratio * self.barrier && !held_up {
+                    return (Mode::Rest, still);
+                }
+                let mode = Mode::Rocking {
+                    sway,
+                    impacts: impacts + 1,
+                    link,
+                };
+                (mode, RockingState::new(0.0, rate, work))
+            }
+            (_, Mode::Rest | Mode::Overturned { .. }) => (mode, *state),
+        }
+    }
+}

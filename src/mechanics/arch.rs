@@ -1,0 +1,40 @@
+//! A masonry arch: a ring with its size and material.
+
+use std::sync::Arc;
+
+use super::chain::Chain;
+use super::linkage::Linkage;
+use super::structure::{Link, Structure};
+
+/// An arch. Its chain of mechanisms does not depend on size or material, and may be shared.
+#[derive(Clone, Debug)]
+pub struct Arch {
+    /// Mean radius in metres.
+    pub mean_radius_m: f64,
+    /// Depth out of plane in metres.
+    pub depth_m: f64,
+    /// Density in kg/m3.
+    pub density_kg_m3: f64,
+    /// Shape, and what follows from it.
+    pub chain: Arc<Chain>,
+}
+
+impl Structure for Arch {
+    type Mechanism = Linkage;
+
+    fn length_m(&self) -> f64 {
+        self.mean_radius_m
+    }
+
+    fn mass_unit_kg(&self) -> f64 {
+        self.density_kg_m3 * self.depth_m * self.mean_radius_m * self.mean_radius_m
+    }
+
+    fn incipient_g(&self) -> f64 {
+        self.chain.incipient().acceleration_g
+    }
+
+    fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {
+        self.chain.link(impacts).map(|link| &link.link)
+    }
+}

@@ -1,0 +1,174 @@
+//! The chain of mechanisms that an arch passes through, impact after impact.
+//!
+//! Which mechanism follows an impact depends on the one that closes, not on how fast: from the mechanism
+//! that starts at the incipient acceleration the whole sequence is a property of the arch. Links are
+//! computed when first asked for and kept; threads may share a chain.
+
+use std::sync::OnceLock;
+
+use super::impact::{Impact, ImpactModel, impact};
+use super::limit::{Incipient, LimitError, incipient};
+use super::linkage::Linkage;
+use super::mechanism::{FourLink, HingeSites};
+use super::ring::Ring;
+use super::structure::{Link, critical_rad};
+
+/// A link whose hinges are as close as this to those of the link two before it closes the chain into a
+/// repeating pair. Far below what the search resolves in `r` (which is flat at a maximum).
+const REPETITION_RAD: f64 = 1e-9;
+
+/// Chains converge to a pair within 20 to 100 links. One that has not by this length (none is known)
+/// goes on with its last two.
+const LONGEST_CHAIN: usize = 256;
+
+/// A mechanism of the chain: in the undeformed configuration, and in motion.
+#[derive(Clone, Debug)]
+pub struct ArchLink {
+    /// The mechanism in the undeformed configuration.
+    pub mechanism: FourLink,
+    /// The same at finite rotations, and how the impact leads to it.
+    pub link: Link<Linkage>,
+}
+
+impl ArchLink {
+    fn new(ring: &Ring, impact: &Impact) -> Self {
+        let linkage = Linkage::new(ring, &impact.mechanism);
+        let limit_rad = linkage.limit_rad();
+        Self {
+            mechanism: impact.mechanism,
+            link: Link {
+                mechanism: linkage,
+                critical_rad: critical_rad(&linkage, limit_rad),
+                limit_rad,
+                rate_ratio: impact.rate_ratio,
+                restitution: impact.restitution,
+            },
+        }
+    }
+}
+
+/// A ring with its chain of mechanisms: everything about an arch that does not depend on its size, its
+/// density or the ground motion.
+#[derive(Debug)]
+pub struct Chain {
+    ring: Ring,
+    sites: HingeSites,
+    model: ImpactModel,
+    incipient: Incipient,
+    links: Box<[OnceLock<Option<ArchLink>>]>,
+    /// First link of the pair that repeats for ever.
+    pair: OnceLock<usize>,
+}
+
+impl Chain {
+    /// The chain of `ring` under an impact model; computes the incipient mechanism.
+    ///
+    /// # Errors
+    /// Those of [`incipient`].
+    pub fn new(ring: Ring, sites: HingeSites, model: ImpactModel) -> Result<Self, LimitError> {
+        let incipient = incipient(&ring, sites)?;
+        Ok(Self {
+            ring,
+            sites,
+            model,
+            incipient,
+            links: (0..LONGEST_CHAIN).map(|_| OnceLock::new()).collect(),
+            pair: OnceLock::new(),
+        })
+    }
+
+    /// The ring.
+    #[must_use]
+    pub const fn ring(&self) -> &Ring {
+        &self.ring
+    }
+
+    /// Onset of rocking; its mechanism is link 0.
+    #[must_use]
+    pub const fn incipient(&self) -> &Incipient {
+        &self.incipient
+    }
+
+    /// The mechanism after `index` impacts; `None` when an impact before it stops the ring, because
+    /// no admissible mechanism takes the motion over.
+    #[must_use]
+    pub fn link(&self, index: usize) -> Option<&ArchLink> {
+        let mut known = 0;
+        loop {
+            let wanted = match self.pair.get() {
+                Some(pair) if index > *pair => pair + (index - pair) % 2,
+                _ => index,
+            };
+            if known > wanted || self.links[wanted].get().is_some() {
+                return self.links[wanted].get()?.as_ref();
+            }
+            self.links[known].get_or_init(|| self.compute(known));
+            known += 1;
+            if known == LONGEST_CHAIN {
+                self.pair.get_or_init(|| LONGEST_CHAIN - 2);
+            }
+        }
+    }
+
+    fn compute(&self, index: usize) -> Option<ArchLink> {
+        let Some(previous) = index.checked_sub(1) else {
+            let first = Impact {
+                mechanism: self.incipient.mechanism,
+                rate_ratio: 1.0,
+                restitution: 1.0,
+            };
+            return Some(ArchLink::new(&self.ring, &first));
+        };
+        let closing = &self.links[previous].get()?.as_ref()?.mechanism;
+        let impact = impact(closing, &self.ring, self.sites, self.model)?;
+        let before_last = previous
+            .checked_sub(1)
+            .and_then(|i| self.links[i].get()?.as_ref());
+        if let Some(link) = before_last {
+            let (hinges, earlier) = (impact.mechanism.hinges_rad(), link.mechanism.hinges_rad());
+            let same = |i: usize| (hinges[i] - earlier[i]).abs() < REPETITION_RAD;
+            if (0..4).all(same) && index >= 3 {
+                self.pair.get_or_init(|| index - 1);
+            }
+        }
+        Some(ArchLink::new(&self.ring, &impact))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Chain {
+        let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
+        Chain::new(ring, sites, ImpactModel::MaxRestitution).unwrap()
+    }
+
+    #[test]
+    fn the_order_of_asking_does_not_matter() {
+        let (forwards, at_once) = (
+            chain(0.15, 180.0, HingeSites::Anywhere),
+            chain(0.15, 180.0, HingeSites::Anywhere),
+        );
+        let stepwise: Vec<_> = (0..150)
+            .map(|i| forwards.link(i).unwrap().link.restitution)
+            .collect();
+        for index in [149, 30, 148, 0, 149] {
+            let restitution = at_once.link(index).unwrap().link.restitution;
+            assert_eq!(restitution.to_bits(), stepwise[index].to_bits(), "{index}");
+        }
+    }
+
+    #[test]
+    fn the_chain_ends_in_a_pair() {
+        for chain in [
+            chain(0.15, 157.5, HingeSites::Voussoirs(7)),
+            chain(0.15, 157.5, HingeSites::Anywhere),
+            chain(0.12, 180.0, HingeSites::Anywhere),
+        ] {
+            let hinges = |i| chain.link(i).unwrap().mechanism.hinges_rad();
+            assert_eq!(hinges(400), hinges(402));
+            assert!(*chain.pair.get().unwrap() < LONGEST_CHAIN - 2);
+        }
+    }
+}

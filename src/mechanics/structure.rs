@@ -1,0 +1,91 @@
+//! What a structure has to tell for its rocking to be simulated.
+//!
+//! Anything whose mechanisms have one degree of freedom each and follow one another through impacts: the
+//! arch, the free-standing column. Lengths are in units of its size, masses in a unit of its own; every
+//! mechanism is seen in the frame in which it sways right.
+
+use nalgebra::Vector2;
+
+/// Coefficients of the equation of motion of a system with one degree of freedom,
+/// `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`, at some `q`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// `M`: generalised mass.
+    pub inertia: f64,
+    /// `M'`: derivative of the generalised mass with respect to `q`.
+    pub inertia_slope: f64,
+    /// `S_x`: sum of the masses times the derivatives of their horizontal positions.
+    pub sway: f64,
+    /// `S_y`: sum of the masses times the derivatives of their vertical positions.
+    pub rise: f64,
+}
+
+/// A mechanism with one degree of freedom `q >= 0` at finite rotations, swaying right.
+pub trait Mechanism {
+    /// Rotations of its bodies from left to right, anticlockwise, in radians; or their rates.
+    type Rotations: Copy + AsRef<[f64]> + AsMut<[f64]>;
+
+    /// Coefficients of the equation of motion at `q`.
+    fn coefficients(&self, q_rad: f64) -> Coefficients;
+    /// Mass times displacement of the centre of gravity at `q`.
+    fn displacement(&self, q_rad: f64) -> Vector2<f64>;
+    /// Rotations of the bodies at `q`.
+    fn rotations(&self, q_rad: f64) -> Self::Rotations;
+    /// Rotation rates of the bodies at `q` for `q' = 1`.
+    fn rotation_rates(&self, q_rad: f64) -> Self::Rotations;
+}
+
+/// A mechanism in the sequence that impacts lead through.
+#[derive(Clone, Debug)]
+pub struct Link<M> {
+    /// The mechanism at finite rotations.
+    pub mechanism: M,
+    /// `q` at the unstable equilibrium under gravity alone.
+    pub critical_rad: f64,
+    /// `q` at which the mechanism cannot go any further.
+    pub limit_rad: f64,
+    /// Rate of this mechanism for a unit closing rate of the one before; 1 for the first.
+    pub rate_ratio: f64,
+    /// Restitution coefficient of the impact that leads here, energy after over before; 1 for the first.
+    pub restitution: f64,
+}
+
+/// A structure that rocks.
+pub trait Structure {
+    /// Its mechanisms.
+    type Mechanism: Mechanism;
+
+    /// Size of the structure: the unit of length of its mechanisms, in metres.
+    fn length_m(&self) -> f64;
+    /// Unit of mass of its mechanisms, in kg.
+    fn mass_unit_kg(&self) -> f64;
+    /// Horizontal acceleration at which it starts to rock from rest, on either side, in units of gravity.
+    fn incipient_g(&self) -> f64;
+    /// The mechanism after a number of impacts; `None` when an impact before it stops the structure.
+    fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>>;
+}
+
+/// The unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which `S_y`, the slope of
+/// the potential energy, falls to zero; the limit itself if there is none.
+#[must_use]
+pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
+    let rise = |q| mechanism.coefficients(q).rise;
+    // The potential has one top before the limit; the scan only brackets it.
+    let steps = 64;
+    let at = |step: i32| limit_rad * f64::from(step) / f64::from(steps);
+    let Some(first) = (1..steps).find(|step| rise(at(*step)) <= 0.0) else {
+        return limit_rad;
+    };
+    let (mut low, mut high) = (at(first - 1), at(first));
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if rise(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
