@@ -1,3 +1,4 @@
 //! wip
 #![allow(missing_docs)]
 pub mod mechanics;
+pub mod scenario;
