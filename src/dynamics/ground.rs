@@ -6,26 +6,27 @@
 
 use std::f64::consts::PI;
 
-/// Shape of a single pulse. Accelerations follow with the amplitude `a`, the duration `T` and the time
-/// `s` since the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pulse {
-    /// `a` for `0 <= s < T`.
-    Rectangular,
-    /// `a` for `0 <= s < T`, then `-a/2` for `T <= s < 3 T`: no velocity is left.
-    StepPair,
-    /// `a sin(pi s / T)` for `0 <= s < T`.
-    HalfSine,
-    /// `a sin(2 pi s / T)` for `0 <= s < T`.
-    OneSine,
-    /// `a cos(2 pi s / T)` for `0 <= s < T`: from its peak, with a jump at both ends.
-    OneCosine,
-    /// From 0 up to `a` at `s = T/2` and back to 0 at `T`, in straight lines.
-    Triangular,
-    /// Ricker wavelet `a (1 - 2 x^2) exp(-x^2)`, `x = pi (s - 2 T) / T`, for `0 <= s < 4 T`; `T` is the
-    /// period of its central frequency and the peak is at `s = 2 T`. Beyond, it would be below
-    /// `6e-16 a`, and is zero.
-    Ricker,
+named! {
+    /// Shape of a single pulse. Accelerations follow with the amplitude `a`, the duration `T` and the time
+    /// `s` since the start.
+    pub enum Pulse {
+        /// `a` for `0 <= s < T`.
+        Rectangular = "rectangular",
+        /// `a` for `0 <= s < T`, then `-a/2` for `T <= s < 3 T`: no velocity is left.
+        StepPair = "step_pair",
+        /// `a sin(pi s / T)` for `0 <= s < T`.
+        HalfSine = "half_sine",
+        /// `a sin(2 pi s / T)` for `0 <= s < T`.
+        OneSine = "one_sine",
+        /// `a cos(2 pi s / T)` for `0 <= s < T`: from its peak, with a jump at both ends.
+        OneCosine = "one_cosine",
+        /// From 0 up to `a` at `s = T/2` and back to 0 at `T`, in straight lines.
+        Triangular = "triangular",
+        /// Ricker wavelet `a (1 - 2 x^2) exp(-x^2)`, `x = pi (s - 2 T) / T`, for `0 <= s < 4 T`; `T` is the
+        /// period of its central frequency and the peak is at `s = 2 T`. Beyond, it would be below
+        /// `6e-16 a`, and is zero.
+        Ricker = "ricker",
+    }
 }
 
 /// One-sided formula of a piece, in the time since the start of its pulse.
@@ -243,19 +244,9 @@ impl GroundMotion {
 mod tests {
     use super::*;
 
-    const ALL: [Pulse; 7] = [
-        Pulse::Rectangular,
-        Pulse::StepPair,
-        Pulse::HalfSine,
-        Pulse::OneSine,
-        Pulse::OneCosine,
-        Pulse::Triangular,
-        Pulse::Ricker,
-    ];
-
     #[test]
     fn pieces_follow_one_another_from_zero_to_infinity() {
-        for pulse in ALL {
+        for pulse in Pulse::ALL.iter().copied() {
             for start in [0.0, 0.7] {
                 let ground = GroundMotion::pulse(pulse, 2.0, 0.3, start);
                 let pieces = ground.pieces();
@@ -273,7 +264,7 @@ mod tests {
 
     #[test]
     fn pieces_are_monotone_and_their_jerk_is_the_derivative() {
-        for pulse in ALL {
+        for pulse in Pulse::ALL.iter().copied() {
             for piece in GroundMotion::pulse(pulse, -3.0, 0.4, 0.2).pieces() {
                 let end = piece.end_s.min(piece.start_s + 10.0);
                 let at = |i: i32| piece.start_s + (end - piece.start_s) * f64::from(i) / 100.0;

@@ -17,7 +17,7 @@ use super::structure::{Link, critical_rad};
 /// repeating pair. Far below what the search resolves in `r` (which is flat at a maximum).
 const REPETITION_RAD: f64 = 1e-9;
 
-/// Chains converge to a pair within 20 to 100 links. One that has not by this length (none is known)
+/// Chains converge to a pair within 20 to 120 links. One that has not by this length (none is known)
 /// goes on with its last two.
 const LONGEST_CHAIN: usize = 256;
 
@@ -93,21 +93,18 @@ impl Chain {
     /// no admissible mechanism takes the motion over.
     #[must_use]
     pub fn link(&self, index: usize) -> Option<&ArchLink> {
-        let mut known = 0;
-        loop {
+        for known in 0..LONGEST_CHAIN {
             let wanted = match self.pair.get() {
                 Some(pair) if index > *pair => pair + (index - pair) % 2,
                 _ => index,
             };
-            if known > wanted || self.links[wanted].get().is_some() {
-                return self.links[wanted].get()?.as_ref();
+            if let Some(link) = self.links.get(wanted).and_then(OnceLock::get) {
+                return link.as_ref();
             }
             self.links[known].get_or_init(|| self.compute(known));
-            known += 1;
-            if known == LONGEST_CHAIN {
-                self.pair.get_or_init(|| LONGEST_CHAIN - 2);
-            }
         }
+        self.pair.get_or_init(|| LONGEST_CHAIN - 2);
+        self.link(index)
     }
 
     fn compute(&self, index: usize) -> Option<ArchLink> {
@@ -168,7 +165,8 @@ mod tests {
         ] {
             let hinges = |i| chain.link(i).unwrap().mechanism.hinges_rad();
             assert_eq!(hinges(400), hinges(402));
-            assert!(*chain.pair.get().unwrap() < LONGEST_CHAIN - 2);
+            let pair = *chain.pair.get().unwrap();
+            assert!(pair < LONGEST_CHAIN - 2, "{pair}");
         }
     }
 }

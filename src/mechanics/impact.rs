@@ -28,6 +28,19 @@ pub enum ImpactModel {
     },
 }
 
+impl ImpactModel {
+    /// Its name in scenarios and results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::MaxRestitution => "max_restitution",
+            Self::SameSections => "same_sections",
+            Self::Mirrored => "mirrored",
+            Self::Prescribed { .. } => "prescribed",
+        }
+    }
+}
+
 /// An impact: what follows when a mechanism closes at unit rate.
 ///
 /// The mechanism after the impact sways to the other side; it is given in the frame in which that is the

@@ -10,13 +10,14 @@ use nalgebra::Vector2;
 use super::field::{Field, Twist};
 use super::ring::{Edge, Ring};
 
-/// Direction in which a mechanism carries the structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sway {
-    /// Towards +x, as started by a ground acceleration towards -x.
-    Right,
-    /// Towards -x, as started by a ground acceleration towards +x.
-    Left,
+named! {
+    /// Direction in which a mechanism carries the structure.
+    pub enum Sway {
+        /// Towards +x, as started by a ground acceleration towards -x.
+        Right = "right",
+        /// Towards -x, as started by a ground acceleration towards +x.
+        Left = "left",
+    }
 }
 
 impl Sway {
@@ -35,15 +36,6 @@ impl Sway {
         match self {
             Self::Right => 1.0,
             Self::Left => -1.0,
-        }
-    }
-
-    /// `right` or `left`, as in scenarios and results.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Right => "right",
-            Self::Left => "left",
         }
     }
 }
@@ -213,7 +205,7 @@ mod tests {
         assert!(mechanism([24.0, 24.0, 140.0, 180.0]).is_none());
         assert!(mechanism([24.0, 82.0, 140.0, 180.1]).is_none());
         assert!(mechanism([f64::NAN, 82.0, 140.0, 180.0]).is_none());
-        // The extrados hinge B lies below the line from A to C.
-        assert!(mechanism([0.0, 2.0, 140.0, 180.0]).is_none());
+        // The intrados hinge C lies below the line from B to D, and would have to close.
+        assert!(mechanism([0.0, 160.0, 170.0, 180.0]).is_none());
     }
 }

@@ -10,13 +10,14 @@ use std::ops::{Add, Sub};
 use nalgebra::Vector2;
 use thiserror::Error;
 
-/// Edge of the ring on which a hinge sits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
-    /// Inner edge, of radius `1 - t/2R`.
-    Intrados,
-    /// Outer edge, of radius `1 + t/2R`.
-    Extrados,
+named! {
+    /// Edge of the ring on which a hinge sits.
+    pub enum Edge {
+        /// Inner edge, of radius `1 - t/2R`.
+        Intrados = "intrados",
+        /// Outer edge, of radius `1 + t/2R`.
+        Extrados = "extrados",
+    }
 }
 
 impl Edge {
@@ -26,15 +27,6 @@ impl Edge {
         match self {
             Self::Intrados => Self::Extrados,
             Self::Extrados => Self::Intrados,
-        }
-    }
-
-    /// `intrados` or `extrados`, as in the machine-readable results.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Intrados => "intrados",
-            Self::Extrados => "extrados",
         }
     }
 }

@@ -1,0 +1,25 @@
+//! Enums whose variants have names in files.
+
+/// Defines an enum whose variants have names in files, so that a variant, its name and its documentation
+/// stand in one place.
+macro_rules! named {
+    (
+        $(#[$attribute:meta])*
+        pub enum $enum:ident { $($(#[$variant_attribute:meta])* $variant:ident = $name:literal,)+ }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $enum { $($(#[$variant_attribute])* $variant,)+ }
+
+        impl $enum {
+            /// All variants, in the order of their definition.
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+
+            /// Its name in scenarios and results.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)+ }
+            }
+        }
+    };
+}

@@ -1,0 +1,124 @@
+//! What is wrong with a scenario, and where.
+
+use std::fmt;
+
+/// One thing that is wrong with a scenario.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ScenarioError {
+    /// Name of the file, as the caller gave it.
+    pub file: String,
+    /// Where in the file; `None` when it could not be read at all.
+    pub place: Option<Place>,
+    /// The offending key and value, and what is allowed instead.
+    pub message: String,
+}
+
+/// A place in a text, as editors count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+impl fmt::Display for ScenarioError {
+    /// `file:line:column: message`, the form that editors follow.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.file)?;
+        if let Some(Place { line, column }) = self.place {
+            write!(f, "{line}:{column}:")?;
+        }
+        write!(f, " {}", self.message)
+    }
+}
+
+impl std::error::Error for ScenarioError {}
+
+/// Everything that is wrong with a scenario: at least one error, in the order of the file.
+///
+/// Displayed one a line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ScenarioErrors(Vec<ScenarioError>);
+
+impl ScenarioErrors {
+    /// The errors, in the order of the file.
+    #[must_use]
+    pub fn as_slice(&self) -> &[ScenarioError] {
+        &self.0
+    }
+
+    /// The one error of a file that could not be read.
+    pub(super) fn unreadable(file: &str, message: impl Into<String>) -> Self {
+        Self(vec![ScenarioError {
+            file: file.to_owned(),
+            place: None,
+            message: message.into(),
+        }])
+    }
+
+    /// Gives the faults found in `text` their lines and columns.
+    pub(super) fn placed(file: &str, text: &str, mut faults: Vec<Fault>) -> Self {
+        faults.sort_by_key(|fault| fault.offset);
+        // One pass over the text serves all faults: a hostile file can have very many.
+        let mut chars = text.char_indices().peekable();
+        let mut place = Place { line: 1, column: 1 };
+        let errors = faults.into_iter().map(|fault| {
+            while let Some((_, c)) = chars.next_if(|&(offset, _)| offset < fault.offset) {
+                place = match c {
+                    '\n' => Place {
+                        line: place.line + 1,
+                        column: 1,
+                    },
+                    _ => Place {
+                        column: place.column + 1,
+                        ..place
+                    },
+                };
+            }
+            ScenarioError {
+                file: file.to_owned(),
+                place: Some(place),
+                message: fault.message,
+            }
+        });
+        Self(errors.collect())
+    }
+}
+
+impl fmt::Display for ScenarioErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, error) in self.0.iter().enumerate() {
+            if i > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{error}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for ScenarioErrors {}
+
+/// An error as it is found: at a byte of the text.
+#[derive(Debug)]
+pub(super) struct Fault {
+    pub(super) offset: usize,
+    pub(super) message: String,
+}
+
+/// A piece of the file for a message: its first line, cut when long, without control characters,
+/// which could rewrite the terminal.
+pub(super) fn excerpt(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let line = text.trim().lines().next().unwrap_or_default();
+    let mut short: String = line
+        .chars()
+        .take(LONGEST)
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
+    if line.chars().nth(LONGEST).is_some() {
+        short.push_str("...");
+    }
+    short
+}

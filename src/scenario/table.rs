@@ -1,0 +1,522 @@
+//! Reading the tables of a TOML text so that every error is found and keeps its place.
+//!
+//! Nothing here knows the keys of a scenario; those are in `keys.rs`.
+
+use std::fmt;
+use std::ops::{Bound, RangeBounds, RangeInclusive};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{Fault, excerpt};
+
+/// Stands for a value that could not be had, after the reason was recorded as a [`Fault`].
+///
+/// A reader asks for all its keys before it gives up on one (with `?`), so that all are checked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reported;
+
+/// A value, or the knowledge that its fault is recorded.
+pub(super) type Reading<T> = Result<T, Reported>;
+
+/// Reads a whole TOML text with `read`, or says all that is wrong with it.
+pub(super) fn read_text<T>(
+    text: &str,
+    read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
+) -> Result<T, Vec<Fault>> {
+    let legible = Legible::of(text);
+    if !legible.is_toml {
+        return Err(legible.faults);
+    }
+    let (root, _) = DeTable::parse_recoverable(&legible.text);
+    let mut table = Table {
+        name: "the scenario".to_owned(),
+        offset: 0,
+        entries: root.get_ref(),
+        legible: &legible,
+        known: Vec::new(),
+        faults: Vec::new(),
+    };
+    let value = read(&mut table);
+    table.reject_unknown_keys();
+    let mut faults = table.faults;
+    match value {
+        Ok(value) if faults.is_empty() && legible.faults.is_empty() => Ok(value),
+        _ => {
+            faults.extend(legible.faults);
+            Err(faults)
+        }
+    }
+}
+
+/// The part of a text that is TOML.
+///
+/// Syntax errors hide what follows them and breed others, so the first one is recorded, its line
+/// is blanked out, and the rest is looked at again.
+struct Legible {
+    /// The text with the faulty lines blanked out: offsets are those of the original.
+    text: String,
+    /// What was blanked out. A key that is named here may be given, so it is not called missing.
+    unread: String,
+    /// Whether `text` is TOML by now; not so when an error is no matter of single lines, as an
+    /// unclosed bracket, or when there are too many.
+    is_toml: bool,
+    faults: Vec<Fault>,
+}
+
+impl Legible {
+    fn of(text: &str) -> Self {
+        // Each takes a pass over the text, so there must be an end.
+        const MOST_SYNTAX_FAULTS: usize = 20;
+        let mut legible = Self {
+            text: text.to_owned(),
+            unread: String::new(),
+            is_toml: false,
+            faults: Vec::new(),
+        };
+        while legible.faults.len() < MOST_SYNTAX_FAULTS {
+            let (_, errors) = DeTable::parse_recoverable(&legible.text);
+            // An error without a place is the parser's refusal of deeply nested keys.
+            let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
+            let Some(first) = errors.into_iter().min_by_key(start) else {
+                legible.is_toml = true;
+                break;
+            };
+            let offset = start(&first);
+            let line = faulty_part(&legible.text, offset);
+            legible.faults.push(Fault {
+                offset,
+                message: match excerpt(&text[line.clone()]).as_str() {
+                    "" => format!("not valid TOML: {}", first.message()),
+                    line => format!("not valid TOML in `{line}`: {}", first.message()),
+                },
+            });
+            if legible.text[line.clone()].trim().is_empty() {
+                break;
+            }
+            legible.unread.push_str(&text[line.clone()]);
+            let blank = " ".repeat(line.len());
+            legible.text.replace_range(line, &blank);
+        }
+        legible
+    }
+}
+
+/// The line around `offset`; when it is the header of a table, with all of the table, whose keys
+/// would otherwise be taken for those of the table before.
+fn faulty_part(text: &str, offset: usize) -> std::ops::Range<usize> {
+    let bytes = text.as_bytes();
+    let start = bytes[..offset.min(bytes.len())]
+        .iter()
+        .rposition(|&b| b == b'\n')
+        .map_or(0, |i| i + 1);
+    let end_of_line = |start: usize| text[start..].find('\n').map_or(text.len(), |i| start + i);
+    let is_header = |start: usize| {
+        text[start..]
+            .trim_start_matches([' ', '\t'])
+            .starts_with('[')
+    };
+    let mut end = end_of_line(start);
+    if is_header(start) {
+        while end < text.len() && !is_header(end + 1) {
+            end = end_of_line(end + 1);
+        }
+    }
+    start..end
+}
+
+/// A table of the file, and what was found wrong in it.
+///
+/// It remembers the keys that it was asked for: those are the ones it allows.
+pub(super) struct Table<'a> {
+    /// As messages call it.
+    name: String,
+    /// Of its header.
+    offset: usize,
+    entries: &'a DeTable<'a>,
+    legible: &'a Legible,
+    known: Vec<&'static str>,
+    faults: Vec<Fault>,
+}
+
+impl<'a> Table<'a> {
+    /// The value of a key that must be given.
+    pub(super) fn required<R: Rule>(&mut self, key: &'static str, rule: &R) -> Reading<R::Value> {
+        match self.optional(key, rule)? {
+            Some(value) => Ok(value),
+            None => {
+                let message = format!("{} lacks `{key}`: give {}", self.name, rule.allowed());
+                Err(self.fault(self.offset, message))
+            }
+        }
+    }
+
+    /// The value of a key that can be left out, which means `default`.
+    pub(super) fn or<R: Rule>(
+        &mut self,
+        key: &'static str,
+        rule: &R,
+        default: R::Value,
+    ) -> Reading<R::Value> {
+        Ok(self.optional(key, rule)?.unwrap_or(default))
+    }
+
+    /// The value of a key that can be left out.
+    pub(super) fn optional<R: Rule>(
+        &mut self,
+        key: &'static str,
+        rule: &R,
+    ) -> Reading<Option<R::Value>> {
+        let Some(entry) = self.entry(key)? else {
+            return Ok(None);
+        };
+        match rule.read(entry.get_ref()) {
+            Ok(value) => Ok(Some(value)),
+            Err(wrong) => Err(self.wrong(key, format!("{wrong}; allowed is {}", rule.allowed()))),
+        }
+    }
+
+    /// The table of that name, read by `read`, if given.
+    pub(super) fn table<T>(
+        &mut self,
+        key: &'static str,
+        read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
+    ) -> Reading<Option<T>> {
+        let Some(entry) = self.entry(key)? else {
+            return Ok(None);
+        };
+        let DeValue::Table(entries) = entry.get_ref() else {
+            let wrong = format!("is {}; allowed is a table", kind_of(entry.get_ref()));
+            return Err(self.wrong(key, wrong));
+        };
+        self.descend(key, entry.span().start, entries, read)
+            .map(Some)
+    }
+
+    /// The table of that name, read by `read`, or what `read` makes of an empty one.
+    pub(super) fn table_or_defaults<T>(
+        &mut self,
+        key: &'static str,
+        read: impl Fn(&mut Table<'_>) -> Reading<T>,
+    ) -> Reading<T> {
+        match self.table(key, &read)? {
+            Some(value) => Ok(value),
+            None => self.descend(key, self.offset, &DeTable::new(), read),
+        }
+    }
+
+    /// A table that the format has and this version does not: an error if given.
+    pub(super) fn not_yet<T>(&mut self, key: &'static str, what: &str) -> Reading<Option<T>> {
+        match self.entry(key)? {
+            None => Ok(None),
+            Some(_) => Err(self.wrong(key, format!("is not supported: {what}"))),
+        }
+    }
+
+    /// The value of the only one of several keys, which exclude each other, that is given.
+    pub(super) fn exactly_one<T>(
+        &mut self,
+        what: &str,
+        candidates: Vec<(&'static str, Reading<Option<T>>)>,
+    ) -> Reading<T> {
+        let keys: Vec<_> = candidates.iter().map(|(key, _)| *key).collect();
+        let mut given: Vec<_> = keys
+            .iter()
+            .filter_map(|key| Some((self.entries.get(*key)?.span().start, *key)))
+            .collect();
+        given.sort_unstable();
+        let rule = format!("exactly one of the {what} {}", keys.join(", "));
+        match given.as_slice() {
+            // A candidate whose line could not be read.
+            [] if candidates.iter().any(|(_, value)| value.is_err()) => return Err(Reported),
+            [] => {
+                let message = format!("{} needs {rule}", self.name);
+                return Err(self.fault(self.offset, message));
+            }
+            [_] => {}
+            [(_, first), others @ ..] => {
+                for (offset, key) in others {
+                    let message = format!("`{key}` stands beside `{first}`; allowed is {rule}");
+                    self.fault(*offset, message);
+                }
+                return Err(Reported);
+            }
+        }
+        // Without an only value, the one that is given is faulty.
+        candidates
+            .into_iter()
+            .find_map(|(_, value)| value.ok().flatten())
+            .ok_or(Reported)
+    }
+
+    /// Whether the file gives the key.
+    pub(super) fn gives(&self, key: &str) -> bool {
+        self.entries.contains_key(key)
+    }
+
+    /// Records that the value which the file gives for `key` is wrong: `message` follows the two.
+    pub(super) fn wrong(&mut self, key: &'static str, message: impl fmt::Display) -> Reported {
+        let Some(entry) = self.entries.get(key) else {
+            return self.fault(self.offset, format!("`{key}` {message}"));
+        };
+        let span = entry.span();
+        let message = match entry.get_ref() {
+            DeValue::Table(_) => format!("table `{key}` {message}"),
+            _ => {
+                let value = excerpt(&self.legible.text[span.clone()]);
+                format!("`{key} = {value}` {message}")
+            }
+        };
+        self.fault(span.start, message)
+    }
+
+    fn fault(&mut self, offset: usize, message: String) -> Reported {
+        self.faults.push(Fault { offset, message });
+        Reported
+    }
+
+    fn entry(&mut self, key: &'static str) -> Reading<Option<&'a Spanned<DeValue<'a>>>> {
+        if !self.known.contains(&key) {
+            self.known.push(key);
+        }
+        match self.entries.get(key) {
+            None if self.legible.unread.contains(key) => Err(Reported),
+            entry => Ok(entry),
+        }
+    }
+
+    fn descend<T>(
+        &mut self,
+        key: &str,
+        offset: usize,
+        entries: &DeTable<'_>,
+        read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
+    ) -> Reading<T> {
+        let mut table = Table {
+            name: match self.name.strip_suffix(']') {
+                Some(parent) => format!("{parent}.{key}]"),
+                None => format!("[{key}]"),
+            },
+            offset,
+            entries,
+            legible: self.legible,
+            known: Vec::new(),
+            faults: Vec::new(),
+        };
+        let value = read(&mut table);
+        table.reject_unknown_keys();
+        self.faults.append(&mut table.faults);
+        value
+    }
+
+    fn reject_unknown_keys(&mut self) {
+        for key in self.entries.keys() {
+            let (name, offset) = (key.get_ref().as_ref(), key.span().start);
+            if !self.known.contains(&name) {
+                let message = format!(
+                    "unknown key `{}` in {}{}; allowed are {}",
+                    excerpt(name),
+                    self.name,
+                    did_you_mean(name, &self.known),
+                    self.known.join(", ")
+                );
+                self.faults.push(Fault { offset, message });
+            }
+        }
+    }
+}
+
+/// What a value must be.
+pub(super) trait Rule {
+    /// What it is read as.
+    type Value;
+    /// The rule in words.
+    fn allowed(&self) -> String;
+    /// The value, or what is wrong with it.
+    fn read(&self, value: &DeValue<'_>) -> Result<Self::Value, String>;
+}
+
+/// A finite number between two bounds. Whole numbers need no decimal point.
+pub(super) struct Number(pub(super) Bound<f64>, pub(super) Bound<f64>);
+
+impl Number {
+    pub(super) fn contains(&self, x: f64) -> bool {
+        (self.0, self.1).contains(&x)
+    }
+}
+
+impl Rule for Number {
+    type Value = f64;
+
+    fn allowed(&self) -> String {
+        let bounds = [
+            match self.0 {
+                Bound::Included(low) => Some(format!("at least {low:?}")),
+                Bound::Excluded(low) => Some(format!("above {low:?}")),
+                Bound::Unbounded => None,
+            },
+            match self.1 {
+                Bound::Included(high) => Some(format!("at most {high:?}")),
+                Bound::Excluded(high) => Some(format!("below {high:?}")),
+                Bound::Unbounded => None,
+            },
+        ];
+        let bounds: Vec<_> = bounds.into_iter().flatten().collect();
+        format!("a number {}", bounds.join(" and "))
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<f64, String> {
+        let x = match value {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(whole) => i128::from_str_radix(whole.as_str(), whole.radix())
+                .ok()
+                .map(|i| i as f64),
+            _ => return Err(format!("is {}", kind_of(value))),
+        };
+        match x {
+            Some(x) if !f64::is_finite(x) => Err("is not finite".to_owned()),
+            Some(x) if self.contains(x) => Ok(x),
+            _ => Err("is out of range".to_owned()),
+        }
+    }
+}
+
+/// A whole number in a range.
+pub(super) struct Count {
+    pub(super) range: RangeInclusive<usize>,
+    /// Why the range begins where it does.
+    pub(super) why: &'static str,
+}
+
+impl Rule for Count {
+    type Value = usize;
+
+    fn allowed(&self) -> String {
+        let (low, high) = (self.range.start(), self.range.end());
+        format!("a whole number from {low} ({}) to {high}", self.why)
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<usize, String> {
+        let DeValue::Integer(whole) = value else {
+            return Err(format!("is {}", kind_of(value)));
+        };
+        usize::from_str_radix(whole.as_str(), whole.radix())
+            .ok()
+            .filter(|n| self.range.contains(n))
+            .ok_or_else(|| "is out of range".to_owned())
+    }
+}
+
+/// Any string.
+pub(super) struct Text;
+
+impl Rule for Text {
+    type Value = String;
+
+    fn allowed(&self) -> String {
+        "a string".to_owned()
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<String, String> {
+        match value {
+            DeValue::String(text) => Ok(text.to_string()),
+            _ => Err(format!("is {}", kind_of(value))),
+        }
+    }
+}
+
+/// One of several things, each by its name.
+pub(super) struct OneOf<'a, T> {
+    pub(super) all: &'a [T],
+    pub(super) name: fn(T) -> &'static str,
+}
+
+impl<T: Copy> OneOf<'_, T> {
+    fn names(&self) -> Vec<&'static str> {
+        self.all.iter().map(|&one| (self.name)(one)).collect()
+    }
+}
+
+impl<T: Copy> Rule for OneOf<'_, T> {
+    type Value = T;
+
+    fn allowed(&self) -> String {
+        let names: Vec<_> = self.names().iter().map(|s| format!("{s:?}")).collect();
+        format!("one of {}", names.join(", "))
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<T, String> {
+        let DeValue::String(text) = value else {
+            return Err(format!("is {}", kind_of(value)));
+        };
+        self.all
+            .iter()
+            .copied()
+            .find(|&one| (self.name)(one) == text)
+            .ok_or_else(|| format!("is unknown{}", did_you_mean(text, &self.names())))
+    }
+}
+
+fn kind_of(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "a whole number",
+        DeValue::Float(_) => "a number with a fraction",
+        DeValue::Boolean(_) => "a boolean",
+        DeValue::Datetime(_) => "a date or time",
+        DeValue::Array(_) => "an array",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// A question that names the nearest of the known names, or nothing when none is near.
+fn did_you_mean(name: &str, known: &[&str]) -> String {
+    // Half a name in common leaves room for a forgotten unit or prefix and not for a chance hit.
+    const NEAR: f64 = 0.5;
+    let name = excerpt(name);
+    known
+        .iter()
+        .map(|known| (strsim::normalized_damerau_levenshtein(&name, known), known))
+        .filter(|(likeness, _)| *likeness > NEAR)
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map(|(_, known)| format!(", did you mean `{known}`?"))
+        .unwrap_or_default()
+}
+
+/// Writes tables and keys as TOML text.
+#[derive(Default)]
+pub(super) struct Writer(String);
+
+impl Writer {
+    pub(super) fn table(&mut self, name: &str) {
+        if !self.0.is_empty() {
+            self.0.push('\n');
+        }
+        self.0 += &format!("[{name}]\n");
+    }
+
+    /// The shortest digits that read back as the same number.
+    pub(super) fn number(&mut self, key: &str, x: f64) {
+        self.0 += &format!("{key} = {x:?}\n");
+    }
+
+    pub(super) fn count(&mut self, key: &str, n: usize) {
+        self.0 += &format!("{key} = {n}\n");
+    }
+
+    pub(super) fn text(&mut self, key: &str, text: &str) {
+        let mut quoted = String::new();
+        for c in text.chars() {
+            match c {
+                '"' | '\\' => quoted.extend(['\\', c]),
+                c if c.is_control() => quoted += &format!("\\u{:04x}", u32::from(c)),
+                c => quoted.push(c),
+            }
+        }
+        self.0 += &format!("{key} = \"{quoted}\"\n");
+    }
+
+    pub(super) fn finish(self) -> String {
+        self.0
+    }
+}
