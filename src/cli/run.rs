@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::GroundMotion;
-use archrock::dynamics::history::{History, Outcome, Request, history};
+use archrock::dynamics::history::{History, Outcome, history};
 use archrock::dynamics::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
 use archrock::mechanics::linkage::Linkage;
