@@ -204,7 +204,8 @@ fn limit_and_impact_print_the_published_numbers_as_json() {
     assert_eq!(impacts.len(), 3);
     let published = [0.681_185_59, 0.737_098_52, 0.764_018_83];
     for (impact, restitution) in impacts.iter().zip(published) {
-        close(&impact["restitution"], restitution, 5e-9);
+        // The third is published as 0.76401883; its next digits are 56.
+        close(&impact["restitution"], restitution, 6e-9);
     }
     assert_eq!(impacts[0]["before"]["sway"], "right");
     assert_eq!(impacts[0]["after"]["sway"], "left");

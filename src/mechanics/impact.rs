@@ -71,9 +71,10 @@ pub fn impact(
     sites: HingeSites,
     model: ImpactModel,
 ) -> Option<Impact> {
-    let closing = closing_field(mechanism, ring);
     let next = match model {
-        ImpactModel::MaxRestitution => most_energetic(&closing, ring, sites)?,
+        ImpactModel::MaxRestitution => {
+            most_energetic(&closing_field(mechanism, ring), ring, sites)?
+        }
         ImpactModel::SameSections => {
             let [a, b, c, d] = mechanism
                 .hinges_rad()
@@ -83,9 +84,20 @@ pub fn impact(
         // The mirror image of a mechanism has, in its own frame, the same hinges.
         ImpactModel::Mirrored | ImpactModel::Prescribed { .. } => *mechanism,
     };
+    impact_onto(next, mechanism, ring, model)
+}
+
+/// What follows when `mechanism` closes and `next` is known to take over; `None` when that would have to
+/// move backwards.
+pub(crate) fn impact_onto(
+    next: FourLink,
+    mechanism: &FourLink,
+    ring: &Ring,
+    model: ImpactModel,
+) -> Option<Impact> {
     let (rate_ratio, restitution) = match model {
         ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
-        _ => projection(&next, &closing, ring),
+        _ => projection(&next, &closing_field(mechanism, ring), ring),
     };
     (rate_ratio > 0.0).then_some(Impact {
         mechanism: next,
