@@ -9,7 +9,7 @@ use super::field::{Field, Momentum, Side, Twist};
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
 use super::ring::Ring;
-use super::search::{Lattice, Objective, Quadruple, ascend, edge_index};
+use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
 
 /// How the mechanism after an impact is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,19 +192,7 @@ fn most_energetic(before: &Field, ring: &Ring, sites: HingeSites) -> Option<Four
     let table = ProductTable::new(&lattice, before, ring);
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| table.retained(rotations, quadruple);
     let objective = RetainedEnergy { before, ring };
-    let candidates = lattice.maxima(&score).into_iter().filter_map(|quadruple| {
-        let start = quadruple.map(|i| lattice.sections_rad[i]);
-        match sites {
-            HingeSites::Anywhere => ascend(ring, start, &objective),
-            HingeSites::Voussoirs(_) => {
-                let mechanism = FourLink::new(ring, start)?;
-                Some((objective.value(&mechanism).0, mechanism))
-            }
-        }
-    });
-    candidates
-        .max_by(|(a, _), (b, _)| a.total_cmp(b))
-        .map(|(_, mechanism)| mechanism)
+    best_mechanism(ring, sites, &lattice, &score, &objective).map(|(_, mechanism)| mechanism)
 }
 
 /// `<u', before>^2 / <u', u'>`: twice the kinetic energy that a mechanism keeps.
