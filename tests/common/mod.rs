@@ -120,7 +120,7 @@ pub fn climb(
                 (best, angles) = (value, moved);
             }
         }
-        if best <= before + 1e-15 {
+        if best <= before + 1e-12 {
             step *= 0.5;
         }
     }
