@@ -9,7 +9,7 @@ use super::field::{Field, Momentum, Side, Twist};
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
 use super::ring::Ring;
-use super::search::{Lattice, Objective, Quadruple, ascend, edge_index};
+use super::search::{Lattice, Objective, Quadruple, ascend_all_sides, edge_index};
 
 /// How the mechanism after an impact is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,7 +183,7 @@ fn most_energetic(before: &Field, ring: &Ring, sites: HingeSites) -> Option<Four
     let candidates = lattice.maxima(&score).into_iter().filter_map(|quadruple| {
         let start = quadruple.map(|i| lattice.sections_rad[i]);
         match sites {
-            HingeSites::Anywhere => ascend(ring, start, &objective),
+            HingeSites::Anywhere => ascend_all_sides(ring, start, &objective),
             HingeSites::Voussoirs(_) => {
                 let mechanism = FourLink::new(ring, start)?;
                 Some((objective.value(&mechanism).0, mechanism))

@@ -218,6 +218,44 @@ pub(crate) fn ascend(
     Some((climber.value(&mechanism), mechanism))
 }
 
+/// Like [`ascend`], and from the top found on to its twins: where the slope jumps up at a kink there is a
+/// maximum on either side of it, often within one interval of the lattice, which then starts from one of
+/// them only.
+pub(crate) fn ascend_all_sides(
+    ring: &Ring,
+    start: [f64; 4],
+    objective: &impl Objective,
+) -> Option<(f64, FourLink)> {
+    let (mut value, mut mechanism) = ascend(ring, start, objective)?;
+    #[expect(clippy::cast_precision_loss, reason = "a small number")]
+    let interval = ring.embrace_rad() / LATTICE_INTERVALS as f64;
+    loop {
+        let angles = mechanism.hinges_rad();
+        let mut best = None;
+        for i in 0..4 {
+            for kink in objective.kinks_rad() {
+                let distance = (angles[i] - kink).abs();
+                if distance > interval || distance == 0.0 {
+                    continue;
+                }
+                let mut twin = angles;
+                twin[i] = 2.0 * kink - angles[i];
+                let Some(top) = ascend(ring, twin, objective) else {
+                    continue;
+                };
+                if top.0 > best.map_or(value, |(value, _)| value) {
+                    best = Some(top);
+                }
+            }
+        }
+        match best {
+            // What is gained by less is rounding.
+            Some(top) if top.0 > value + 1e-12 * value.abs() => (value, mechanism) = top,
+            _ => return Some((value, mechanism)),
+        }
+    }
+}
+
 /// Newton's method converges in under ten steps from the lattice; crossing kinks adds a few.
 const MAX_NEWTON_STEPS: usize = 100;
 
