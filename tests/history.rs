@@ -506,3 +506,45 @@ fn a_chain_without_end_dies_out_in_finite_time() {
     let least = REST_ENERGY_RATIO * rocking.barrier();
     assert!(last < least && last_but_one >= least);
 }
+
+#[test]
+fn the_time_of_overturning_is_the_last_passage_outwards() {
+    // A cosine pushes out, pulls back and pushes again: it may pass the critical rotation, come back, and pass
+    // it once more. From the instant that is told it is never seen inside again.
+    let arch = semicircle();
+    let link = arch.link(0).unwrap();
+    let (mut overturned, mut passed_before) = (0, 0);
+    for duration_s in [0.6, 1.0, 1.5] {
+        for step in 0..60 {
+            let amplitude_g = 0.16 + 0.012 * f64::from(step);
+            let ground = pulse(Pulse::OneCosine, -amplitude_g, duration_s);
+            let at = Request {
+                output_step_s: Some(1e-3),
+                ..request(20.0)
+            };
+            let (history, samples) = run_sampled(&arch, &ground, &at);
+            if history.outcome != Outcome::Overturned(Sway::Right) || !history.impacts.is_empty() {
+                continue;
+            }
+            overturned += 1;
+            let inside = |s: &&archrock::dynamics::history::Sample<[f64; 3]>| {
+                -s.rotations_rad[0] < link.critical_rad * (1.0 - 1e-9)
+            };
+            let last_inside = samples.iter().rfind(inside).unwrap().time_s;
+            assert!(
+                last_inside <= history.outcome_time_s,
+                "{duration_s} {amplitude_g}"
+            );
+            assert!(
+                history.outcome_time_s <= last_inside + 1.001e-3,
+                "{duration_s} {amplitude_g}"
+            );
+            let first_outside = samples.iter().find(|s| !inside(s)).unwrap().time_s;
+            passed_before += usize::from(first_outside < last_inside);
+        }
+    }
+    assert!(
+        overturned > 10 && passed_before > 0,
+        "{overturned} {passed_before}"
+    );
+}
