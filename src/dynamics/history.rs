@@ -195,6 +195,8 @@ pub fn history<'a, S: Structure>(
     if let Some(sampler) = &mut sampler {
         sampler.finish(rocking, finish.mode, finish.time_s, &finish.state);
     }
+    // The end may find it on its way out.
+    recorder.note_peak(finish.mode, &finish.state);
     recorder.check_energy(rocking, finish.mode, &finish.state);
     let (outcome, outcome_time_s) = match finish.mode {
         Mode::Overturned { sway, .. } => (
@@ -308,7 +310,8 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
             return;
         };
         // All rotations grow with q, so that the largest are where it turns round.
-        if step.start[1] > 0.0 && step.end[1] <= 0.0 {
+        // It may also do so in the very step in which it leaves the rest, at no rate.
+        if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
             let rate = |time_s: f64| rocking.between(step, time_s)[1];
             let turn = rocking.between(step, turning_point(step, rate));
             self.note_peak(mode, &turn);

@@ -205,44 +205,13 @@ pub(crate) fn best_mechanism(
     let mut ends = [objective.kinks_rad(), &[0.0, ring.embrace_rad()]].concat();
     ends.sort_by(f64::total_cmp);
     ends.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-    let climb = |start: [f64; 4]| ascend(ring, &ends, start, objective);
-    let mut best = starts
-        .filter_map(climb)
-        .max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    // A kink may part two maxima that are closer together than the lattice can tell: try beyond each.
-    loop {
-        let angles = best.1.hinges_rad();
-        let beyond_kinks = (0..4).flat_map(|i| {
-            let cell = Cell::containing(&ends, angles[i]);
-            [cell.index.checked_sub(1), Some(cell.index + 1)]
-                .into_iter()
-                .flatten()
-                .filter(|index| index + 1 < ends.len())
-                .map(|index| {
-                    let next = Cell::new(&ends, index);
-                    let inside = BEYOND_KINK * (next.high - next.low);
-                    let mut moved = angles;
-                    moved[i] = moved[i].clamp(next.low + inside, next.high - inside);
-                    moved
-                })
-                .collect::<Vec<_>>()
-        });
-        let better = beyond_kinks
-            .filter_map(climb)
-            .max_by(|(a, _), (b, _)| a.total_cmp(b))
-            .filter(|(value, _)| *value > best.0 + ROUNDING * best.0.abs());
-        match better {
-            Some(better) => best = better,
-            None => return Some(best),
-        }
-    }
+    starts
+        .filter_map(|start| ascend_all_sides(ring, &ends, start, objective))
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
 }
 
 /// Relative differences of values below this are put down to rounding.
 const ROUNDING: f64 = 1e-12;
-
-/// A search beyond a kink starts this part of the cell inside.
-const BEYOND_KINK: f64 = 0.1;
 
 /// Newton's method from `start` to a local maximum of `objective` over ordered sections of `ring`.
 ///
@@ -269,6 +238,38 @@ fn ascend(
         }
     }
     Some((climber.value(&mechanism), mechanism))
+}
+
+/// Like [`ascend`], and from the top found on to its twins: where the slope jumps up at a kink there is a
+/// maximum on either side of it, often within one interval of the lattice, which then starts from one of
+/// them only.
+fn ascend_all_sides(
+    ring: &Ring,
+    ends: &[f64],
+    start: [f64; 4],
+    objective: &impl Objective,
+) -> Option<(f64, FourLink)> {
+    let mut top = ascend(ring, ends, start, objective)?;
+    #[expect(clippy::cast_precision_loss, reason = "a small number")]
+    let interval = ring.embrace_rad() / LATTICE_INTERVALS as f64;
+    loop {
+        let angles = top.1.hinges_rad();
+        let twins = (0..4).flat_map(|i| {
+            objective.kinks_rad().iter().filter_map(move |kink| {
+                let distance = (angles[i] - kink).abs();
+                let mut twin = angles;
+                twin[i] = 2.0 * kink - angles[i];
+                (distance > 0.0 && distance <= interval).then_some(twin)
+            })
+        });
+        let best = twins
+            .filter_map(|twin| ascend(ring, ends, twin, objective))
+            .max_by(|(a, _), (b, _)| a.total_cmp(b));
+        match best {
+            Some(best) if best.0 > top.0 + ROUNDING * top.0.abs() => top = best,
+            _ => return Some(top),
+        }
+    }
 }
 
 /// Newton's method converges in under ten steps from the lattice; crossing kinks adds a few.
