@@ -4,4 +4,5 @@
 mod named;
 pub mod dynamics;
 pub mod mechanics;
+pub mod output;
 pub mod scenario;

@@ -221,6 +221,19 @@ impl GroundMotion {
         &self.pieces
     }
 
+    /// Largest magnitude of the acceleration, in m/s2: pieces are monotone, so it is at one of their ends.
+    #[must_use]
+    pub fn peak_m_s2(&self) -> f64 {
+        let ends = self
+            .pieces
+            .iter()
+            .filter(|piece| !piece.is_quiet_for_good());
+        ends.flat_map(|piece| {
+            [piece.start_s, piece.end_s].map(|t| piece.acceleration_m_s2(t).abs())
+        })
+        .fold(0.0, f64::max)
+    }
+
     /// The same motion with further corners, which change nothing: for tests of the integration.
     #[must_use]
     pub fn cut_at(&self, times_s: &[f64]) -> Self {

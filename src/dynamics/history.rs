@@ -230,7 +230,8 @@ fn seen_from_ground<S: Structure>(
         rotations.as_mut().reverse();
     }
     for rotation in rotations.as_mut() {
-        *rotation *= sway.sign() * factor;
+        // Adding zero makes a negative zero positive.
+        *rotation = *rotation * (sway.sign() * factor) + 0.0;
     }
     rotations
 }

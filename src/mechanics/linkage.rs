@@ -146,6 +146,7 @@ impl Linkage {
 impl Mechanism for Linkage {
     /// Left, middle and right body.
     type Rotations = [f64; 3];
+    const BODIES: &'static [&'static str] = &["left", "middle", "right"];
 
     /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
     fn coefficients(&self, q_rad: f64) -> Coefficients {

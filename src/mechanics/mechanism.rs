@@ -108,6 +108,16 @@ impl FourLink {
         self.hinges_rad
     }
 
+    /// Sections (in radians from the left springing) and edges of the hinges from left to right, as
+    /// seen when the mechanism sways to the given side.
+    #[must_use]
+    pub fn hinges_from_left(&self, ring: &Ring, sway: Sway) -> [(f64, Edge); 4] {
+        std::array::from_fn(|i| match sway {
+            Sway::Right => (self.hinges_rad[i], EDGES[i]),
+            Sway::Left => (ring.embrace_rad() - self.hinges_rad[3 - i], EDGES[3 - i]),
+        })
+    }
+
     /// Positions of the hinges.
     #[must_use]
     pub const fn points(&self) -> [Vector2<f64>; 4] {

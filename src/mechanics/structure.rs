@@ -25,6 +25,9 @@ pub trait Mechanism {
     /// Rotations of its bodies from left to right, anticlockwise, in radians; or their rates.
     type Rotations: Copy + AsRef<[f64]> + AsMut<[f64]>;
 
+    /// Names of the bodies, from left to right; one empty name if there is only one body.
+    const BODIES: &'static [&'static str];
+
     /// Coefficients of the equation of motion at `q`.
     fn coefficients(&self, q_rad: f64) -> Coefficients;
     /// Mass times displacement of the centre of gravity at `q`.

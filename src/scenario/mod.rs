@@ -36,6 +36,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::dynamics::ground::{GroundMotion, Pulse};
+use crate::dynamics::history::Request;
 use crate::mechanics::arch;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::impact::ImpactModel;
@@ -147,8 +148,7 @@ pub struct Ground {
 
 impl Ground {
     /// The ground motion under the given gravity.
-    #[must_use]
-    pub fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+    fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         GroundMotion::pulse(
             self.kind,
             self.amplitude_g * gravity_m_s2,
@@ -231,6 +231,30 @@ impl Scenario {
         Self::parse(&text, &name)
     }
 
+    /// The ground motion in m/s2.
+    #[must_use]
+    pub fn ground_motion(&self) -> GroundMotion {
+        self.ground
+            .as_ref()
+            .map_or_else(GroundMotion::still, |ground| {
+                ground.motion(self.simulation.gravity_m_s2)
+            })
+    }
+
+    /// What is asked of the simulation, samples at every output step included.
+    #[must_use]
+    pub fn request(&self) -> Request {
+        Request {
+            end_s: self.simulation.duration_s,
+            relative_tolerance: self.simulation.relative_tolerance,
+            initial: self
+                .initial
+                .as_ref()
+                .map(|initial| (initial.sway, initial.rotation_rad)),
+            output_step_s: Some(self.simulation.output_step_s),
+        }
+    }
+
     /// The scenario as TOML text, every default written out.
     ///
     /// Reading the text of a valid scenario gives an equal scenario.
@@ -239,6 +263,12 @@ impl Scenario {
         let mut out = Writer::default();
         self.write(&mut out);
         out.finish()
+    }
+
+    /// The scenario as JSON, every default written out, with the keys of the file.
+    #[must_use]
+    pub fn to_json(&self) -> serde_json::Value {
+        toml::from_str(&self.to_toml()).expect("`to_toml` writes TOML")
     }
 }
 

@@ -1,0 +1,132 @@
+//! Commands: from arguments to exit codes.
+//!
+//! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
+//! 2 bad usage or bad input.
+
+mod commands;
+mod run;
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use archrock::dynamics::engine::EngineError;
+use archrock::output::OutputError;
+use archrock::scenario::ScenarioErrors;
+use clap::{Parser, Subcommand, ValueEnum};
+
+/// Simulates masonry arches that rock under ground motion.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+struct Arguments {
+    /// Say nothing but errors on standard error.
+    #[arg(long, global = true)]
+    quiet: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulate the time history of a scenario and write it as CSV and JSON.
+    Run(run::Arguments),
+    /// Print the incipient rocking acceleration and the mechanism, on both sides.
+    Limit {
+        /// Scenario file (TOML).
+        scenario: PathBuf,
+        /// How to print.
+        #[arg(long, value_enum, default_value_t)]
+        format: Format,
+    },
+    /// Print the first links of the chain of mechanisms that impacts lead through.
+    Impact {
+        /// Scenario file (TOML).
+        scenario: PathBuf,
+        /// How many impacts to print.
+        #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+        count: u16,
+        /// How to print.
+        #[arg(long, value_enum, default_value_t)]
+        format: Format,
+    },
+    /// Check a scenario and print it with every default resolved.
+    Check {
+        /// Scenario file (TOML).
+        scenario: PathBuf,
+    },
+}
+
+/// How a result is printed.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs, with all digits.
+    Json,
+}
+
+/// Why a command ended without its result.
+enum Failure {
+    /// The input is wrong: exit code 2.
+    Input(String),
+    /// The work failed: exit code 1.
+    Work(String),
+    /// Whoever read the output has gone: no failure.
+    ClosedPipe,
+}
+
+impl From<ScenarioErrors> for Failure {
+    fn from(errors: ScenarioErrors) -> Self {
+        Self::Input(errors.to_string())
+    }
+}
+
+impl From<EngineError> for Failure {
+    fn from(error: EngineError) -> Self {
+        Self::Work(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        if error.is_closed_pipe() {
+            Self::ClosedPipe
+        } else {
+            Self::Work(error.to_string())
+        }
+    }
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match arguments.command {
+        Command::Run(run) => run::run(&run, arguments.quiet),
+        Command::Limit { scenario, format } => commands::limit(&scenario, format),
+        Command::Impact {
+            scenario,
+            count,
+            format,
+        } => commands::impact(&scenario, count.into(), format),
+        Command::Check { scenario } => commands::check(&scenario),
+    };
+    let (code, message) = match result {
+        Ok(()) | Err(Failure::ClosedPipe) => return ExitCode::SUCCESS,
+        Err(Failure::Work(message)) => (1, message),
+        Err(Failure::Input(message)) => (2, message),
+    };
+    // Nobody is left to be told when standard error fails.
+    let _ = writeln!(io::stderr(), "error: {message}");
+    ExitCode::from(code)
+}
+
+/// Prints a result on standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    let printed = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    printed.map_err(|error| match error.kind() {
+        io::ErrorKind::BrokenPipe => Failure::ClosedPipe,
+        _ => Failure::Work(format!("cannot write to standard output: {error}")),
+    })
+}

@@ -1,0 +1,170 @@
+//! The command `run`.
+
+use std::fmt::Write as _;
+use std::io::{self, BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use archrock::dynamics::ground::GroundMotion;
+use archrock::dynamics::history::{History, Outcome, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::linkage::Linkage;
+use archrock::mechanics::structure::Structure as _;
+use archrock::output::rotations::RotationsWriter;
+use archrock::output::{Folder, OutputError, results};
+use archrock::scenario::Scenario;
+
+use super::{Failure, commands};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scenario file (TOML).
+    scenario: PathBuf,
+    /// Folder for the results [default: results/<name of the scenario file>].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Where the rotations go instead of a file: `-` for standard output. No other results are then
+    /// written unless --out is given.
+    #[arg(long, value_name = "-", value_parser = ["-"])]
+    rotations: Option<String>,
+}
+
+const ROTATIONS: &str = "rotations.csv";
+const IMPACTS: &str = "impacts.csv";
+/// Written last: a folder that has it is complete.
+const SUMMARY: &str = "summary.json";
+
+pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+    let scenario = Scenario::read(&arguments.scenario)?;
+    let arch = commands::arch(&scenario)?;
+    let ground = scenario.ground_motion();
+    let rocking = Rocking::new(
+        &arch,
+        &ground,
+        scenario.simulation.gravity_m_s2,
+        scenario.simulation.rest_energy_ratio,
+    );
+    let to_stdout = arguments.rotations.is_some();
+    let path = match (&arguments.out, arguments.scenario.file_stem()) {
+        (Some(out), _) => Some(out.clone()),
+        (None, Some(stem)) if !to_stdout => Some(Path::new("results").join(stem)),
+        (None, _) => None,
+    };
+    // Opened before the work starts, so that a folder that cannot be written costs no time.
+    let mut folder = path.map(|path| open(&path, to_stdout)).transpose()?;
+    let simulated = match &mut folder {
+        Some(folder) if !to_stdout => simulate(&scenario, &rocking, folder.file(ROTATIONS)),
+        _ => simulate(&scenario, &rocking, BufWriter::new(io::stdout().lock())),
+    };
+    let (history, rows) = simulated?;
+    let mut text = human_summary(&scenario, &arch, &ground, &history);
+    if let Some(mut folder) = folder {
+        results::write_impacts(folder.file(IMPACTS), &arch, &history.impacts)?;
+        let summary = results::summary(&scenario, &arch, &history)?;
+        writeln!(folder.file(SUMMARY), "{summary:#}")
+            .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
+        let path = folder.path().to_owned();
+        folder.complete()?;
+        let rotations = if to_stdout {
+            String::new()
+        } else {
+            format!("{ROTATIONS} ({rows} rows), ")
+        };
+        let _ = writeln!(
+            text,
+            "  results in {}: {rotations}{IMPACTS}, {SUMMARY}",
+            path.display()
+        );
+    }
+    if !quiet {
+        // Nobody is left to be told when standard error fails.
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
+    Ok(())
+}
+
+/// Opens the folder for the results.
+fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
+    if without_rotations {
+        let mut folder = Folder::open(path, &[IMPACTS, SUMMARY])?;
+        folder.forget(ROTATIONS);
+        Ok(folder)
+    } else {
+        Folder::open(path, &[ROTATIONS, IMPACTS, SUMMARY])
+    }
+}
+
+/// Simulates and writes the rotations; returns the number of rows as well.
+fn simulate<'a>(
+    scenario: &Scenario,
+    rocking: &Rocking<'a, Arch>,
+    writer: impl io::Write,
+) -> Result<(History<'a, Arch>, u64), Failure> {
+    let mut table = RotationsWriter::new::<Linkage>(writer)?;
+    let mut written = Ok(());
+    let history = history(rocking, &scenario.request(), |sample| {
+        if written.is_ok() {
+            written = table.write(sample);
+        }
+    })?;
+    written?;
+    Ok((history, table.finish()?))
+}
+
+/// What happened, when, and what it compares with.
+fn human_summary(
+    scenario: &Scenario,
+    arch: &Arch,
+    ground: &GroundMotion,
+    history: &History<'_, Arch>,
+) -> String {
+    let mut text = String::new();
+    if let Some(title) = &scenario.title {
+        let _ = writeln!(text, "{title}");
+    }
+    let time_s = history.outcome_time_s;
+    let impacts = match history.impacts.len() {
+        0 => "without impact".to_owned(),
+        1 => "after 1 impact".to_owned(),
+        count => format!("after {count} impacts"),
+    };
+    let _ = match history.outcome {
+        Outcome::NeverMoved => writeln!(text, "  never moved"),
+        Outcome::Rest => writeln!(text, "  came to rest at {time_s:.4} s {impacts}"),
+        Outcome::Overturned(sway) => {
+            writeln!(
+                text,
+                "  overturned to the {} at {time_s:.4} s {impacts}",
+                sway.name()
+            )
+        }
+        Outcome::StillRocking => writeln!(text, "  still rocking at {time_s:.4} s {impacts}"),
+    };
+    if let Some(impact) = history.impacts.first() {
+        let _ = writeln!(
+            text,
+            "  first impact at {:.4} s, restitution (energy after/before) {:.4}",
+            impact.time_s,
+            impact.after.map_or(0.0, |link| link.restitution),
+        );
+    }
+    let [left, middle, right] = history.peak_rotations_rad;
+    let _ = writeln!(
+        text,
+        "  peak rotations {left:.5} left, {middle:.5} middle, {right:.5} right body, in rad"
+    );
+    let incipient_g = arch.incipient_g();
+    let peak_g = ground.peak_m_s2() / scenario.simulation.gravity_m_s2;
+    let _ = writeln!(
+        text,
+        "  incipient acceleration {incipient_g:.4} g; the ground reaches {peak_g:.4} g, {:.2} times as \
+         much",
+        peak_g / incipient_g
+    );
+    let _ = writeln!(
+        text,
+        "  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
+        history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
+    );
+    text
+}

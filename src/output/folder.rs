@@ -1,0 +1,204 @@
+//! A folder of results that are replaced as a whole.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use super::OutputError;
+
+/// A folder in which results are being prepared.
+///
+/// Every file is written under a hidden name and gets its own when all are complete. The last of them,
+/// the seal, is taken away first and comes back last: a folder that has it holds results of one run.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    /// Folders that were made for this one, outermost first.
+    made: Vec<PathBuf>,
+    files: Vec<(String, BufWriter<NamedTempFile>)>,
+    /// Results of earlier runs that this one does not have.
+    obsolete: Vec<String>,
+}
+
+/// Beginning of the hidden names.
+const PREFIX: &str = ".archrock-";
+
+impl Folder {
+    /// Opens the folder, making it if need be, with the files that it is going to have, the seal last.
+    ///
+    /// # Errors
+    /// When the folder or a file in it cannot be made.
+    pub fn open(path: &Path, names: &[&str]) -> Result<Self, OutputError> {
+        let mut folder = Self {
+            path: path.to_owned(),
+            made: Vec::new(),
+            files: Vec::new(),
+            obsolete: Vec::new(),
+        };
+        for ancestor in path.ancestors().collect::<Vec<_>>().into_iter().rev() {
+            if !ancestor.as_os_str().is_empty() && !ancestor.exists() {
+                fs::create_dir(ancestor).map_err(OutputError::io(format!(
+                    "cannot make the folder {}",
+                    ancestor.display()
+                )))?;
+                folder.made.push(ancestor.to_owned());
+            }
+        }
+        for name in names {
+            let file = tempfile::Builder::new()
+                .prefix(&format!("{PREFIX}{name}-"))
+                .permissions_like_others()
+                .tempfile_in(path)
+                .map_err(OutputError::io(format!(
+                    "cannot write in the folder {}",
+                    path.display()
+                )))?;
+            folder
+                .files
+                .push(((*name).to_owned(), BufWriter::new(file)));
+        }
+        Ok(folder)
+    }
+
+    /// Names a result that earlier runs may have left and this one does not have.
+    pub fn forget(&mut self, name: &str) {
+        self.obsolete.push(name.to_owned());
+    }
+
+    /// The path of the folder.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The file of that name, to write to.
+    ///
+    /// # Panics
+    /// When it is none of those the folder was opened with.
+    pub fn file(&mut self, name: &str) -> &mut impl Write {
+        let found = self.files.iter_mut().find(|(known, _)| known == name);
+        &mut found.expect("the names are those given to `open`").1
+    }
+
+    /// Completes the files and gives them their names.
+    ///
+    /// # Errors
+    /// When the system refuses; earlier results are then left without their seal, or untouched.
+    pub fn complete(mut self) -> Result<(), OutputError> {
+        let path = self.path.clone();
+        let failed =
+            |name: &str| OutputError::io(format!("cannot write {}", path.join(name).display()));
+        let mut files = Vec::new();
+        for (name, writer) in std::mem::take(&mut self.files) {
+            let file = writer
+                .into_inner()
+                .map_err(|error| failed(&name)(error.into_error()))?;
+            file.as_file().sync_data().map_err(failed(&name))?;
+            files.push((name, file));
+        }
+        if let Some((seal, _)) = files.last() {
+            remove_if_there(&path.join(seal)).map_err(failed(seal))?;
+        }
+        for name in &self.obsolete {
+            remove_if_there(&path.join(name)).map_err(failed(name))?;
+        }
+        for (name, file) in files {
+            file.persist(path.join(&name))
+                .map_err(|error| failed(&name)(error.error))?;
+        }
+        self.made.clear();
+        Ok(())
+    }
+}
+
+impl Drop for Folder {
+    /// Leaves nothing behind when it was not completed.
+    fn drop(&mut self) {
+        self.files.clear();
+        for made in self.made.iter().rev() {
+            // Somebody else may have put something there meanwhile; then it stays.
+            let _ = fs::remove_dir(made);
+        }
+    }
+}
+
+fn remove_if_there(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// Temporary files are private by default; results are to be as readable as any other file.
+trait PermissionsLikeOthers {
+    fn permissions_like_others(&mut self) -> &mut Self;
+}
+
+#[cfg(unix)]
+impl PermissionsLikeOthers for tempfile::Builder<'_, '_> {
+    fn permissions_like_others(&mut self) -> &mut Self {
+        use std::os::unix::fs::PermissionsExt as _;
+        // The system takes off what the user's mask forbids.
+        self.permissions(fs::Permissions::from_mode(0o666))
+    }
+}
+
+#[cfg(not(unix))]
+impl PermissionsLikeOthers for tempfile::Builder<'_, '_> {
+    fn permissions_like_others(&mut self) -> &mut Self {
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(path: &Path) -> Vec<String> {
+        let entries = fs::read_dir(path).unwrap();
+        let mut names: Vec<_> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn what_is_not_completed_leaves_nothing() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a/b");
+        let mut folder = Folder::open(&path, &["x.csv", "seal.json"]).unwrap();
+        folder.file("x.csv").write_all(b"half").unwrap();
+        drop(folder);
+        assert!(names(root.path()).is_empty());
+    }
+
+    #[test]
+    fn completed_files_replace_earlier_ones() {
+        let root = tempfile::tempdir().unwrap();
+        for content in ["one", "two"] {
+            let mut folder = Folder::open(root.path(), &["x.csv", "seal.json"]).unwrap();
+            folder.forget("old.csv");
+            fs::write(root.path().join("old.csv"), "old").unwrap();
+            fs::write(root.path().join("mine.txt"), "keep").unwrap();
+            folder.file("x.csv").write_all(content.as_bytes()).unwrap();
+            folder.complete().unwrap();
+            assert_eq!(
+                fs::read_to_string(root.path().join("x.csv")).unwrap(),
+                content
+            );
+            assert_eq!(names(root.path()), ["mine.txt", "seal.json", "x.csv"]);
+        }
+    }
+
+    #[test]
+    fn a_file_in_the_way_is_said() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("file");
+        fs::write(&path, "").unwrap();
+        let error = Folder::open(&path.join("results"), &["x"]).unwrap_err();
+        assert!(error.to_string().contains("file/results"), "{error}");
+    }
+}

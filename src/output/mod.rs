@@ -1,0 +1,68 @@
+//! Results in files: tables as CSV, summaries as JSON, written completely or not at all.
+//!
+//! Numbers are written with the shortest digits that read back as the same `f64`.
+
+mod folder;
+pub mod mechanisms;
+pub mod results;
+pub mod rotations;
+
+use std::io;
+
+pub use folder::Folder;
+use thiserror::Error;
+
+/// Why results could not be written.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The system refused.
+    #[error("{what}: {source}")]
+    Io {
+        /// What was to be done, with the path.
+        what: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A result is not a finite number. This is a defect of the program; nothing is written.
+    #[error("the result {what} is not a finite number: please report the scenario")]
+    NotFinite {
+        /// Name of the column or key.
+        what: String,
+    },
+}
+
+impl OutputError {
+    /// Whether the reader of a pipe has gone, which is no failure.
+    #[must_use]
+    pub fn is_closed_pipe(&self) -> bool {
+        matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
+    }
+
+    fn io(what: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+        let what = what.into();
+        |source| Self::Io { what, source }
+    }
+
+    fn csv(what: impl Into<String>) -> impl FnOnce(csv::Error) -> Self {
+        let what = what.into();
+        |error| {
+            let message = error.to_string();
+            let source = match error.into_kind() {
+                csv::ErrorKind::Io(source) => source,
+                _ => io::Error::other(message),
+            };
+            Self::Io { what, source }
+        }
+    }
+}
+
+/// Refuses what is not a number.
+fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(OutputError::NotFinite {
+            what: what.to_owned(),
+        })
+    }
+}
