@@ -84,9 +84,8 @@ impl<'a, S: Structure> ImpactEvent<'a, S> {
     /// Kinetic energies before and after, in the unit of [`Rocking::barrier`].
     #[must_use]
     pub fn energies(&self) -> (f64, f64) {
-        let kinetic = |link: &Link<S::Mechanism>, rate: f64| {
-            0.5 * link.mechanism.coefficients(0.0).inertia * rate * rate
-        };
+        let kinetic =
+            |link: &Link<S::Mechanism>, rate: f64| 0.5 * link.at_zero.inertia * rate * rate;
         let after = self
             .after
             .map_or(0.0, |link| kinetic(link, self.rate_after_rad_s));
