@@ -368,7 +368,7 @@ fn land<S: HybridSystem<N>, const N: usize>(
 
 /// Largest part of a step that may be cut off by interpolation alone. Its error is of the second order
 /// in this part (of the third in what matters to guards) on top of the fourth in the step.
-const INTERPOLATED: f64 = 1e-4;
+const INTERPOLATED: f64 = 2e-4;
 
 /// Largest part of a step that may be closed along the tangent on landing.
 const CLOSED_BY_TANGENT: f64 = 1e-4;

@@ -269,20 +269,21 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
             return (f64::INFINITY, f64::INFINITY);
         };
         let fall_s = self.fall_s(link);
-        // Time until q is back at zero if the acceleration stayed as it is.
+        let (reach_rad, _) = self.reach(link, state);
+        let height = reach_rad / link.critical_rad;
+        // Time until q is back at zero if the acceleration stayed as it is. As the weight lessens with q,
+        // it takes longer by up to two thirds of the height; a step shall reach just beyond.
         let (q, rate) = (state[0], state[1]);
         let acceleration = self.slope(mode, piece, time_s, state)[1];
         let back_s = (rate + (rate * rate - 2.0 * acceleration * q).sqrt()) / -acceleration;
         let hop_s = if acceleration < 0.0 && back_s > 0.0 {
-            (1.05 * back_s).min(fall_s)
+            ((1.0 + height) * back_s).min(fall_s)
         } else {
             fall_s
         };
         // A hop is a parabola but for terms of the relative size of its height: the sixth derivative,
         // which the method feels, is of the order of its square. The error of a step h is taken as
         // height^2 (h/hop)^6.
-        let (reach_rad, _) = self.reach(link, state);
-        let height = reach_rad / link.critical_rad;
         let part = (relative_tolerance / (height * height))
             .powf(1.0 / 6.0)
             .min(1.0);
