@@ -11,7 +11,7 @@ use super::limit::{Incipient, LimitError, incipient};
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
 use super::ring::Ring;
-use super::structure::{Link, critical_rad};
+use super::structure::Link;
 
 /// A link whose hinges are as close as this to those of the link two before it closes the chain into a
 /// repeating pair. Far below what the search resolves in `r` (which is flat at a maximum).
@@ -36,13 +36,7 @@ impl ArchLink {
         let limit_rad = linkage.limit_rad();
         Self {
             mechanism: impact.mechanism,
-            link: Link {
-                mechanism: linkage,
-                critical_rad: critical_rad(&linkage, limit_rad),
-                limit_rad,
-                rate_ratio: impact.rate_ratio,
-                restitution: impact.restitution,
-            },
+            link: Link::new(linkage, limit_rad, impact.rate_ratio, impact.restitution),
         }
     }
 }
