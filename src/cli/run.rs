@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Outcome, history};
 use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::arch::Arch;
 use archrock::mechanics::linkage::Linkage;
 use archrock::mechanics::structure::Structure as _;
@@ -161,10 +162,40 @@ fn human_summary(
          much",
         peak_g / incipient_g
     );
+    if let Some(thrust) = &history.thrust {
+        text += &trust(thrust);
+    }
     let _ = writeln!(
         text,
         "  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
         history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
+    );
+    text
+}
+
+/// How far the motion can be trusted to be that of four links.
+fn trust(thrust: &ThrustRecord) -> String {
+    let Some(shares) = thrust.shares_within() else {
+        return String::new();
+    };
+    let Peak { value, time_s } = thrust.largest_excess;
+    let [close, near] = shares.map(|share| 100.0 * share);
+    let [least, most] = EXCESS_LEVELS;
+    let mut text = if value <= least {
+        format!(
+            "  four links suffice to {value:.4} t, by which the thrust line leaves the arch at most\n"
+        )
+    } else {
+        format!(
+            "  FOUR LINKS DO NOT SUFFICE: the thrust line leaves the arch by up to {value:.3} t (at \
+             {time_s:.4} s);\n    it stays within {least} t for {close:.1} % and within {most} t for \
+             {near:.1} % of the rocking time. Not on the safe side.\n"
+        )
+    };
+    let _ = writeln!(
+        text,
+        "  no sliding takes a friction coefficient of {:.3} for granted (at {:.4} s)",
+        thrust.largest_friction.value, thrust.largest_friction.time_s
     );
     text
 }

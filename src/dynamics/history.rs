@@ -3,8 +3,9 @@
 use super::engine::{EngineError, HybridSystem, Observer, Settings, Transition, simulate};
 use super::integrator::{Cost, Step};
 use super::rocking::{Guard, Mode, Rocking, RockingState};
+use super::thrust::ThrustRecord;
 use crate::mechanics::mechanism::Sway;
-use crate::mechanics::structure::{Link, Mechanism, Structure};
+use crate::mechanics::structure::{Demand, Link, Mechanism, Structure};
 
 /// Rotations of the bodies of a structure, from left to right, anticlockwise, in radians; or their rates.
 pub type Rotations<S> = <<S as Structure>::Mechanism as Mechanism>::Rotations;
@@ -121,6 +122,8 @@ pub struct Sample<R> {
     pub rotations_rad: R,
     /// Rotation rates of the bodies.
     pub rates_rad_s: R,
+    /// What the internal forces ask of the sections.
+    pub demand: Demand,
 }
 
 /// What is to be simulated.
@@ -152,6 +155,8 @@ pub struct History<'a, S: Structure> {
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus what the impacts took, over the energy barrier.
     pub energy_defect_ratio: f64,
+    /// The demands over all samples, if any were asked for.
+    pub thrust: Option<ThrustRecord>,
     /// Work done by the integrator.
     pub cost: Cost,
 }
@@ -215,6 +220,7 @@ pub fn history<'a, S: Structure>(
         impacts: recorder.impacts,
         peak_rotations_rad: recorder.peak_rotations_rad,
         energy_defect_ratio: recorder.largest_defect / rocking.barrier(),
+        thrust: sampler.map(|sampler| sampler.thrust),
         cost: finish.cost,
     })
 }
@@ -367,16 +373,18 @@ struct Sampler<F, R> {
     phase: usize,
     /// The last sample is held back, in case the end falls on it.
     held: Option<Sample<R>>,
+    thrust: ThrustRecord,
     sink: F,
 }
 
 impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
-    const fn new(output_step_s: f64, sink: F) -> Self {
+    fn new(output_step_s: f64, sink: F) -> Self {
         Self {
             output_step_s,
             next: 0,
             phase: 0,
             held: None,
+            thrust: ThrustRecord::default(),
             sink,
         }
     }
@@ -388,8 +396,14 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
 
     fn push(&mut self, sample: Sample<R>) {
         if let Some(held) = self.held.replace(sample) {
-            (self.sink)(&held);
+            self.emit(&held);
         }
+    }
+
+    fn emit(&mut self, sample: &Sample<R>) {
+        self.thrust
+            .note(sample.time_s, sample.state != "rest", &sample.demand);
+        (self.sink)(sample);
     }
 
     fn sample<S: Structure>(
@@ -425,14 +439,16 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
                 )
             }
         };
+        let ground_m_s2 = rocking.ground().pieces()[piece].acceleration_m_s2(time_s);
         let moved = if matches!(mode, Mode::Rest) { 0.0 } else { 1.0 };
         Sample {
             time_s,
-            ground_acceleration_m_s2: rocking.ground().pieces()[piece].acceleration_m_s2(time_s),
+            ground_acceleration_m_s2: ground_m_s2,
             phase: self.phase,
             state: name,
             rotations_rad: seen_from_ground::<S>(sway, rotations_rad, moved),
             rates_rad_s: seen_from_ground::<S>(sway, rates_rad_s, moved * state[1]),
+            demand: rocking.demand(mode, ground_m_s2, state),
         }
     }
 
@@ -454,9 +470,9 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         if let Some(held) = self.held.take()
             && held.time_s < time_s - 1e-9 * self.output_step_s
         {
-            (self.sink)(&held);
+            self.emit(&held);
         }
-        (self.sink)(&last);
+        self.emit(&last);
     }
 }
 

@@ -9,10 +9,11 @@
 
 use nalgebra::Vector2;
 
-use super::field::turned;
+use super::field::{Momentum, turned};
 use super::mechanism::FourLink;
 use super::ring::{MassMoments, Ring};
-use super::structure::{Coefficients, Mechanism};
+use super::structure::{Coefficients, Mechanism, Motion};
+use super::thrust::{Load, Part, ThrustLine};
 
 /// A rigid body that is part of the linkage, about a point of its own.
 #[derive(Clone, Copy, Debug)]
@@ -37,12 +38,13 @@ impl Body {
 /// The four-bar linkage of a mechanism that sways right; lengths in mean radii, unit density.
 #[derive(Clone, Copy, Debug)]
 pub struct Linkage {
+    ring: Ring,
+    hinges_rad: [f64; 4],
+    points: [Vector2<f64>; 4],
     left: Body,
     /// About hinge B.
     middle: Body,
     right: Body,
-    pivot_left: Vector2<f64>,
-    pivot_right: Vector2<f64>,
     /// Undeformed bars A-B, B-C and D-C.
     bar_left: Vector2<f64>,
     bar_middle: Vector2<f64>,
@@ -64,6 +66,11 @@ fn rotate(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(turn.x * v.x - turn.y * v.y, turn.x * v.y + turn.y * v.x)
 }
 
+/// Undoes [`rotate`].
+fn rotate_back(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
+    rotate(Vector2::new(turn.x, -turn.y), v)
+}
+
 /// The unit complex number that turns `from` into `to`, vectors of equal length.
 fn turn_between(from: Vector2<f64>, to: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared()
@@ -76,11 +83,12 @@ impl Linkage {
         let [a, b, c, d] = mechanism.hinges_rad();
         let [point_a, point_b, point_c, point_d] = mechanism.points();
         Self {
+            ring: *ring,
+            hinges_rad: mechanism.hinges_rad(),
+            points: mechanism.points(),
             left: Body::new(&ring.sector(a, b), point_a),
             middle: Body::new(&ring.sector(b, c), point_b),
             right: Body::new(&ring.sector(c, d), point_d),
-            pivot_left: point_a,
-            pivot_right: point_d,
             bar_left: point_b - point_a,
             bar_middle: point_c - point_b,
             bar_right: point_c - point_d,
@@ -95,7 +103,7 @@ impl Linkage {
         let turn_left = Vector2::new(cos, -sin);
         let bar_left = rotate(turn_left, self.bar_left);
         // C is where the circles about B and D meet, on the left of the line from B to D.
-        let line = self.pivot_right - self.pivot_left - bar_left;
+        let line = self.ground_bar() - bar_left;
         let square = line.norm_squared();
         let middle_square = self.bar_middle.norm_squared();
         let along = 0.5 * (1.0 + (middle_square - self.bar_right.norm_squared()) / square);
@@ -120,11 +128,95 @@ impl Linkage {
         (-1.0, middle, right)
     }
 
+    /// Derivatives of the rates of the middle and the right body with respect to `q`: the loop's
+    /// accelerations, with those along the bars on the right.
+    fn slopes(pose: &Pose, middle_rate: f64, right_rate: f64) -> (f64, f64) {
+        let inward = pose.bar_left + pose.bar_middle * (middle_rate * middle_rate)
+            - pose.bar_right * (right_rate * right_rate);
+        let cross = pose.bar_middle.perp(&pose.bar_right);
+        (
+            inward.dot(&pose.bar_right) / cross,
+            inward.dot(&pose.bar_middle) / cross,
+        )
+    }
+
+    /// From A to D.
+    fn ground_bar(&self) -> Vector2<f64> {
+        self.points[3] - self.points[0]
+    }
+
+    /// The thrust line in motion: from the dynamic equilibrium of the three bodies.
+    ///
+    /// The moments of the right body about D and of the middle body about B give the force at C, and
+    /// forces alone the others. `B-C` and `C-D` are never on one line before the limit position. That the
+    /// line passes through B on the left body's side as well is the equation of motion.
+    #[must_use]
+    pub fn thrust_line(&self, motion: &Motion) -> ThrustLine {
+        let pose = self.pose(motion.q_rad);
+        let (left_rate, middle_rate, right_rate) = Self::rates(&pose);
+        let (middle_slope, right_slope) = Self::slopes(&pose, middle_rate, right_rate);
+        let square = motion.rate * motion.rate;
+        let spin = |rate: f64, slope: f64| {
+            (
+                rate * motion.acceleration + slope * square,
+                rate * rate * square,
+            )
+        };
+        let (left_spin, middle_spin, right_spin) = (
+            spin(left_rate, 0.0),
+            spin(middle_rate, middle_slope),
+            spin(right_rate, right_slope),
+        );
+        let body_force = motion.body_force_g;
+        let at_b = turned(pose.bar_left) * left_spin.0 - pose.bar_left * left_spin.1;
+        let [point_a, point_b, _, point_d] = self.points;
+        let left = Load::of_body(point_a, rotate_back(pose.turn_left, body_force), left_spin);
+        let middle = Load::of_body(
+            point_b,
+            rotate_back(pose.turn_middle, body_force - at_b),
+            middle_spin,
+        );
+        let right = Load::of_body(
+            point_d,
+            rotate_back(pose.turn_right, body_force),
+            right_spin,
+        );
+
+        let [a, b, c, d] = self.hinges_rad;
+        let on_left = left.resultant(&self.ring.sector(a, b));
+        let on_middle = middle.resultant(&self.ring.sector(b, c));
+        let on_right = right.resultant(&self.ring.sector(c, d));
+        let force_c = (pose.bar_right * on_middle.about(point_b)
+            + pose.bar_middle * on_right.about(point_d))
+            / pose.bar_middle.perp(&pose.bar_right);
+        let force_b = force_c - rotate(pose.turn_middle, on_middle.linear);
+        let force_a = force_b - rotate(pose.turn_left, on_left.linear);
+        let force_d = force_c + rotate(pose.turn_right, on_right.linear);
+
+        let still = Load::uniform(body_force);
+        let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| Part {
+            end_rad,
+            known_rad: self.hinges_rad[hinge],
+            known: Momentum::applied_at(self.points[hinge], force),
+            load,
+        };
+        ThrustLine::new(
+            &self.ring,
+            vec![
+                part(0, a, still, force_a),
+                part(0, b, left, rotate_back(pose.turn_left, force_a)),
+                part(1, c, middle, rotate_back(pose.turn_middle, force_b)),
+                part(2, d, right, rotate_back(pose.turn_right, force_c)),
+                part(3, self.ring.embrace_rad(), still, force_d),
+            ],
+        )
+    }
+
     /// The limit position: the least `q` at which A, B, C, or else C, D, A, are on one line, so that
     /// the right body or the ground bar cannot follow any further.
     #[must_use]
     pub fn limit_rad(&self) -> f64 {
-        let ground = self.pivot_right - self.pivot_left;
+        let ground = self.ground_bar();
         let [left, middle, right, base] =
             [self.bar_left, self.bar_middle, self.bar_right, ground].map(|bar| bar.norm());
         let cosine = |near: f64, other: f64, opposite: f64| {
@@ -152,13 +244,7 @@ impl Mechanism for Linkage {
     fn coefficients(&self, q_rad: f64) -> Coefficients {
         let pose = self.pose(q_rad);
         let (left_rate, middle_rate, right_rate) = Self::rates(&pose);
-        // Second derivatives: the loop's accelerations, with those along the bars on the right.
-        let inward = pose.bar_left + pose.bar_middle * (middle_rate * middle_rate)
-            - pose.bar_right * (right_rate * right_rate);
-        let cross = pose.bar_middle.perp(&pose.bar_right);
-        let middle_slope = inward.dot(&pose.bar_right) / cross;
-        let right_slope = inward.dot(&pose.bar_middle) / cross;
-
+        let (middle_slope, right_slope) = Self::slopes(&pose, middle_rate, right_rate);
         let arm = rotate(pose.turn_middle, self.middle.arm);
         let at_b = turned(pose.bar_left) * left_rate;
         let middle_velocity = at_b + turned(arm) * middle_rate;
@@ -262,8 +348,8 @@ mod tests {
         fn the_loop_is_closed(part in 0.0_f64..1.2) {
             let (_, _, linkage) = semicircle();
             let pose = linkage.pose(part * linkage.limit_rad());
-            let end = linkage.pivot_left + pose.bar_left + pose.bar_middle - pose.bar_right;
-            prop_assert!((end - linkage.pivot_right).norm() < 1e-14);
+            let end = pose.bar_left + pose.bar_middle - pose.bar_right;
+            prop_assert!((end - linkage.ground_bar()).norm() < 1e-14);
             prop_assert!((pose.bar_right.norm() - linkage.bar_right.norm()).abs() < 1e-14);
             prop_assert!((pose.bar_middle.norm() - linkage.bar_middle.norm()).abs() < 1e-14);
         }

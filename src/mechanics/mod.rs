@@ -10,3 +10,4 @@ pub mod resultant;
 pub mod ring;
 mod search;
 pub mod structure;
+pub mod thrust;
