@@ -12,6 +12,7 @@ use archrock::mechanics::arch::Arch;
 use archrock::mechanics::linkage::Linkage;
 use archrock::mechanics::structure::Structure as _;
 use archrock::output::rotations::RotationsWriter;
+use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError, results};
 use archrock::scenario::Scenario;
 
@@ -31,6 +32,7 @@ pub struct Arguments {
 }
 
 const ROTATIONS: &str = "rotations.csv";
+const PICTURE: &str = "history.svg";
 const IMPACTS: &str = "impacts.csv";
 /// Written last: a folder that has it is complete.
 const SUMMARY: &str = "summary.json";
@@ -53,14 +55,26 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     };
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let mut folder = path.map(|path| open(&path, to_stdout)).transpose()?;
+    let mut timeline = Timeline::new::<Linkage>(scenario.simulation.gravity_m_s2);
     let simulated = match &mut folder {
-        Some(folder) if !to_stdout => simulate(&scenario, &rocking, folder.file(ROTATIONS)),
-        _ => simulate(&scenario, &rocking, BufWriter::new(io::stdout().lock())),
+        Some(folder) if !to_stdout => {
+            simulate(&scenario, &rocking, folder.file(ROTATIONS), &mut timeline)
+        }
+        _ => {
+            let stdout = BufWriter::new(io::stdout().lock());
+            simulate(&scenario, &rocking, stdout, &mut timeline)
+        }
     };
     let (history, rows) = simulated?;
     let mut text = human_summary(&scenario, &arch, &ground, &history);
     if let Some(mut folder) = folder {
         results::write_impacts(folder.file(IMPACTS), &arch, &history.impacts)?;
+        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let impacts_s = history.impacts.iter().map(|impact| impact.time_s);
+        folder
+            .file(PICTURE)
+            .write_all(timeline.draw(title, impacts_s).as_bytes())
+            .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
         let summary = results::summary(&scenario, &arch, &history)?;
         writeln!(folder.file(SUMMARY), "{summary:#}")
             .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
@@ -73,7 +87,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         };
         let _ = writeln!(
             text,
-            "  results in {}: {rotations}{IMPACTS}, {SUMMARY}",
+            "  results in {}: {rotations}{IMPACTS}, {PICTURE}, {SUMMARY}",
             path.display()
         );
     }
@@ -87,11 +101,11 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 /// Opens the folder for the results.
 fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
     if without_rotations {
-        let mut folder = Folder::open(path, &[IMPACTS, SUMMARY])?;
+        let mut folder = Folder::open(path, &[IMPACTS, PICTURE, SUMMARY])?;
         folder.forget(ROTATIONS);
         Ok(folder)
     } else {
-        Folder::open(path, &[ROTATIONS, IMPACTS, SUMMARY])
+        Folder::open(path, &[ROTATIONS, IMPACTS, PICTURE, SUMMARY])
     }
 }
 
@@ -100,10 +114,12 @@ fn simulate<'a>(
     scenario: &Scenario,
     rocking: &Rocking<'a, Arch>,
     writer: impl io::Write,
+    timeline: &mut Timeline,
 ) -> Result<(History<'a, Arch>, u64), Failure> {
     let mut table = RotationsWriter::new::<Linkage>(writer)?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
+        timeline.push(sample);
         if written.is_ok() {
             written = table.write(sample);
         }

@@ -124,6 +124,8 @@ pub struct Sample<R> {
     pub rates_rad_s: R,
     /// What the internal forces ask of the sections.
     pub demand: Demand,
+    /// Kinetic and potential energy over the energy barrier.
+    pub energy_ratio: f64,
 }
 
 /// What is to be simulated.
@@ -423,10 +425,11 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
             Mode::Rocking { sway, .. } => (sway.name(), sway),
             Mode::Overturned { sway, .. } => ("overturned", sway),
         };
-        let (rotations_rad, rates_rad_s) = match mode {
+        let (rotations_rad, rates_rad_s, energy) = match mode {
             Mode::Rocking { link, .. } | Mode::Overturned { link, .. } => (
                 link.mechanism.rotations(state[0]),
                 link.mechanism.rotation_rates(state[0]),
+                rocking.energy(link, state),
             ),
             Mode::Rest => {
                 let link = rocking
@@ -436,6 +439,7 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
                 (
                     link.mechanism.rotations(0.0),
                     link.mechanism.rotation_rates(0.0),
+                    0.0,
                 )
             }
         };
@@ -449,6 +453,7 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
             rotations_rad: seen_from_ground::<S>(sway, rotations_rad, moved),
             rates_rad_s: seen_from_ground::<S>(sway, rates_rad_s, moved * state[1]),
             demand: rocking.demand(mode, ground_m_s2, state),
+            energy_ratio: energy / rocking.barrier(),
         }
     }
 
