@@ -182,8 +182,7 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
                     // Of both parts that meet there: the moment about the hinge is zero, and the forces
                     // are equal but for the rotation. For B, left side, this is the equation of motion.
                     let forces = [parts[hinge], parts[hinge + 1]].map(|part| {
-                        let between = ring.sector(part.known_rad, angle);
-                        let resultant = part.known + part.load.resultant(&between);
+                        let resultant = part.at(ring, angle);
                         let scale = 1.0 + resultant.linear.norm();
                         assert!(resultant.about(pole).abs() < 1e-12 * scale, "{hinge}");
                         resultant.linear.norm()

@@ -194,11 +194,10 @@ impl Linkage {
         let force_d = force_c + rotate(pose.turn_right, on_right.linear);
 
         let still = Load::uniform(body_force);
-        let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| Part {
-            end_rad,
-            known_rad: self.hinges_rad[hinge],
-            known: Momentum::applied_at(self.points[hinge], force),
-            load,
+        let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
+            let at_hinge = Momentum::applied_at(self.points[hinge], force);
+            let known = (self.hinges_rad[hinge], at_hinge);
+            Part::new(&self.ring, end_rad, load, known)
         };
         ThrustLine::new(
             &self.ring,

@@ -115,12 +115,28 @@ impl Load {
 pub struct Part {
     /// Its last section.
     pub end_rad: f64,
-    /// A section at which the resultant is known, in or at the end of the part.
-    pub known_rad: f64,
-    /// The resultant there.
-    pub known: Momentum,
-    /// The load on the part.
-    pub load: Load,
+    load: Load,
+    /// The resultant at the left springing if the part reached so far.
+    start: Momentum,
+}
+
+impl Part {
+    /// The part that ends at `end_rad`, under `load`, with the resultant `known` at the section
+    /// `known_rad`.
+    #[must_use]
+    pub fn new(ring: &Ring, end_rad: f64, load: Load, (known_rad, known): (f64, Momentum)) -> Self {
+        Self {
+            end_rad,
+            load,
+            start: known - load.resultant(&ring.moments_to(known_rad)),
+        }
+    }
+
+    /// The resultant at a section.
+    #[must_use]
+    pub fn at(&self, ring: &Ring, angle_rad: f64) -> Momentum {
+        self.start + self.load.resultant(&ring.moments_to(angle_rad))
+    }
 }
 
 /// The resultants over all sections of a ring that moves as rigid parts, or stands.
@@ -157,12 +173,15 @@ impl ThrustLine {
         let (weight, push) = (-body_force_g.y, body_force_g.x / incipient.acceleration_g);
         Self::new(
             ring,
-            vec![Part {
-                end_rad: ring.embrace_rad(),
-                known_rad: 0.0,
-                known: (right + left) * (0.5 * weight) + (right - left) * (0.5 * push),
-                load: Load::uniform(body_force_g),
-            }],
+            vec![Part::new(
+                ring,
+                ring.embrace_rad(),
+                Load::uniform(body_force_g),
+                (
+                    0.0,
+                    (right + left) * (0.5 * weight) + (right - left) * (0.5 * push),
+                ),
+            )],
         )
     }
 
@@ -170,9 +189,7 @@ impl ThrustLine {
     #[must_use]
     pub fn at(&self, angle_rad: f64) -> Momentum {
         let index = self.parts.partition_point(|part| part.end_rad < angle_rad);
-        let part = self.parts[index.min(self.parts.len() - 1)];
-        let between = self.ring.sector(part.known_rad, angle_rad);
-        part.known + part.load.resultant(&between)
+        self.parts[index.min(self.parts.len() - 1)].at(&self.ring, angle_rad)
     }
 
     /// Components and position at a section.

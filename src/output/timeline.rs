@@ -12,6 +12,10 @@ const COLUMNS: usize = 1600;
 /// Marks and bands narrower than this many pixels are not told apart.
 const NARROWEST_PX: f64 = 1.0;
 
+/// Where the excess of the thrust line is cut off, in parts of the thickness: a structure that falls has
+/// values that would hide all others.
+const LARGEST_EXCESS: f64 = 1.0;
+
 /// A long series of values thinned to the least and largest of each of equal groups.
 #[derive(Clone, Debug)]
 struct Envelope {
@@ -124,7 +128,8 @@ impl Timeline {
         for (envelope, rotation) in self.rotations_rad.iter_mut().zip(rotations) {
             envelope.push(time_s, *rotation);
         }
-        self.excess_ratio.push(time_s, sample.demand.excess_ratio);
+        let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
+        self.excess_ratio.push(time_s, excess_ratio);
         self.energy_ratio.push(time_s, sample.energy_ratio);
         if self.states.last().is_none_or(|last| last.1 != sample.state) {
             self.states.push((time_s, sample.state));
@@ -160,7 +165,7 @@ impl Timeline {
                 vec![("energy", &self.energy_ratio, black)],
             ),
             (
-                "Thrust excess / t",
+                "Excess / t (up to 1)",
                 120.0,
                 vec![("excess", &self.excess_ratio, black)],
             ),
