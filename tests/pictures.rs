@@ -143,6 +143,24 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     }
 }
 
+#[test]
+fn joints_are_drawn_where_there_are_voussoirs() {
+    let ring = Ring::new(0.15, 157.5_f64.to_radians()).unwrap();
+    let sites = HingeSites::Voussoirs(7);
+    let chain = Chain::new(ring, sites, ImpactModel::MaxRestitution).unwrap();
+    for picture in [
+        pictures::limit(&chain),
+        pictures::first_impact(&chain).unwrap(),
+    ] {
+        let document = Document::parse(&picture).unwrap();
+        assert_eq!(named(&document, "joint").len(), 8);
+    }
+    // The hinges are at joints.
+    let picture = pictures::limit(&chain);
+    let document = Document::parse(&picture).unwrap();
+    check_hinges(&document, &chain, 0, Sway::Right);
+}
+
 /// Each displaced body has its corners where the circle arcs begin and end: read from its path.
 fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
     let path = node.attribute("d").unwrap().replace(['M', 'L', 'Z'], " ");

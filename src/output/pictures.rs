@@ -5,7 +5,7 @@ use nalgebra::{Rotation2, Vector2};
 use super::svg::{Anchor, Drawing, Stroke, color};
 use crate::mechanics::chain::{ArchLink, Chain};
 use crate::mechanics::impact::closing_field;
-use crate::mechanics::mechanism::Sway;
+use crate::mechanics::mechanism::{HingeSites, Sway};
 use crate::mechanics::resultant::ResultantLine;
 use crate::mechanics::ring::{Edge, Ring};
 use crate::mechanics::structure::Mechanism as _;
@@ -74,8 +74,7 @@ impl Place {
     /// Lowest point of the ring at rest.
     fn bottom(&self) -> f64 {
         let inner = self.ring.radius(Edge::Intrados);
-        let end = self.ring.radial(0.0).y;
-        self.center.y - self.scale * (inner * end).min(0.0).min(end)
+        self.center.y - self.scale * inner * self.ring.radial(0.0).y
     }
 
     /// A sector, displaced.
@@ -109,6 +108,18 @@ impl Place {
             corner(from, Edge::Extrados),
         );
         drawing.path(name, &path, fill, stroke);
+    }
+
+    /// The joints, where there are voussoirs.
+    fn joints(&self, drawing: &mut Drawing, sites: HingeSites) {
+        if let HingeSites::Voussoirs(count) = sites {
+            for angle_rad in sites.sections_rad(&self.ring, count) {
+                let [inner, outer] = [Edge::Intrados, Edge::Extrados]
+                    .map(|edge| self.px(self.ring.point(angle_rad, edge), Sway::Right));
+                let stroke = Stroke::new(color::GREY, 0.8, "");
+                drawing.curve("joint", [inner, outer], stroke);
+            }
+        }
     }
 
     fn whole(&self, drawing: &mut Drawing, fill: &str, stroke: Stroke) {
@@ -240,6 +251,7 @@ pub fn limit(chain: &Chain) -> String {
 
     let left = place(255.0);
     left.whole(&mut drawing, "#f4f4f4", Stroke::new(color::BLACK, 1.2, ""));
+    left.joints(&mut drawing, chain.sites());
     left.resultants(
         &mut drawing,
         "thrust line",
@@ -341,6 +353,7 @@ pub fn first_impact(chain: &Chain) -> Option<String> {
         }
     }
     place.whole(&mut drawing, "none", Stroke::new(color::BLACK, 1.2, ""));
+    place.joints(&mut drawing, chain.sites());
     let change = closing.minus(&field.scaled(after.link.rate_ratio));
     let line = ResultantLine::through_hinges(ring, &after.mechanism, change);
     place.resultants(&mut drawing, "impulse line", &line, Sway::Left);
