@@ -8,7 +8,7 @@ use archrock::mechanics::chain::Chain;
 use archrock::mechanics::mechanism::{FourLink, Sway};
 use archrock::mechanics::ring::Ring;
 use archrock::mechanics::structure::Mechanism;
-use archrock::output::mechanisms;
+use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
 
 use super::{Failure, Format, print};
@@ -24,22 +24,42 @@ pub fn check(path: &Path) -> Result<(), Failure> {
     print(&Scenario::read(path)?.to_toml())
 }
 
-pub fn limit(path: &Path, format: Format) -> Result<(), Failure> {
+pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Failure> {
     let scenario = Scenario::read(path)?;
     let arch = arch(&scenario)?;
+    if let Some(plot) = plot {
+        write_picture(plot, &pictures::limit(&arch.chain))?;
+    }
     match format {
         Format::Json => print(&pretty(&mechanisms::limit(&arch.chain))),
         Format::Text => print(&limit_text(&scenario, &arch.chain)),
     }
 }
 
-pub fn impact(path: &Path, count: usize, format: Format) -> Result<(), Failure> {
+pub fn impact(
+    path: &Path,
+    count: usize,
+    format: Format,
+    plot: Option<&Path>,
+) -> Result<(), Failure> {
     let scenario = Scenario::read(path)?;
     let arch = arch(&scenario)?;
+    if let Some(plot) = plot {
+        let stops = || Failure::Work("the first impact stops the arch: nothing to draw".to_owned());
+        write_picture(
+            plot,
+            &pictures::first_impact(&arch.chain).ok_or_else(stops)?,
+        )?;
+    }
     match format {
         Format::Json => print(&pretty(&mechanisms::impacts(&arch.chain, count))),
         Format::Text => print(&impact_text(&scenario, &arch.chain, count)),
     }
+}
+
+fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
+    std::fs::write(path, picture)
+        .map_err(|error| Failure::Work(format!("cannot write {}: {error}", path.display())))
 }
 
 fn pretty(value: &serde_json::Value) -> String {

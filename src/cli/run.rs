@@ -7,10 +7,12 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Outcome, history};
 use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::arch::Arch;
 use archrock::mechanics::linkage::Linkage;
 use archrock::mechanics::structure::Structure as _;
 use archrock::output::rotations::RotationsWriter;
+use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError, results};
 use archrock::scenario::Scenario;
 
@@ -30,6 +32,7 @@ pub struct Arguments {
 }
 
 const ROTATIONS: &str = "rotations.csv";
+const PICTURE: &str = "history.svg";
 const IMPACTS: &str = "impacts.csv";
 /// Written last: a folder that has it is complete.
 const SUMMARY: &str = "summary.json";
@@ -55,14 +58,26 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .map(|path| open(&path, to_stdout))
         .transpose()
         .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))?;
+    let mut timeline = Timeline::new::<Linkage>(scenario.simulation.gravity_m_s2);
     let simulated = match &mut folder {
-        Some(folder) if !to_stdout => simulate(&scenario, &rocking, folder.file(ROTATIONS)),
-        _ => simulate(&scenario, &rocking, BufWriter::new(io::stdout().lock())),
+        Some(folder) if !to_stdout => {
+            simulate(&scenario, &rocking, folder.file(ROTATIONS), &mut timeline)
+        }
+        _ => {
+            let stdout = BufWriter::new(io::stdout().lock());
+            simulate(&scenario, &rocking, stdout, &mut timeline)
+        }
     };
     let (history, rows) = simulated?;
     let mut text = human_summary(&scenario, &arch, &ground, &history);
     if let Some(mut folder) = folder {
         results::write_impacts(folder.file(IMPACTS), &arch, &history.impacts)?;
+        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let impacts_s = history.impacts.iter().map(|impact| impact.time_s);
+        folder
+            .file(PICTURE)
+            .write_all(timeline.draw(title, impacts_s).as_bytes())
+            .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
         let summary = results::summary(&scenario, &arch, &history)?;
         writeln!(folder.file(SUMMARY), "{summary:#}")
             .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
@@ -75,7 +90,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         };
         let _ = writeln!(
             text,
-            "  results in {}: {rotations}{IMPACTS}, {SUMMARY}",
+            "  results in {}: {rotations}{IMPACTS}, {PICTURE}, {SUMMARY}",
             path.display()
         );
     }
@@ -89,11 +104,11 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 /// Opens the folder for the results.
 fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
     if without_rotations {
-        let mut folder = Folder::open(path, &[IMPACTS, SUMMARY])?;
+        let mut folder = Folder::open(path, &[IMPACTS, PICTURE, SUMMARY])?;
         folder.forget(ROTATIONS);
         Ok(folder)
     } else {
-        Folder::open(path, &[ROTATIONS, IMPACTS, SUMMARY])
+        Folder::open(path, &[ROTATIONS, IMPACTS, PICTURE, SUMMARY])
     }
 }
 
@@ -102,10 +117,12 @@ fn simulate<'a>(
     scenario: &Scenario,
     rocking: &Rocking<'a, Arch>,
     writer: impl io::Write,
+    timeline: &mut Timeline,
 ) -> Result<(History<'a, Arch>, u64), Failure> {
     let mut table = RotationsWriter::new::<Linkage>(writer)?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
+        timeline.push(sample);
         if written.is_ok() {
             written = table.write(sample);
         }
@@ -173,6 +190,36 @@ fn human_summary(
     let _ = writeln!(
         text,
         "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
+    );
+    if let Some(thrust) = &history.thrust {
+        text += &trust(thrust);
+    }
+    text
+}
+
+/// How far the motion can be trusted to be that of four links.
+fn trust(thrust: &ThrustRecord) -> String {
+    let Some(shares) = thrust.shares_within() else {
+        return String::new();
+    };
+    let Peak { value, time_s } = thrust.largest_excess;
+    let [close, near] = shares.map(|share| 100.0 * share);
+    let [least, most] = EXCESS_LEVELS;
+    let mut text = if value <= least {
+        format!(
+            "  four links suffice to {value:.4} t, by which the thrust line leaves the arch at most\n"
+        )
+    } else {
+        format!(
+            "  four links do not suffice: the thrust line leaves the arch by up to {value:.3} t (at \
+             {time_s:.4} s);\n    it stays within {least} t for {close:.1} % and within {most} t for \
+             {near:.1} % of the rocking time. Not on the safe side.\n"
+        )
+    };
+    let _ = writeln!(
+        text,
+        "  no sliding takes a friction coefficient of {:.3} for granted (at {:.4} s)",
+        thrust.largest_friction.value, thrust.largest_friction.time_s
     );
     text
 }

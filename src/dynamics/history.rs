@@ -5,8 +5,9 @@ use super::engine::{
 };
 use super::integrator::{Cost, Step};
 use super::rocking::{Guard, Mode, Rocking, RockingState};
+use super::thrust::ThrustRecord;
 use crate::mechanics::mechanism::Sway;
-use crate::mechanics::structure::{Link, Mechanism, Structure};
+use crate::mechanics::structure::{Demand, Link, Mechanism, Structure};
 
 /// Rotations of the bodies of a structure, from left to right, anticlockwise, in radians; or their rates.
 pub type Rotations<S> = <<S as Structure>::Mechanism as Mechanism>::Rotations;
@@ -122,6 +123,10 @@ pub struct Sample<R> {
     pub rotations_rad: R,
     /// Rotation rates of the bodies.
     pub rates_rad_s: R,
+    /// What the internal forces ask of the sections.
+    pub demand: Demand,
+    /// Kinetic and potential energy over the energy barrier.
+    pub energy_ratio: f64,
 }
 
 /// What is to be simulated.
@@ -153,6 +158,8 @@ pub struct History<'a, S: Structure> {
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus what the impacts took, over the energy barrier.
     pub energy_defect_ratio: f64,
+    /// The demands over all samples, if any were asked for.
+    pub thrust: Option<ThrustRecord>,
     /// Work done by the integrator.
     pub cost: Cost,
 }
@@ -217,6 +224,7 @@ pub fn history<'a, S: Structure>(
         impacts: recorder.impacts,
         peak_rotations_rad: recorder.peak_rotations_rad,
         energy_defect_ratio: recorder.largest_defect / rocking.barrier(),
+        thrust: sampler.map(|sampler| sampler.thrust),
         cost: finish.cost,
     })
 }
@@ -364,16 +372,18 @@ struct Sampler<F, R> {
     phase: usize,
     /// The last sample is held back, in case the end falls on it.
     held: Option<Sample<R>>,
+    thrust: ThrustRecord,
     sink: F,
 }
 
 impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
-    const fn new(output_step_s: f64, sink: F) -> Self {
+    fn new(output_step_s: f64, sink: F) -> Self {
         Self {
             output_step_s,
             next: 0,
             phase: 0,
             held: None,
+            thrust: ThrustRecord::default(),
             sink,
         }
     }
@@ -385,8 +395,14 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
 
     fn push(&mut self, sample: Sample<R>) {
         if let Some(held) = self.held.replace(sample) {
-            (self.sink)(&held);
+            self.emit(&held);
         }
+    }
+
+    fn emit(&mut self, sample: &Sample<R>) {
+        self.thrust
+            .note(sample.time_s, sample.state != "rest", &sample.demand);
+        (self.sink)(sample);
     }
 
     fn sample<S: Structure>(
@@ -406,10 +422,11 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
             Mode::Rocking { sway, .. } => (sway.name(), sway),
             Mode::Overturned { sway, .. } => ("overturned", sway),
         };
-        let (rotations_rad, rates_rad_s) = match mode {
+        let (rotations_rad, rates_rad_s, energy) = match mode {
             Mode::Rocking { link, .. } | Mode::Overturned { link, .. } => (
                 link.mechanism.rotations(state[0]),
                 link.mechanism.rotation_rates(state[0]),
+                rocking.energy(link, state),
             ),
             Mode::Rest => {
                 let link = rocking
@@ -419,17 +436,21 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
                 (
                     link.mechanism.rotations(0.0),
                     link.mechanism.rotation_rates(0.0),
+                    0.0,
                 )
             }
         };
+        let ground_m_s2 = rocking.ground().pieces()[piece].acceleration_m_s2(time_s);
         let moved = if matches!(mode, Mode::Rest) { 0.0 } else { 1.0 };
         Sample {
             time_s,
-            ground_acceleration_m_s2: rocking.ground().pieces()[piece].acceleration_m_s2(time_s),
+            ground_acceleration_m_s2: ground_m_s2,
             phase: self.phase,
             state: name,
             rotations_rad: seen_from_ground::<S>(sway, rotations_rad, moved),
             rates_rad_s: seen_from_ground::<S>(sway, rates_rad_s, moved * state[1]),
+            demand: rocking.demand(mode, ground_m_s2, state),
+            energy_ratio: energy / rocking.barrier(),
         }
     }
 
@@ -451,9 +472,9 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         if let Some(held) = self.held.take()
             && held.time_s < time_s - 1e-9 * self.output_step_s
         {
-            (self.sink)(&held);
+            self.emit(&held);
         }
-        (self.sink)(&last);
+        self.emit(&last);
     }
 }
 

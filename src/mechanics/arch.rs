@@ -2,9 +2,12 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+
 use super::chain::Chain;
 use super::linkage::Linkage;
-use super::structure::{Link, Structure};
+use super::structure::{Demand, Link, Motion, Structure};
+use super::thrust::ThrustLine;
 
 /// An arch. Its chain of mechanisms does not depend on size or material, and may be shared.
 #[derive(Clone, Debug)]
@@ -32,6 +35,15 @@ impl Structure for Arch {
 
     fn incipient_g(&self) -> f64 {
         self.chain.incipient().acceleration_g
+    }
+
+    fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
+        mechanism.thrust_line(motion).demand(self.chain.sites())
+    }
+
+    fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
+        ThrustLine::at_rest(self.chain.incipient(), self.chain.ring(), body_force_g)
+            .demand(self.chain.sites())
     }
 
     fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {

@@ -41,6 +41,7 @@ impl<W: Write> RotationsWriter<W> {
             .to_vec();
         header.extend(columns::<M>("rotation", "rad"));
         header.extend(columns::<M>("rate", "rad_s"));
+        header.extend(["thrust_excess_ratio", "friction_demand"].map(str::to_owned));
         csv.write_record(header).map_err(OutputError::csv(WHAT))?;
         Ok(Self { csv, rows: 0 })
     }
@@ -57,6 +58,8 @@ impl<W: Write> RotationsWriter<W> {
         )?;
         finite("of a row of rotations.csv", rotations)?;
         finite("of a row of rotations.csv", rates)?;
+        let demand = [sample.demand.excess_ratio, sample.demand.friction];
+        finite("of a row of rotations.csv", &demand)?;
         self.rows += 1;
         self.csv
             .serialize((
@@ -66,6 +69,7 @@ impl<W: Write> RotationsWriter<W> {
                 sample.state,
                 rotations,
                 rates,
+                demand,
             ))
             .map_err(OutputError::csv(WHAT))
     }
