@@ -7,6 +7,7 @@
 use std::sync::OnceLock;
 
 use super::impact::{Impact, ImpactModel, impact};
+use super::impulse_line::ImpulseLine;
 use super::limit::{Incipient, LimitError, incipient};
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
@@ -28,10 +29,13 @@ pub struct ArchLink {
     pub mechanism: FourLink,
     /// The same at finite rotations, and how the impact leads to it.
     pub link: Link<Linkage>,
+    /// Impulses of the impact that leads to it, per unit closing rate; `None` for the first link, and
+    /// where the restitution coefficient is prescribed.
+    pub impulse_line: Option<ImpulseLine>,
 }
 
 impl ArchLink {
-    fn new(ring: &Ring, impact: &Impact) -> Self {
+    fn new(ring: &Ring, impact: Impact) -> Self {
         let linkage = Linkage::new(ring, &impact.mechanism);
         let limit_rad = linkage.limit_rad();
         Self {
@@ -43,6 +47,7 @@ impl ArchLink {
                 rate_ratio: impact.rate_ratio,
                 restitution: impact.restitution,
             },
+            impulse_line: impact.impulse_line,
         }
     }
 }
@@ -83,6 +88,12 @@ impl Chain {
         &self.ring
     }
 
+    /// Where hinges may form.
+    #[must_use]
+    pub const fn sites(&self) -> HingeSites {
+        self.sites
+    }
+
     /// Onset of rocking; its mechanism is link 0.
     #[must_use]
     pub const fn incipient(&self) -> &Incipient {
@@ -113,8 +124,9 @@ impl Chain {
                 mechanism: self.incipient.mechanism,
                 rate_ratio: 1.0,
                 restitution: 1.0,
+                impulse_line: None,
             };
-            return Some(ArchLink::new(&self.ring, &first));
+            return Some(ArchLink::new(&self.ring, first));
         };
         let closing = &self.links[previous].get()?.as_ref()?.mechanism;
         let impact = impact(closing, &self.ring, self.sites, self.model)?;
@@ -128,7 +140,7 @@ impl Chain {
                 self.pair.get_or_init(|| index - 1);
             }
         }
-        Some(ArchLink::new(&self.ring, &impact))
+        Some(ArchLink::new(&self.ring, impact))
     }
 }
 

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::field::{Field, Side, Twist};
 use super::mechanism::{EDGES, FourLink, HingeSites};
-use super::resultant::ResultantLine;
+use super::resultant::{EDGE_TOLERANCE, ResultantLine};
 use super::ring::{Edge, Ring};
 use super::search::{Lattice, Objective, Quadruple, ascend, edge_index};
 
@@ -42,10 +42,6 @@ pub enum LimitError {
     NoPush,
 }
 
-/// A thrust line may leave the ring by this much of the thickness, on account of rounding: hinges
-/// are placed to about 1e-8 rad, and the line touches the edges there.
-const CERTIFICATE_TOLERANCE: f64 = 1e-6;
-
 /// Sections at which the thrust line is compared with the ring where hinges sit anywhere.
 const CERTIFICATE_SECTIONS: usize = 1440;
 
@@ -64,7 +60,7 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
     }
     let thrust_line = ResultantLine::through_hinges(ring, &mechanism, push(acceleration_g));
     let excess_ratio = thrust_line.largest_excess(sections(ring, sites).into_iter());
-    if excess_ratio > CERTIFICATE_TOLERANCE {
+    if excess_ratio > EDGE_TOLERANCE {
         return Err(LimitError::OtherMechanism { acceleration_g });
     }
     Ok(Incipient {
@@ -104,10 +100,7 @@ fn sections(ring: &Ring, sites: HingeSites) -> Vec<f64> {
         HingeSites::Anywhere => CERTIFICATE_SECTIONS,
         HingeSites::Voussoirs(count) => count,
     };
-    #[expect(clippy::cast_precision_loss, reason = "section counts are small")]
-    (0..=count)
-        .map(|i| ring.embrace_rad() * (i as f64 / count as f64))
-        .collect()
+    ring.sections(count)
 }
 
 /// Gravity and a push of `acceleration_g` to the right, as load per unit mass.

@@ -3,6 +3,7 @@ pub mod arch;
 pub mod chain;
 pub mod field;
 pub mod impact;
+pub mod impulse_line;
 pub mod limit;
 pub mod linkage;
 pub mod mechanism;
