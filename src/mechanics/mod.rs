@@ -1,5 +1,6 @@
 //! Mechanics of the ring: pure functions, no time, no files.
 pub mod arch;
+pub mod certificate;
 pub mod chain;
 pub mod field;
 pub mod impact;
