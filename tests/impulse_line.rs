@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use std::f64::consts::PI;
+use std::path::Path;
+use std::process::{Command, Output};
 
 use archrock::mechanics::arch::Arch;
 use archrock::mechanics::chain::Chain;
@@ -272,4 +274,230 @@ fn the_unit_of_impulses_scales_with_density_and_the_cube_of_the_radius() {
     };
     // Mass rho R^2 per metre of depth times velocity R q'.
     assert!((arch.impulse_unit_n_s_per_m() - 2000.0 * 27.0).abs() < 1e-9);
+}
+
+/// A scenario with the arch of the paper, 3 m in radius, and further lines.
+fn scenario(folder: &Path, more: &str) -> String {
+    let path = folder.join("arch.toml");
+    let text = format!(
+        "[arch]\nmean_radius_m = 3.0\ndepth_m = 2.0\ndensity_kg_m3 = 1800.0\n\
+         thickness_ratio = 0.15\nembrace_deg = 180.0\n{more}"
+    );
+    std::fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
+fn archrock(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_archrock"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn text(output: &Output) -> String {
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn json(arguments: &[&str]) -> serde_json::Value {
+    let arguments = [&["impact", "--format", "json"], arguments].concat();
+    serde_json::from_str(&text(&archrock(&arguments))).unwrap()
+}
+
+#[test]
+fn impulses_models_and_certificate_as_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scenario(folder.path(), "");
+    let result = json(&[&path, "--models", "--certificate", "--count", "2"]);
+    let chain = chain(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
+    // Per metre of depth: without the depth.
+    let unit = 1800.0 * 27.0;
+    for (index, sway) in [(1, Sway::Left), (2, Sway::Right)] {
+        let impact = &result["impacts"][index - 1];
+        let line = chain.link(index).unwrap().impulse_line.as_ref().unwrap();
+        for (i, impulse) in line.hinge_impulses_from_left(sway).into_iter().enumerate() {
+            let told = &impact["impulses"][i];
+            assert_eq!(told["hinge"], ["a", "b", "c", "d"][i]);
+            assert!((told["x_n_s_per_m"].as_f64().unwrap() / unit - impulse.x).abs() < 1e-14);
+            assert!((told["y_n_s_per_m"].as_f64().unwrap() / unit - impulse.y).abs() < 1e-14);
+        }
+    }
+    let extremes = &result["impacts"][0]["impulse_line"];
+    assert_eq!(extremes["admissible"], false);
+    assert!((extremes["largest_eccentricity_ratio"].as_f64().unwrap() - 0.501_99).abs() < 0.5e-5);
+    assert!((extremes["largest_eccentricity_angle_deg"].as_f64().unwrap() - 74.3).abs() < 0.05);
+    // Published to the digits given.
+    for (i, (model, restitution)) in [
+        ("max_restitution", 0.681_185_59),
+        ("same_sections", 0.565_36),
+        ("mirrored", 0.210_85),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let told = &result["models"][i];
+        assert_eq!(told["model"], model);
+        assert!((told["impact"]["restitution"].as_f64().unwrap() - restitution).abs() < 0.5e-5);
+    }
+    assert!(result["models"].get(3).is_none());
+    // Tension has no finite eccentricity, and JSON no infinity.
+    assert!(result["models"][2]["impact"]["impulse_line"]["largest_eccentricity_ratio"].is_null());
+    let certificate = &result["certificate"];
+    let value = |key: &str| certificate[key].as_f64().unwrap();
+    assert!((value("restitution_all_fields") - 0.681_300).abs() < 1e-5);
+    assert!((value("gap") - 0.000_114).abs() < 2e-6);
+    assert_eq!(certificate["impulse_line_admissible"], false);
+    let opened = certificate["opened_joints"].as_array().unwrap();
+    let angles: Vec<f64> = opened
+        .iter()
+        .map(|joint| joint["angle_deg"].as_f64().unwrap())
+        .collect();
+    assert!(angles.is_sorted() && angles[0].abs() < 1e-9);
+    assert_eq!(opened[0]["edge"], "extrados");
+}
+
+#[test]
+fn a_prescribed_restitution_stands_beside_the_models() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scenario(
+        folder.path(),
+        "[impact]\nmodel = \"prescribed\"\nrestitution = 0.8\n",
+    );
+    let result = json(&[&path, "--models"]);
+    assert_eq!(result["models"][3]["model"], "prescribed");
+    assert_eq!(result["models"][3]["impact"]["restitution"], 0.8);
+    assert!(result["impacts"][0]["impulses"].is_null());
+    let refused = archrock(&["impact", &path, "--line", "-"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("prescribed"));
+}
+
+#[test]
+fn the_line_as_csv_touches_the_edges_at_the_hinges() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scenario(folder.path(), "");
+    let file = folder.path().join("line.csv");
+    let file = file.to_str().unwrap();
+    for (link, hinges) in [
+        (
+            "1",
+            [
+                (0.0, 0.5),
+                (76.376_11, -0.5),
+                (133.816_20, 0.5),
+                (180.0, -0.5),
+            ],
+        ),
+        (
+            "2",
+            [
+                (5.658_52, -0.5),
+                (71.715_17, 0.5),
+                (137.012_00, -0.5),
+                (180.0, 0.5),
+            ],
+        ),
+    ] {
+        text(&archrock(&[
+            "impact", &path, "--line", file, "--link", link,
+        ]));
+        let mut table = csv::Reader::from_path(file).unwrap();
+        let header: Vec<_> = table.headers().unwrap().iter().map(str::to_owned).collect();
+        let expected = [
+            "angle_deg",
+            "eccentricity_ratio",
+            "normal_n_s_per_m",
+            "tangential_n_s_per_m",
+        ];
+        assert_eq!(header, expected);
+        let rows: Vec<[f64; 4]> = table.deserialize().map(Result::unwrap).collect();
+        assert!(rows.is_sorted_by(|a, b| a[0] < b[0]));
+        for (angle_deg, eccentricity) in hinges {
+            let near = |row: &&[f64; 4]| (row[0] - angle_deg).abs() < 1e-5;
+            let row = rows.iter().find(near).unwrap();
+            assert!((row[1] - eccentricity).abs() < 1e-10, "{row:?}");
+        }
+        let piped = text(&archrock(&["impact", &path, "--line", "-", "--link", link]));
+        assert_eq!(piped, std::fs::read_to_string(file).unwrap());
+    }
+    let refused = archrock(&["impact", &path, "--line", folder.path().to_str().unwrap()]);
+    assert_eq!(refused.status.code(), Some(2));
+}
+
+#[test]
+fn impulses_of_a_run_are_in_newton_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scenario(
+        folder.path(),
+        "[ground.rectangular]\namplitude_g = -0.3\nduration_s = 0.15\n",
+    );
+    let out = folder.path().join("out");
+    text(&archrock(&[
+        "run",
+        &path,
+        "--quiet",
+        "--out",
+        out.to_str().unwrap(),
+    ]));
+    let mut table = csv::Reader::from_path(out.join("impacts.csv")).unwrap();
+    let header = table.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    assert!(rows.len() > 3);
+    let ring = Ring::new(0.15, PI).unwrap();
+    for row in &rows {
+        let value = |name: &str| -> f64 {
+            let column = header.iter().position(|column| column == name).unwrap();
+            row[column].parse().unwrap()
+        };
+        // The right body turns about hinge D with the rate after. The angular momentum theorem about
+        // hinge C for it (Eq. (9) or (10) of the paper) with the impulse at D, all in SI. What it had
+        // before is the momentum of the bodies of the closing mechanism inside it; only the first
+        // impact, whose mechanisms are published, is put together here from the table.
+        let impulses = |name: &str| {
+            Vector2::new(
+                value(&format!("impulse_{name}_x_n_s")),
+                value(&format!("impulse_{name}_y_n_s")),
+            )
+        };
+        let [a, b, c, d] = ["a", "b", "c", "d"].map(impulses);
+        assert!([a, b, c, d].into_iter().all(|impulse| impulse.norm() > 0.0));
+        // Thrusts: the ground and the neighbours press the arch together.
+        assert!(b.x > 0.0 && c.x < 0.0);
+        if &row[0] != "1" {
+            continue;
+        }
+        let radius = 3.0;
+        let mass = 1800.0 * 2.0 * radius * radius;
+        let hinge = |angle_deg: f64, edge| ring.point(f64::to_radians(angle_deg), edge);
+        let (point_c, point_d) = (
+            hinge(value("hinge_c_deg"), Edge::Extrados),
+            hinge(value("hinge_d_deg"), Edge::Intrados),
+        );
+        let from = value("hinge_c_deg").to_radians();
+        // Before: the middle body of the first mechanism up to its hinge at 139.56130 degrees, the
+        // right body, which turns about its hinge D on the extrados at the springing, from there.
+        let closing_c = 139.561_301_636_45_f64;
+        let (right_before, middle_before) = (
+            value("rate_right_before_rad_s"),
+            value("rate_middle_before_rad_s"),
+        );
+        let about = |pole, rate| archrock::mechanics::field::Twist::rotation(pole, rate);
+        let right = about(hinge(180.0, Edge::Extrados), right_before);
+        let at_c = hinge(closing_c, Edge::Intrados);
+        let middle = right + about(at_c, middle_before - right_before);
+        let before = middle.momentum(&ring.sector(from, closing_c.to_radians()))
+            + right.momentum(&ring.sector(closing_c.to_radians(), PI));
+        let after =
+            about(point_d, value("rate_right_after_rad_s")).momentum(&ring.sector(from, PI));
+        let gain = (after - before).about(point_c) * (mass * radius * radius);
+        let moment = ((point_d - point_c) * radius).perp(&d);
+        assert!(
+            (gain - moment).abs() < 1e-8 * moment.abs(),
+            "{gain} {moment}"
+        );
+    }
 }

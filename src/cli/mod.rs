@@ -4,6 +4,7 @@
 //! 2 bad usage or bad input.
 
 mod commands;
+mod impact;
 mod run;
 
 use std::io::{self, Write};
@@ -38,17 +39,8 @@ enum Command {
         #[arg(long, value_enum, default_value_t)]
         format: Format,
     },
-    /// Print the first links of the chain of mechanisms that impacts lead through.
-    Impact {
-        /// Scenario file (TOML).
-        scenario: PathBuf,
-        /// How many impacts to print.
-        #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
-        count: u16,
-        /// How to print.
-        #[arg(long, value_enum, default_value_t)]
-        format: Format,
-    },
+    /// Print the chain of mechanisms that impacts lead through, with the impulses, and what certifies it.
+    Impact(impact::Arguments),
     /// Check a scenario and print it with every default resolved.
     Check {
         /// Scenario file (TOML).
@@ -104,11 +96,7 @@ pub fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Run(run) => run::run(&run, arguments.quiet),
         Command::Limit { scenario, format } => commands::limit(&scenario, format),
-        Command::Impact {
-            scenario,
-            count,
-            format,
-        } => commands::impact(&scenario, count.into(), format),
+        Command::Impact(arguments) => impact::impact(&arguments),
         Command::Check { scenario } => commands::check(&scenario),
     };
     let (code, message) = match result {

@@ -3,6 +3,7 @@
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
 mod folder;
+pub mod impact;
 pub mod mechanisms;
 pub mod results;
 pub mod rotations;
