@@ -306,3 +306,34 @@ fn a_ring_that_moves_admissibly_loses_nothing() {
     }
     assert_eq!(opened.len(), 4);
 }
+
+#[test]
+fn springings_and_hinges_are_always_joints() {
+    let (ring, _) = first(0.15, 180.0, ANYWHERE).unwrap();
+    let end = ring.embrace_rad();
+    // Hinges beside both springings, at both, and as good as at one.
+    for hinges in [
+        [1e-4, 1.4, 2.4, end - 1e-4],
+        [0.0, 1.4, 2.4, end],
+        [0.3, 1.4, 2.4, end - 1e-12],
+    ] {
+        let mechanism = FourLink::new(&ring, hinges).unwrap();
+        for count in [12, 720] {
+            let joints = joints_rad(&ring, ANYWHERE, count, Some(&mechanism));
+            assert!(joints.is_sorted_by(|a, b| b - a > 1e-9));
+            assert!(joints[0] == 0.0 && joints.last() == Some(&end));
+            for hinge in hinges {
+                assert!(joints.iter().any(|joint| (joint - hinge).abs() < 1e-11));
+            }
+            // The mechanism itself is in the cone: its closing loses nothing.
+            let kept = project(&mechanism.field(), &ring, &joints).unwrap();
+            assert!(
+                (kept.restitution - 1.0).abs() < 1e-8,
+                "{}",
+                kept.restitution
+            );
+        }
+    }
+    let free = joints_rad(&ring, ANYWHERE, 12, None);
+    assert_eq!(free, ring.sections(12));
+}

@@ -87,8 +87,8 @@ pub struct ProjectionError {
 /// Joints at which the projection opens the ring: those of the voussoirs, or the springings and the sections
 /// between `count` equal parts.
 ///
-/// Where hinges sit anywhere the joint next to each hinge of `mechanism`, the one that is to be certified, is
-/// moved to it. The cone then has that mechanism in it, and bounds its restitution coefficient from above
+/// Where hinges sit anywhere those of `mechanism`, the one that is to be certified, are joints too, in place of their
+/// next neighbours. The cone then has that mechanism in it, and bounds its restitution coefficient from above
 /// whatever the number of joints.
 #[must_use]
 pub fn joints_rad(
@@ -101,17 +101,16 @@ pub fn joints_rad(
         HingeSites::Voussoirs(voussoirs) => ring.sections(voussoirs),
         HingeSites::Anywhere => {
             let mut joints = ring.sections(count);
-            #[expect(clippy::cast_precision_loss, reason = "joint counts are small")]
-            let spacing = ring.embrace_rad() / count as f64;
-            for hinge in mechanism.map(FourLink::hinges_rad).into_iter().flatten() {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "hinges are inside the ring"
-                )]
-                let nearest = (hinge / spacing).round() as usize;
-                joints[nearest.min(count)] = hinge;
-            }
+            let (spacing, end) = (joints[1], ring.embrace_rad());
+            let mut hinges: Vec<f64> = mechanism.map_or(Vec::new(), |m| m.hinges_rad().to_vec());
+            // A hinge at a springing has its joint; a body in between would have no mass.
+            hinges.retain(|hinge| *hinge > 1e-6 * spacing && end - hinge > 1e-6 * spacing);
+            joints.retain(|joint| {
+                let apart = |hinge: &f64| (hinge - joint).abs() > 0.5 * spacing;
+                *joint == 0.0 || *joint == end || hinges.iter().all(apart)
+            });
+            joints.append(&mut hinges);
+            joints.sort_by(f64::total_cmp);
             joints
         }
     }
