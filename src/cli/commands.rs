@@ -1,4 +1,4 @@
-//! The commands that print one result: `limit`, `impact` and `check`.
+//! The commands `limit` and `check`, and what commands share.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -36,33 +36,14 @@ pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Fai
     }
 }
 
-pub fn impact(
-    path: &Path,
-    count: usize,
-    format: Format,
-    plot: Option<&Path>,
-) -> Result<(), Failure> {
-    let scenario = Scenario::read(path)?;
-    let arch = arch(&scenario)?;
-    if let Some(plot) = plot {
-        let stops = || Failure::Work("the first impact stops the arch: nothing to draw".to_owned());
-        write_picture(
-            plot,
-            &pictures::first_impact(&arch.chain).ok_or_else(stops)?,
-        )?;
-    }
-    match format {
-        Format::Json => print(&pretty(&mechanisms::impacts(&arch.chain, count))),
-        Format::Text => print(&impact_text(&scenario, &arch.chain, count)),
-    }
-}
-
-fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
+/// Writes a picture to a file.
+pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
     std::fs::write(path, picture)
         .map_err(|error| Failure::Work(format!("cannot write {}: {error}", path.display())))
 }
 
-fn pretty(value: &serde_json::Value) -> String {
+/// JSON for people to read as well.
+pub fn pretty(value: &serde_json::Value) -> String {
     format!("{value:#}\n")
 }
 
@@ -94,38 +75,6 @@ fn limit_text(scenario: &Scenario, chain: &Chain) -> String {
     text
 }
 
-fn impact_text(scenario: &Scenario, chain: &Chain, count: usize) -> String {
-    let mut text = format!(
-        "impacts after a first sway to the right, model {} (angles in degrees from the left springing;\n\
-         I intrados, E extrados; r = kinetic energy after / before)\n\n\
-         impact         r  sway   {:>12}{:>12}{:>12}{:>12}\n",
-        scenario.impact.name(),
-        "A",
-        "B",
-        "C",
-        "D"
-    );
-    let mut sway = Sway::Right;
-    for index in 0..=count {
-        let Some(link) = chain.link(index) else {
-            let _ = writeln!(text, "{index:>6}  no mechanism can follow: the arch stops");
-            break;
-        };
-        let restitution = match index {
-            0 => String::new(),
-            _ => format!("{:.6}", link.link.restitution),
-        };
-        let _ = write!(text, "{index:>6}  {restitution:>8}  {:5}  ", sway.name());
-        for (angle_rad, edge) in link.mechanism.hinges_from_left(chain.ring(), sway) {
-            let initial = edge.name()[..1].to_uppercase();
-            let _ = write!(text, "{:>10.5} {initial}", degrees(angle_rad));
-        }
-        text.push('\n');
-        sway = sway.opposite();
-    }
-    text
-}
-
 fn hinge_table(mechanism: &FourLink, ring: &Ring, sway: Sway) -> String {
     let mut text = String::new();
     let hinges = mechanism.hinges_from_left(ring, sway);
@@ -141,7 +90,7 @@ fn hinge_table(mechanism: &FourLink, ring: &Ring, sway: Sway) -> String {
 }
 
 /// Degrees, with rounding errors at the left springing removed.
-fn degrees(angle_rad: f64) -> f64 {
+pub fn degrees(angle_rad: f64) -> f64 {
     if angle_rad < 1e-12 {
         0.0
     } else {

@@ -5,6 +5,7 @@
 
 mod chart;
 mod commands;
+mod impact;
 mod run;
 
 use std::io::{self, Write};
@@ -42,20 +43,8 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         plot: Option<PathBuf>,
     },
-    /// Print the first links of the chain of mechanisms that impacts lead through.
-    Impact {
-        /// Scenario file (TOML).
-        scenario: PathBuf,
-        /// How many impacts to print.
-        #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
-        count: u16,
-        /// How to print.
-        #[arg(long, value_enum, default_value_t)]
-        format: Format,
-        /// Draw the first impact as well, as SVG: mechanisms, bodies, impulse line.
-        #[arg(long, value_name = "FILE")]
-        plot: Option<PathBuf>,
-    },
+    /// Print the chain of mechanisms that impacts lead through, with the impulses, and what certifies it.
+    Impact(impact::Arguments),
     /// Chart incipient acceleration and restitution over thickness, for several embrace angles.
     Chart(chart::Arguments),
     /// Check a scenario and print it with every default resolved.
@@ -117,12 +106,7 @@ pub fn main() -> ExitCode {
             format,
             plot,
         } => commands::limit(&scenario, format, plot.as_deref()),
-        Command::Impact {
-            scenario,
-            count,
-            format,
-            plot,
-        } => commands::impact(&scenario, count.into(), format, plot.as_deref()),
+        Command::Impact(arguments) => impact::impact(&arguments),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),
     };

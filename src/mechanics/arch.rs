@@ -22,6 +22,14 @@ pub struct Arch {
     pub chain: Arc<Chain>,
 }
 
+impl Arch {
+    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
+    #[must_use]
+    pub fn impulse_unit_n_s_per_m(&self) -> f64 {
+        self.density_kg_m3 * self.mean_radius_m.powi(3)
+    }
+}
+
 impl Structure for Arch {
     type Mechanism = Linkage;
 

@@ -7,6 +7,7 @@
 use std::sync::OnceLock;
 
 use super::impact::{Impact, ImpactModel, impact, impact_onto};
+use super::impulse_line::ImpulseLine;
 use super::limit::{Incipient, LimitError, incipient};
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
@@ -28,15 +29,19 @@ pub struct ArchLink {
     pub mechanism: FourLink,
     /// The same at finite rotations, and how the impact leads to it.
     pub link: Link<Linkage>,
+    /// Impulses of the impact that leads to it, per unit closing rate; `None` for the first link, and
+    /// where the restitution coefficient is prescribed.
+    pub impulse_line: Option<ImpulseLine>,
 }
 
 impl ArchLink {
-    fn new(ring: &Ring, impact: &Impact) -> Self {
+    fn new(ring: &Ring, impact: Impact) -> Self {
         let linkage = Linkage::new(ring, &impact.mechanism);
         let limit_rad = linkage.limit_rad();
         Self {
             mechanism: impact.mechanism,
             link: Link::new(linkage, limit_rad, impact.rate_ratio, impact.restitution),
+            impulse_line: impact.impulse_line,
         }
     }
 }
@@ -112,8 +117,9 @@ impl Chain {
                 mechanism: self.incipient.mechanism,
                 rate_ratio: 1.0,
                 restitution: 1.0,
+                impulse_line: None,
             };
-            return Some(ArchLink::new(&self.ring, &first));
+            return Some(ArchLink::new(&self.ring, first));
         };
         let mechanism = |index: usize| Some(self.links[index].get()?.as_ref()?.mechanism);
         let closing = mechanism(previous)?;
@@ -131,7 +137,7 @@ impl Chain {
                 self.pair.get_or_init(|| index);
             }
         }
-        Some(ArchLink::new(&self.ring, &impact))
+        Some(ArchLink::new(&self.ring, impact))
     }
 }
 

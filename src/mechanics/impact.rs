@@ -6,22 +6,39 @@
 use nalgebra::{Matrix5, Vector2, Vector5};
 
 use super::field::{Field, Momentum, Side, Twist};
+use super::impulse_line::ImpulseLine;
 use super::mechanism::{EDGES, FourLink, HingeSites};
-use super::resultant::ResultantLine;
 use super::ring::Ring;
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
 
 /// How the mechanism after an impact is found.
+///
+/// All assume that the four hinges close at the same instant, that the arch goes on with four hinges, and
+/// that nothing slides or bounces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImpactModel {
-    /// The mechanism that keeps the most kinetic energy (the paper).
+    /// The mechanism that keeps the most kinetic energy.
+    ///
+    /// Assumes that hinges form wherever the least energy is spent, and that impulses pass through the hinges
+    /// of the new mechanism only, Eqs. (7)-(10). The model of the paper. The projection onto all admissible
+    /// fields ([`super::certificate`]) tells how far four hinges are from the least expense of all.
     MaxRestitution,
-    /// Hinges at the opposite edges of the sections that close, as in Housner's column and in Fig. 3
-    /// of the paper.
+    /// Hinges at the opposite edges of the sections that close.
+    ///
+    /// Assumes that the impacts at the closing sections are the only ones, as at the base of Housner's column;
+    /// Fig. 3 of the paper, which attributes it to its references [2, 3]. The rate follows from the same
+    /// momentum theorems.
     SameSections,
     /// Hinges at the mirror image of those that close.
+    ///
+    /// Assumes that the arch sways back as it swayed out. The paper names it as the usual choice of the
+    /// literature, and objects that it spends more energy than it has to. The rate follows from the same
+    /// momentum theorems, with impulses at the new hinges; its impulse line leaves the ring.
     Mirrored,
     /// Mirrored hinges, and a given restitution coefficient in place of the momentum theorems.
+    ///
+    /// Assumes that the loss is known from elsewhere, such as an experiment or another computation. There are no
+    /// impulses to report: those at the hinges would have to obey the momentum theorems.
     Prescribed {
         /// Energy after the impact over energy before it, from 0 to 1.
         restitution: f64,
@@ -53,6 +70,9 @@ pub struct Impact {
     pub rate_ratio: f64,
     /// Restitution coefficient: kinetic energy after over before.
     pub restitution: f64,
+    /// The impulses, per unit closing rate, in the frame of the mechanism after; `None` where the
+    /// restitution coefficient is prescribed, because the momentum theorems then do not hold.
+    pub impulse_line: Option<ImpulseLine>,
 }
 
 /// The velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism
@@ -95,14 +115,24 @@ pub(crate) fn impact_onto(
     ring: &Ring,
     model: ImpactModel,
 ) -> Option<Impact> {
+    let closing = closing_field(mechanism, ring);
     let (rate_ratio, restitution) = match model {
         ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
-        _ => projection(&next, &closing_field(mechanism, ring), ring),
+        _ => projection(&next, &closing, ring),
     };
-    (rate_ratio > 0.0).then_some(Impact {
+    (rate_ratio > 0.0).then(|| Impact {
         mechanism: next,
         rate_ratio,
         restitution,
+        impulse_line: match model {
+            ImpactModel::Prescribed { .. } => None,
+            _ => Some(ImpulseLine::new(
+                ring,
+                &next,
+                &closing,
+                &next.field().scaled(rate_ratio),
+            )),
+        },
     })
 }
 
@@ -229,8 +259,8 @@ impl Objective for RetainedEnergy<'_> {
             let mean = (after.at(angles[i], Side::Before) + after.at(angles[i], Side::After)) * 0.5;
             self.before.at(angles[i], side) - mean
         });
-        let line = ResultantLine::through_hinges(self.ring, mechanism, self.before.minus(&after));
-        let gradient = line.power_gradient(mechanism, local);
+        let line = ImpulseLine::new(self.ring, mechanism, self.before, &after);
+        let gradient = line.resultants().power_gradient(mechanism, local);
         (value, gradient.map(|slope| 2.0 * rate * slope))
     }
 }

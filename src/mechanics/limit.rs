@@ -42,13 +42,6 @@ pub enum LimitError {
     NoPush,
 }
 
-/// A thrust line may leave the ring by this much of the thickness, on account of rounding: hinges
-/// are placed to about 1e-8 rad, and the line touches the edges there.
-const CERTIFICATE_TOLERANCE: f64 = 1e-6;
-
-/// Sections at which the thrust line is compared with the ring where hinges sit anywhere.
-const CERTIFICATE_SECTIONS: usize = 1440;
-
 /// The incipient acceleration, its mechanism and the thrust line that proves it.
 ///
 /// Kinematic theorem: `A_L` is the least of `int v_y / int v_x` over the admissible mechanisms that
@@ -63,8 +56,7 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
         return Err(LimitError::CannotStand);
     }
     let thrust_line = ResultantLine::through_hinges(ring, &mechanism, push(acceleration_g));
-    let excess_ratio = thrust_line.largest_excess(sites.sections_rad(ring, CERTIFICATE_SECTIONS));
-    if excess_ratio > CERTIFICATE_TOLERANCE {
+    if !thrust_line.extremes(sites).is_admissible() {
         return Err(LimitError::OtherMechanism { acceleration_g });
     }
     Ok(Incipient {

@@ -38,6 +38,16 @@ impl Sway {
             Self::Left => -1.0,
         }
     }
+
+    /// Angle of a section from the left springing, from its angle in the frame in which this sway goes
+    /// right, or the other way round.
+    #[must_use]
+    pub fn from_left_rad(self, ring: &Ring, angle_rad: f64) -> f64 {
+        match self {
+            Self::Right => angle_rad,
+            Self::Left => ring.embrace_rad() - angle_rad,
+        }
+    }
 }
 
 /// Edges of the hinges A, B, C, D of a mechanism that sways right.
@@ -114,7 +124,10 @@ impl FourLink {
     pub fn hinges_from_left(&self, ring: &Ring, sway: Sway) -> [(f64, Edge); 4] {
         std::array::from_fn(|i| match sway {
             Sway::Right => (self.hinges_rad[i], EDGES[i]),
-            Sway::Left => (ring.embrace_rad() - self.hinges_rad[3 - i], EDGES[3 - i]),
+            Sway::Left => (
+                sway.from_left_rad(ring, self.hinges_rad[3 - i]),
+                EDGES[3 - i],
+            ),
         })
     }
 
@@ -159,14 +172,11 @@ pub enum HingeSites {
 impl HingeSites {
     /// Sections of `ring` at which a line of resultants has to be inside the ring, in radians from the
     /// left springing: the joints, or else the ends of `parts` equal parts.
-    pub fn sections_rad(self, ring: &Ring, parts: usize) -> impl Iterator<Item = f64> + use<> {
-        let count = match self {
+    pub fn sections_rad(self, ring: &Ring, parts: usize) -> Vec<f64> {
+        ring.sections(match self {
             Self::Anywhere => parts,
             Self::Voussoirs(count) => count,
-        };
-        let embrace_rad = ring.embrace_rad();
-        #[expect(clippy::cast_precision_loss, reason = "section counts are small")]
-        (0..=count).map(move |i| embrace_rad * (i as f64 / count as f64))
+        })
     }
 }
 

@@ -1,8 +1,10 @@
 //! Mechanics of the ring: pure functions, no time, no files.
 pub mod arch;
+pub mod certificate;
 pub mod chain;
 pub mod field;
 pub mod impact;
+pub mod impulse_line;
 pub mod limit;
 pub mod linkage;
 pub mod mechanism;

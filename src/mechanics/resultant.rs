@@ -8,8 +8,12 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::field::{Field, Momentum, Twist};
-use super::mechanism::{EDGES, FourLink};
+use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::ring::{Edge, Ring};
+
+/// A line may leave the ring by this much of the thickness, on account of rounding: hinges are placed to
+/// about 1e-8 rad, and the line touches the edges there.
+pub const EDGE_TOLERANCE: f64 = 1e-6;
 
 /// The resultants over all sections of a ring under a load per unit mass.
 #[derive(Clone, Debug)]
@@ -47,6 +51,44 @@ impl SectionResultant {
             moment,
             eccentricity_ratio: moment / (normal * ring.thickness_ratio()),
         }
+    }
+
+    /// The same section seen in a mirror: what was before it is now after it.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        Self {
+            tangential: -self.tangential,
+            ..self
+        }
+    }
+}
+
+/// An extreme value and the section where it is found, in radians from the left springing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremum {
+    /// The value.
+    pub value: f64,
+    /// The section.
+    pub angle_rad: f64,
+}
+
+/// What a line asks of a ring that bears no tension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremes {
+    /// Largest `|e|/t`: 0.5 at the edges, infinite if there is tension.
+    pub eccentricity_ratio: Extremum,
+    /// Least normal resultant.
+    pub normal: Extremum,
+    /// Largest ratio of the tangential to the normal resultant: the friction that keeps joints from
+    /// sliding; infinite if there is tension.
+    pub friction_ratio: Extremum,
+}
+
+impl Extremes {
+    /// Whether the line is compressive and stays inside the ring, to [`EDGE_TOLERANCE`].
+    #[must_use]
+    pub fn is_admissible(&self) -> bool {
+        self.normal.value > 0.0 && self.eccentricity_ratio.value <= 0.5 + EDGE_TOLERANCE
     }
 }
 
@@ -94,6 +136,65 @@ impl ResultantLine {
         SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
     }
 
+    /// The extremes over all sections where hinges sit anywhere, and over the joints of voussoirs, which
+    /// are rigid and may be left in between.
+    #[must_use]
+    pub fn extremes(&self, sites: HingeSites) -> Extremes {
+        let smallest_normal = self.largest(sites, &|section| -section.normal);
+        let normal = Extremum {
+            value: -smallest_normal.value,
+            ..smallest_normal
+        };
+        if normal.value <= 0.0 {
+            let infinite = Extremum {
+                value: f64::INFINITY,
+                ..normal
+            };
+            return Extremes {
+                eccentricity_ratio: infinite,
+                normal,
+                friction_ratio: infinite,
+            };
+        }
+        Extremes {
+            eccentricity_ratio: self.largest(sites, &|section| section.eccentricity_ratio.abs()),
+            normal,
+            friction_ratio: self.largest(sites, &|section| {
+                (section.tangential / section.normal).abs()
+            }),
+        }
+    }
+
+    /// The largest value of a quantity. Where the load is rigid the quantity is smooth: it is sampled, and
+    /// every top is then refined.
+    fn largest(&self, sites: HingeSites, of: &dyn Fn(&SectionResultant) -> f64) -> Extremum {
+        let at = |angle_rad: f64| Extremum {
+            value: of(&self.section(angle_rad)),
+            angle_rad,
+        };
+        let sections = match sites {
+            HingeSites::Voussoirs(count) => {
+                return top(self.ring.sections(count).into_iter().map(at));
+            }
+            HingeSites::Anywhere => {
+                let inside = |cut: &&f64| **cut > 0.0 && **cut < self.ring.embrace_rad();
+                let mut sections = self.ring.sections(SAMPLES);
+                sections.extend(self.load.cuts_rad().iter().filter(inside));
+                sections.sort_by(f64::total_cmp);
+                sections
+            }
+        };
+        let samples: Vec<Extremum> = sections.into_iter().map(at).collect();
+        let is_top = |i: usize| {
+            let near = &samples[i.saturating_sub(1)..(i + 2).min(samples.len())];
+            near.iter().all(|other| other.value <= samples[i].value)
+        };
+        let refined = (1..samples.len())
+            .filter(|i| is_top(i - 1) || is_top(*i))
+            .map(|i| climb(samples[i - 1].angle_rad, samples[i].angle_rad, &at));
+        top(refined.chain(samples.iter().copied()))
+    }
+
     /// Derivative with respect to the angle of the moment about the edge point of the section, where
     /// the load is `local`. Zero where the line touches the edge.
     fn edge_moment_slope(&self, angle_rad: f64, edge: Edge, local: Twist) -> f64 {
@@ -113,19 +214,32 @@ impl ResultantLine {
             -openings[i] * self.edge_moment_slope(hinges[i], EDGES[i], local[i])
         })
     }
+}
 
-    /// How far the line leaves the ring, in parts of the thickness, over the given sections: the
-    /// largest `|e|/t - 0.5`, infinite where the ring would be in tension.
-    pub fn largest_excess(&self, sections_rad: impl Iterator<Item = f64>) -> f64 {
-        sections_rad
-            .map(|angle| {
-                let section = self.section(angle);
-                if section.normal > 0.0 {
-                    section.eccentricity_ratio.abs() - 0.5
-                } else {
-                    f64::INFINITY
-                }
-            })
-            .fold(f64::NEG_INFINITY, f64::max)
+/// Samples of a line over a continuous ring: fine enough to tell its tops apart.
+const SAMPLES: usize = 720;
+
+/// The largest.
+fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
+    values
+        .max_by(|a, b| a.value.total_cmp(&b.value))
+        .expect("a ring has sections")
+}
+
+/// The top of a smooth quantity with one top between two sections, by golden section.
+fn climb(mut from: f64, mut to: f64, at: &impl Fn(f64) -> Extremum) -> Extremum {
+    let part = 0.5 * (3.0 - 5.0_f64.sqrt());
+    let mut low = at(from + part * (to - from));
+    let mut high = at(to - part * (to - from));
+    // At 1e-9 rad from its top a quantity differs from it by about 1e-18.
+    while to - from > 1e-9 {
+        if low.value > high.value {
+            (to, high) = (high.angle_rad, low);
+            low = at(from + part * (to - from));
+        } else {
+            (from, low) = (low.angle_rad, high);
+            high = at(to - part * (to - from));
+        }
     }
+    top([low, high].into_iter())
 }

@@ -111,6 +111,15 @@ impl Ring {
         self.radial(angle_rad) * self.radius(edge)
     }
 
+    /// The sections that cut the ring into `parts` equal parts, springings included, in radians.
+    #[must_use]
+    pub fn sections(&self, parts: usize) -> Vec<f64> {
+        #[expect(clippy::cast_precision_loss, reason = "part counts are small")]
+        (0..=parts)
+            .map(|i| self.embrace_rad * (i as f64 / parts as f64))
+            .collect()
+    }
+
     /// Mass moments of the part from the left springing to `angle_rad`.
     ///
     /// Annular sector: with `c = t (1 + t^2/12)` the first moment is `c` times the integral of the

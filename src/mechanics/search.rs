@@ -49,11 +49,9 @@ impl Lattice {
             HingeSites::Anywhere => (LATTICE_INTERVALS, 1),
             HingeSites::Voussoirs(count) => (count, count.div_ceil(EXHAUSTIVE_VOUSSOIRS)),
         };
-        #[expect(clippy::cast_precision_loss, reason = "joint counts are small")]
-        let section = |i: usize| ring.embrace_rad() * (i as f64 / intervals as f64);
-        let mut sections_rad: Vec<f64> = (0..=intervals).map(section).collect();
+        let mut sections_rad = ring.sections(intervals);
         if sites == HingeSites::Anywhere {
-            let near = section(1) * NEAR_SPRINGING;
+            let near = sections_rad[1] * NEAR_SPRINGING;
             sections_rad.insert(1, near);
             sections_rad.insert(intervals + 1, ring.embrace_rad() - near);
         }

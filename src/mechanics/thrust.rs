@@ -204,6 +204,7 @@ impl ThrustLine {
         Demand::of_sections(
             sites
                 .sections_rad(&self.ring, SECTIONS)
+                .into_iter()
                 .map(|angle| self.section(angle)),
             self.ring.thickness_ratio(),
             self.ring.moments_to(self.ring.embrace_rad()).mass,

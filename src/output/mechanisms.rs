@@ -1,4 +1,4 @@
-//! Mechanisms, limit analysis and the chain of impacts as JSON.
+//! Mechanisms and limit analysis as JSON.
 
 use serde_json::{Value, json};
 
@@ -28,26 +28,4 @@ pub fn limit(chain: &Chain) -> Value {
         "incipient_acceleration_g": both(&|_| incipient.acceleration_g.into()),
         "mechanism": both(&|sway| hinges(&incipient.mechanism, chain.ring(), sway)),
     })
-}
-
-/// Result of `impact`: the first `count` links of the chain that begins with a sway to the right; fewer
-/// when an impact stops the arch.
-#[must_use]
-pub fn impacts(chain: &Chain, count: usize) -> Value {
-    let mut sway = Sway::Right;
-    let mut impacts = Vec::new();
-    for index in 1..=count {
-        let (Some(before), Some(after)) = (chain.link(index - 1), chain.link(index)) else {
-            break;
-        };
-        let side = |mechanism: &FourLink, sway: Sway| json!({ "sway": sway.name(), "hinges": hinges(mechanism, chain.ring(), sway) });
-        impacts.push(json!({
-            "index": index,
-            "restitution": after.link.restitution,
-            "before": side(&before.mechanism, sway),
-            "after": side(&after.mechanism, sway.opposite()),
-        }));
-        sway = sway.opposite();
-    }
-    json!({ "impacts": impacts })
 }

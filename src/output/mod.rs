@@ -4,6 +4,7 @@
 
 pub mod chart;
 mod folder;
+pub mod impact;
 pub mod mechanisms;
 pub mod pictures;
 pub mod results;

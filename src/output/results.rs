@@ -17,6 +17,9 @@ use crate::scenario::Scenario;
 /// The mechanism after is the one that the impact leads to, with the energy that it would keep, also where
 /// that is so little that the arch comes to rest. Where no mechanism can follow the hinges are left empty.
 ///
+/// The impulses at its hinges act on the part towards the crown, in the frame of the ground; they are empty
+/// where the restitution coefficient is prescribed.
+///
 /// # Errors
 /// When the system refuses, or a value is not finite.
 pub fn write_impacts(
@@ -41,6 +44,11 @@ pub fn write_impacts(
         header.extend(columns::<Linkage>("rate", &format!("{moment}_rad_s")));
     }
     header.extend(["a", "b", "c", "d"].map(|hinge| format!("hinge_{hinge}_deg")));
+    header.extend(
+        ["a", "b", "c", "d"].into_iter().flat_map(|hinge| {
+            ["x", "y"].map(|component| format!("impulse_{hinge}_{component}_n_s"))
+        }),
+    );
     csv.write_record(header).map_err(OutputError::csv(WHAT))?;
 
     let joule = arch.mass_unit_kg() * arch.length_m() * arch.length_m();
@@ -54,6 +62,15 @@ pub fn write_impacts(
                 .hinges_from_left(arch.chain.ring(), sway_after);
             hinges.map(|(angle_rad, _)| Some(angle_rad.to_degrees()))
         });
+        let unit_n_s = arch.mass_unit_kg() * arch.length_m() * impact.rate_before_rad_s.abs();
+        let impulses_n_s = arch
+            .chain
+            .link(impact.impacts)
+            .and_then(|link| link.impulse_line.as_ref())
+            .map_or([[None; 2]; 4], |line| {
+                line.hinge_impulses_from_left(sway_after)
+                    .map(|impulse| [impulse.x, impulse.y].map(|force| Some(force * unit_n_s)))
+            });
         let restitution = impact.after.map_or(0.0, |link| link.restitution);
         let energies = [before * joule, after * joule];
         finite("of a row of impacts.csv", &[impact.time_s, restitution])?;
@@ -62,6 +79,8 @@ pub fn write_impacts(
             "of a row of impacts.csv",
             &[rates_before, rates_after].concat(),
         )?;
+        let known: Vec<f64> = impulses_n_s.into_iter().flatten().flatten().collect();
+        finite("of a row of impacts.csv", &known)?;
         csv.serialize((
             index + 1,
             impact.time_s,
@@ -72,6 +91,7 @@ pub fn write_impacts(
             rates_before,
             rates_after,
             hinges_deg,
+            impulses_n_s,
         ))
         .map_err(OutputError::csv(WHAT))?;
     }

@@ -1,0 +1,448 @@
+//! The command `impact`.
+
+use std::fmt::Write as _;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::certificate::{DEFAULT_JOINTS, Projection, joints_rad, project};
+use archrock::mechanics::chain::ArchLink;
+use archrock::mechanics::impact::{Impact, ImpactModel, closing_field, impact as impact_by};
+use archrock::mechanics::mechanism::{FourLink, HingeSites, Sway};
+use archrock::mechanics::resultant::{Extremes, Extremum};
+use archrock::mechanics::ring::Edge;
+use archrock::output::{Folder, impact as output, pictures};
+use archrock::scenario::Scenario;
+use serde_json::json;
+
+use super::commands::{self, degrees, pretty};
+use super::{Failure, Format, print};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scenario file (TOML).
+    scenario: PathBuf,
+    /// How many impacts to print.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
+    count: u16,
+    /// The impact that --models, --certificate and --line speak of, by the mechanism that it leads to.
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    link: u16,
+    /// Put the impact models side by side.
+    #[arg(long)]
+    models: bool,
+    /// Compare with the most energy that any admissible motion keeps, with any number of hinges.
+    #[arg(long)]
+    certificate: bool,
+    /// Equal parts into which --certificate cuts a ring without voussoirs [default: 720].
+    #[arg(long, value_name = "N", requires = "certificate", value_parser = clap::value_parser!(u16).range(12..=10_000))]
+    joints: Option<u16>,
+    /// Write the impulse line to this file (CSV), or instead of all else to standard output with `-`.
+    #[arg(long, value_name = "FILE")]
+    line: Option<PathBuf>,
+    /// Draw the first impact as well, as SVG: mechanisms, bodies, impulse line.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// The impact that was asked about.
+struct Chosen<'a> {
+    index: usize,
+    before: &'a ArchLink,
+    /// `None` when no mechanism can follow.
+    after: Option<&'a ArchLink>,
+}
+
+pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
+    let scenario = Scenario::read(&arguments.scenario)?;
+    let arch = commands::arch(&scenario)?;
+    let chosen = || choose(&arch, arguments.link.into());
+    if let Some(path) = &arguments.line {
+        write_line(path, &arch, &chosen()?)?;
+        if path == Path::new("-") {
+            return Ok(());
+        }
+    }
+    if let Some(plot) = &arguments.plot {
+        let stops = || Failure::Work("the first impact stops the arch: nothing to draw".to_owned());
+        let picture = pictures::first_impact(&arch.chain).ok_or_else(stops)?;
+        commands::write_picture(plot, &picture)?;
+    }
+    let models = arguments
+        .models
+        .then(|| Ok::<_, Failure>(models(&scenario, &arch, &chosen()?)))
+        .transpose()?;
+    let certificate = arguments
+        .certificate
+        .then(|| certify(&arch, &chosen()?, arguments.joints))
+        .transpose()?;
+    let (count, link) = (usize::from(arguments.count), usize::from(arguments.link));
+    match arguments.format {
+        Format::Json => {
+            let mut result = json!({ "impacts": output::impacts(&arch, count) });
+            if let Some(models) = &models {
+                result["models"] = output::models(&arch, link, models);
+            }
+            if let Some(projection) = &certificate {
+                let after = chosen()?.after;
+                result["certificate"] = output::certificate(&arch, link, after, projection);
+            }
+            print(&pretty(&result))
+        }
+        Format::Text => {
+            let mut text = chain_text(&scenario, &arch, count);
+            text += &impulses_text(&arch, count);
+            if let Some(models) = &models {
+                text += &models_text(&arch, link, models);
+            }
+            if let Some(projection) = &certificate {
+                text += &certificate_text(&scenario, &arch, &chosen()?, projection);
+            }
+            print(&text)
+        }
+    }
+}
+
+fn choose(arch: &Arch, index: usize) -> Result<Chosen<'_>, Failure> {
+    let before = arch.chain.link(index - 1).ok_or_else(|| {
+        Failure::Input(format!(
+            "--link {index}: the arch stops at an impact before that; ask for an earlier one"
+        ))
+    })?;
+    Ok(Chosen {
+        index,
+        before,
+        after: arch.chain.link(index),
+    })
+}
+
+fn write_line(path: &Path, arch: &Arch, chosen: &Chosen<'_>) -> Result<(), Failure> {
+    let after = chosen.after.ok_or_else(|| {
+        Failure::Input(format!(
+            "--line: no mechanism can follow impact {}, so that it has no impulse line",
+            chosen.index
+        ))
+    })?;
+    let line = after.impulse_line.as_ref().ok_or_else(|| {
+        Failure::Input(
+            "--line: there is no impulse line where the restitution coefficient is prescribed; \
+             choose another impact model in the scenario"
+                .to_owned(),
+        )
+    })?;
+    let write = |writer: &mut dyn io::Write| {
+        output::write_line(writer, arch, chosen.index, &after.mechanism, line)
+    };
+    if path == Path::new("-") {
+        return Ok(write(&mut io::stdout().lock())?);
+    }
+    let name = path.file_name().and_then(|name| name.to_str());
+    let (Some(name), false) = (name, path.exists() && !path.is_file()) else {
+        return Err(Failure::Input(format!(
+            "--line {}: is not the name of a file that could be replaced; use - for standard output",
+            path.display()
+        )));
+    };
+    let parent = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let mut folder = Folder::open(parent, &[name])?;
+    write(&mut folder.file(name))?;
+    Ok(folder.complete()?)
+}
+
+/// The models that the momentum theorems govern, and a prescribed one if the scenario has it.
+fn models(
+    scenario: &Scenario,
+    arch: &Arch,
+    chosen: &Chosen<'_>,
+) -> Vec<(ImpactModel, Option<Impact>)> {
+    let mut models = vec![
+        ImpactModel::MaxRestitution,
+        ImpactModel::SameSections,
+        ImpactModel::Mirrored,
+    ];
+    if !models.contains(&scenario.impact) {
+        models.push(scenario.impact);
+    }
+    let (mechanism, chain) = (&chosen.before.mechanism, &arch.chain);
+    models
+        .into_iter()
+        .map(|model| {
+            (
+                model,
+                impact_by(mechanism, chain.ring(), chain.sites(), model),
+            )
+        })
+        .collect()
+}
+
+fn certify(arch: &Arch, chosen: &Chosen<'_>, joints: Option<u16>) -> Result<Projection, Failure> {
+    let (ring, sites) = (arch.chain.ring(), arch.chain.sites());
+    if let (HingeSites::Voussoirs(count), Some(_)) = (sites, joints) {
+        return Err(Failure::Input(format!(
+            "--joints: the arch has {count} voussoirs, and the joints are theirs; leave it out"
+        )));
+    }
+    let joints = joints.map_or(DEFAULT_JOINTS, usize::from);
+    let mechanism = chosen.after.map(|link| &link.mechanism);
+    let joints_rad = joints_rad(ring, sites, joints, mechanism);
+    let closing = closing_field(&chosen.before.mechanism, ring);
+    project(&closing, ring, &joints_rad).map_err(|error| Failure::Work(error.to_string()))
+}
+
+fn chain_text(scenario: &Scenario, arch: &Arch, count: usize) -> String {
+    let mut text = format!(
+        "impacts after a first sway to the right, model {} (angles in degrees from the left springing;\n\
+         I intrados, E extrados; r = kinetic energy after / before)\n\n\
+         impact         r  sway   {:>12}{:>12}{:>12}{:>12}\n",
+        scenario.impact.name(),
+        "A",
+        "B",
+        "C",
+        "D"
+    );
+    for index in 0..=count {
+        let Some(link) = arch.chain.link(index) else {
+            let _ = writeln!(text, "{index:>6}  no mechanism can follow: the arch stops");
+            break;
+        };
+        let restitution = match index {
+            0 => String::new(),
+            _ => format!("{:.6}", link.link.restitution),
+        };
+        let sway = output::sway(index);
+        let _ = write!(text, "{index:>6}  {restitution:>8}  {:5}  ", sway.name());
+        text += &hinges(arch, &link.mechanism, sway);
+        text.push('\n');
+    }
+    text
+}
+
+fn hinges(arch: &Arch, mechanism: &FourLink, sway: Sway) -> String {
+    let mut text = String::new();
+    for (angle_rad, edge) in mechanism.hinges_from_left(arch.chain.ring(), sway) {
+        let _ = write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge));
+    }
+    text
+}
+
+fn initial(edge: Edge) -> &'static str {
+    match edge {
+        Edge::Intrados => "I",
+        Edge::Extrados => "E",
+    }
+}
+
+fn impulses_text(arch: &Arch, count: usize) -> String {
+    let unit = arch.impulse_unit_n_s_per_m();
+    let lines = || {
+        (1..=count).map_while(|index| {
+            let line = arch.chain.link(index)?.impulse_line.as_ref()?;
+            Some((index, line))
+        })
+    };
+    if lines().next().is_none() {
+        return String::new();
+    }
+    let mut text =
+        "\nimpulses at these hinges on the part towards the crown, x to the right and y up,\n\
+                    in N s per metre of depth for a closing rate of 1 rad/s\n\nimpact"
+            .to_owned();
+    for hinge in ["A", "B", "C", "D"] {
+        for component in ["x", "y"] {
+            let _ = write!(text, "{:>11}", format!("{hinge} {component}"));
+        }
+    }
+    text.push('\n');
+    for (index, line) in lines() {
+        let _ = write!(text, "{index:>6}");
+        for impulse in line.hinge_impulses_from_left(output::sway(index)) {
+            let _ = write!(
+                text,
+                "{:>11.5e}{:>11.5e}",
+                impulse.x * unit,
+                impulse.y * unit
+            );
+        }
+        text.push('\n');
+    }
+    text += "\nimpulse line: eccentricity e (0.5 t is the edge), least normal impulse N in the same unit,\n\
+             largest ratio of tangential impulse T to N, each with its section in degrees\n\n\
+             impact      |e|/t   section      least N   section      |T|/N   section\n";
+    for (index, line) in lines() {
+        let extremes = line.extremes_from_left(arch.chain.sites(), output::sway(index));
+        // Both are infinite where there is tension.
+        let ratio = |extremum: Extremum| match extremum.value {
+            value if value.is_finite() => format!("{value:>9.5}"),
+            _ => format!("{:>9}", "-"),
+        };
+        let _ = writeln!(
+            text,
+            "{index:>6}  {}  {:>8.3}  {:>11.5e}  {:>8.3}  {}  {:>8.3}  {}",
+            ratio(extremes.eccentricity_ratio),
+            degrees(extremes.eccentricity_ratio.angle_rad),
+            extremes.normal.value * unit,
+            degrees(extremes.normal.angle_rad),
+            ratio(extremes.friction_ratio),
+            degrees(extremes.friction_ratio.angle_rad),
+            verdict(&extremes),
+        );
+    }
+    text
+}
+
+fn verdict(extremes: &Extremes) -> &'static str {
+    if extremes.is_admissible() {
+        "admissible"
+    } else if extremes.normal.value <= 0.0 {
+        "in tension"
+    } else {
+        "leaves the ring"
+    }
+}
+
+fn models_text(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>)]) -> String {
+    let mut text = format!(
+        "\nimpact models side by side, impact {index}\n\n\
+         model                    r   {:>12}{:>12}{:>12}{:>12}   impulse line\n",
+        "A", "B", "C", "D"
+    );
+    let sway = output::sway(index);
+    for (model, impact) in models {
+        let _ = write!(text, "{:<16}", model.name());
+        let Some(impact) = impact else {
+            text += "  finds no mechanism that could follow\n";
+            continue;
+        };
+        let line = impact.impulse_line.as_ref().map_or("none", |line| {
+            verdict(&line.extremes_from_left(arch.chain.sites(), sway))
+        });
+        let _ = writeln!(
+            text,
+            "{:>10.6}   {}   {line}",
+            impact.restitution,
+            hinges(arch, &impact.mechanism, sway)
+        );
+    }
+    text
+}
+
+fn certificate_text(
+    scenario: &Scenario,
+    arch: &Arch,
+    chosen: &Chosen<'_>,
+    projection: &Projection,
+) -> String {
+    let four_link = chosen.after.map_or(0.0, |link| link.link.restitution);
+    let gap = projection.restitution - four_link;
+    let sway = output::sway(chosen.index);
+    let mut text = format!(
+        "\ncertificate of impact {}: the most energy that any motion keeps that opens joints and closes none\n\
+         (any number of hinges; {} joints)\n\n\
+         r, four hinges, model {:<16} {four_link:>10.6}\n\
+         r, any number of hinges              {:>10.6}\n\
+         gap                                  {gap:>10.6}\n\n",
+        chosen.index,
+        projection.joints.len(),
+        scenario.impact.name(),
+        projection.restitution,
+    );
+    if let Some(line) = chosen.after.and_then(|link| link.impulse_line.as_ref()) {
+        let extremes = line.extremes_from_left(arch.chain.sites(), sway);
+        let eccentricity = extremes.eccentricity_ratio;
+        let _ = if extremes.is_admissible() {
+            writeln!(
+                text,
+                "The impulse line of the four hinges is compressive and inside the ring: no admissible motion\n\
+                 keeps more energy, the four hinges are certified."
+            )
+        } else if extremes.normal.value <= 0.0 {
+            writeln!(
+                text,
+                "The impulse line of the four hinges is in tension near {:.2} deg: more hinges keep more energy.",
+                degrees(extremes.normal.angle_rad)
+            )
+        } else {
+            writeln!(
+                text,
+                "The impulse line of the four hinges leaves the ring by {:.2} % of the thickness at {:.2} deg: \
+                 other\nhinges keep more energy, by the gap above.",
+                100.0 * (eccentricity.value - 0.5),
+                degrees(eccentricity.angle_rad)
+            )
+        };
+    }
+    if gap < -1e-6 {
+        let _ = writeln!(
+            text,
+            "Model {} keeps more energy than any admissible motion can.",
+            scenario.impact.name()
+        );
+    }
+    if projection.opened().next().is_none() {
+        text += "No motion keeps any energy: the impact stops the arch.\n";
+        return text;
+    }
+    text += "The motion that keeps the most energy opens at, in degrees from the left springing\n";
+    for zone in zones(arch, sway, projection) {
+        let place = if zone.from_deg == zone.to_deg {
+            format!("{:.3}", zone.from_deg)
+        } else {
+            format!("{:.3} to {:.3}", zone.from_deg, zone.to_deg)
+        };
+        let _ = writeln!(
+            text,
+            "  {place:>20}  {}  by {:.5} rad per rad of closing",
+            initial(zone.edge),
+            zone.rate
+        );
+    }
+    text
+}
+
+/// Neighbouring joints of a continuous ring that open about the same edge, or a joint of voussoirs.
+struct Zone {
+    edge: Edge,
+    from_deg: f64,
+    to_deg: f64,
+    /// Sum of their rotation rates.
+    rate: f64,
+    /// The last of them.
+    joint: usize,
+}
+
+/// The zones that open, from the left springing.
+fn zones(arch: &Arch, sway: Sway, projection: &Projection) -> Vec<Zone> {
+    let mut zones: Vec<Zone> = Vec::new();
+    for (joint, edge, rate) in projection.opened() {
+        let angle_rad = projection.joints[joint].angle_rad;
+        let angle_deg = degrees(sway.from_left_rad(arch.chain.ring(), angle_rad));
+        let continues = |zone: &&mut Zone| {
+            arch.chain.sites() == HingeSites::Anywhere
+                && zone.edge == edge
+                && zone.joint + 1 == joint
+        };
+        match zones.iter_mut().find(continues) {
+            Some(zone) => {
+                zone.from_deg = zone.from_deg.min(angle_deg);
+                zone.to_deg = zone.to_deg.max(angle_deg);
+                zone.rate += rate;
+                zone.joint = joint;
+            }
+            None => zones.push(Zone {
+                edge,
+                from_deg: angle_deg,
+                to_deg: angle_deg,
+                rate,
+                joint,
+            }),
+        }
+    }
+    zones.sort_by(|a, b| a.from_deg.total_cmp(&b.from_deg));
+    zones
+}

@@ -1,0 +1,251 @@
+//! How much kinetic energy an impact can leave at most: the projection onto all admissible fields.
+//!
+//! The paper chooses the mechanism after an impact among those with four hinges, and there may be a better
+//! motion with more. Let `K` be the velocity fields that open and never close a joint of the ring, without
+//! sliding: rotations about the edge points of joints, as many as there are, none of them backwards. `K` is a
+//! convex cone, and the velocity `w` of the closing mechanism has one nearest field `P w` in it, the motion
+//! after the perfectly inelastic impact of Moreau. It keeps `r = <Pw, Pw> / <w, w>`, which no four-link
+//! mechanism with hinges at these joints exceeds.
+//!
+//! On a ring cut into rigid voussoirs the projection is a convex quadratic program. Its multipliers are the
+//! impulses at the edges of the joints. Compression at both edges is what makes the resultant pass inside the
+//! ring, so that the optimality conditions are the theorem of the paper in its exact form: a motion is
+//! the projection if and only if its impulse line is admissible (Moreau's decomposition of `w` into polar parts).
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
+};
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::field::{Field, Twist};
+use super::mechanism::{FourLink, HingeSites};
+use super::resultant::SectionResultant;
+use super::ring::{Edge, Ring};
+
+/// Number of equal parts from which the projection of a continuous ring is computed by default. The error of `r` falls
+/// with the square of the number; here it is about 1e-6, by test.
+pub const DEFAULT_JOINTS: usize = 720;
+
+/// The field nearest to the closing velocity, over all admissible fields.
+#[derive(Clone, Debug)]
+pub struct Projection {
+    /// Restitution coefficient: kinetic energy after over before.
+    pub restitution: f64,
+    /// What happens at each joint, from the left springing to the right one.
+    pub joints: Vec<Joint>,
+}
+
+impl Projection {
+    /// Joints that open: index, edge about which, and rotation rate. Rotations that are small beside the largest are
+    /// left out.
+    ///
+    /// In a continuous ring whole zones open, where the impulse line follows an edge.
+    pub fn opened(&self) -> impl Iterator<Item = (usize, Edge, f64)> {
+        let rates = self.joints.iter().flat_map(|joint| joint.opening_rates);
+        let least = LEAST_OPENING * rates.fold(LEAST_OPENING, f64::max);
+        self.joints
+            .iter()
+            .enumerate()
+            .flat_map(move |(index, joint)| {
+                [Edge::Intrados, Edge::Extrados]
+                    .into_iter()
+                    .zip(joint.opening_rates)
+                    .filter(move |(_, rate)| *rate > least)
+                    .map(move |(edge, rate)| (index, edge, rate))
+            })
+    }
+}
+
+/// Joints that rotate less than this part of the largest rotation count as closed: the solver leaves so
+/// much where both the opening and the impulse vanish, at the ends of zones. The same part of the
+/// rate of the closing mechanism counts as no rotation.
+const LEAST_OPENING: f64 = 1e-3;
+
+/// A joint at the impact; rates and impulses are per unit rate of the closing mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// Section, in radians from the left springing.
+    pub angle_rad: f64,
+    /// Opening rotation rates about the intrados point and the extrados point, not negative.
+    pub opening_rates: [f64; 2],
+    /// Impulse of the part before on the part after.
+    pub impulse: SectionResultant,
+}
+
+/// The projection could not be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "the motion that keeps the most energy was not found with {joints} joints ({reason}): try another number"
+)]
+pub struct ProjectionError {
+    joints: usize,
+    reason: SolverStatus,
+}
+
+/// Joints at which the projection opens the ring: those of the voussoirs, or the springings and the sections
+/// between `count` equal parts.
+///
+/// Where hinges sit anywhere those of `mechanism`, the one that is to be certified, are joints too, in place of their
+/// next neighbours. The cone then has that mechanism in it, and bounds its restitution coefficient from above
+/// whatever the number of joints.
+#[must_use]
+pub fn joints_rad(
+    ring: &Ring,
+    sites: HingeSites,
+    count: usize,
+    mechanism: Option<&FourLink>,
+) -> Vec<f64> {
+    match sites {
+        HingeSites::Voussoirs(voussoirs) => ring.sections(voussoirs),
+        HingeSites::Anywhere => {
+            let mut joints = ring.sections(count);
+            let (spacing, end) = (joints[1], ring.embrace_rad());
+            let mut hinges: Vec<f64> = mechanism.map_or(Vec::new(), |m| m.hinges_rad().to_vec());
+            // A hinge at a springing has its joint; a body in between would have no mass.
+            hinges.retain(|hinge| *hinge > 1e-6 * spacing && end - hinge > 1e-6 * spacing);
+            joints.retain(|joint| {
+                let apart = |hinge: &f64| (hinge - joint).abs() > 0.5 * spacing;
+                *joint == 0.0 || *joint == end || hinges.iter().all(apart)
+            });
+            joints.append(&mut hinges);
+            joints.sort_by(f64::total_cmp);
+            joints
+        }
+    }
+}
+
+/// The field nearest to `before` among those that open and never close the given joints.
+///
+/// The variables are the motions of the bodies between the joints, in axes in which their kinetic energy is
+/// half a sum of squares: what is sought is the point of a polyhedral cone nearest to a given point. Each joint
+/// couples two neighbours only, so that the work grows with the number of joints.
+///
+/// # Errors
+/// When the solver does not reach its tolerance.
+///
+/// # Panics
+/// When there are fewer than two joints.
+pub fn project(
+    before: &Field,
+    ring: &Ring,
+    joints_rad: &[f64],
+) -> Result<Projection, ProjectionError> {
+    assert!(joints_rad.len() >= 2, "a body lies between two joints");
+    let energy_before = before.product(before, ring);
+    let scale = energy_before.sqrt();
+    let bodies: Vec<[Twist; 3]> = joints_rad
+        .windows(2)
+        .map(|ends| orthonormal_twists(ring, ends[0], ends[1]))
+        .collect();
+    let mut target = Vec::with_capacity(3 * bodies.len());
+    let mut passed = before.momentum_to(ring, joints_rad[0]);
+    for (twists, end) in bodies.iter().zip(&joints_rad[1..]) {
+        let reached = before.momentum_to(ring, *end);
+        let momentum = reached - passed;
+        target.extend(twists.map(|twist| twist.power(&momentum) / scale));
+        passed = reached;
+    }
+
+    // Rows: no sliding at each joint, then for each joint the gap at the intrados and at the extrados.
+    let count = joints_rad.len();
+    let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    for (joint, angle) in joints_rad.iter().enumerate() {
+        let (radial, tangent) = (ring.radial(*angle), ring.tangent(*angle));
+        let edges = [Edge::Intrados, Edge::Extrados].map(|edge| ring.point(*angle, edge));
+        let neighbours = [(joint.checked_sub(1), -1.0), (Some(joint), 1.0)];
+        for (body, side) in neighbours {
+            let Some((body, twists)) = body.and_then(|body| Some((body, bodies.get(body)?))) else {
+                continue;
+            };
+            for (axis, twist) in twists.iter().enumerate() {
+                let velocities = [
+                    (joint, twist.at(radial).dot(&radial)),
+                    (count + 2 * joint, -twist.at(edges[0]).dot(&tangent)),
+                    (count + 2 * joint + 1, -twist.at(edges[1]).dot(&tangent)),
+                ];
+                for (row, velocity) in velocities {
+                    rows.push(row);
+                    columns.push(3 * body + axis);
+                    values.push(side * velocity);
+                }
+            }
+        }
+    }
+    let constraints = CscMatrix::new_from_triplets(3 * count, target.len(), rows, columns, values);
+    let minus_target: Vec<f64> = target.iter().map(|component| -component).collect();
+    let mut solver = DefaultSolver::new(
+        &CscMatrix::identity(target.len()),
+        &minus_target,
+        &constraints,
+        &vec![0.0; 3 * count],
+        &[ZeroConeT(count), NonnegativeConeT(2 * count)],
+        settings(),
+    )
+    .expect("the dimensions fit and the settings are valid");
+    solver.solve();
+    let solution = &solver.solution;
+    if !matches!(
+        solution.status,
+        SolverStatus::Solved | SolverStatus::AlmostSolved
+    ) {
+        return Err(ProjectionError {
+            joints: count,
+            reason: solution.status,
+        });
+    }
+
+    let joints = joints_rad.iter().enumerate().map(|(joint, angle)| {
+        let edge_rows = [count + 2 * joint, count + 2 * joint + 1];
+        // Turning about one edge parts the other.
+        let [gap_intrados, gap_extrados] = edge_rows.map(|row| solution.s[row] * scale);
+        let [intrados, extrados] = edge_rows.map(|row| solution.z[row] * scale);
+        let normal = intrados + extrados;
+        Joint {
+            angle_rad: *angle,
+            opening_rates: [gap_extrados, gap_intrados].map(|gap| gap / ring.thickness_ratio()),
+            impulse: SectionResultant {
+                normal,
+                tangential: -solution.z[joint] * scale,
+                moment: 0.5 * (extrados - intrados) * ring.thickness_ratio(),
+                eccentricity_ratio: 0.5 * (extrados - intrados) / normal,
+            },
+        }
+    });
+    Ok(Projection {
+        restitution: solution
+            .x
+            .iter()
+            .map(|component| component * component)
+            .sum(),
+        joints: joints.collect(),
+    })
+}
+
+/// Motions of the part between two sections, orthogonal to each other and each with a kinetic energy of one half:
+/// two translations and the rotation about its centre of gravity.
+fn orthonormal_twists(ring: &Ring, from_rad: f64, to_rad: f64) -> [Twist; 3] {
+    let moments = ring.sector(from_rad, to_rad);
+    let shift = 1.0 / moments.mass.sqrt();
+    [
+        Twist::translation(Vector2::new(shift, 0.0)),
+        Twist::translation(Vector2::new(0.0, shift)),
+        Twist::rotation(moments.centroid(), 1.0 / moments.central_polar().sqrt()),
+    ]
+}
+
+/// Tolerances: the unknown is of unit length, so that they are errors of `r`. With thousands of joints rounding
+/// may leave only the reduced ones.
+fn settings() -> DefaultSettings<f64> {
+    DefaultSettings {
+        verbose: false,
+        tol_gap_abs: 1e-11,
+        tol_gap_rel: 1e-11,
+        tol_feas: 1e-10,
+        reduced_tol_gap_abs: 1e-9,
+        reduced_tol_gap_rel: 1e-9,
+        reduced_tol_feas: 1e-8,
+        ..DefaultSettings::default()
+    }
+}

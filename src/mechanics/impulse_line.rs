@@ -1,0 +1,97 @@
+//! The impulses of an impact, at the hinges of the new mechanism and at every section.
+//!
+//! During the impact every part of the ring obeys impulse = change of momentum. What crosses a section is
+//! then known up to the impulse at one springing, and the four hinges of the new mechanism, which carry no moment,
+//! determine that. The points where the impulses cross their sections are the impulse line of the paper
+//! (Fig. 10).
+
+use nalgebra::Vector2;
+
+use super::field::Field;
+use super::mechanism::{FourLink, HingeSites, Sway};
+use super::resultant::{Extremes, ResultantLine, SectionResultant};
+use super::ring::Ring;
+
+/// The impulses of an impact over the ring.
+///
+/// Per unit rate of the closing mechanism, in units of `rho d R^3`, and in the frame in which the new mechanism sways
+/// right, unless a name ends in `from_left`.
+#[derive(Clone, Debug)]
+pub struct ImpulseLine {
+    ring: Ring,
+    mechanism: FourLink,
+    resultants: ResultantLine,
+}
+
+impl ImpulseLine {
+    /// The impulses that turn the velocity field `before` into `after`, a motion of `mechanism`.
+    ///
+    /// `after` has to be the projection of `before` onto the mechanism ([`super::impact::projection`]); the line
+    /// then passes through all four hinges.
+    #[must_use]
+    pub fn new(ring: &Ring, mechanism: &FourLink, before: &Field, after: &Field) -> Self {
+        Self {
+            ring: *ring,
+            mechanism: *mechanism,
+            resultants: ResultantLine::through_hinges(ring, mechanism, before.minus(after)),
+        }
+    }
+
+    /// The impulse that each part hands on to its neighbour on the right.
+    #[must_use]
+    pub const fn resultants(&self) -> &ResultantLine {
+        &self.resultants
+    }
+
+    /// Impulses at the hinges A, B, C, D on the part towards the crown: by the ground on the left body, by the left
+    /// body on the middle one, by the right body on the middle one, by the ground on the right body.
+    ///
+    /// The outer two are the unknowns `F' dt` of Eqs. (7)-(10) of the paper.
+    #[must_use]
+    pub fn hinge_impulses(&self) -> [Vector2<f64>; 4] {
+        let sides = [1.0, 1.0, -1.0, -1.0];
+        let hinges = self.mechanism.hinges_rad();
+        std::array::from_fn(|i| self.resultants.at(hinges[i]).linear * sides[i])
+    }
+
+    /// [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new mechanism
+    /// sways to the given side.
+    #[must_use]
+    pub fn hinge_impulses_from_left(&self, sway: Sway) -> [Vector2<f64>; 4] {
+        let mut impulses = self.hinge_impulses();
+        if sway == Sway::Left {
+            impulses.reverse();
+            for impulse in &mut impulses {
+                impulse.x = -impulse.x;
+            }
+        }
+        impulses
+    }
+
+    /// The resultant at a section, by its angle from the left springing, when the new mechanism sways to the
+    /// given side.
+    #[must_use]
+    pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
+        let section = self
+            .resultants
+            .section(sway.from_left_rad(&self.ring, angle_rad));
+        match sway {
+            Sway::Right => section,
+            Sway::Left => section.mirrored(),
+        }
+    }
+
+    /// [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the given side.
+    #[must_use]
+    pub fn extremes_from_left(&self, sites: HingeSites, sway: Sway) -> Extremes {
+        let mut extremes = self.resultants.extremes(sites);
+        for extremum in [
+            &mut extremes.eccentricity_ratio,
+            &mut extremes.normal,
+            &mut extremes.friction_ratio,
+        ] {
+            extremum.angle_rad = sway.from_left_rad(&self.ring, extremum.angle_rad);
+        }
+        extremes
+    }
+}

@@ -1,0 +1,196 @@
+//! What impacts tell: the chain, its impulses and their certificate as JSON, the impulse line as CSV.
+//!
+//! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before.
+
+use std::io::Write;
+
+use serde_json::{Value, json};
+
+use super::OutputError;
+use super::mechanisms::hinges;
+use crate::mechanics::arch::Arch;
+use crate::mechanics::certificate::Projection;
+use crate::mechanics::chain::ArchLink;
+use crate::mechanics::impact::{Impact, ImpactModel};
+use crate::mechanics::impulse_line::ImpulseLine;
+use crate::mechanics::mechanism::{FourLink, HingeSites, Sway};
+
+/// The sway of a link of the chain that begins with a sway to the right.
+#[must_use]
+pub const fn sway(link: usize) -> Sway {
+    if link.is_multiple_of(2) {
+        Sway::Right
+    } else {
+        Sway::Left
+    }
+}
+
+/// Result of `impact`: the first `count` links of the chain that begins with a sway to the right; fewer
+/// when an impact stops the arch.
+#[must_use]
+pub fn impacts(arch: &Arch, count: usize) -> Value {
+    let links = (1..=count).map_while(|index| {
+        let (before, after) = (arch.chain.link(index - 1)?, arch.chain.link(index)?);
+        Some(impact(arch, index, before, after))
+    });
+    links.collect::<Vec<_>>().into()
+}
+
+fn impact(arch: &Arch, index: usize, before: &ArchLink, after: &ArchLink) -> Value {
+    let ring = arch.chain.ring();
+    let side = |mechanism: &FourLink, sway: Sway| json!({ "sway": sway.name(), "hinges": hinges(mechanism, ring, sway) });
+    let sway_after = sway(index);
+    let line = after.impulse_line.as_ref();
+    json!({
+        "index": index,
+        "restitution": after.link.restitution,
+        "before": side(&before.mechanism, sway_after.opposite()),
+        "after": side(&after.mechanism, sway_after),
+        "impulses": line.map(|line| impulses(arch, line, sway_after)),
+        "impulse_line": line.map(|line| extremes(arch, line, sway_after)),
+    })
+}
+
+fn impulses(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
+    let unit = arch.impulse_unit_n_s_per_m();
+    let names = ["a", "b", "c", "d"].into_iter();
+    names
+        .zip(line.hinge_impulses_from_left(sway))
+        .map(|(hinge, impulse)| {
+            json!({
+                "hinge": hinge,
+                "x_n_s_per_m": impulse.x * unit,
+                "y_n_s_per_m": impulse.y * unit,
+            })
+        })
+        .collect()
+}
+
+/// Extremes of the line; values that are infinite, because there is tension, become null.
+fn extremes(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
+    let extremes = line.extremes_from_left(arch.chain.sites(), sway);
+    json!({
+        "admissible": extremes.is_admissible(),
+        "largest_eccentricity_ratio": extremes.eccentricity_ratio.value,
+        "largest_eccentricity_angle_deg": extremes.eccentricity_ratio.angle_rad.to_degrees(),
+        "least_normal_n_s_per_m": extremes.normal.value * arch.impulse_unit_n_s_per_m(),
+        "least_normal_angle_deg": extremes.normal.angle_rad.to_degrees(),
+        "largest_tangential_ratio": extremes.friction_ratio.value,
+        "largest_tangential_angle_deg": extremes.friction_ratio.angle_rad.to_degrees(),
+    })
+}
+
+/// Impact models side by side, for the impact that leads to link `index`; null where a model finds no
+/// mechanism that could follow.
+#[must_use]
+pub fn models(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>)]) -> Value {
+    let after = |impact: &Impact| {
+        let sway = sway(index);
+        json!({
+            "restitution": impact.restitution,
+            "after": { "sway": sway.name(), "hinges": hinges(&impact.mechanism, arch.chain.ring(), sway) },
+            "impulses": impact.impulse_line.as_ref().map(|line| impulses(arch, line, sway)),
+            "impulse_line": impact.impulse_line.as_ref().map(|line| extremes(arch, line, sway)),
+        })
+    };
+    models
+        .iter()
+        .map(|(model, impact)| json!({ "model": model.name(), "impact": impact.as_ref().map(after) }))
+        .collect()
+}
+
+/// The projection onto all admissible fields beside the link that the chain takes, if any mechanism can follow.
+#[must_use]
+pub fn certificate(
+    arch: &Arch,
+    index: usize,
+    link: Option<&ArchLink>,
+    projection: &Projection,
+) -> Value {
+    let sway = sway(index);
+    let ring = arch.chain.ring();
+    let mut opened: Vec<Value> = projection
+        .opened()
+        .map(|(joint, edge, rate)| {
+            json!({
+                "angle_deg": sway.from_left_rad(ring, projection.joints[joint].angle_rad).to_degrees(),
+                "edge": edge.name(),
+                "opening_rate_ratio": rate,
+            })
+        })
+        .collect();
+    if sway == Sway::Left {
+        opened.reverse();
+    }
+    let four_link = link.map_or(0.0, |link| link.link.restitution);
+    let line = link.and_then(|link| link.impulse_line.as_ref());
+    let admissible = line.map(|line| {
+        line.extremes_from_left(arch.chain.sites(), sway)
+            .is_admissible()
+    });
+    json!({
+        "index": index,
+        "joints": projection.joints.len(),
+        "restitution_four_link": four_link,
+        "restitution_all_fields": projection.restitution,
+        "gap": projection.restitution - four_link,
+        "impulse_line_admissible": admissible,
+        "opened_joints": opened,
+    })
+}
+
+/// Least number of parts of the ring between the rows of an impulse line.
+const LINE_PARTS: usize = 720;
+
+/// Writes the impulse line of the impact that leads to link `index` as CSV: a row at each section of a fine
+/// division of the ring, every joint of voussoirs and every hinge, from the left springing.
+///
+/// The eccentricity is left empty where no impulse crosses a section.
+///
+/// # Errors
+/// When the system refuses.
+pub fn write_line(
+    writer: impl Write,
+    arch: &Arch,
+    index: usize,
+    mechanism: &FourLink,
+    line: &ImpulseLine,
+) -> Result<(), OutputError> {
+    const WHAT: &str = "cannot write the impulse line";
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record([
+        "angle_deg",
+        "eccentricity_ratio",
+        "normal_n_s_per_m",
+        "tangential_n_s_per_m",
+    ])
+    .map_err(OutputError::csv(WHAT))?;
+    let (unit, ring, sway) = (
+        arch.impulse_unit_n_s_per_m(),
+        arch.chain.ring(),
+        sway(index),
+    );
+    let mut angles_rad = ring.sections(match arch.chain.sites() {
+        HingeSites::Anywhere => LINE_PARTS,
+        HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
+    });
+    angles_rad.extend(
+        mechanism
+            .hinges_from_left(ring, sway)
+            .map(|(angle_rad, _)| angle_rad),
+    );
+    angles_rad.sort_by(f64::total_cmp);
+    angles_rad.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+    for angle_rad in angles_rad {
+        let section = line.section_from_left(angle_rad, sway);
+        let eccentricity_ratio = section.eccentricity_ratio;
+        csv.serialize((
+            angle_rad.to_degrees(),
+            eccentricity_ratio.is_finite().then_some(eccentricity_ratio),
+            section.normal * unit,
+            section.tangential * unit,
+        ))
+        .map_err(OutputError::csv(WHAT))?;
+    }
+    csv.flush().map_err(OutputError::io(WHAT))
+}
