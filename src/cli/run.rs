@@ -100,7 +100,7 @@ fn simulate<'a>(
     rocking: &Rocking<'a, Arch>,
     writer: impl io::Write,
 ) -> Result<(History<'a, Arch>, u64), Failure> {
-    let mut table = RotationsWriter::new::<Linkage>(writer)?;
+    let mut table = RotationsWriter::new::<Linkage>(writer, rocking.ground().has_vertical())?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
         if written.is_ok() {

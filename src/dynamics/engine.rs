@@ -458,7 +458,7 @@ fn crossing_before(start_s: f64, negative_s: f64, level: &impl Fn(f64) -> Level)
 }
 
 /// The time at which `early` turns from true to false.
-fn bisect(start_s: f64, end_s: f64, early: impl Fn(f64) -> bool) -> f64 {
+pub(super) fn bisect(start_s: f64, end_s: f64, early: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (start_s, end_s);
     loop {
         let middle = 0.5 * (low + high);

@@ -2,11 +2,13 @@
 //!
 //! | mode | moves by | until |
 //! |---|---|---|
-//! | rest | not at all | the ground passes the incipient acceleration on either side |
+//! | rest | not at all | the ground, seen against gravity, passes the incipient acceleration on either side |
 //! | rocking | the equation of motion of one mechanism | its hinges close, or it is lost |
 //! | overturned | - | - |
 //!
 //! Which structure rocks does not matter here: see [`Structure`].
+
+use nalgebra::Vector2;
 
 use super::engine::{HybridSystem, Level};
 use super::ground::{GroundMotion, Piece};
@@ -48,7 +50,7 @@ impl<M> Copy for Mode<'_, M> {}
 /// Events of a rocking structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guard {
-    /// At rest: `A_L g - push`, where the ground pushes the structure to this side.
+    /// At rest: `A_L (g + a_v) - push`, where the ground pushes the structure to this side.
     Uplift(Sway),
     /// Rocking: `q`, all hinges close.
     Closing,
@@ -74,6 +76,8 @@ pub struct Rocking<'a, S: Structure> {
 impl<'a, S: Structure> Rocking<'a, S> {
     /// The structure on the given ground. It comes to rest when an impact leaves less than
     /// `rest_energy_ratio` of the energy barrier of its first mechanism.
+    ///
+    /// The ground must press on the structure at all times: see [`GroundMotion::free_fall_s`].
     #[must_use]
     pub fn new(
         structure: &'a S,
@@ -142,9 +146,23 @@ impl<'a, S: Structure> Rocking<'a, S> {
         &self.ground.pieces()[piece]
     }
 
-    /// `q''` under gravity and a ground acceleration in the mechanism's own frame.
-    fn acceleration(&self, coefficients: &Coefficients, rate: f64, ground_m_s2: f64) -> f64 {
-        let force = self.gravity_m_s2 * coefficients.rise + ground_m_s2 * coefficients.sway;
+    /// Ground acceleration in the frame of a mechanism with this sway.
+    fn ground_m_s2(&self, sway: Sway, piece: usize, time_s: f64) -> Vector2<f64> {
+        let mut ground_m_s2 = self.piece(piece).at(time_s).0;
+        ground_m_s2.x *= sway.sign();
+        ground_m_s2
+    }
+
+    /// `q''` under gravity and a ground acceleration in the mechanism's own frame. On ground that rises
+    /// ever faster a structure is as much heavier.
+    fn acceleration(
+        &self,
+        coefficients: &Coefficients,
+        rate: f64,
+        ground_m_s2: Vector2<f64>,
+    ) -> f64 {
+        let force = (self.gravity_m_s2 + ground_m_s2.y) * coefficients.rise
+            + ground_m_s2.x * coefficients.sway;
         let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
         -(force / self.structure.length_m() + inertial) / coefficients.inertia
     }
@@ -201,10 +219,11 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         let Mode::Rocking { sway, link, .. } = mode else {
             return RockingState::zeros();
         };
-        let ground_m_s2 = sway.sign() * self.piece(piece).acceleration_m_s2(time_s);
+        let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
         let (q, rate) = (state[0], state[1]);
         let coefficients = link.mechanism.coefficients(q);
-        let work = -ground_m_s2 * coefficients.sway * rate / self.structure.length_m();
+        let push = ground_m_s2.x * coefficients.sway + ground_m_s2.y * coefficients.rise;
+        let work = -push * rate / self.structure.length_m();
         RockingState::new(
             rate,
             self.acceleration(&coefficients, rate, ground_m_s2),
@@ -308,11 +327,14 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
     ) -> Level {
         let piece = self.piece(piece);
         match (guard, mode) {
-            (Guard::Uplift(sway), _) => Level {
-                value: self.structure.incipient_g() * self.gravity_m_s2
-                    + sway.sign() * piece.acceleration_m_s2(time_s),
-                rate: sway.sign() * piece.jerk_m_s3(time_s),
-            },
+            (Guard::Uplift(sway), _) => {
+                let (acceleration, jerk) = piece.at(time_s);
+                let tilt = Vector2::new(sway.sign(), self.structure.incipient_g());
+                Level {
+                    value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
+                    rate: tilt.dot(&jerk),
+                }
+            }
             (Guard::Closing, _) => Level {
                 value: state[0],
                 rate: state[1],
@@ -381,7 +403,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
                 let rate = link.rate_ratio * closing_rate;
                 let coefficients = link.mechanism.coefficients(0.0);
                 let sway = sway.opposite();
-                let ground_m_s2 = sway.sign() * self.piece(piece).acceleration_m_s2(time_s);
+                let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
                 let energy = 0.5 * coefficients.inertia * rate * rate;
                 let held_up = self.acceleration(&coefficients, rate, ground_m_s2) > 0.0;
                 if energy < self.rest_energy_ratio * self.barrier && !held_up {

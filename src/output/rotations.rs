@@ -27,22 +27,32 @@ pub(super) fn columns<M: Mechanism>(quantity: &str, unit: &str) -> Vec<String> {
 pub struct RotationsWriter<W: Write> {
     csv: csv::Writer<W>,
     rows: u64,
+    /// Whether there is a column for the vertical acceleration.
+    vertical: bool,
 }
 
 impl<W: Write> RotationsWriter<W> {
-    /// Starts with the header for the mechanisms of a structure.
+    /// Starts with the header for the mechanisms of a structure. Where the ground moves vertically too,
+    /// its vertical acceleration is a further column after all others.
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn new<M: Mechanism>(writer: W) -> Result<Self, OutputError> {
+    pub fn new<M: Mechanism>(writer: W, vertical: bool) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
         let mut header: Vec<String> = ["time_s", "ground_acceleration_m_s2", "phase", "state"]
             .map(str::to_owned)
             .to_vec();
         header.extend(columns::<M>("rotation", "rad"));
         header.extend(columns::<M>("rate", "rad_s"));
+        if vertical {
+            header.push("vertical_acceleration_m_s2".to_owned());
+        }
         csv.write_record(header).map_err(OutputError::csv(WHAT))?;
-        Ok(Self { csv, rows: 0 })
+        Ok(Self {
+            csv,
+            rows: 0,
+            vertical,
+        })
     }
 
     /// Writes a row.
@@ -55,6 +65,8 @@ impl<W: Write> RotationsWriter<W> {
             "of a row of rotations.csv",
             &[sample.time_s, sample.ground_acceleration_m_s2],
         )?;
+        let vertical = self.vertical.then_some(sample.vertical_acceleration_m_s2);
+        finite("of a row of rotations.csv", vertical.as_slice())?;
         finite("of a row of rotations.csv", rotations)?;
         finite("of a row of rotations.csv", rates)?;
         self.rows += 1;
@@ -66,6 +78,7 @@ impl<W: Write> RotationsWriter<W> {
                 sample.state,
                 rotations,
                 rates,
+                vertical.as_slice(),
             ))
             .map_err(OutputError::csv(WHAT))
     }
