@@ -27,7 +27,8 @@ pub fn semicircle() -> Arch {
     arch.build(ImpactModel::MaxRestitution).unwrap()
 }
 
-/// History with samples every 5 ms.
+/// History with samples every 5 ms. It comes to rest below 1e-8 of the energy barrier under the gravity `G`,
+/// whatever gravity is.
 pub fn run<'a>(
     arch: &'a Arch,
     ground: &'a GroundMotion,
@@ -41,7 +42,7 @@ pub fn run<'a>(
         initial,
         output_step_s: Some(0.005),
     };
-    let rocking = Rocking::new(arch, ground, gravity_m_s2, 1e-8);
+    let rocking = Rocking::new(arch, ground, gravity_m_s2, 1e-8 * G / gravity_m_s2);
     let mut samples = Vec::new();
     let history = history(&rocking, &request, |sample| samples.push(*sample)).unwrap();
     (history, samples)
