@@ -302,7 +302,7 @@ impl Series {
             return Err(table.wrong("peak_g", "cannot be reached: the record is zero throughout"));
         }
         let peak_g = (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs();
-        if !(peak_g <= MOST_G) {
+        if peak_g.is_nan() || peak_g > MOST_G {
             let wrong = format!("reaches {peak_g:?} g as scaled; allowed is at most {MOST_G:?} g");
             return Err(table.wrong("file", wrong));
         }
