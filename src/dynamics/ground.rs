@@ -12,8 +12,6 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
-use super::engine::bisect;
-
 named! {
     /// Shape of a single pulse. Accelerations follow with the amplitude `a`, which is the peak acceleration,
     /// the duration `T` and the time `s` since the start; where there are two more parameters, see
@@ -234,6 +232,22 @@ fn zeros(function: impl Fn(f64) -> f64, steepest: f64, end: f64, resolution: f64
         }
     }
     zeros
+}
+
+/// The time at which `early` turns from true to false.
+fn bisect(start_s: f64, end_s: f64, early: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (start_s, end_s);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if early(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
 }
 
 /// One-sided formula of a piece in the time since its origin, horizontal and vertical.
