@@ -1,4 +1,5 @@
 //! Records of ground motion: files, straight lines between samples, and whole histories.
+#![allow(clippy::unwrap_used)]
 
 mod motions;
 

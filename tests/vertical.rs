@@ -1,4 +1,5 @@
 //! Vertical ground acceleration along with the horizontal one.
+#![allow(clippy::unwrap_used)]
 
 mod motions;
 

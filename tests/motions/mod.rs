@@ -1,5 +1,5 @@
 //! Synthetic ground motions, the files they are written to, and what they do to an arch.
-#![allow(dead_code, reason = "each test file uses a part")]
+#![allow(dead_code, clippy::unwrap_used)]
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
