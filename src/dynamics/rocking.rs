@@ -110,7 +110,7 @@ impl<'a, S: Structure> Rocking<'a, S> {
         self.ground
     }
 
-    /// Energy that the first mechanism has to gain to overturn. Energies are in the structure's unit of
+    /// Energy that the first mechanism has to gain to overturn under gravity alone. Energies are in the structure's unit of
     /// mass times the square of its unit of length, per s2.
     #[must_use]
     pub const fn barrier(&self) -> f64 {

@@ -93,7 +93,7 @@ pub(super) fn parse(
         return Err(LineFault {
             line: last_line,
             message: format!(
-                "there are {} samples; allowed are at least 2",
+                "the number of samples is {}; allowed are at least 2",
                 samples.len()
             ),
         });

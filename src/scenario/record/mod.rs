@@ -654,7 +654,7 @@ mod tests {
         );
         fault("t,a\n0,1\n-1,2\n", 3, "does not increase");
         fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
-        fault("t,a\n0,1\n", 2, "there are 1 samples");
+        fault("t,a\n0,1\n", 2, "number of samples is 1");
         // A first row that is half a number is no header.
         let numbered = Layout::Csv {
             time_column: Column::Number(1),
