@@ -10,8 +10,9 @@ use archrock::mechanics::mechanism::Sway;
 use archrock::mechanics::structure::{Mechanism as _, Structure as _};
 use archrock::output::rotations::RotationsWriter;
 use archrock::scenario::Scenario;
-use motions::{G, run, scaled, semicircle, synthetic};
+use motions::{G, Random, run, scaled, semicircle, synthetic};
 use nalgebra::Vector2;
+use proptest::prelude::*;
 
 /// On ground that rises ever faster at a steady rate everything is as under more gravity.
 #[test]
@@ -222,5 +223,30 @@ fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
             assert_eq!(lines[0][10], "vertical_acceleration_m_s2");
             assert!(lines[1][10] == "-1.5" && lines.last().unwrap()[10] == "0.0");
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Short rough records, around the threshold and far beyond, in both directions: every history ends, and
+    /// its energy balances.
+    #[test]
+    fn rough_records_do_no_harm(
+        seed in any::<u64>(),
+        push in 0.1_f64..0.6,
+        lift in 0.0_f64..0.9,
+        step_s in 0.002_f64..0.1,
+    ) {
+        let mut random = Random(seed);
+        let mut rough = |peak: f64| -> Vec<_> {
+            let value = |i| (f64::from(i) * step_s, peak * G * (2.0 * random.unit() - 1.0));
+            (0..100).map(value).collect()
+        };
+        let ground = GroundMotion::record(&rough(push), &rough(lift), 0.0);
+        let arch = semicircle();
+        let (history, rows) = run(&arch, &ground, G, None, 15.0);
+        prop_assert!(history.energy_defect_ratio < 1e-6);
+        prop_assert!(rows.iter().all(|row| row.rotations_rad.iter().all(|x| x.is_finite())));
     }
 }

@@ -63,6 +63,10 @@ pub enum Guard {
 /// The coordinate `q`, its rate, and the work done by the ground since time zero.
 pub type RockingState = State<3>;
 
+/// A push lifts the structure when it is this many times the incipient one: by so much more than rounding
+/// that the mechanism really opens. At the very threshold it could close again at once, for ever.
+const LIFTING: f64 = 1.0 + 1e-12;
+
 /// A structure on moving ground.
 #[derive(Debug)]
 pub struct Rocking<'a, S: Structure> {
@@ -110,8 +114,8 @@ impl<'a, S: Structure> Rocking<'a, S> {
         self.ground
     }
 
-    /// Energy that the first mechanism has to gain to overturn under gravity alone. Energies are in the structure's unit of
-    /// mass times the square of its unit of length, per s2.
+    /// Energy that the first mechanism has to gain to overturn under gravity alone. Energies are in the
+    /// structure's unit of mass times the square of its unit of length, per s2.
     #[must_use]
     pub const fn barrier(&self) -> f64 {
         self.barrier
@@ -330,7 +334,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         match (guard, mode) {
             (Guard::Uplift(sway), _) => {
                 let (acceleration, jerk) = piece.at(time_s);
-                let tilt = Vector2::new(sway.sign(), self.structure.incipient_g());
+                let tilt = Vector2::new(sway.sign(), LIFTING * self.structure.incipient_g());
                 Level {
                     value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
                     rate: tilt.dot(&jerk),
@@ -365,10 +369,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         match mode {
             Mode::Rest => self.guards(mode).iter().copied().find(|guard| {
                 let level = self.level(*guard, mode, piece, time_s, state);
-                // At the threshold to rounding only a growing push lifts: else a structure that has
-                // just closed there would start again for ever.
-                let rounding = 1e-12 * self.structure.incipient_g() * self.gravity_m_s2;
-                level.value < -rounding || (level.value <= 0.0 && level.rate < 0.0)
+                level.value < 0.0
             }),
             Mode::Rocking { link, .. } => {
                 let lost = self.piece(piece).is_quiet_for_good()
