@@ -119,7 +119,7 @@ fn simulate<'a>(
     writer: impl io::Write,
     timeline: &mut Timeline,
 ) -> Result<(History<'a, Arch>, u64), Failure> {
-    let mut table = RotationsWriter::new::<Linkage>(writer)?;
+    let mut table = RotationsWriter::new::<Linkage>(writer, rocking.ground().has_vertical())?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
         timeline.push(sample);

@@ -115,6 +115,8 @@ pub struct Sample<R> {
     pub time_s: f64,
     /// Ground acceleration, positive to +x.
     pub ground_acceleration_m_s2: f64,
+    /// Vertical ground acceleration, positive upwards.
+    pub vertical_acceleration_m_s2: f64,
     /// Transitions so far.
     pub phase: usize,
     /// `rest`, `right`, `left` or `overturned`.
@@ -440,16 +442,17 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
                 )
             }
         };
-        let ground_m_s2 = rocking.ground().pieces()[piece].acceleration_m_s2(time_s);
         let moved = if matches!(mode, Mode::Rest) { 0.0 } else { 1.0 };
+        let (ground, _) = rocking.ground().pieces()[piece].at(time_s);
         Sample {
             time_s,
-            ground_acceleration_m_s2: ground_m_s2,
+            ground_acceleration_m_s2: ground.x,
+            vertical_acceleration_m_s2: ground.y,
             phase: self.phase,
             state: name,
             rotations_rad: seen_from_ground::<S>(sway, rotations_rad, moved),
             rates_rad_s: seen_from_ground::<S>(sway, rates_rad_s, moved * state[1]),
-            demand: rocking.demand(mode, ground_m_s2, state),
+            demand: rocking.demand(mode, piece, time_s, state),
             energy_ratio: energy / rocking.barrier(),
         }
     }

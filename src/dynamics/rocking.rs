@@ -2,7 +2,7 @@
 //!
 //! | mode | moves by | until |
 //! |---|---|---|
-//! | rest | not at all | the ground passes the incipient acceleration on either side |
+//! | rest | not at all | the ground, seen against gravity, passes the incipient acceleration on either side |
 //! | rocking | the equation of motion of one mechanism | its hinges close, or it is lost |
 //! | overturned | - | - |
 //!
@@ -50,7 +50,7 @@ impl<M> Copy for Mode<'_, M> {}
 /// Events of a rocking structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guard {
-    /// At rest: `A_L g - push`, where the ground pushes the structure to this side.
+    /// At rest: `A_L (g + a_v) - push`, where the ground pushes the structure to this side.
     Uplift(Sway),
     /// Rocking: `q`, all hinges close.
     Closing,
@@ -80,6 +80,8 @@ pub struct Rocking<'a, S: Structure> {
 impl<'a, S: Structure> Rocking<'a, S> {
     /// The structure on the given ground. It comes to rest when an impact leaves less than
     /// `rest_energy_ratio` of the energy barrier of its first mechanism.
+    ///
+    /// The ground must press on the structure at all times: see [`GroundMotion::free_fall_s`].
     #[must_use]
     pub fn new(
         structure: &'a S,
@@ -112,8 +114,8 @@ impl<'a, S: Structure> Rocking<'a, S> {
         self.ground
     }
 
-    /// Energy that the first mechanism has to gain to overturn. Energies are in the structure's unit of
-    /// mass times the square of its unit of length, per s2.
+    /// Energy that the first mechanism has to gain to overturn under gravity alone. Energies are in the
+    /// structure's unit of mass times the square of its unit of length, per s2.
     #[must_use]
     pub const fn barrier(&self) -> f64 {
         self.barrier
@@ -148,9 +150,23 @@ impl<'a, S: Structure> Rocking<'a, S> {
         &self.ground.pieces()[piece]
     }
 
-    /// `q''` under gravity and a ground acceleration in the mechanism's own frame.
-    fn acceleration(&self, coefficients: &Coefficients, rate: f64, ground_m_s2: f64) -> f64 {
-        let force = self.gravity_m_s2 * coefficients.rise + ground_m_s2 * coefficients.sway;
+    /// Ground acceleration in the frame of a mechanism with this sway.
+    fn ground_m_s2(&self, sway: Sway, piece: usize, time_s: f64) -> Vector2<f64> {
+        let mut ground_m_s2 = self.piece(piece).at(time_s).0;
+        ground_m_s2.x *= sway.sign();
+        ground_m_s2
+    }
+
+    /// `q''` under gravity and a ground acceleration in the mechanism's own frame. On ground that rises
+    /// ever faster a structure is as much heavier.
+    fn acceleration(
+        &self,
+        coefficients: &Coefficients,
+        rate: f64,
+        ground_m_s2: Vector2<f64>,
+    ) -> f64 {
+        let force = (self.gravity_m_s2 + ground_m_s2.y) * coefficients.rise
+            + ground_m_s2.x * coefficients.sway;
         let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
         -(force / self.structure.length_m() + inertial) / coefficients.inertia
     }
@@ -160,18 +176,20 @@ impl<'a, S: Structure> Rocking<'a, S> {
     pub fn demand(
         &self,
         mode: Mode<'a, S::Mechanism>,
-        ground_m_s2: f64,
+        piece: usize,
+        time_s: f64,
         state: &RockingState,
     ) -> Demand {
+        let ground_m_s2 = |sway: Sway| self.ground_m_s2(sway, piece, time_s);
         let body_force_g =
-            |sway: Sway| Vector2::new(-sway.sign() * ground_m_s2 / self.gravity_m_s2, -1.0);
+            |sway: Sway| -ground_m_s2(sway) / self.gravity_m_s2 - Vector2::new(0.0, 1.0);
         let (sway, link) = match mode {
             Mode::Rest => return self.structure.demand_at_rest(body_force_g(Sway::Right)),
             Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link } => (sway, link),
         };
         let (q_rad, rate) = (state[0], state[1]);
         let coefficients = link.mechanism.coefficients(q_rad);
-        let acceleration = self.acceleration(&coefficients, rate, sway.sign() * ground_m_s2);
+        let acceleration = self.acceleration(&coefficients, rate, ground_m_s2(sway));
         let square_s2 = self.structure.length_m() / self.gravity_m_s2;
         let motion = Motion {
             q_rad,
@@ -239,10 +257,11 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         let Mode::Rocking { sway, link, .. } = mode else {
             return RockingState::zeros();
         };
-        let ground_m_s2 = sway.sign() * self.piece(piece).acceleration_m_s2(time_s);
+        let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
         let (q, rate) = (state[0], state[1]);
         let coefficients = link.mechanism.coefficients(q);
-        let work = -ground_m_s2 * coefficients.sway * rate / self.structure.length_m();
+        let push = ground_m_s2.x * coefficients.sway + ground_m_s2.y * coefficients.rise;
+        let work = -push * rate / self.structure.length_m();
         RockingState::new(
             rate,
             self.acceleration(&coefficients, rate, ground_m_s2),
@@ -342,11 +361,14 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
     ) -> Level {
         let piece = self.piece(piece);
         match (guard, mode) {
-            (Guard::Uplift(sway), _) => Level {
-                value: LIFTING * self.structure.incipient_g() * self.gravity_m_s2
-                    + sway.sign() * piece.acceleration_m_s2(time_s),
-                rate: sway.sign() * piece.jerk_m_s3(time_s),
-            },
+            (Guard::Uplift(sway), _) => {
+                let (acceleration, jerk) = piece.at(time_s);
+                let tilt = Vector2::new(sway.sign(), LIFTING * self.structure.incipient_g());
+                Level {
+                    value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
+                    rate: tilt.dot(&jerk),
+                }
+            }
             (Guard::Closing, _) => Level {
                 value: state[0],
                 rate: state[1],
@@ -411,7 +433,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
                 };
                 let rate = link.rate_ratio * closing_rate;
                 let sway = sway.opposite();
-                let ground_m_s2 = sway.sign() * self.piece(piece).acceleration_m_s2(time_s);
+                let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
                 let energy = 0.5 * link.at_zero.inertia * rate * rate;
                 let held_up = self.acceleration(&link.at_zero, rate, ground_m_s2) > 0.0;
                 if energy < self.rest_energy_ratio * self.barrier && !held_up {

@@ -27,14 +27,17 @@ pub(super) fn columns<M: Mechanism>(quantity: &str, unit: &str) -> Vec<String> {
 pub struct RotationsWriter<W: Write> {
     csv: csv::Writer<W>,
     rows: u64,
+    /// Whether there is a column for the vertical acceleration.
+    vertical: bool,
 }
 
 impl<W: Write> RotationsWriter<W> {
-    /// Starts with the header for the mechanisms of a structure.
+    /// Starts with the header for the mechanisms of a structure. Where the ground moves vertically too,
+    /// its vertical acceleration is a further column after all others.
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn new<M: Mechanism>(writer: W) -> Result<Self, OutputError> {
+    pub fn new<M: Mechanism>(writer: W, vertical: bool) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
         let mut header: Vec<String> = ["time_s", "ground_acceleration_m_s2", "phase", "state"]
             .map(str::to_owned)
@@ -42,8 +45,15 @@ impl<W: Write> RotationsWriter<W> {
         header.extend(columns::<M>("rotation", "rad"));
         header.extend(columns::<M>("rate", "rad_s"));
         header.extend(["thrust_excess_ratio", "friction_demand"].map(str::to_owned));
+        if vertical {
+            header.push("vertical_acceleration_m_s2".to_owned());
+        }
         csv.write_record(header).map_err(OutputError::csv(WHAT))?;
-        Ok(Self { csv, rows: 0 })
+        Ok(Self {
+            csv,
+            rows: 0,
+            vertical,
+        })
     }
 
     /// Writes a row.
@@ -56,6 +66,8 @@ impl<W: Write> RotationsWriter<W> {
             "of a row of rotations.csv",
             &[sample.time_s, sample.ground_acceleration_m_s2],
         )?;
+        let vertical = self.vertical.then_some(sample.vertical_acceleration_m_s2);
+        finite("of a row of rotations.csv", vertical.as_slice())?;
         finite("of a row of rotations.csv", rotations)?;
         finite("of a row of rotations.csv", rates)?;
         let demand = [sample.demand.excess_ratio, sample.demand.friction];
@@ -70,6 +82,7 @@ impl<W: Write> RotationsWriter<W> {
                 rotations,
                 rates,
                 demand,
+                vertical.as_slice(),
             ))
             .map_err(OutputError::csv(WHAT))
     }

@@ -5,10 +5,11 @@
 
 use std::f64::consts::PI;
 use std::ops::Bound::{Excluded, Included, Unbounded};
+use std::path::Path;
 
 use super::table::{Count, Number, OneOf, Reading, Table, Text, Writer};
-use super::{Arch, Ground, Initial, Scenario, Simulation, Structure};
-use crate::dynamics::ground::Pulse;
+use super::{Arch, Ground, Initial, PulseGround, Record, Scenario, Simulation, Structure};
+use crate::dynamics::ground::{Pulse, WaveTrain};
 use crate::mechanics::impact::ImpactModel;
 use crate::mechanics::limit::{LimitError, least_thickness_ratio};
 use crate::mechanics::mechanism::Sway;
@@ -27,6 +28,10 @@ const VOUSSOIRS: Count = Count {
 const AMPLITUDE_G: Number = Number(Included(-1e3), Included(1e3));
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
 const DURATION_S: Number = Number(Excluded(0.0), Included(1e6));
+/// At one the envelope of the velocity pulse is as long as a period; far beyond nothing is a pulse.
+const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
+const CYCLES: Number = Number(Included(1.0), Included(100.0));
+const PHASE_DEG: Number = Number(Included(-360.0), Included(360.0));
 const START_S: Number = Number(Included(0.0), Included(1e6));
 const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
 const ROTATION_RAD: Number = Number(Excluded(0.0), Excluded(PI));
@@ -36,15 +41,20 @@ const REST_ENERGY_RATIO: Number = Number(Included(1e-16), Included(0.1));
 const MOST_ROWS: f64 = 1e7;
 
 impl Scenario {
-    pub(super) fn read_table(table: &mut Table<'_>) -> Reading<Self> {
+    /// Reads a scenario whose files are relative to `folder`.
+    pub(super) fn read_table(table: &mut Table<'_>, folder: &Path) -> Reading<Self> {
         let title = table.optional("title", &Text);
         let structure = Structure::read(table);
-        let ground = table.table("ground", Ground::read);
+        let simulation = table.table_or_defaults("simulation", Simulation::read);
+        let gravity_m_s2 = match &simulation {
+            Ok(simulation) => Ok(simulation.gravity_m_s2),
+            Err(reported) => Err(*reported),
+        };
+        let ground = table.table("ground", |table| Ground::read(table, folder, gravity_m_s2));
         let impact = table.table_or_defaults("impact", ImpactModel::read);
         let initial = table.table("initial", |table| {
             Initial::read(table, structure.as_ref().ok())
         });
-        let simulation = table.table_or_defaults("simulation", Simulation::read);
         Ok(Self {
             title: title?,
             structure: structure?,
@@ -191,42 +201,83 @@ impl Arch {
 impl Ground {
     /// Reads `[ground]`, which holds one table, named by its kind: an inner key for the kind
     /// would not keep the keys of different kinds apart.
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, folder: &Path, gravity_m_s2: Reading<f64>) -> Reading<Self> {
         let mut kinds: Vec<_> = Pulse::ALL
             .iter()
             .map(|&kind| {
-                let read = |table: &mut Table<'_>| Self::read_pulse(table, kind);
+                let read = |table: &mut Table<'_>| PulseGround::read(table, kind).map(Self::Pulse);
                 (kind.name(), table.table(kind.name(), read))
             })
             .collect();
-        let record = table.not_yet("record", "this version does not read ground records yet");
-        kinds.push(("record", record));
+        let read =
+            |table: &mut Table<'_>| Record::read(table, folder, gravity_m_s2).map(Self::Record);
+        kinds.push(("record", table.table("record", read)));
         table.exactly_one("tables", kinds)
     }
 
-    fn read_pulse(table: &mut Table<'_>, kind: Pulse) -> Reading<Self> {
+    fn write(&self, out: &mut Writer) {
+        match self {
+            Self::Pulse(pulse) => pulse.write(out),
+            Self::Record(record) => record.write(out),
+        }
+    }
+}
+
+/// The key for the length of a wave train, as its source calls it, and its range.
+const fn cycles_key(kind: Pulse) -> (&'static str, &'static Number) {
+    match kind {
+        Pulse::WindowedSine => ("cycles", &CYCLES),
+        _ => ("gamma", &GAMMA),
+    }
+}
+
+impl PulseGround {
+    fn read(table: &mut Table<'_>, kind: Pulse) -> Reading<Self> {
         let amplitude_g = table.required("amplitude_g", &AMPLITUDE_G);
+        let vertical_amplitude_g = table.or("vertical_amplitude_g", &AMPLITUDE_G, 0.0);
         let duration_s = table.required("duration_s", &DURATION_S);
         let start_s = table.or("start_s", &START_S, 0.0);
-        Ok(Self {
+        let (mut cycles, mut phase_deg) = (Ok(WaveTrain::default().cycles), Ok(0.0));
+        if kind.is_wave_train() {
+            let (key, range) = cycles_key(kind);
+            cycles = table.or(key, range, WaveTrain::default().cycles);
+            phase_deg = table.or("phase_deg", &PHASE_DEG, 0.0);
+        }
+        let pulse = Self {
             kind,
             amplitude_g: amplitude_g?,
+            vertical_amplitude_g: vertical_amplitude_g?,
             duration_s: duration_s?,
             start_s: start_s?,
-        })
+            cycles: cycles?,
+            phase_deg: phase_deg?,
+        };
+        // In units of gravity this does not depend on gravity.
+        match pulse.motion(1.0).free_fall_s(1.0) {
+            None => Ok(pulse),
+            Some(time_s) => Err(table.wrong("vertical_amplitude_g", super::free_fall(time_s))),
+        }
     }
 
     fn write(&self, out: &mut Writer) {
         let Self {
             kind,
             amplitude_g,
+            vertical_amplitude_g,
             duration_s,
             start_s,
+            cycles,
+            phase_deg,
         } = *self;
         out.table(&format!("ground.{}", kind.name()));
         out.number("amplitude_g", amplitude_g);
+        out.number("vertical_amplitude_g", vertical_amplitude_g);
         out.number("duration_s", duration_s);
         out.number("start_s", start_s);
+        if kind.is_wave_train() {
+            out.number(cycles_key(kind).0, cycles);
+            out.number("phase_deg", phase_deg);
+        }
     }
 }
 

@@ -27,6 +27,7 @@
 
 mod error;
 mod keys;
+mod record;
 mod table;
 
 use std::fs::File;
@@ -35,7 +36,9 @@ use std::path::Path;
 
 use std::sync::Arc;
 
-use crate::dynamics::ground::{GroundMotion, Pulse};
+use nalgebra::Vector2;
+
+use crate::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
 use crate::dynamics::history::Request;
 use crate::mechanics::arch;
 use crate::mechanics::chain::Chain;
@@ -46,6 +49,7 @@ use crate::mechanics::mechanism::{HingeSites, Sway};
 use crate::mechanics::ring::Ring;
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
+pub use record::{Column, Component, Format, Layout, Record, Scaling, Series, Unit};
 use table::Writer;
 
 /// What to simulate, every default resolved.
@@ -134,29 +138,66 @@ impl Structure {
     }
 }
 
-/// A pulse of horizontal ground acceleration; before and after it the ground moves uniformly.
+/// How the ground moves.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ground {
+pub enum Ground {
+    /// As a single pulse.
+    Pulse(PulseGround),
+    /// As recorded, from `[ground.record]`.
+    Record(Record),
+}
+
+/// A pulse of ground acceleration; before and after it the ground moves uniformly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PulseGround {
     /// Shape of the pulse.
     pub kind: Pulse,
     /// Peak acceleration, positive to the right, in -1000 to 1000.
     pub amplitude_g: f64,
+    /// Peak of the vertical acceleration, positive upwards, with the same shape at the same time, in -1000
+    /// to 1000; the ground must not fall as fast as a free body.
+    pub vertical_amplitude_g: f64,
     /// Length of the part of the pulse that its kind names, above 0 and at most 1e6.
     pub duration_s: f64,
     /// When the pulse starts, in 0 to 1e6.
     pub start_s: f64,
+    /// Length of a wave train in periods, from `gamma` (above 1 and at most 100) or `cycles` (1 to 100).
+    pub cycles: f64,
+    /// Phase of a wave train, in -360 to 360.
+    pub phase_deg: f64,
 }
 
 impl Ground {
     /// The ground motion under the given gravity.
     fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
-        GroundMotion::pulse(
+        match self {
+            Self::Pulse(pulse) => pulse.motion(gravity_m_s2),
+            Self::Record(record) => record.motion(gravity_m_s2),
+        }
+    }
+}
+
+impl PulseGround {
+    fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+        GroundMotion::pulse_along(
             self.kind,
-            self.amplitude_g * gravity_m_s2,
+            Vector2::new(self.amplitude_g, self.vertical_amplitude_g) * gravity_m_s2,
             self.duration_s,
             self.start_s,
+            WaveTrain {
+                cycles: self.cycles,
+                phase_rad: self.phase_deg.to_radians(),
+            },
         )
     }
+}
+
+/// Says that a vertical acceleration is impossible for a structure that rests on the ground.
+fn free_fall(time_s: f64) -> String {
+    format!(
+        "lets the ground fall as fast as a free body at {time_s:?} s, so that nothing presses the \
+         structure on it; allowed are vertical accelerations above -1 g"
+    )
 }
 
 /// A rotated position from which the structure is released without velocity.
@@ -187,13 +228,19 @@ pub struct Simulation {
 }
 
 impl Scenario {
-    /// Reads a scenario from TOML text; `name` stands for the file in the errors.
+    /// Reads a scenario from TOML text; `name` stands for the file in the errors. Records of ground motion
+    /// are read from files relative to the folder of `name`.
     ///
     /// # Errors
     ///
-    /// All that is wrong with the text. After twenty lines that are no TOML it stops looking.
+    /// All that is wrong with the text and with its records. After twenty lines that are no TOML it stops
+    /// looking.
     pub fn parse(text: &str, name: &str) -> Result<Self, ScenarioErrors> {
-        table::read_text(text, Self::read_table)
+        Self::parse_in(folder_of(Path::new(name)), text, name)
+    }
+
+    fn parse_in(folder: &Path, text: &str, name: &str) -> Result<Self, ScenarioErrors> {
+        table::read_text(text, |table| Self::read_table(table, folder))
             .map_err(|faults| ScenarioErrors::placed(name, text, faults))
     }
 
@@ -229,7 +276,7 @@ impl Scenario {
             };
             ScenarioErrors::placed(&name, &text, vec![fault])
         })?;
-        Self::parse(&text, &name)
+        Self::parse_in(folder_of(path), &text, &name)
     }
 
     /// The ground motion in m/s2.
@@ -271,6 +318,11 @@ impl Scenario {
     pub fn to_json(&self) -> serde_json::Value {
         toml::from_str(&self.to_toml()).expect("`to_toml` writes TOML")
     }
+}
+
+/// The folder that a file is in.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
 }
 
 #[cfg(test)]
@@ -365,12 +417,15 @@ mod tests {
                 density_kg_m3: 2000.0,
                 voussoirs: Some(7),
             }),
-            ground: Some(Ground {
+            ground: Some(Ground::Pulse(PulseGround {
                 kind: Pulse::StepPair,
                 amplitude_g: -1000.0,
+                vertical_amplitude_g: 0.0,
                 duration_s: 0.5,
                 start_s: 1.0,
-            }),
+                cycles: 2.0,
+                phase_deg: 0.0,
+            })),
             impact: ImpactModel::Prescribed { restitution: 1.0 },
             initial: Some(Initial {
                 sway: Sway::Left,
@@ -466,7 +521,7 @@ duration_s = 1.0
         assert_eq!(
             errors.to_string(),
             "s.toml:1:1: unknown key `titel` in the scenario, did you mean `title`?; allowed are \
-             title, arch, column, ground, impact, initial, simulation\n\
+             title, arch, column, simulation, ground, impact, initial\n\
              s.toml:6:13: `voussoirs = 2` is out of range; allowed is a whole number from 3 (four \
              hinges need four joints) to 200"
         );
@@ -556,17 +611,15 @@ duration_s = 1.0
             let name = kind.name();
             let text = format!("{ARCH}[ground.{name}]\namplitude_g = 1\nduration_s = 1");
             let ground = parse(&text).expect("valid").ground.expect("given");
+            let Ground::Pulse(ground) = ground else {
+                panic!("{name} is a pulse")
+            };
             assert_eq!(ground.kind, *kind);
         }
         assert_error_after_arch(
             "[ground]",
             (1, 1),
             &["[ground] needs exactly one", "ricker"],
-        );
-        assert_error_after_arch(
-            "[ground.record]\nfile = 'x.csv'",
-            (1, 1),
-            &["table `record`", "does not read ground records yet"],
         );
         assert_errors(
             &format!("{ARCH}[ground.halfsine]"),
@@ -736,12 +789,19 @@ duration_s = 1.0
 
     fn any_ground() -> impl Strategy<Value = Ground> {
         let kind = proptest::sample::select(Pulse::ALL);
-        (kind, -1e3..1e3, magnitude(1e-9, 1e6), 0.0..1e6).prop_map(
-            |(kind, amplitude_g, duration_s, start_s)| Ground {
-                kind,
-                amplitude_g,
-                duration_s,
-                start_s,
+        let train = (1.0001..100.0, -360.0..360.0_f64);
+        let amplitudes = (-1e3..1e3, -0.9..0.9);
+        (kind, amplitudes, magnitude(1e-9, 1e6), 0.0..1e6, train).prop_map(
+            |(kind, (amplitude_g, vertical_amplitude_g), duration_s, start_s, train)| {
+                Ground::Pulse(PulseGround {
+                    kind,
+                    amplitude_g,
+                    vertical_amplitude_g,
+                    duration_s,
+                    start_s,
+                    cycles: if kind.is_wave_train() { train.0 } else { 2.0 },
+                    phase_deg: if kind.is_wave_train() { train.1 } else { 0.0 },
+                })
             },
         )
     }

@@ -1,0 +1,250 @@
+//! The AT2 files of the PEER ground motion databases.
+//!
+//! A header of a few lines, the last of which gives the number of samples and their spacing in one of
+//! many wordings, and then the accelerations in units of gravity, as Fortran wrote them: several to a
+//! line, of fixed width, so that a minus sign may be all that parts two of them.
+
+use super::{LEAST_STEP_S, LONGEST_S, LineFault, MOST_SAMPLES, Samples, number};
+use crate::scenario::error::excerpt;
+
+/// Lines among which the number of samples is looked for.
+const LONGEST_HEADER: usize = 64;
+/// Characters of these lines that are looked at.
+const LONGEST_HEADER_LINE: usize = 1000;
+
+/// Reads the samples, in units of gravity; the first is at time zero.
+pub(super) fn parse(text: &str) -> Result<Samples, LineFault> {
+    let header = Header::parse(text)?;
+    let mut samples = Vec::new();
+    let mut last_line = header.line;
+    for (index, line) in text.lines().enumerate().skip(header.line) {
+        for word in words(line) {
+            last_line = index + 1;
+            let fault = |message| LineFault {
+                line: last_line,
+                message,
+            };
+            if samples.len() == header.count {
+                let message = format!(
+                    "`{}` is one value too many: line {} announces {} (NPTS)",
+                    excerpt(word),
+                    header.line,
+                    header.count
+                );
+                return Err(fault(message));
+            }
+            let acceleration = number(word).map_err(fault)?;
+            // Counts below 2^53 are exact.
+            #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
+            samples.push((samples.len() as f64 * header.step_s, acceleration));
+        }
+    }
+    if samples.len() < header.count {
+        return Err(LineFault {
+            line: last_line,
+            message: format!(
+                "the file ends after {} values: line {} announces {} (NPTS)",
+                samples.len(),
+                header.line,
+                header.count
+            ),
+        });
+    }
+    Ok(samples)
+}
+
+/// The numbers of a line as they are written, also where only a sign parts them.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    // Some files end with the end-of-file character of DOS.
+    let blank = |c: char| c.is_whitespace() || c == ',' || c == '\u{1a}';
+    line.split(blank).flat_map(|run| {
+        let mut rest = run;
+        std::iter::from_fn(move || {
+            if rest.is_empty() {
+                return None;
+            }
+            let bytes = rest.as_bytes();
+            let is_next = |&at: &usize| {
+                matches!(bytes[at], b'+' | b'-')
+                    && !matches!(bytes[at - 1], b'e' | b'E' | b'd' | b'D')
+            };
+            let end = (1..bytes.len()).find(is_next).unwrap_or(bytes.len());
+            let (word, others) = rest.split_at(end);
+            rest = others;
+            Some(word)
+        })
+    })
+}
+
+/// What the header tells.
+struct Header {
+    /// Its last line, from 1.
+    line: usize,
+    /// Number of samples.
+    count: usize,
+    step_s: f64,
+}
+
+/// What matters on the line with the numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Item {
+    Count,
+    Step,
+    Number(f64),
+}
+
+impl Header {
+    fn parse(text: &str) -> Result<Self, LineFault> {
+        let mut items = Vec::new();
+        for (index, line) in text.lines().enumerate().take(LONGEST_HEADER) {
+            let line_number = index + 1;
+            let end = line.char_indices().nth(LONGEST_HEADER_LINE);
+            let line = end.map_or(line, |(end, _)| &line[..end]);
+            let fault = |message: String| {
+                Err(LineFault {
+                    line: line_number,
+                    message,
+                })
+            };
+            if let Some(what) = wrong_quantity(line) {
+                return fault(what);
+            }
+            let here = Item::all(line);
+            // The two may stand on two lines, but nothing else between them.
+            if here.contains(&Item::Count) || !items.is_empty() {
+                items.extend_from_slice(&here);
+            }
+            match (items.contains(&Item::Count), items.contains(&Item::Step)) {
+                (false, _) => {}
+                (true, true) => {
+                    let Some((count, step_s)) = values(&items) else {
+                        return fault("gives no numbers for NPTS and DT".to_owned());
+                    };
+                    return Self::checked(line_number, count, step_s).or_else(fault);
+                }
+                (true, false) if here.contains(&Item::Count) => {}
+                (true, false) => {
+                    return fault(
+                        "there is no DT, the time step, by here in the header".to_owned(),
+                    );
+                }
+            }
+        }
+        let line = text.lines().take(LONGEST_HEADER).count().max(1);
+        let message = if items.is_empty() {
+            "there is no NPTS, the number of samples, by here: is this an AT2 file?"
+        } else {
+            "there is no DT, the time step, by here in the header"
+        };
+        Err(LineFault {
+            line,
+            message: message.to_owned(),
+        })
+    }
+
+    fn checked(line: usize, count: f64, step_s: f64) -> Result<Self, String> {
+        if !(step_s.is_finite() && step_s >= LEAST_STEP_S) {
+            return Err(format!(
+                "DT is {step_s:?} s; allowed is at least {LEAST_STEP_S:?} s"
+            ));
+        }
+        #[expect(clippy::cast_precision_loss, reason = "the bound is below 2^53")]
+        let most = MOST_SAMPLES as f64;
+        if !(count.fract() == 0.0 && (2.0..=most).contains(&count)) {
+            return Err(format!(
+                "NPTS is {count:?}; allowed is a whole number from 2 to {MOST_SAMPLES}"
+            ));
+        }
+        if (count - 1.0) * step_s > LONGEST_S {
+            return Err(format!(
+                "NPTS and DT make a record of {:?} s; allowed are at most {LONGEST_S:?} s",
+                (count - 1.0) * step_s
+            ));
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the range was checked"
+        )]
+        let count = count as usize;
+        Ok(Self {
+            line,
+            count,
+            step_s,
+        })
+    }
+}
+
+impl Item {
+    fn all(line: &str) -> Vec<Self> {
+        let parts = line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c));
+        parts
+            .filter_map(|part| {
+                if part.eq_ignore_ascii_case("NPTS") {
+                    Some(Self::Count)
+                } else if part.eq_ignore_ascii_case("DT") {
+                    Some(Self::Step)
+                } else {
+                    leading_number(part).map(Self::Number)
+                }
+            })
+            .collect()
+    }
+}
+
+/// Number of samples and time step: each label with the number after it, or else the first two numbers in
+/// the order of the labels, as in `4096 0.01 NPTS, DT`.
+fn values(items: &[Item]) -> Option<(f64, f64)> {
+    let position = |label: Item| items.iter().position(|item| *item == label);
+    let (count, step) = (position(Item::Count)?, position(Item::Step)?);
+    let after = |at: usize| match items.get(at + 1) {
+        Some(Item::Number(x)) => Some(*x),
+        _ => None,
+    };
+    if let (Some(count), Some(step)) = (after(count), after(step)) {
+        return Some((count, step));
+    }
+    let mut numbers = items.iter().filter_map(|item| match item {
+        Item::Number(x) => Some(*x),
+        _ => None,
+    });
+    let (first, second) = (numbers.next()?, numbers.next()?);
+    Some(if count < step {
+        (first, second)
+    } else {
+        (second, first)
+    })
+}
+
+/// The number that a word begins with, as in `.0050SEC`.
+fn leading_number(word: &str) -> Option<f64> {
+    let end = word
+        .find(|c: char| !(c.is_ascii_digit() || "+-.eEdD".contains(c)))
+        .unwrap_or(word.len());
+    // An E that follows the number may belong to it or to the next word.
+    (1..=end.min(40))
+        .rev()
+        .find_map(|end| number(&word[..end]).ok())
+}
+
+/// Why a line of the header says that the file holds something else than accelerations in g.
+fn wrong_quantity(line: &str) -> Option<String> {
+    let line = line.to_ascii_uppercase();
+    for quantity in ["VELOCITY", "DISPLACEMENT"] {
+        if line.contains(&format!("{quantity} TIME")) {
+            return Some(format!(
+                "the file holds a {} history; allowed is an acceleration history",
+                quantity.to_ascii_lowercase()
+            ));
+        }
+    }
+    let (_, unit) = line.split_once("UNITS OF ")?;
+    let unit = unit.split_whitespace().next()?;
+    let unit = unit.trim_end_matches(|c: char| !c.is_alphanumeric());
+    (unit != "G").then(|| {
+        format!(
+            "the unit is {}; allowed in an AT2 file is G: a CSV file may have other units",
+            excerpt(unit)
+        )
+    })
+}

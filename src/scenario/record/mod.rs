@@ -1,0 +1,719 @@
+//! Ground motion from files: `[ground.record]`.
+//!
+//! ```toml
+//! [ground.record]
+//! file = "north.at2"            # relative to the scenario file
+//! format = "at2"                # or "csv"; guessed from the ending when left out
+//! component = "horizontal"      # or "vertical": where the file's accelerations point, positive to the
+//!                               # right or upwards
+//! scale = 1.0                   # or peak_g = 0.5, the peak to scale to
+//! start_s = 0.0                 # time of the simulation at the file's time zero
+//!
+//! [ground.record.vertical]      # optional second record, scaled on its own, on the same clock
+//! file = "up.csv"
+//! time_column = 1               # CSV only: number or name of the column
+//! acceleration_column = "up"
+//! unit = "cm/s2"                # CSV only, and required there: "g", "m/s2" or "cm/s2"
+//! ```
+//!
+//! Samples are joined by straight lines; outside them the acceleration is zero. Units of gravity are those
+//! of the simulation, `gravity_m_s2`.
+
+mod at2;
+mod csv;
+
+use std::fs;
+use std::io::Read as _;
+use std::ops::Bound::{Excluded, Included};
+use std::path::Path;
+use std::sync::Arc;
+
+use toml::de::DeValue;
+
+use super::error::excerpt;
+use super::table::{Count, Number, OneOf, Reading, Rule, Table, Text, Writer};
+use crate::dynamics::ground::GroundMotion;
+
+/// Times in s and accelerations.
+type Samples = Vec<(f64, f64)>;
+
+/// Largest file.
+const MOST_BYTES: u64 = 64 << 20;
+/// Largest number of samples: an hour at 500 Hz.
+const MOST_SAMPLES: usize = 1_800_000;
+/// Times of a record are at most this far from zero.
+const LONGEST_S: f64 = 1e6;
+/// Samples that are closer are a slip of the pen; what jumps may jump in a microsecond.
+const LEAST_STEP_S: f64 = 1e-6;
+/// As for pulses: what is beyond is no ground motion.
+const MOST_G: f64 = 1e3;
+
+const SCALE: Number = Number(Included(-1e6), Included(1e6));
+const PEAK_G: Number = Number(Excluded(0.0), Included(MOST_G));
+const START_S: Number = Number(Included(0.0), Included(LONGEST_S));
+const COLUMN_NUMBER: Count = Count {
+    range: 1..=10_000,
+    why: "the first column",
+};
+
+named! {
+    /// Format of a record's file.
+    pub enum Format {
+        /// PEER strong motion database; accelerations in units of gravity.
+        At2 = "at2",
+        /// A table with a column of times and one of accelerations.
+        Csv = "csv",
+    }
+}
+
+named! {
+    /// Unit of the accelerations in a table.
+    pub enum Unit {
+        /// Gravity of the simulation.
+        Gravity = "g",
+        /// Metres per second squared.
+        MetrePerS2 = "m/s2",
+        /// Centimetres per second squared, gal.
+        CentimetrePerS2 = "cm/s2",
+    }
+}
+
+impl Unit {
+    const fn in_m_s2(self, gravity_m_s2: f64) -> f64 {
+        match self {
+            Self::Gravity => gravity_m_s2,
+            Self::MetrePerS2 => 1.0,
+            Self::CentimetrePerS2 => 0.01,
+        }
+    }
+}
+
+named! {
+    /// Where the accelerations of a record point.
+    pub enum Component {
+        /// To the right.
+        Horizontal = "horizontal",
+        /// Upwards.
+        Vertical = "vertical",
+    }
+}
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// By its number, from 1.
+    Number(usize),
+    /// By its name in the first row.
+    Name(String),
+}
+
+/// How a file is read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layout {
+    /// As an AT2 file.
+    At2,
+    /// As a table.
+    Csv {
+        /// Times in s.
+        time_column: Column,
+        /// Accelerations.
+        acceleration_column: Column,
+        /// Their unit.
+        unit: Unit,
+    },
+}
+
+/// What the accelerations of a file are multiplied by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scaling {
+    /// This factor.
+    Factor(f64),
+    /// The positive factor that makes their largest magnitude so large, in units of gravity.
+    PeakG(f64),
+}
+
+/// Accelerations along one direction, from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// The file, relative to that of the scenario.
+    pub file: String,
+    /// How it is read.
+    pub layout: Layout,
+    /// How strong it is.
+    pub scaling: Scaling,
+    /// Times in s, increasing, and accelerations as in the file.
+    pub samples: Arc<[(f64, f64)]>,
+}
+
+/// Ground motion from one or two files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Where the accelerations of `main` point.
+    pub component: Component,
+    /// The one record, or that of the horizontal component.
+    pub main: Series,
+    /// The record of the vertical component, where `main` is the horizontal one.
+    pub vertical: Option<Series>,
+    /// Time of the simulation at time zero of the files, in 0 to 1e6.
+    pub start_s: f64,
+}
+
+/// What a series is read for.
+struct Purpose<'a> {
+    /// Folder of the scenario.
+    folder: &'a Path,
+    component: Component,
+    start_s: f64,
+    gravity_m_s2: f64,
+}
+
+impl Record {
+    /// The ground motion under the given gravity.
+    #[must_use]
+    pub fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+        let main = self.main.accelerations_m_s2(gravity_m_s2);
+        match (self.component, &self.vertical) {
+            (Component::Vertical, _) => GroundMotion::record(&[], &main, self.start_s),
+            (Component::Horizontal, vertical) => {
+                let vertical = vertical
+                    .as_ref()
+                    .map_or_else(Vec::new, |series| series.accelerations_m_s2(gravity_m_s2));
+                GroundMotion::record(&main, &vertical, self.start_s)
+            }
+        }
+    }
+
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        gravity_m_s2: Reading<f64>,
+    ) -> Reading<Self> {
+        let components = OneOf {
+            all: Component::ALL,
+            name: Component::name,
+        };
+        let component = table.or("component", &components, Component::Horizontal);
+        let start_s = table.or("start_s", &START_S, 0.0);
+        let purpose = |component| {
+            Ok(Purpose {
+                folder,
+                component,
+                start_s: start_s?,
+                gravity_m_s2: gravity_m_s2?,
+            })
+        };
+        let main = Series::read(table, component.and_then(purpose));
+        let vertical = table.table("vertical", |table| {
+            Series::read(table, purpose(Component::Vertical))
+        });
+        if let (Ok(Component::Vertical), Ok(Some(_))) = (&component, &vertical) {
+            let wrong =
+                "stands beside `component = \"vertical\"`; allowed is one record for a direction";
+            return Err(table.wrong("vertical", wrong));
+        }
+        Ok(Self {
+            component: component?,
+            main: main?,
+            vertical: vertical?,
+            start_s: start_s?,
+        })
+    }
+
+    pub(super) fn write(&self, out: &mut Writer) {
+        let Self {
+            component,
+            main,
+            vertical,
+            start_s,
+        } = self;
+        out.table("ground.record");
+        main.write(out);
+        out.text("component", component.name());
+        out.number("start_s", *start_s);
+        if let Some(vertical) = vertical {
+            out.table("ground.record.vertical");
+            vertical.write(out);
+        }
+    }
+}
+
+impl Series {
+    /// Times in s and accelerations in m/s2.
+    fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Samples {
+        let factor = self.factor(gravity_m_s2);
+        let scaled = |&(time_s, acceleration): &(f64, f64)| (time_s, acceleration * factor);
+        self.samples.iter().map(scaled).collect()
+    }
+
+    /// What a number of the file is multiplied by to be in m/s2.
+    fn factor(&self, gravity_m_s2: f64) -> f64 {
+        let unit = match self.layout {
+            Layout::At2 => Unit::Gravity,
+            Layout::Csv { unit, .. } => unit,
+        };
+        match self.scaling {
+            Scaling::Factor(factor) => factor * unit.in_m_s2(gravity_m_s2),
+            Scaling::PeakG(peak_g) => peak_g * gravity_m_s2 / self.peak(),
+        }
+    }
+
+    /// Largest magnitude in the file.
+    fn peak(&self) -> f64 {
+        self.samples.iter().map(|s| s.1.abs()).fold(0.0, f64::max)
+    }
+
+    fn read(table: &mut Table<'_>, purpose: Reading<Purpose<'_>>) -> Reading<Self> {
+        let file = table.required("file", &Text);
+        let formats = OneOf {
+            all: Format::ALL,
+            name: Format::name,
+        };
+        let format = table.optional("format", &formats);
+        let scaling = Scaling::read(table);
+        let format = match (&file, format?) {
+            (_, Some(format)) => Ok(format),
+            (Ok(file), None) => Format::of_ending(file).ok_or_else(|| {
+                let wrong =
+                    "has an ending that tells no format: give `format` as well, \"at2\" or \"csv\"";
+                table.wrong("file", wrong)
+            }),
+            (Err(reported), None) => Err(*reported),
+        };
+        let layout = Layout::read(table, format);
+        let (file, scaling, layout, purpose) = (file?, scaling?, layout?, purpose?);
+        let samples = read_samples(&purpose.folder.join(&file), &layout)
+            .map_err(|wrong| table.wrong("file", wrong))?;
+        let series = Self {
+            file,
+            layout,
+            scaling,
+            samples: samples.into(),
+        };
+        series.check(table, &purpose)?;
+        Ok(series)
+    }
+
+    /// Checks that the ground can move like that.
+    fn check(&self, table: &mut Table<'_>, purpose: &Purpose<'_>) -> Reading<()> {
+        let gravity_m_s2 = purpose.gravity_m_s2;
+        if let Scaling::PeakG(_) = self.scaling
+            && self.peak() == 0.0
+        {
+            return Err(table.wrong("peak_g", "cannot be reached: the record is zero throughout"));
+        }
+        let peak_g = (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs();
+        if peak_g.is_nan() || peak_g > MOST_G {
+            let wrong = format!("reaches {peak_g:?} g as scaled; allowed is at most {MOST_G:?} g");
+            return Err(table.wrong("file", wrong));
+        }
+        let first_s = self.samples.first().map_or(0.0, |sample| sample.0);
+        if purpose.start_s + first_s < 0.0 {
+            let wrong = format!(
+                "begins at {first_s:?} s; allowed is a `start_s` of at least {:?}, so that it does not \
+                 begin before time zero",
+                -first_s
+            );
+            return Err(table.wrong("file", wrong));
+        }
+        if purpose.component == Component::Vertical {
+            let samples = self.accelerations_m_s2(gravity_m_s2);
+            let motion = GroundMotion::record(&[], &samples, purpose.start_s);
+            if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
+                return Err(table.wrong("file", super::free_fall(time_s)));
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&self, out: &mut Writer) {
+        let Self {
+            file,
+            layout,
+            scaling,
+            samples: _,
+        } = self;
+        out.text("file", file);
+        layout.write(out);
+        match *scaling {
+            Scaling::Factor(factor) => out.number("scale", factor),
+            Scaling::PeakG(peak_g) => out.number("peak_g", peak_g),
+        }
+    }
+}
+
+impl Scaling {
+    fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let scale = table.optional("scale", &SCALE);
+        let peak_g = table.optional("peak_g", &PEAK_G);
+        match (scale?, peak_g?) {
+            (Some(_), Some(_)) => Err(table.wrong(
+                "peak_g",
+                "stands beside `scale`; allowed is at most one of them",
+            )),
+            (scale, None) => Ok(Self::Factor(scale.unwrap_or(1.0))),
+            (None, Some(peak_g)) => Ok(Self::PeakG(peak_g)),
+        }
+    }
+}
+
+impl Format {
+    fn of_ending(file: &str) -> Option<Self> {
+        let ending = Path::new(file).extension()?.to_str()?;
+        let mut formats = Self::ALL.iter().copied();
+        formats.find(|format| ending.eq_ignore_ascii_case(format.name()))
+    }
+}
+
+impl Layout {
+    fn read(table: &mut Table<'_>, format: Reading<Format>) -> Reading<Self> {
+        let units = OneOf {
+            all: Unit::ALL,
+            name: Unit::name,
+        };
+        let time_column = table.or("time_column", &AnyColumn, Column::Number(1));
+        let acceleration_column = table.or("acceleration_column", &AnyColumn, Column::Number(2));
+        let unit = table.optional("unit", &units);
+        match format? {
+            Format::At2 => {
+                for key in ["time_column", "acceleration_column", "unit"] {
+                    if table.gives(key) {
+                        return Err(table.wrong(key, "goes with `format = \"csv\"` only"));
+                    }
+                }
+                Ok(Self::At2)
+            }
+            Format::Csv => Ok(Self::Csv {
+                time_column: time_column?,
+                acceleration_column: acceleration_column?,
+                unit: match unit? {
+                    Some(unit) => unit,
+                    None => table.required("unit", &units)?,
+                },
+            }),
+        }
+    }
+
+    fn write(&self, out: &mut Writer) {
+        match self {
+            Self::At2 => out.text("format", Format::At2.name()),
+            Self::Csv {
+                time_column,
+                acceleration_column,
+                unit,
+            } => {
+                out.text("format", Format::Csv.name());
+                for (key, column) in [
+                    ("time_column", time_column),
+                    ("acceleration_column", acceleration_column),
+                ] {
+                    match column {
+                        Column::Number(number) => out.count(key, *number),
+                        Column::Name(name) => out.text(key, name),
+                    }
+                }
+                out.text("unit", unit.name());
+            }
+        }
+    }
+}
+
+/// Name or number of a column.
+struct AnyColumn;
+
+impl Rule for AnyColumn {
+    type Value = Column;
+
+    fn allowed(&self) -> String {
+        format!("the name of a column, or {}", COLUMN_NUMBER.allowed())
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<Column, String> {
+        match value {
+            DeValue::String(name) => Ok(Column::Name(name.to_string())),
+            _ => COLUMN_NUMBER.read(value).map(Column::Number),
+        }
+    }
+}
+
+/// What is wrong with a record's file, at a line from 1.
+#[derive(Debug, PartialEq, Eq)]
+struct LineFault {
+    line: usize,
+    message: String,
+}
+
+/// Reads a file of at most 64 MiB, or says what is wrong with it.
+fn read_samples(path: &Path, layout: &Layout) -> Result<Samples, String> {
+    let unreadable = |error| format!("cannot be read: {error}");
+    if !fs::metadata(path).map_err(unreadable)?.is_file() {
+        return Err("is not a file".to_owned());
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path)
+        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(unreadable)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err("is larger than 64 MiB, too large for a record".to_owned());
+    }
+    // Headers may be in any encoding; the numbers are the same in all of them.
+    let text = String::from_utf8_lossy(&bytes);
+    parse(&text, layout).map_err(|LineFault { line, message }| {
+        let path = path.display().to_string();
+        let path = path.replace(char::is_control, "\u{fffd}");
+        format!("is faulty: {path}:{line}: {message}")
+    })
+}
+
+fn parse(text: &str, layout: &Layout) -> Result<Samples, LineFault> {
+    let text = text.trim_start_matches('\u{feff}');
+    match layout {
+        Layout::At2 => at2::parse(text),
+        Layout::Csv {
+            time_column,
+            acceleration_column,
+            ..
+        } => csv::parse(text, time_column, acceleration_column),
+    }
+}
+
+/// A finite number as programs write them, also with Fortran's `D` for the exponent.
+fn number(word: &str) -> Result<f64, String> {
+    // The library would also take "inf" and "nan".
+    let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
+    let value = if word.len() <= 60 && word.chars().all(numeric) {
+        word.replace(['d', 'D'], "e").parse::<f64>().ok()
+    } else {
+        None
+    };
+    value
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| format!("`{}` is not a finite number", excerpt(word)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn csv_layout() -> Layout {
+        Layout::Csv {
+            time_column: Column::Number(1),
+            acceleration_column: Column::Name("a".to_owned()),
+            unit: Unit::Gravity,
+        }
+    }
+
+    #[track_caller]
+    fn assert_fault(text: &str, layout: &Layout, line: usize, words: &str) {
+        let fault = parse(text, layout).expect_err("faulty");
+        assert_eq!(fault.line, line, "{fault:?}");
+        assert!(fault.message.contains(words), "{fault:?}");
+    }
+
+    #[test]
+    fn headers_of_all_wordings_are_read() {
+        for header in [
+            "NPTS=     3, DT=   .0050 SEC",
+            "NPTS=3, DT= .00500 SEC, 5E15.7",
+            "NPTS=  3 , DT= 0.0050 SEC,",
+            "NPTS 3 DT 0.005",
+            "npts: 3; dt: 5.0E-3 sec",
+            "    3   0.0050   NPTS, DT",
+            "   3    0.0050  NPTS, DT, 8 VALUES TO A LINE",
+            "NPTS, DT = 3, .005",
+            "DT, NPTS = .005 3",
+            "3 NPTS, .005SEC DT",
+            "DT= .0050SEC  NPTS= 3",
+            "NPTS= 3.  DT= .5D-02",
+            "NPTS= 3\nDT= .005 SEC",
+        ] {
+            for end in ["\n", "\r\n"] {
+                let text = format!(
+                    "\u{feff}PEER STRONG MOTION DATABASE RECORD\nSYNTHETIC 1, 0\n\
+                     ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz\n{header}\n 0.1 -.2E-01\n 3.D-1\n"
+                );
+                let samples = parse(&text.replace('\n', end), &Layout::At2).expect(header);
+                assert_eq!(
+                    samples,
+                    [(0.0, 0.1), (0.005, -0.02), (0.01, 0.3)],
+                    "{header}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn fixed_width_values_may_touch() {
+        let values = |line: &str| {
+            let count = 4;
+            let text = format!("NPTS= {count}, DT= .01\n{line}\n");
+            parse(&text, &Layout::At2)
+                .map(|samples| samples.into_iter().map(|s| s.1).collect::<Vec<_>>())
+        };
+        assert_eq!(
+            values("-.1234E-03-.5678E-03+.1E+01-0.2").unwrap(),
+            [-0.000_123_4, -0.000_567_8, 1.0, -0.2]
+        );
+        assert_eq!(
+            values("1,-2-3\n\n 4\r\n\u{1a}").unwrap(),
+            [1.0, -2.0, -3.0, 4.0]
+        );
+        // Where not even a sign parts them nothing is guessed.
+        for line in [
+            "0.12340.5678 0 0 0",
+            ".12E-03.56E-03 0 0",
+            "1--2 3",
+            "1 2 3 4-",
+        ] {
+            assert!(values(line).is_err(), "{line}");
+        }
+    }
+
+    #[test]
+    fn faults_of_at2_files_have_lines() {
+        let fault = |text: &str, line, words| assert_fault(text, &Layout::At2, line, words);
+        let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
+        fault(&format!("{head}1 2\n3 4\n"), 6, "`4` is one value too many");
+        fault(&format!("{head}1 2\n3\n\n.5\n"), 8, "line 4 announces 3");
+        fault(
+            &format!("{head}1 2\n"),
+            5,
+            "ends after 2 values: line 4 announces 3",
+        );
+        fault(head, 4, "ends after 0 values");
+        fault(&format!("{head}1\nabc"), 6, "`abc` is not a finite number");
+        for word in ["nan", "inf", "1e999", "****", "-", "1.2.3"] {
+            fault(&format!("{head}1\n{word}"), 6, "is not a finite number");
+        }
+        fault("", 1, "no NPTS");
+        fault("1 2 3", 1, "no NPTS");
+        fault("A\nNPTS= 3\n1 2 3", 3, "no DT");
+        fault("A\nNPTS= 3", 2, "no DT");
+        fault("NPTS, DT\n1 2", 1, "no numbers");
+        fault("NPTS= 3.5, DT= .1", 1, "NPTS is 3.5");
+        fault("NPTS= 1, DT= .1", 1, "NPTS is 1.0");
+        fault("NPTS= 99999999999, DT= .1", 1, "from 2 to 1800000");
+        fault("NPTS= -5, DT= .1", 1, "NPTS is -5.0");
+        fault("NPTS= 5, DT= 0", 1, "DT is 0.0 s");
+        fault("NPTS= 5, DT= -.1", 1, "DT is -0.1 s");
+        fault("NPTS= 5, DT= 1e6", 1, "record of 4000000.0 s");
+        fault(
+            "A\nVELOCITY TIME HISTORY IN UNITS OF CM/S",
+            2,
+            "a velocity history",
+        );
+        fault(
+            "A\nUNITS OF CM/SEC/SEC\nNPTS 2 DT 1",
+            2,
+            "unit is CM/SEC/SEC",
+        );
+    }
+
+    #[test]
+    fn tables_of_all_kinds_are_read() {
+        let columns = |time, acceleration| Layout::Csv {
+            time_column: time,
+            acceleration_column: acceleration,
+            unit: Unit::Gravity,
+        };
+        let name = |name: &str| Column::Name(name.to_owned());
+        let number = Column::Number;
+        for (text, layout) in [
+            ("t,a\n0,1\n0.5,-2\n", csv_layout()),
+            ("# made by hand\n\nt;a\r\n0;1\r\n0.5;-2", csv_layout()),
+            ("t\tb\ta\n0\t\t1\n\n0.5\t\t-2\n", csv_layout()),
+            ("0,1\n0.5,-2\n", columns(number(1), number(2))),
+            (
+                "x,t,\"a\"\n9, 0.0 ,1e0\n9,\"0.5\",-2D0\n",
+                columns(name("t"), name("a")),
+            ),
+            ("a,t\n1,0\n-2,.5\n", columns(number(2), number(1))),
+        ] {
+            assert_eq!(
+                parse(text, &layout),
+                Ok(vec![(0.0, 1.0), (0.5, -2.0)]),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn faults_of_tables_have_lines() {
+        let fault = |text: &str, line, words| assert_fault(text, &csv_layout(), line, words);
+        fault("", 1, "no samples");
+        fault("# x\n\n", 1, "no samples");
+        fault("t,b\n0,1", 1, "no column named `a` in `t, b`");
+        fault("t,a,a\n0,1", 1, "two columns named `a`");
+        fault("t,a\n0,1\n# x\n1\n", 4, "no column 2 in `1`");
+        fault("t,a\n0,1\n\n1,x\n", 4, "`x` is not a finite number");
+        fault("t,a\n0,1\n1,inf\n", 3, "`inf` is not a finite number");
+        fault(
+            "t,a\n0,1\n1,2\n1,3\n",
+            4,
+            "does not increase: 1.0 s follows 1.0 s",
+        );
+        fault("t,a\n0,1\n-1,2\n", 3, "does not increase");
+        fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
+        fault("t,a\n0,1\n", 2, "number of samples is 1");
+        // A first row that is half a number is no header.
+        let numbered = Layout::Csv {
+            time_column: Column::Number(1),
+            acceleration_column: Column::Number(2),
+            unit: Unit::Gravity,
+        };
+        assert_fault("0,1x\n1,2\n", &numbered, 1, "`1x`");
+    }
+
+    proptest! {
+        /// Noise and damaged files are read, in order, or said to be wrong.
+        #[test]
+        fn readers_never_panic(
+            noise in any::<String>(),
+            words in proptest::collection::vec(proptest::sample::select(WORDS), 0..40),
+        ) {
+            let damaged: String = words.concat();
+            let text = format!("t,a\n{damaged}");
+            for text in [&noise, &damaged, &text] {
+                for layout in [Layout::At2, csv_layout()] {
+                    if let Ok(samples) = parse(text, &layout) {
+                        prop_assert!(samples.len() >= 2);
+                        prop_assert!(samples.windows(2).all(|pair| pair[0].0 < pair[1].0));
+                        prop_assert!(samples.iter().all(|s| s.0.is_finite() && s.1.is_finite()));
+                    }
+                }
+            }
+        }
+    }
+
+    const WORDS: &[&str] = &[
+        "NPTS",
+        "DT",
+        "=",
+        " ",
+        ",",
+        ";",
+        "\t",
+        "\n",
+        "\r\n",
+        "2",
+        "3",
+        ".01",
+        "-.5E-03",
+        "+",
+        "-",
+        "e",
+        "D",
+        "é",
+        "\u{1a}",
+        "\"",
+        "#",
+        "UNITS OF ",
+        "G",
+        "nan",
+        "VELOCITY TIME",
+        "t",
+        "a",
+        "0,0\n",
+        "1,1\n",
+    ];
+}

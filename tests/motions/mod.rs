@@ -1,0 +1,144 @@
+//! Synthetic ground motions, the files they are written to, and what they do to an arch.
+#![allow(dead_code, clippy::unwrap_used)]
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::sync::LazyLock;
+
+use archrock::dynamics::ground::GroundMotion;
+use archrock::dynamics::history::{History, Request, Sample, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::impact::ImpactModel;
+use archrock::mechanics::mechanism::Sway;
+use archrock::scenario;
+
+pub const G: f64 = 9.81;
+
+/// The semicircle of the paper with a mean radius of 5 m; its mechanisms are found once.
+pub fn semicircle() -> Arch {
+    static SEMICIRCLE: LazyLock<Arch> = LazyLock::new(|| {
+        let arch = scenario::Arch {
+            mean_radius_m: 5.0,
+            thickness_ratio: 0.15,
+            embrace_deg: 180.0,
+            depth_m: 1.0,
+            density_kg_m3: 2000.0,
+            voussoirs: None,
+        };
+        arch.build(ImpactModel::MaxRestitution).unwrap()
+    });
+    SEMICIRCLE.clone()
+}
+
+/// History with samples every 5 ms. It comes to rest below 1e-8 of the energy barrier under the gravity `G`,
+/// whatever gravity is.
+pub fn run<'a>(
+    arch: &'a Arch,
+    ground: &'a GroundMotion,
+    gravity_m_s2: f64,
+    initial: Option<(Sway, f64)>,
+    end_s: f64,
+) -> (History<'a, Arch>, Vec<Sample<[f64; 3]>>) {
+    let request = Request {
+        end_s,
+        relative_tolerance: 1e-10,
+        initial,
+        output_step_s: Some(0.005),
+    };
+    let rocking = Rocking::new(arch, ground, gravity_m_s2, 1e-8 * G / gravity_m_s2);
+    let mut samples = Vec::new();
+    let history = history(&rocking, &request, |sample| samples.push(*sample)).unwrap();
+    (history, samples)
+}
+
+/// SplitMix64 of Steele, Lea and Flood (2014): the same numbers everywhere.
+pub struct Random(pub u64);
+
+impl Random {
+    /// A number in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// An earthquake from a seed: forty waves of 0.3 to 8 Hz with random phases, weaker the faster, which swell
+/// over the first tenth of the duration and fade over the second half, with a peak of 1.
+pub fn synthetic(seed: u64, duration_s: f64, step_s: f64) -> Vec<(f64, f64)> {
+    let mut random = Random(seed);
+    let waves: Vec<_> = (0..40)
+        .map(|_| {
+            let frequency = 0.3 * (8.0_f64 / 0.3).powf(random.unit());
+            (frequency, 2.0 * PI * random.unit())
+        })
+        .collect();
+    let count = (duration_s / step_s).round() as i32;
+    let mut samples: Vec<_> = (0..count)
+        .map(|i| {
+            let time = f64::from(i) * step_s;
+            let part = time / duration_s;
+            let envelope = (10.0 * part).min(1.0) * (2.0 - 2.0 * part).min(1.0);
+            let wave = |&(f, phase): &(f64, f64)| (2.0 * PI * f * time + phase).sin() / f.sqrt();
+            (time, envelope * waves.iter().map(wave).sum::<f64>())
+        })
+        .collect();
+    let peak = samples.iter().map(|s| s.1.abs()).fold(0.0, f64::max);
+    for sample in &mut samples {
+        sample.1 /= peak;
+    }
+    samples
+}
+
+pub fn scaled(samples: &[(f64, f64)], factor: f64) -> Vec<(f64, f64)> {
+    samples.iter().map(|&(t, a)| (t, a * factor)).collect()
+}
+
+/// A number as Fortran's `Ew.d` writes it, without a zero before the point: ` .1234567E-02`.
+fn fortran(x: f64, digits: usize) -> String {
+    let scientific = format!("{:.*e}", digits - 1, x.abs());
+    let (mantissa, exponent) = scientific.split_once('e').unwrap();
+    let exponent = exponent.parse::<i32>().unwrap() + i32::from(x != 0.0);
+    let sign = if x < 0.0 { '-' } else { ' ' };
+    let digits = mantissa.replace('.', "");
+    let sign_of_exponent = if exponent < 0 { '-' } else { '+' };
+    format!("{sign}.{digits}E{sign_of_exponent}{:02}", exponent.abs())
+}
+
+/// A way of writing AT2 files.
+pub struct Style {
+    /// The line with `{npts}` and `{dt}`.
+    pub counts: &'static str,
+    pub per_line: usize,
+    /// Between values; nothing: only signs part them, or the blank in the place of a sign.
+    pub gap: &'static str,
+    pub line_end: &'static str,
+}
+
+/// As the database of NGA-West2 writes.
+pub const NGA_WEST2: Style = Style {
+    counts: "NPTS=  {npts}, DT=   {dt} SEC",
+    per_line: 5,
+    gap: "  ",
+    line_end: "\n",
+};
+
+/// The text of an AT2 file with evenly spaced samples.
+pub fn at2(samples: &[(f64, f64)], title: &str, style: &Style) -> String {
+    let step_s = samples[1].0 - samples[0].0;
+    let counts = style.counts;
+    let counts = counts.replace("{npts}", &samples.len().to_string());
+    let counts = counts.replace("{dt}", &format!("{step_s:.4}"));
+    let mut text = format!(
+        "PEER NGA STRONG MOTION DATABASE RECORD (FORMAT ONLY)\n{title}\n\
+         ACCELERATION TIME SERIES IN UNITS OF G\n{counts}\n"
+    );
+    for line in samples.chunks(style.per_line) {
+        let values: Vec<_> = line.iter().map(|s| fortran(s.1, 7)).collect();
+        let _ = writeln!(text, "{}", values.join(style.gap));
+    }
+    text.replace('\n', style.line_end)
+}

@@ -1,0 +1,354 @@
+//! Records of ground motion: files, straight lines between samples, and whole histories.
+#![allow(clippy::unwrap_used)]
+
+mod motions;
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::Outcome;
+use archrock::scenario::{Ground, Scenario};
+use motions::{G, NGA_WEST2, Style, at2, run, scaled, semicircle, synthetic};
+
+const ARCH: &str =
+    "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n[ground.record]\n";
+
+/// The scenario with a record's keys, in a folder with these files.
+fn scenario(folder: &Path, files: &[(&str, &str)], keys: &str) -> Result<Scenario, String> {
+    for (name, text) in files {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let path = folder.join("s.toml");
+    fs::write(&path, format!("{ARCH}{keys}\n")).unwrap();
+    Scenario::read(&path).map_err(|errors| errors.to_string())
+}
+
+/// Straight lines err by h^2/8 times the second derivative: 7.7e-6 of the peak for h = 1 ms and a half sine
+/// of 0.4 s, and 5e-6 of the velocity that it gives.
+#[test]
+fn a_sampled_half_sine_does_what_a_half_sine_does() {
+    let arch = semicircle();
+    let (peak, duration) = (-0.3 * G, 0.4);
+    let samples: Vec<_> = (0..=400)
+        .map(|i| f64::from(i) * 1e-3)
+        .map(|t| (t, peak * (PI * t / duration).sin()))
+        .collect();
+    let sampled = GroundMotion::record(&samples, &[], 0.1);
+    let exact = GroundMotion::pulse(Pulse::HalfSine, peak, duration, 0.1);
+    let ((a, rows_a), (b, rows_b)) = (
+        run(&arch, &sampled, G, None, 10.0),
+        run(&arch, &exact, G, None, 10.0),
+    );
+    assert!(a.outcome == Outcome::Rest && b.outcome == Outcome::Rest);
+    assert!(a.impacts.len() > 3 && a.peak_rotations_rad[0] > 0.01);
+    for (row_a, row_b) in rows_a.iter().zip(&rows_b) {
+        for (x, y) in row_a.rotations_rad.iter().zip(row_b.rotations_rad) {
+            assert!((x - y).abs() < 1e-5, "{} s", row_a.time_s);
+        }
+    }
+    for (x, y) in a.impacts.iter().zip(&b.impacts) {
+        // The error of the rotation over the rate at which it closes.
+        assert!((x.time_s - y.time_s).abs() < 1e-4);
+    }
+}
+
+/// Further corners change no value; the steps of the integration, which err by 1e-10 at most, begin elsewhere.
+#[test]
+fn further_corners_change_nothing() {
+    let arch = semicircle();
+    let record = scaled(&synthetic(3, 8.0, 0.02), 0.3 * G);
+    let ground = GroundMotion::record(&record, &[], 0.0);
+    let corners: Vec<_> = (1..300).map(|i| f64::from(i) * 0.0251).collect();
+    let cut = ground.cut_at(&corners);
+    assert!(cut.pieces().len() > ground.pieces().len() + 250);
+    for corner in &corners {
+        let value = |ground: &GroundMotion| {
+            let pieces = ground.pieces();
+            let piece = pieces.iter().rfind(|p| p.start_s <= *corner).unwrap();
+            piece.at(*corner)
+        };
+        assert_eq!(value(&ground), value(&cut));
+    }
+    let ((a, _), (b, _)) = (
+        run(&arch, &ground, G, None, 8.0),
+        run(&arch, &cut, G, None, 8.0),
+    );
+    assert!(a.impacts.len() > 48 && a.impacts.len() == b.impacts.len());
+    for (x, y) in a.impacts.iter().zip(&b.impacts) {
+        assert!((x.time_s - y.time_s).abs() < 1e-9);
+    }
+    for (x, y) in a.peak_rotations_rad.iter().zip(b.peak_rotations_rad) {
+        assert!((x / y - 1.0).abs() < 1e-9);
+    }
+}
+
+/// The same numbers are the same motion, whatever file they come from.
+#[test]
+fn the_way_a_record_is_written_changes_no_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = synthetic(5, 4.0, 0.01);
+    let text = at2(&record, "SYNTHETIC", &NGA_WEST2);
+    let reference = scenario(folder.path(), &[("a.at2", &text)], "file = 'a.at2'").unwrap();
+    let motion = reference.ground_motion();
+    assert_eq!(motion.pieces().len(), record.len());
+    let Some(Ground::Record(read)) = &reference.ground else {
+        panic!("a record")
+    };
+    // Seven digits were written.
+    for (sample, original) in read.main.samples.iter().zip(&record) {
+        assert!((sample.0 - original.0).abs() < 1e-14);
+        assert!((sample.1 - original.1).abs() <= 0.5001e-6 * original.1.abs());
+    }
+
+    for style in [
+        Style {
+            counts: "NPTS= {npts} , DT= {dt} SEC,",
+            line_end: "\r\n",
+            ..NGA_WEST2
+        },
+        Style {
+            counts: "  {npts}    {dt}    NPTS, DT",
+            per_line: 8,
+            ..NGA_WEST2
+        },
+        Style {
+            counts: "NPTS {npts} DT {dt}SEC",
+            gap: "",
+            ..NGA_WEST2
+        },
+        Style {
+            counts: "DT={dt} NPTS={npts}",
+            per_line: 1,
+            ..NGA_WEST2
+        },
+    ] {
+        let text = at2(&record, "SYNTHETIC", &style);
+        let read = scenario(folder.path(), &[("b.AT2", &text)], "file = 'b.AT2'").unwrap();
+        assert_eq!(read.ground_motion(), motion, "{}", style.counts);
+        let keys = "file = 'b.acc'\nformat = 'at2'";
+        let read = scenario(folder.path(), &[("b.acc", &text)], keys).unwrap();
+        assert_eq!(read.ground_motion(), motion);
+    }
+    let mut table = "time;x;\"north\"\n".to_owned();
+    for (time, acceleration) in read.main.samples.iter() {
+        let _ = writeln!(table, "{time:?};0;{acceleration:?}");
+    }
+    let keys = "file = 'c.csv'\nacceleration_column = 'north'\nunit = 'g'\ntime_column = 1";
+    let read = scenario(folder.path(), &[("c.csv", &table)], keys).unwrap();
+    assert_eq!(read.ground_motion(), motion);
+    assert_eq!(
+        Scenario::parse(
+            &read.to_toml(),
+            &folder.path().join("s.toml").display().to_string()
+        ),
+        Ok(read)
+    );
+}
+
+#[test]
+fn scales_units_and_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "0,1\n0.5,-2\n2,0.5\n";
+    let motion = |keys: &str| {
+        let keys = format!("file = 'a.csv'\n{keys}\n[simulation]\ngravity_m_s2 = 10.0");
+        scenario(folder.path(), &[("a.csv", table)], &keys)
+            .unwrap()
+            .ground_motion()
+    };
+    let expected = |factor: f64, start: f64| {
+        GroundMotion::record(
+            &[(0.0, factor), (0.5, -2.0 * factor), (2.0, 0.5 * factor)],
+            &[],
+            start,
+        )
+    };
+    assert_eq!(motion("unit = 'g'"), expected(10.0, 0.0));
+    assert_eq!(motion("unit = 'm/s2'\nscale = -0.5"), expected(-0.5, 0.0));
+    assert_eq!(motion("unit = 'cm/s2'\nstart_s = 1.5"), expected(0.01, 1.5));
+    for unit in ["g", "m/s2", "cm/s2"] {
+        assert_eq!(
+            motion(&format!("unit = '{unit}'\npeak_g = 0.4")),
+            expected(2.0, 0.0)
+        );
+    }
+    let vertical = motion("unit = 'm/s2'\ncomponent = 'vertical'");
+    assert_eq!(
+        vertical,
+        GroundMotion::record(&[], &[(0.0, 1.0), (0.5, -2.0), (2.0, 0.5)], 0.0)
+    );
+}
+
+/// Faults of the keys and of the file, each with its place.
+#[test]
+fn faulty_records_are_input_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let short = "A\nNPTS= 3, DT= .01\n.1 .2\n";
+    let files = [
+        ("short.at2", short),
+        ("zero.csv", "0,0\n1,0\n"),
+        ("early.csv", "-2,0\n1,0\n"),
+        ("good.csv", "0,0\n1,1\n"),
+    ];
+    for (keys, place, words) in [
+        (
+            "file = 'short.at2'",
+            "6:8",
+            "short.at2:3: the file ends after 2 values",
+        ),
+        (
+            "file = 'none.at2'",
+            "6:8",
+            "`file = 'none.at2'` cannot be read",
+        ),
+        (
+            "file = '.'\nformat = 'csv'\nunit = 'g'",
+            "6:8",
+            "is not a file",
+        ),
+        ("file = 'x.txt'", "6:8", "tells no format: give `format`"),
+        (
+            "scale = 1.0\nformat = 'at2'",
+            "5:1",
+            "[ground.record] lacks `file`",
+        ),
+        (
+            "file = 'good.csv'",
+            "5:1",
+            "lacks `unit`: give one of \"g\", \"m/s2\", \"cm/s2\"",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'g'\nscale = 1\npeak_g = 1",
+            "9:10",
+            "stands beside `scale`",
+        ),
+        (
+            "file = 'zero.csv'\nunit = 'g'\npeak_g = 1",
+            "8:10",
+            "zero throughout",
+        ),
+        (
+            "file = 'early.csv'\nunit = 'g'",
+            "6:8",
+            "`start_s` of at least 2.0",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'g'\nscale = 2000",
+            "6:8",
+            "reaches 2000.0 g",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'g'\nacceleration_column = 0",
+            "8:23",
+            "a whole number from 1",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'g'\ntime_column = 'tt'",
+            "6:8",
+            "good.csv:1: there is no column named `tt`",
+        ),
+        (
+            "file = 'short.at2'\nunit = 'g'",
+            "7:8",
+            "goes with `format = \"csv\"` only",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'g'\ncomponent = 'vertical'\nscale = 0.1\n[ground.record.vertical]\nfile = 'good.csv'\nunit = 'g'",
+            "10:1",
+            "stands beside `component = \"vertical\"`",
+        ),
+    ] {
+        let message = scenario(folder.path(), &files, keys).expect_err(keys);
+        assert!(
+            message.contains(&format!("s.toml:{place}: ")),
+            "{keys}: {message}"
+        );
+        assert!(message.contains(words), "{keys}: {message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+}
+
+#[test]
+fn a_faulty_record_ends_the_program_with_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "A\nNPTS= 3, DT= .01\n.1 oops .2\n";
+    let _ = scenario(folder.path(), &[("a.at2", text)], "file = 'a.at2'");
+    let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
+        .args(["run", "--out", "results", "s.toml"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        message.contains(
+            "s.toml:6:8: `file = 'a.at2'` is faulty: a.at2:3: `oops` is not a finite number"
+        ),
+        "{message}"
+    );
+    assert!(!folder.path().join("results").exists());
+}
+
+/// A minute of strong motion, both ways: the work of the ground, summed by the integrator, balances what
+/// the impacts take and what the arch has.
+#[test]
+fn energy_balances_over_a_minute() {
+    let arch = semicircle();
+    let horizontal = scaled(&synthetic(1, 60.0, 0.005), 0.25 * G);
+    let vertical = scaled(&synthetic(2, 60.0, 0.005), 0.15 * G);
+    for vertical in [Vec::new(), vertical] {
+        let ground = GroundMotion::record(&horizontal, &vertical, 0.0);
+        assert!(ground.pieces().len() >= 12_000);
+        let (history, _) = run(&arch, &ground, G, None, 70.0);
+        assert_eq!(history.outcome, Outcome::Rest);
+        assert!(history.impacts.len() > 48);
+        let defect = history.energy_defect_ratio;
+        assert!(defect > 0.0 && defect < 1e-6, "{defect}");
+    }
+}
+
+/// The mirrored record makes the mirrored history, to the last bit.
+#[test]
+fn a_mirrored_record_mirrors_the_history() {
+    let arch = semicircle();
+    let record = scaled(&synthetic(7, 10.0, 0.02), 0.35 * G);
+    let vertical = scaled(&synthetic(8, 10.0, 0.02), 0.2 * G);
+    let ground = GroundMotion::record(&record, &vertical, 0.0);
+    let mirrored = GroundMotion::record(&scaled(&record, -1.0), &vertical, 0.0);
+    let ((a, rows_a), (b, rows_b)) = (
+        run(&arch, &ground, G, None, 12.0),
+        run(&arch, &mirrored, G, None, 12.0),
+    );
+    assert!(a.impacts.len() > 10 && a.impacts.len() == b.impacts.len());
+    assert_eq!(rows_a.len(), rows_b.len());
+    for (x, y) in rows_a.iter().zip(&rows_b) {
+        let mut seen_in_mirror = y.rotations_rad.map(|rotation| 0.0 - rotation);
+        seen_in_mirror.reverse();
+        assert_eq!(x.rotations_rad, seen_in_mirror);
+    }
+}
+
+/// The record among the scenarios is this generator's: run with ARCHROCK_REGENERATE=1 to write it anew.
+#[test]
+fn the_record_among_the_scenarios_is_the_generated_one() {
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let generated = scaled(&synthetic(2024, 20.0, 0.02), 0.3);
+    let title = "Synthetic: tests/motions/mod.rs, synthetic(2024, 20 s, 0.02 s), peak 0.3 g";
+    let file = scenarios.join("synthetic.at2");
+    if std::env::var_os("ARCHROCK_REGENERATE").is_some() {
+        fs::write(&file, at2(&generated, title, &NGA_WEST2)).unwrap();
+    }
+    assert!(fs::read_to_string(&file).unwrap().contains(title));
+    let scenario = Scenario::read(&scenarios.join("semicircle-record.toml")).unwrap();
+    let Some(Ground::Record(record)) = &scenario.ground else {
+        panic!("a record")
+    };
+    assert_eq!(record.main.samples.len(), generated.len());
+    for (sample, original) in record.main.samples.iter().zip(&generated) {
+        // Seven digits, and sines that differ between platforms in the last place.
+        assert!((sample.1 - original.1).abs() < 0.51e-6 * original.1.abs() + 1e-15);
+    }
+}
