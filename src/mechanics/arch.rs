@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::chain::Chain;
 use super::linkage::Linkage;
-use super::structure::{Link, Structure};
+use super::mechanism::Sway;
+use super::structure::{Hinge, Link, Structure};
 
 /// An arch. Its chain of mechanisms does not depend on size or material, and may be shared.
 #[derive(Clone, Debug)]
@@ -36,5 +37,13 @@ impl Structure for Arch {
 
     fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {
         self.chain.link(impacts).map(|link| &link.link)
+    }
+    fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
+        self.chain.link(impacts).map_or(Vec::new(), |link| {
+            let hinges = link.mechanism.hinges_from_left(self.chain.ring(), sway);
+            hinges
+                .map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
+                .to_vec()
+        })
     }
 }

@@ -1,6 +1,7 @@
-//! Mechanics of the ring: pure functions, no time, no files.
+//! Mechanics of the arch and the column: pure functions, no time, no files.
 pub mod arch;
 pub mod chain;
+pub mod column;
 pub mod field;
 pub mod impact;
 pub mod limit;
