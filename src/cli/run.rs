@@ -7,12 +7,10 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Outcome, history};
 use archrock::dynamics::rocking::Rocking;
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::linkage::Linkage;
-use archrock::mechanics::structure::Structure as _;
+use archrock::mechanics::structure::Structure as Rocks;
 use archrock::output::rotations::RotationsWriter;
 use archrock::output::{Folder, OutputError, results};
-use archrock::scenario::Scenario;
+use archrock::scenario::{Scenario, Structure};
 
 use super::{Failure, commands};
 
@@ -30,16 +28,33 @@ pub struct Arguments {
 }
 
 const ROTATIONS: &str = "rotations.csv";
+const EVENTS: &str = "events.csv";
 const IMPACTS: &str = "impacts.csv";
 /// Written last: a folder that has it is complete.
 const SUMMARY: &str = "summary.json";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
-    let arch = commands::arch(&scenario)?;
+    match &scenario.structure {
+        Structure::Arch(arch) => {
+            let arch = commands::build(arch, &scenario)?;
+            run_structure(arguments, quiet, &scenario, &arch)
+        }
+        Structure::Column(column) => {
+            run_structure(arguments, quiet, &scenario, &column.build(scenario.impact))
+        }
+    }
+}
+
+fn run_structure<S: Rocks>(
+    arguments: &Arguments,
+    quiet: bool,
+    scenario: &Scenario,
+    structure: &S,
+) -> Result<(), Failure> {
     let ground = scenario.ground_motion();
     let rocking = Rocking::new(
-        &arch,
+        structure,
         &ground,
         scenario.simulation.gravity_m_s2,
         scenario.simulation.rest_energy_ratio,
@@ -53,14 +68,15 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let mut folder = path.map(|path| open(&path, to_stdout)).transpose()?;
     let simulated = match &mut folder {
-        Some(folder) if !to_stdout => simulate(&scenario, &rocking, folder.file(ROTATIONS)),
-        _ => simulate(&scenario, &rocking, BufWriter::new(io::stdout().lock())),
+        Some(folder) if !to_stdout => simulate(scenario, &rocking, folder.file(ROTATIONS)),
+        _ => simulate(scenario, &rocking, BufWriter::new(io::stdout().lock())),
     };
     let (history, rows) = simulated?;
-    let mut text = human_summary(&scenario, &arch, &ground, &history);
+    let mut text = human_summary(scenario, structure, &ground, &history);
     if let Some(mut folder) = folder {
-        results::write_impacts(folder.file(IMPACTS), &arch, &history.impacts)?;
-        let summary = results::summary(&scenario, &arch, &history)?;
+        results::write_events(folder.file(EVENTS), structure, &history.events)?;
+        results::write_impacts(folder.file(IMPACTS), structure, &history.impacts)?;
+        let summary = results::summary(scenario, structure, &history)?;
         writeln!(folder.file(SUMMARY), "{summary:#}")
             .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
         let path = folder.path().to_owned();
@@ -72,7 +88,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         };
         let _ = writeln!(
             text,
-            "  results in {}: {rotations}{IMPACTS}, {SUMMARY}",
+            "  results in {}: {rotations}{EVENTS}, {IMPACTS}, {SUMMARY}",
             path.display()
         );
     }
@@ -86,21 +102,21 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 /// Opens the folder for the results.
 fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
     if without_rotations {
-        let mut folder = Folder::open(path, &[IMPACTS, SUMMARY])?;
+        let mut folder = Folder::open(path, &[EVENTS, IMPACTS, SUMMARY])?;
         folder.forget(ROTATIONS);
         Ok(folder)
     } else {
-        Folder::open(path, &[ROTATIONS, IMPACTS, SUMMARY])
+        Folder::open(path, &[ROTATIONS, EVENTS, IMPACTS, SUMMARY])
     }
 }
 
 /// Simulates and writes the rotations; returns the number of rows as well.
-fn simulate<'a>(
+fn simulate<'a, S: Rocks>(
     scenario: &Scenario,
-    rocking: &Rocking<'a, Arch>,
+    rocking: &Rocking<'a, S>,
     writer: impl io::Write,
-) -> Result<(History<'a, Arch>, u64), Failure> {
-    let mut table = RotationsWriter::new::<Linkage>(writer)?;
+) -> Result<(History<'a, S>, u64), Failure> {
+    let mut table = RotationsWriter::new::<S::Mechanism>(writer)?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
         if written.is_ok() {
@@ -112,11 +128,11 @@ fn simulate<'a>(
 }
 
 /// What happened, when, and what it compares with.
-fn human_summary(
+fn human_summary<S: Rocks>(
     scenario: &Scenario,
-    arch: &Arch,
+    structure: &S,
     ground: &GroundMotion,
-    history: &History<'_, Arch>,
+    history: &History<'_, S>,
 ) -> String {
     let mut text = String::new();
     if let Some(title) = &scenario.title {
@@ -148,12 +164,12 @@ fn human_summary(
             impact.after.map_or(0.0, |link| link.restitution),
         );
     }
-    let [left, middle, right] = history.peak_rotations_rad;
     let _ = writeln!(
         text,
-        "  peak rotations {left:.5} left, {middle:.5} middle, {right:.5} right body, in rad"
+        "  peak rotation in rad: {}",
+        commands::by_body::<S::Mechanism>(&history.peak_rotations_rad)
     );
-    let incipient_g = arch.incipient_g();
+    let incipient_g = structure.incipient_g();
     let peak_g = ground.peak_m_s2() / scenario.simulation.gravity_m_s2;
     let _ = writeln!(
         text,

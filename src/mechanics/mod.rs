@@ -2,6 +2,7 @@
 pub mod arch;
 pub mod chain;
 pub mod column;
+pub mod equivalent;
 pub mod field;
 pub mod impact;
 pub mod limit;
