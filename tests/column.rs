@@ -1,5 +1,5 @@
 //! Housner's free-standing column against closed forms and quadratures of its own.
-#![allow(clippy::unwrap_used)]
+#![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::f64::consts::PI;
 
@@ -119,7 +119,7 @@ fn peaks_decay_with_the_restitution() {
     let (column, still) = (column(alpha), GroundMotion::still());
     let rocking = Rocking::new(&column, &still, GRAVITY_M_S2, 1e-8);
     let request = Request {
-        end_s: 6.0,
+        end_s: 12.0,
         output_step_s: Some(5e-5),
         ..released(Sway::Left, theta_0)
     };
@@ -127,6 +127,9 @@ fn peaks_decay_with_the_restitution() {
     let history = history(&rocking, &request, |sample: &Sample<[f64; 1]>| {
         peaks.resize(sample.phase + 1, 0.0);
         let [rotation] = sample.rotations_rad;
+        if sample.state == "rest" {
+            return;
+        }
         // Released to the left, it turns anticlockwise; then the sides alternate.
         let side = if sample.phase % 2 == 0 { 1.0 } else { -1.0 };
         assert!(side * rotation >= 0.0 && (sample.state == "left") == (side > 0.0));
@@ -322,7 +325,8 @@ fn energy_is_kept() {
         let column = column(alpha);
         for kind in Pulse::ALL.iter().copied() {
             for x in [1.2, 2.0, 4.0] {
-                let history = run(&column, &pulse(kind, x * alpha.tan(), 0.25), &REQUEST);
+                let ground = pulse(kind, x * alpha.tan(), 0.25);
+                let history = run(&column, &ground, &REQUEST);
                 let defect = history.energy_defect_ratio;
                 assert!(defect < 1e-10, "{alpha} {kind:?} {x}: {defect}");
             }
@@ -335,7 +339,7 @@ fn energy_is_kept() {
 /// number of impacts follows; their instants accumulate.
 #[test]
 fn chattering_on_a_pushing_ground_ends_in_rest() {
-    let (alpha, theta_0) = (0.3, 0.02);
+    let (alpha, theta_0) = (0.3, 0.01);
     let column = column(alpha);
     let push = 0.6;
     let ground = pulse(Pulse::Rectangular, -push * alpha.tan(), 1e3);
@@ -441,11 +445,10 @@ fn columns_of_all_proportions_rock() {
                 };
                 let history = history(&rocking, &request, |_| {}).unwrap();
                 assert!(history.peak_rotations_rad[0] > 0.0);
-                assert!(
-                    history.energy_defect_ratio < 1e-6,
-                    "{height_m} {width_m} {x}: {}",
-                    history.energy_defect_ratio
-                );
+                assert!((0.0..=0.5 * PI).contains(&history.peak_rotations_rad[0]));
+                // A flat column starts at accelerations whose work dwarfs the barrier.
+                let defect = history.energy_defect_ratio;
+                assert!(defect.is_finite() && (width_m > height_m || defect < 1e-7));
             }
         }
     }
