@@ -131,7 +131,11 @@ fn peaks_decay_with_the_restitution() {
             return;
         }
         // Released to the left, it turns anticlockwise; then the sides alternate.
-        let side = if sample.phase % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if sample.phase.is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
         assert!(side * rotation >= 0.0 && (sample.state == "left") == (side > 0.0));
         peaks[sample.phase] = peaks[sample.phase].max(rotation.abs());
     })

@@ -8,7 +8,7 @@ use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Outcome, history};
 use archrock::dynamics::rocking::Rocking;
 use archrock::mechanics::structure::Structure as Rocks;
-use archrock::output::rotations::RotationsWriter;
+use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::{Folder, OutputError, results};
 use archrock::scenario::{Scenario, Structure};
 
@@ -25,6 +25,10 @@ pub struct Arguments {
     /// written unless --out is given.
     #[arg(long, value_name = "-", value_parser = ["-"])]
     rotations: Option<String>,
+    /// Add dimensionless columns to the rotations: p_t (time), acceleration_over_incipient and
+    /// rotation_over_critical.
+    #[arg(long)]
+    dimensionless: bool,
 }
 
 const ROTATIONS: &str = "rotations.csv";
@@ -59,6 +63,17 @@ fn run_structure<S: Rocks>(
         scenario.simulation.gravity_m_s2,
         scenario.simulation.rest_energy_ratio,
     );
+    let scales = arguments
+        .dimensionless
+        .then(|| {
+            Scales::new(structure, scenario.simulation.gravity_m_s2).ok_or_else(|| {
+                Failure::Input(
+                    "the mechanism has no unstable equilibrium to measure by: leave --dimensionless out"
+                        .to_owned(),
+                )
+            })
+        })
+        .transpose()?;
     let to_stdout = arguments.rotations.is_some();
     let path = match (&arguments.out, arguments.scenario.file_stem()) {
         (Some(out), _) => Some(out.clone()),
@@ -68,8 +83,13 @@ fn run_structure<S: Rocks>(
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let mut folder = path.map(|path| open(&path, to_stdout)).transpose()?;
     let simulated = match &mut folder {
-        Some(folder) if !to_stdout => simulate(scenario, &rocking, folder.file(ROTATIONS)),
-        _ => simulate(scenario, &rocking, BufWriter::new(io::stdout().lock())),
+        Some(folder) if !to_stdout => simulate(scenario, &rocking, folder.file(ROTATIONS), scales),
+        _ => simulate(
+            scenario,
+            &rocking,
+            BufWriter::new(io::stdout().lock()),
+            scales,
+        ),
     };
     let (history, rows) = simulated?;
     let mut text = human_summary(scenario, structure, &ground, &history);
@@ -115,8 +135,9 @@ fn simulate<'a, S: Rocks>(
     scenario: &Scenario,
     rocking: &Rocking<'a, S>,
     writer: impl io::Write,
+    scales: Option<Scales>,
 ) -> Result<(History<'a, S>, u64), Failure> {
-    let mut table = RotationsWriter::new::<S::Mechanism>(writer)?;
+    let mut table = RotationsWriter::new::<S::Mechanism>(writer, scales)?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
         if written.is_ok() {

@@ -154,6 +154,9 @@ pub struct Sample<R> {
     pub rotations_rad: R,
     /// Rotation rates of the bodies.
     pub rates_rad_s: R,
+    /// Rotation of the body that carries `q` over that at the unstable equilibrium of the mechanism that
+    /// moves, anticlockwise: below -1 or above 1 gravity overturns the structure.
+    pub rotation_over_critical: f64,
 }
 
 /// What is to be simulated.
@@ -495,10 +498,13 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         S::Mechanism: Mechanism<Rotations = R>,
         R: AsRef<[f64]> + AsMut<[f64]>,
     {
-        let name = match mode {
-            Mode::Rest => "rest",
-            Mode::Rocking { sway, .. } => sway.name(),
-            Mode::Overturned { .. } => "overturned",
+        let over_critical = |sway: Sway, link: &Link<S::Mechanism>| {
+            -sway.sign() * state[0] / link.critical_rad + 0.0
+        };
+        let (name, rotation_over_critical) = match mode {
+            Mode::Rest => ("rest", 0.0),
+            Mode::Rocking { sway, link, .. } => (sway.name(), over_critical(sway, link)),
+            Mode::Overturned { sway, link } => ("overturned", over_critical(sway, link)),
         };
         let (rotations_rad, rates_rad_s) = posture(rocking, mode, state);
         Sample {
@@ -510,6 +516,7 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
             state: name,
             rotations_rad,
             rates_rad_s,
+            rotation_over_critical,
         }
     }
 

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde_json::{Value, json};
 
-use super::rotations::columns;
+use super::rotations::{Scales, columns};
 use super::{OutputError, finite};
 use crate::dynamics::history::{Event, History, ImpactEvent, Outcome, Rotations};
 use crate::mechanics::mechanism::Sway;
@@ -142,6 +142,9 @@ fn joules_per_unit<S: Structure>(structure: &S) -> f64 {
 
 /// The summary of a run as JSON.
 ///
+/// `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (times the duration of the pulse) and
+/// `peak_acceleration_over_incipient` (of the ground, over `g A_L`).
+///
 /// # Errors
 /// When a value is not finite.
 pub fn summary<S: Structure>(
@@ -173,6 +176,24 @@ pub fn summary<S: Structure>(
         "incipient_acceleration_g".to_owned(),
         json!({ "right": incipient_g, "left": incipient_g }),
     );
+    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+    if let Some(scales) = Scales::new(structure, gravity_m_s2) {
+        let p_rad_s = scales.frequency_rad_s;
+        let p_t_p = scenario
+            .ground
+            .as_ref()
+            .map(|ground| ground.duration_s * p_rad_s);
+        let peak = scenario.ground_motion().peak_m_s2() / scales.incipient_m_s2;
+        finite("dimensionless", &[p_rad_s, p_t_p.unwrap_or(0.0), peak])?;
+        more.insert(
+            "dimensionless".to_owned(),
+            json!({
+                "p_rad_s": p_rad_s,
+                "p_t_p": p_t_p,
+                "peak_acceleration_over_incipient": peak,
+            }),
+        );
+    }
     more.insert(
         "energy_defect_ratio".to_owned(),
         json!(history.energy_defect_ratio),
