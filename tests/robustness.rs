@@ -237,10 +237,10 @@ fn a_long_output_streams() {
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let mut early_kib = 0;
     let mut count = 0_u32;
-    while let Some(line) = lines.next() {
+    for line in lines {
         line.unwrap();
         count += 1;
         if count == 20_000 {
