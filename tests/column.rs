@@ -448,6 +448,12 @@ fn columns_of_all_proportions_rock() {
                     ..REQUEST
                 };
                 let history = history(&rocking, &request, |_| {}).unwrap();
+                // It lifts off when it is pushed enough, and then only.
+                let uplifts = history
+                    .events
+                    .iter()
+                    .filter(|e| e.kind == EventKind::Uplift);
+                assert_eq!(uplifts.count(), 1);
                 assert!(history.peak_rotations_rad[0] > 0.0);
                 assert!((0.0..=0.5 * PI).contains(&history.peak_rotations_rad[0]));
                 // A flat column starts at accelerations whose work dwarfs the barrier.

@@ -81,7 +81,10 @@ fn run_structure<S: Rocks>(
         (None, _) => None,
     };
     // Opened before the work starts, so that a folder that cannot be written costs no time.
-    let mut folder = path.map(|path| open(&path, to_stdout)).transpose()?;
+    let mut folder = path
+        .map(|path| open(&path, to_stdout))
+        .transpose()
+        .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))?;
     let simulated = match &mut folder {
         Some(folder) if !to_stdout => simulate(scenario, &rocking, folder.file(ROTATIONS), scales),
         _ => simulate(
@@ -185,23 +188,29 @@ fn human_summary<S: Rocks>(
             impact.after.map_or(0.0, |link| link.restitution),
         );
     }
-    let _ = writeln!(
-        text,
-        "  peak rotation in rad: {}",
-        commands::by_body::<S::Mechanism>(&history.peak_rotations_rad)
-    );
+    if history.outcome != Outcome::NeverMoved {
+        let _ = writeln!(
+            text,
+            "  peak rotation in rad: {}\n  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
+            commands::by_body::<S::Mechanism>(&history.peak_rotations_rad),
+            history.energy_defect_ratio,
+            history.cost.steps,
+            history.cost.evaluations
+        );
+    }
     let incipient_g = structure.incipient_g();
     let peak_g = ground.peak_m_s2() / scenario.simulation.gravity_m_s2;
+    let reaches = if peak_g > 0.0 {
+        format!(
+            "reaches {peak_g:.4} g, {:.2} times as much",
+            peak_g / incipient_g
+        )
+    } else {
+        "stays still".to_owned()
+    };
     let _ = writeln!(
         text,
-        "  incipient acceleration {incipient_g:.4} g; the ground reaches {peak_g:.4} g, {:.2} times as \
-         much",
-        peak_g / incipient_g
-    );
-    let _ = writeln!(
-        text,
-        "  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
-        history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
+        "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
     );
     text
 }

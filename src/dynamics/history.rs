@@ -1,6 +1,8 @@
 //! A rocking history: what happened, and when.
 
-use super::engine::{EngineError, HybridSystem, Observer, Settings, Transition, simulate};
+use super::engine::{
+    EngineError, HybridSystem, Level, Observer, Settings, Transition, falling_root, simulate,
+};
 use super::integrator::{Cost, Step};
 use super::rocking::{Guard, Mode, Rocking, RockingState};
 use crate::mechanics::mechanism::Sway;
@@ -82,9 +84,8 @@ impl<'a, S: Structure> ImpactEvent<'a, S> {
     /// Kinetic energies before and after, in the unit of [`Rocking::barrier`].
     #[must_use]
     pub fn energies(&self) -> (f64, f64) {
-        let kinetic = |link: &Link<S::Mechanism>, rate: f64| {
-            0.5 * link.mechanism.coefficients(0.0).inertia * rate * rate
-        };
+        let kinetic =
+            |link: &Link<S::Mechanism>, rate: f64| 0.5 * link.at_zero.inertia * rate * rate;
         let after = self
             .after
             .map_or(0.0, |link| kinetic(link, self.rate_after_rad_s));
@@ -233,6 +234,8 @@ pub fn history<'a, S: Structure>(
     if let Some(sampler) = &mut sampler {
         sampler.finish(rocking, finish.mode, finish.time_s, &finish.state);
     }
+    // The end may find it on its way out.
+    recorder.note_peak(finish.mode, &finish.state);
     recorder.check_energy(rocking, finish.mode, &finish.state);
     let (outcome, outcome_time_s) = match finish.mode {
         Mode::Overturned { sway, .. } => (
@@ -367,15 +370,26 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
             return;
         };
         // All rotations grow with q, so that the largest are where it turns round.
-        if step.start[1] > 0.0 && step.end[1] <= 0.0 {
-            let rate = |time_s: f64| rocking.between(step, time_s)[1];
-            let turn = rocking.between(step, turning_point(step, rate));
-            self.note_peak(mode, &turn);
+        // It may also do so in the very step in which it leaves the rest, at no rate.
+        if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
+            let bend = step.end_slope[1] - step.start_slope[1];
+            let turn_s = falling_root(step.start_s, step.end_s, |time_s| Level {
+                value: rocking.between(step, time_s)[1],
+                rate: step.start_slope[1]
+                    + bend * (time_s - step.start_s) / (step.end_s - step.start_s),
+            });
+            self.note_peak(mode, &rocking.between(step, turn_s));
             self.check_energy(rocking, mode, &step.end);
         }
         if step.start[0] < link.critical_rad && step.end[0] >= link.critical_rad {
-            let below = |time_s: f64| rocking.between(step, time_s)[0] - link.critical_rad;
-            self.last_outward_s = Some(turning_point(step, |time_s| -below(time_s)));
+            let passage_s = falling_root(step.start_s, step.end_s, |time_s| {
+                let state = rocking.between(step, time_s);
+                Level {
+                    value: link.critical_rad - state[0],
+                    rate: -state[1],
+                }
+            });
+            self.last_outward_s = Some(passage_s);
         }
     }
 
@@ -437,21 +451,6 @@ fn event<'a, S: Structure>(
         rates_rad_s,
         energy,
     }
-}
-
-/// Where a quantity that is positive at the start of a step and not at its end is zero.
-fn turning_point(step: &Step<3>, quantity: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (step.start_s, step.end_s);
-    // Sixty halvings leave the spacing of numbers of any step.
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if quantity(middle) > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
 }
 
 /// Takes samples at multiples of the output step.

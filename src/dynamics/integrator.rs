@@ -43,6 +43,8 @@ pub struct Task<const N: usize> {
     pub end_s: f64,
     /// State at the start.
     pub start: State<N>,
+    /// Rate of change of the state at the start, per second.
+    pub start_slope: State<N>,
     /// Magnitudes of the components: what falls below them is held to an absolute error.
     pub scale: State<N>,
     /// Error allowed in a step, relative to the larger of a component and its scale.
@@ -97,13 +99,12 @@ pub fn integrate<const N: usize>(
     cost: &mut Cost,
 ) -> Result<State<N>, IntegratorError> {
     let span_s = task.end_s - task.start_s;
-    let start_slope = slope(task.start_s, &task.start);
     let not_finite = Cell::new(false);
     let problem = Problem {
         task,
         slope,
         watch,
-        last: (task.start_s, task.start, start_slope),
+        last: (task.start_s, task.start, task.start_slope),
         not_finite: &not_finite,
     };
     let tolerance = task.relative_tolerance;
@@ -127,11 +128,10 @@ pub fn integrate<const N: usize>(
         never_test_stiffness,
         OutputType::Sparse,
     );
-    let result = solver.integrate();
-    cost.evaluations += 1;
-    match result {
+    match solver.integrate() {
         Ok(stats) => {
-            cost.evaluations += u64::from(stats.num_eval);
+            // The first is the slope at the start.
+            cost.evaluations += u64::from(stats.num_eval) - 1;
             cost.steps += u64::from(stats.accepted_steps);
             let last = solver.y_out().last().expect("the start is always stored");
             Ok(last.component_mul(&task.scale))
@@ -166,8 +166,13 @@ where
     W: FnMut(&Step<N>) -> ControlFlow<()>,
 {
     fn system(&self, x: f64, y: &State<N>, dy: &mut State<N>) {
-        let state = y.component_mul(&self.task.scale);
-        *dy = (self.slope)(self.task.start_s + x, &state).component_div(&self.task.scale);
+        let slope = if x == 0.0 {
+            self.task.start_slope
+        } else {
+            let state = y.component_mul(&self.task.scale);
+            (self.slope)(self.task.start_s + x, &state)
+        };
+        *dy = slope.component_div(&self.task.scale);
         // A trial step may go too far and is then rejected and shortened, as the error estimate is not
         // a number either. If that never ends, this tells why.
         self.not_finite.set(!dy.iter().all(|rate| rate.is_finite()));

@@ -149,24 +149,29 @@ impl<'a, S: Structure> Rocking<'a, S> {
         -(force / self.structure.length_m() + inertial) / coefficients.inertia
     }
 
-    /// Inverse time scale of a fall from `q = 0`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
-    fn fall_rate_s(&self, link: &Link<S::Mechanism>, at_zero: &Coefficients) -> f64 {
-        let stiffness =
-            self.gravity_m_s2 * at_zero.rise / (self.structure.length_m() * link.critical_rad);
-        (stiffness / at_zero.inertia).sqrt()
+    /// Time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
+    fn fall_s(&self, link: &Link<S::Mechanism>) -> f64 {
+        (link.at_zero.inertia * link.critical_rad / self.weight(link)).sqrt()
     }
 
-    /// Height of motion: largest `q` and rate that the energy of `state` can reach, as orders of magnitude.
+    /// Slope of the potential energy at `q = 0`.
+    fn weight(&self, link: &Link<S::Mechanism>) -> f64 {
+        self.gravity_m_s2 * link.at_zero.rise / self.structure.length_m()
+    }
+
+    /// Largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the
+    /// inertia of `q = 0` and the parabola of its weight for the potential energy.
     fn reach(&self, link: &Link<S::Mechanism>, state: &RockingState) -> (f64, f64) {
-        let at_zero = link.mechanism.coefficients(0.0);
-        let energy = match self.energy(link, state) {
+        let (q, rate) = (state[0], state[1]);
+        let weight = self.weight(link);
+        let potential = weight * q * (1.0 - 0.5 * q / link.critical_rad);
+        let energy = match 0.5 * link.at_zero.inertia * rate * rate + potential {
             energy if energy > 0.0 && energy < self.barrier => energy,
             _ => self.barrier,
         };
-        let weight = self.gravity_m_s2 * at_zero.rise / self.structure.length_m();
         (
             (energy / weight).min(link.critical_rad),
-            (2.0 * energy / at_zero.inertia).sqrt(),
+            (2.0 * energy / link.at_zero.inertia).sqrt(),
         )
     }
 }
@@ -248,12 +253,8 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
             return RockingState::repeat(1.0);
         };
         let (reach_rad, rate_rad_s) = self.reach(link, state);
-        let inertia = link.mechanism.coefficients(0.0).inertia;
-        RockingState::new(
-            reach_rad,
-            rate_rad_s,
-            0.5 * inertia * rate_rad_s * rate_rad_s,
-        )
+        let energy = 0.5 * link.at_zero.inertia * rate_rad_s * rate_rad_s;
+        RockingState::new(reach_rad, rate_rad_s, energy)
     }
 
     fn step_sizes_s(
@@ -267,22 +268,22 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         let Mode::Rocking { link, .. } = mode else {
             return (f64::INFINITY, f64::INFINITY);
         };
-        let at_zero = link.mechanism.coefficients(0.0);
-        let fall_s = 1.0 / self.fall_rate_s(link, &at_zero);
-        // Time until q is back at zero if the acceleration stayed as it is.
+        let fall_s = self.fall_s(link);
+        let (reach_rad, _) = self.reach(link, state);
+        let height = reach_rad / link.critical_rad;
+        // Time until q is back at zero if the acceleration stayed as it is. As the weight lessens with q,
+        // it takes longer by up to two thirds of the height; a step shall reach just beyond.
         let (q, rate) = (state[0], state[1]);
         let acceleration = self.slope(mode, piece, time_s, state)[1];
         let back_s = (rate + (rate * rate - 2.0 * acceleration * q).sqrt()) / -acceleration;
         let hop_s = if acceleration < 0.0 && back_s > 0.0 {
-            (1.05 * back_s).min(fall_s)
+            ((1.0 + height) * back_s).min(fall_s)
         } else {
             fall_s
         };
         // A hop is a parabola but for terms of the relative size of its height: the sixth derivative,
         // which the method feels, is of the order of its square. The error of a step h is taken as
         // height^2 (h/hop)^6.
-        let (reach_rad, _) = self.reach(link, state);
-        let height = reach_rad / link.critical_rad;
         let part = (relative_tolerance / (height * height))
             .powf(1.0 / 6.0)
             .min(1.0);
@@ -379,11 +380,10 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
                     return (Mode::Rest, still);
                 };
                 let rate = link.rate_ratio * closing_rate;
-                let coefficients = link.mechanism.coefficients(0.0);
                 let sway = sway.opposite();
                 let ground_m_s2 = sway.sign() * self.piece(piece).acceleration_m_s2(time_s);
-                let energy = 0.5 * coefficients.inertia * rate * rate;
-                let held_up = self.acceleration(&coefficients, rate, ground_m_s2) > 0.0;
+                let energy = 0.5 * link.at_zero.inertia * rate * rate;
+                let held_up = self.acceleration(&link.at_zero, rate, ground_m_s2) > 0.0;
                 if energy < self.rest_energy_ratio * self.barrier && !held_up {
                     return (Mode::Rest, still);
                 }

@@ -6,12 +6,12 @@
 
 use std::sync::OnceLock;
 
-use super::impact::{Impact, ImpactModel, impact};
+use super::impact::{Impact, ImpactModel, impact, impact_onto};
 use super::limit::{Incipient, LimitError, incipient};
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
 use super::ring::Ring;
-use super::structure::{Link, critical_rad};
+use super::structure::Link;
 
 /// A link whose hinges are as close as this to those of the link two before it closes the chain into a
 /// repeating pair. Far below what the search resolves in `r` (which is flat at a maximum).
@@ -36,13 +36,7 @@ impl ArchLink {
         let limit_rad = linkage.limit_rad();
         Self {
             mechanism: impact.mechanism,
-            link: Link {
-                mechanism: linkage,
-                critical_rad: critical_rad(&linkage, limit_rad),
-                limit_rad,
-                rate_ratio: impact.rate_ratio,
-                restitution: impact.restitution,
-            },
+            link: Link::new(linkage, limit_rad, impact.rate_ratio, impact.restitution),
         }
     }
 }
@@ -56,7 +50,7 @@ pub struct Chain {
     model: ImpactModel,
     incipient: Incipient,
     links: Box<[OnceLock<Option<ArchLink>>]>,
-    /// First link of the pair that repeats for ever.
+    /// First link of the pair that repeats for ever; the second has the mechanism of the link before it.
     pair: OnceLock<usize>,
 }
 
@@ -103,7 +97,6 @@ impl Chain {
             }
             self.links[known].get_or_init(|| self.compute(known));
         }
-        self.pair.get_or_init(|| LONGEST_CHAIN - 2);
         self.link(index)
     }
 
@@ -116,16 +109,20 @@ impl Chain {
             };
             return Some(ArchLink::new(&self.ring, &first));
         };
-        let closing = &self.links[previous].get()?.as_ref()?.mechanism;
-        let impact = impact(closing, &self.ring, self.sites, self.model)?;
-        let before_last = previous
-            .checked_sub(1)
-            .and_then(|i| self.links[i].get()?.as_ref());
-        if let Some(link) = before_last {
-            let (hinges, earlier) = (impact.mechanism.hinges_rad(), link.mechanism.hinges_rad());
-            let same = |i: usize| (hinges[i] - earlier[i]).abs() < REPETITION_RAD;
-            if (0..4).all(same) && index >= 3 {
-                self.pair.get_or_init(|| index - 1);
+        let mechanism = |index: usize| Some(self.links[index].get()?.as_ref()?.mechanism);
+        let closing = mechanism(previous)?;
+        if index == LONGEST_CHAIN - 1 {
+            self.pair.get_or_init(|| previous);
+        }
+        let impact = if self.pair.get() == Some(&previous) {
+            impact_onto(mechanism(previous - 1)?, &closing, &self.ring, self.model)?
+        } else {
+            impact(&closing, &self.ring, self.sites, self.model)?
+        };
+        if let Some(earlier) = previous.checked_sub(1).and_then(mechanism) {
+            let (hinges, earlier) = (impact.mechanism.hinges_rad(), earlier.hinges_rad());
+            if (0..4).all(|i| (hinges[i] - earlier[i]).abs() < REPETITION_RAD) {
+                self.pair.get_or_init(|| index);
             }
         }
         Some(ArchLink::new(&self.ring, &impact))
@@ -135,6 +132,7 @@ impl Chain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanics::structure::Mechanism as _;
 
     fn chain(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Chain {
         let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
@@ -167,6 +165,13 @@ mod tests {
             assert_eq!(hinges(400), hinges(402));
             let pair = *chain.pair.get().unwrap();
             assert!(pair < LONGEST_CHAIN - 2, "{pair}");
+            // Each link of the pair keeps what its own impact leaves, also where the chain closes.
+            for index in pair..pair + 4 {
+                let (before, after) = (chain.link(index).unwrap(), chain.link(index + 1).unwrap());
+                let inertia = |link: &ArchLink| link.link.mechanism.coefficients(0.0).inertia;
+                let kept = after.link.rate_ratio.powi(2) * inertia(after) / inertia(before);
+                assert!((kept / after.link.restitution - 1.0).abs() < 1e-13);
+            }
         }
     }
 }

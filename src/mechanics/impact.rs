@@ -9,7 +9,7 @@ use super::field::{Field, Momentum, Side, Twist};
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
 use super::ring::Ring;
-use super::search::{Lattice, Objective, Quadruple, ascend, edge_index};
+use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
 
 /// How the mechanism after an impact is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,9 +71,10 @@ pub fn impact(
     sites: HingeSites,
     model: ImpactModel,
 ) -> Option<Impact> {
-    let closing = closing_field(mechanism, ring);
     let next = match model {
-        ImpactModel::MaxRestitution => most_energetic(&closing, ring, sites)?,
+        ImpactModel::MaxRestitution => {
+            most_energetic(&closing_field(mechanism, ring), ring, sites)?
+        }
         ImpactModel::SameSections => {
             let [a, b, c, d] = mechanism
                 .hinges_rad()
@@ -83,9 +84,20 @@ pub fn impact(
         // The mirror image of a mechanism has, in its own frame, the same hinges.
         ImpactModel::Mirrored | ImpactModel::Prescribed { .. } => *mechanism,
     };
+    impact_onto(next, mechanism, ring, model)
+}
+
+/// What follows when `mechanism` closes and `next` is known to take over; `None` when that would have to
+/// move backwards.
+pub(crate) fn impact_onto(
+    next: FourLink,
+    mechanism: &FourLink,
+    ring: &Ring,
+    model: ImpactModel,
+) -> Option<Impact> {
     let (rate_ratio, restitution) = match model {
         ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
-        _ => projection(&next, &closing, ring),
+        _ => projection(&next, &closing_field(mechanism, ring), ring),
     };
     (rate_ratio > 0.0).then_some(Impact {
         mechanism: next,
@@ -180,19 +192,7 @@ fn most_energetic(before: &Field, ring: &Ring, sites: HingeSites) -> Option<Four
     let table = ProductTable::new(&lattice, before, ring);
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| table.retained(rotations, quadruple);
     let objective = RetainedEnergy { before, ring };
-    let candidates = lattice.maxima(&score).into_iter().filter_map(|quadruple| {
-        let start = quadruple.map(|i| lattice.sections_rad[i]);
-        match sites {
-            HingeSites::Anywhere => ascend(ring, start, &objective),
-            HingeSites::Voussoirs(_) => {
-                let mechanism = FourLink::new(ring, start)?;
-                Some((objective.value(&mechanism).0, mechanism))
-            }
-        }
-    });
-    candidates
-        .max_by(|(a, _), (b, _)| a.total_cmp(b))
-        .map(|(_, mechanism)| mechanism)
+    best_mechanism(ring, sites, &lattice, &score, &objective).map(|(_, mechanism)| mechanism)
 }
 
 /// `<u', before>^2 / <u', u'>`: twice the kinetic energy that a mechanism keeps.

@@ -7,7 +7,7 @@ use super::field::{Field, Side, Twist};
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
 use super::ring::{Edge, Ring};
-use super::search::{Lattice, Objective, Quadruple, ascend, edge_index};
+use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
 
 /// Onset of rocking under a push to the right.
 #[derive(Clone, Debug)]
@@ -142,18 +142,7 @@ fn least_acceleration(ring: &Ring, sites: HingeSites) -> Option<(f64, FourLink)>
         }
     };
     let objective = Weakness { ring };
-    let candidates = lattice.maxima(&score).into_iter().filter_map(|quadruple| {
-        let start = quadruple.map(|i| lattice.sections_rad[i]);
-        match sites {
-            HingeSites::Anywhere => ascend(ring, start, &objective),
-            HingeSites::Voussoirs(_) => {
-                let mechanism = FourLink::new(ring, start)?;
-                Some((objective.evaluate(&mechanism, [true; 4]).0, mechanism))
-            }
-        }
-    });
-    candidates
-        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+    best_mechanism(ring, sites, &lattice, &score, &objective)
         .map(|(value, mechanism)| (-value, mechanism))
 }
 

@@ -14,59 +14,73 @@ use super::mechanism::FourLink;
 use super::ring::{MassMoments, Ring};
 use super::structure::{Coefficients, Mechanism};
 
-/// A rigid body that is part of the linkage, about a point of its own.
+/// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
 struct Body {
-    mass: f64,
-    /// Centre of gravity relative to the point, undeformed.
-    arm: Vector2<f64>,
-    /// Polar moment about the point.
+    /// Its bar, undeformed.
+    bar: Vector2<f64>,
+    /// First mass moment over the bar, as complex numbers: it turns with the bar.
+    first_per_bar: Vector2<f64>,
+    /// Polar mass moment.
     polar: f64,
 }
 
 impl Body {
-    fn new(moments: &MassMoments, pole: Vector2<f64>) -> Self {
+    fn new(moments: &MassMoments, pivot: Vector2<f64>, bar: Vector2<f64>) -> Self {
+        let first = moments.first - pivot * moments.mass;
         Self {
-            mass: moments.mass,
-            arm: moments.centroid() - pole,
-            polar: moments.polar_about(pole),
+            bar,
+            first_per_bar: Vector2::new(bar.dot(&first), bar.perp(&first)) / bar.norm_squared(),
+            polar: moments.polar_about(pivot),
         }
+    }
+
+    /// With a point mass at the end of the bar.
+    fn loaded(self, mass: f64) -> Self {
+        Self {
+            first_per_bar: self.first_per_bar + Vector2::new(mass, 0.0),
+            polar: self.polar + mass * self.bar.norm_squared(),
+            ..self
+        }
+    }
+
+    /// First mass moment when the bar is `bar`.
+    fn first(&self, bar: Vector2<f64>) -> Vector2<f64> {
+        complex_product(bar, self.first_per_bar)
     }
 }
 
 /// The four-bar linkage of a mechanism that sways right; lengths in mean radii, unit density.
+///
+/// The middle body moves with B and turns about it; its mass is counted as a load of the left body at B.
 #[derive(Clone, Copy, Debug)]
 pub struct Linkage {
+    /// Bar A-B.
     left: Body,
-    /// About hinge B.
+    /// Bar B-C.
     middle: Body,
+    /// Bar D-C.
     right: Body,
-    pivot_left: Vector2<f64>,
-    pivot_right: Vector2<f64>,
-    /// Undeformed bars A-B, B-C and D-C.
-    bar_left: Vector2<f64>,
-    bar_middle: Vector2<f64>,
-    bar_right: Vector2<f64>,
+    /// From A to D.
+    ground: Vector2<f64>,
 }
 
-/// Configuration at some `q`: the bars, and the rotations of their bodies as unit complex numbers.
+/// The bars at some `q`.
 struct Pose {
-    bar_left: Vector2<f64>,
-    bar_middle: Vector2<f64>,
-    bar_right: Vector2<f64>,
-    turn_left: Vector2<f64>,
-    turn_middle: Vector2<f64>,
-    turn_right: Vector2<f64>,
+    left: Vector2<f64>,
+    middle: Vector2<f64>,
+    right: Vector2<f64>,
+    /// Cross product of the middle and the right bar.
+    cross: f64,
 }
 
-/// Rotates `v` by the angle of the unit complex number `turn`.
-fn rotate(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(turn.x * v.x - turn.y * v.y, turn.x * v.y + turn.y * v.x)
+fn complex_product(a: Vector2<f64>, b: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
 }
 
-/// The unit complex number that turns `from` into `to`, vectors of equal length.
-fn turn_between(from: Vector2<f64>, to: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared()
+/// The angle by which `from` is turned to point like `to`.
+fn angle_between(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+    from.perp(&to).atan2(from.dot(&to))
 }
 
 impl Linkage {
@@ -75,15 +89,12 @@ impl Linkage {
     pub fn new(ring: &Ring, mechanism: &FourLink) -> Self {
         let [a, b, c, d] = mechanism.hinges_rad();
         let [point_a, point_b, point_c, point_d] = mechanism.points();
+        let middle = ring.sector(b, c);
         Self {
-            left: Body::new(&ring.sector(a, b), point_a),
-            middle: Body::new(&ring.sector(b, c), point_b),
-            right: Body::new(&ring.sector(c, d), point_d),
-            pivot_left: point_a,
-            pivot_right: point_d,
-            bar_left: point_b - point_a,
-            bar_middle: point_c - point_b,
-            bar_right: point_c - point_d,
+            left: Body::new(&ring.sector(a, b), point_a, point_b - point_a).loaded(middle.mass),
+            middle: Body::new(&middle, point_b, point_c - point_b),
+            right: Body::new(&ring.sector(c, d), point_d, point_c - point_d),
+            ground: point_d - point_a,
         }
     }
 
@@ -92,48 +103,45 @@ impl Linkage {
     /// Not a number where the bars B-C and C-D do not reach each other.
     fn pose(&self, q_rad: f64) -> Pose {
         let (sin, cos) = q_rad.sin_cos();
-        let turn_left = Vector2::new(cos, -sin);
-        let bar_left = rotate(turn_left, self.bar_left);
+        let left = complex_product(self.left.bar, Vector2::new(cos, -sin));
         // C is where the circles about B and D meet, on the left of the line from B to D.
-        let line = self.pivot_right - self.pivot_left - bar_left;
+        let line = self.ground - left;
         let square = line.norm_squared();
-        let middle_square = self.bar_middle.norm_squared();
-        let along = 0.5 * (1.0 + (middle_square - self.bar_right.norm_squared()) / square);
+        let (middle_square, right_square) = (
+            self.middle.bar.norm_squared(),
+            self.right.bar.norm_squared(),
+        );
+        let along = 0.5 + 0.5 * (middle_square - right_square) / square;
         let across = (middle_square / square - along * along).sqrt();
-        let bar_middle = line * along + turned(line) * across;
-        let bar_right = bar_middle - line;
+        let middle = line * along + turned(line) * across;
         Pose {
-            bar_left,
-            bar_middle,
-            bar_right,
-            turn_left,
-            turn_middle: turn_between(self.bar_middle, bar_middle),
-            turn_right: turn_between(self.bar_right, bar_right),
+            left,
+            middle,
+            right: middle - line,
+            cross: across * square,
         }
     }
 
-    /// Rotation rates of the bodies per unit `q'`: the loop's velocities closed by cross products.
-    fn rates(pose: &Pose) -> (f64, f64, f64) {
-        let cross = pose.bar_middle.perp(&pose.bar_right);
-        let middle = pose.bar_left.perp(&pose.bar_right) / cross;
-        let right = pose.bar_left.perp(&pose.bar_middle) / cross;
-        (-1.0, middle, right)
+    /// Rotation rates of the middle and the right body per unit `q'` (that of the left is -1): the
+    /// loop's velocities closed by cross products.
+    fn rates(pose: &Pose) -> (f64, f64) {
+        (
+            pose.left.perp(&pose.right) / pose.cross,
+            pose.left.perp(&pose.middle) / pose.cross,
+        )
     }
 
     /// The limit position: the least `q` at which A, B, C, or else C, D, A, are on one line, so that
     /// the right body or the ground bar cannot follow any further.
     #[must_use]
     pub fn limit_rad(&self) -> f64 {
-        let ground = self.pivot_right - self.pivot_left;
         let [left, middle, right, base] =
-            [self.bar_left, self.bar_middle, self.bar_right, ground].map(|bar| bar.norm());
+            [self.left.bar, self.middle.bar, self.right.bar, self.ground].map(|bar| bar.norm());
         let cosine = |near: f64, other: f64, opposite: f64| {
             (near * near + other * other - opposite * opposite) / (2.0 * near * other)
         };
         // Angle from A-D to A-B, undeformed and at the limit.
-        let start = ground
-            .perp(&self.bar_left)
-            .atan2(ground.dot(&self.bar_left));
+        let start = angle_between(self.ground, self.left.bar);
         let end = if left + middle < right + base {
             cosine(left + middle, base, right).acos()
         } else {
@@ -151,35 +159,30 @@ impl Mechanism for Linkage {
     /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
     fn coefficients(&self, q_rad: f64) -> Coefficients {
         let pose = self.pose(q_rad);
-        let (left_rate, middle_rate, right_rate) = Self::rates(&pose);
+        let (middle_rate, right_rate) = Self::rates(&pose);
         // Second derivatives: the loop's accelerations, with those along the bars on the right.
-        let inward = pose.bar_left + pose.bar_middle * (middle_rate * middle_rate)
-            - pose.bar_right * (right_rate * right_rate);
-        let cross = pose.bar_middle.perp(&pose.bar_right);
-        let middle_slope = inward.dot(&pose.bar_right) / cross;
-        let right_slope = inward.dot(&pose.bar_middle) / cross;
+        let inward = pose.left + pose.middle * (middle_rate * middle_rate)
+            - pose.right * (right_rate * right_rate);
+        let middle_slope = inward.dot(&pose.right) / pose.cross;
+        let right_slope = inward.dot(&pose.middle) / pose.cross;
 
-        let arm = rotate(pose.turn_middle, self.middle.arm);
-        let at_b = turned(pose.bar_left) * left_rate;
-        let middle_velocity = at_b + turned(arm) * middle_rate;
-        let middle_velocity_slope =
-            turned(arm) * middle_slope - arm * (middle_rate * middle_rate) - pose.bar_left;
-        let central_polar = self.middle.polar - self.middle.mass * self.middle.arm.norm_squared();
-
-        let left_arm = rotate(pose.turn_left, self.left.arm);
-        let right_arm = rotate(pose.turn_right, self.right.arm);
-        let path = turned(left_arm) * (self.left.mass * left_rate)
-            + middle_velocity * self.middle.mass
-            + turned(right_arm) * (self.right.mass * right_rate);
+        let first = self.middle.first(pose.middle);
+        let path = turned(
+            first * middle_rate + self.right.first(pose.right) * right_rate
+                - self.left.first(pose.left),
+        );
+        // The middle body moves with B and turns about it: this couples the left rate with its own.
+        let coupling = pose.left.dot(&first);
+        let coupling_slope = -(1.0 + middle_rate) * pose.left.perp(&first);
         Coefficients {
             inertia: self.left.polar
+                + self.middle.polar * middle_rate * middle_rate
                 + self.right.polar * right_rate * right_rate
-                + self.middle.mass * middle_velocity.norm_squared()
-                + central_polar * middle_rate * middle_rate,
+                - 2.0 * coupling * middle_rate,
             inertia_slope: 2.0
-                * (self.right.polar * right_rate * right_slope
-                    + self.middle.mass * middle_velocity.dot(&middle_velocity_slope)
-                    + central_polar * middle_rate * middle_slope),
+                * ((self.middle.polar * middle_rate - coupling) * middle_slope
+                    + self.right.polar * right_rate * right_slope
+                    - coupling_slope * middle_rate),
             sway: path.x,
             rise: path.y,
         }
@@ -189,24 +192,23 @@ impl Mechanism for Linkage {
     /// `S_y` from zero. Times gravity the second is the potential energy.
     fn displacement(&self, q_rad: f64) -> Vector2<f64> {
         let pose = self.pose(q_rad);
-        let left = rotate(pose.turn_left, self.left.arm) - self.left.arm;
-        let middle = pose.bar_left - self.bar_left + rotate(pose.turn_middle, self.middle.arm)
-            - self.middle.arm;
-        let right = rotate(pose.turn_right, self.right.arm) - self.right.arm;
-        left * self.left.mass + middle * self.middle.mass + right * self.right.mass
+        self.left.first(pose.left - self.left.bar)
+            + self.middle.first(pose.middle - self.middle.bar)
+            + self.right.first(pose.right - self.right.bar)
     }
 
     /// Rotations of the three bodies at `q`.
     fn rotations(&self, q_rad: f64) -> [f64; 3] {
         let pose = self.pose(q_rad);
-        let angle = |turn: Vector2<f64>| turn.y.atan2(turn.x);
-        [-q_rad, angle(pose.turn_middle), angle(pose.turn_right)]
+        let middle = angle_between(self.middle.bar, pose.middle);
+        let right = angle_between(self.right.bar, pose.right);
+        [-q_rad, middle, right]
     }
 
     /// Rotation rates of the three bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> [f64; 3] {
-        let (left, middle, right) = Self::rates(&self.pose(q_rad));
-        [left, middle, right]
+        let (middle, right) = Self::rates(&self.pose(q_rad));
+        [-1.0, middle, right]
     }
 }
 
@@ -262,10 +264,11 @@ mod tests {
         fn the_loop_is_closed(part in 0.0_f64..1.2) {
             let (_, _, linkage) = semicircle();
             let pose = linkage.pose(part * linkage.limit_rad());
-            let end = linkage.pivot_left + pose.bar_left + pose.bar_middle - pose.bar_right;
-            prop_assert!((end - linkage.pivot_right).norm() < 1e-14);
-            prop_assert!((pose.bar_right.norm() - linkage.bar_right.norm()).abs() < 1e-14);
-            prop_assert!((pose.bar_middle.norm() - linkage.bar_middle.norm()).abs() < 1e-14);
+            let end = pose.left + pose.middle - pose.right;
+            prop_assert!((end - linkage.ground).norm() < 1e-14);
+            prop_assert!((pose.right.norm() - linkage.right.bar.norm()).abs() < 1e-14);
+            prop_assert!((pose.middle.norm() - linkage.middle.bar.norm()).abs() < 1e-14);
+            prop_assert!((pose.middle.perp(&pose.right) - pose.cross).abs() < 1e-14);
         }
     }
 

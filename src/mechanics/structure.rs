@@ -46,6 +46,8 @@ pub trait Mechanism {
 pub struct Link<M> {
     /// The mechanism at finite rotations.
     pub mechanism: M,
+    /// Its coefficients at `q = 0`, where every arc begins and ends.
+    pub at_zero: Coefficients,
     /// `q` at the unstable equilibrium under gravity alone.
     pub critical_rad: f64,
     /// `q` at which the mechanism cannot go any further.
@@ -68,6 +70,21 @@ pub enum Hinge {
     },
     /// At a toe of the base of a column, on this side.
     Toe(Sway),
+}
+
+impl<M: Mechanism> Link<M> {
+    /// The link of a mechanism with its limit, and with the impact that leads to it.
+    #[must_use]
+    pub fn new(mechanism: M, limit_rad: f64, rate_ratio: f64, restitution: f64) -> Self {
+        Self {
+            at_zero: mechanism.coefficients(0.0),
+            critical_rad: critical_rad(&mechanism, limit_rad),
+            mechanism,
+            limit_rad,
+            rate_ratio,
+            restitution,
+        }
+    }
 }
 
 /// A structure that rocks.

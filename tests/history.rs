@@ -1,0 +1,550 @@
+//! Whole histories: published numbers, exact invariances, and the ways in and out of rest.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{History, Outcome, Request, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::mechanism::{HingeSites, Sway};
+use archrock::mechanics::structure::Structure;
+use common::{
+    GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,
+    seven_voussoirs,
+};
+
+fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
+    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0)
+}
+
+/// Everything a history tells, for comparisons to the last bit.
+fn fingerprint(history: &History<Arch>) -> Vec<u64> {
+    let mut bits = vec![
+        history.outcome_time_s.to_bits(),
+        history.end_s.to_bits(),
+        history.energy_defect_ratio.to_bits(),
+        history.cost.evaluations,
+        history.cost.steps,
+    ];
+    bits.extend(history.peak_rotations_rad.map(f64::to_bits));
+    for impact in &history.impacts {
+        let (before, after) = impact.rates_rad_s();
+        bits.push(impact.time_s.to_bits());
+        bits.extend(before.map(f64::to_bits));
+        bits.extend(after.map(f64::to_bits));
+    }
+    bits
+}
+
+#[test]
+fn published_history_of_the_semicircle() {
+    let arch = semicircle();
+    let ground = pulse(Pulse::Rectangular, -0.30, 0.20);
+    let request = Request {
+        output_step_s: Some(0.0005),
+        ..request(30.0)
+    };
+    let (history, samples) = run_sampled(&arch, &ground, &request);
+    let [first, second] = [&history.impacts[0], &history.impacts[1]];
+    // Half a unit of the last printed digit everywhere.
+    assert!((first.time_s - 1.0279).abs() <= 0.5e-4, "{}", first.time_s);
+    let (before, after) = first.rates_rad_s();
+    assert!((before[2].abs() - 0.1775).abs() <= 0.5e-4, "{before:?}");
+    assert!((after[2].abs() - 0.0840).abs() <= 0.5e-4, "{after:?}");
+    assert!(
+        (second.time_s - 1.2032).abs() <= 0.5e-4,
+        "{}",
+        second.time_s
+    );
+    let peak = |from: f64, to: f64| {
+        let inside = samples.iter().filter(|s| s.time_s > from && s.time_s < to);
+        inside
+            .map(|s| (s.rotations_rad[2].abs(), s.time_s))
+            .fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
+    };
+    let (height, time_s) = peak(0.0, first.time_s);
+    assert!((height - 0.035_25).abs() <= 0.5e-5, "{height}");
+    // Published as 0.571; the rate passes zero between 0.5720 and 0.5721, where the top is so flat that the
+    // rotation is the same to 1e-7.
+    assert!((time_s - 0.572).abs() <= 0.5e-3 + 0.25e-3, "{time_s}");
+    let (height, _) = peak(first.time_s, second.time_s);
+    assert!((height - 0.003_68).abs() <= 0.5e-5, "{height}");
+    // The largest over the whole history, found inside a step and not on a sample.
+    assert!((history.peak_rotations_rad[2] - 0.035_25).abs() <= 0.5e-5);
+    assert_eq!(history.outcome, Outcome::Rest);
+    assert_eq!(first.sway_before, Sway::Right);
+    assert!((first.after.unwrap().restitution - 0.681_185_59).abs() < 1e-8);
+    let (energy_before, energy_after) = first.energies();
+    assert!((energy_after / energy_before - 0.681_185_59).abs() < 1e-8);
+}
+
+#[test]
+fn published_collapse_amplitudes_without_impact() {
+    // The step pair pushes left first where its amplitude is positive; by symmetry that is the same.
+    let arch = seven_voussoirs();
+    for (duration_s, published) in [(0.2, 3.066), (0.5, 0.820), (1.0, 0.465)] {
+        let falls = |amplitude_g: f64| {
+            let ground = pulse(Pulse::StepPair, amplitude_g, duration_s);
+            let history = run(&arch, &ground, &request(20.0));
+            matches!(history.outcome, Outcome::Overturned(Sway::Left)) && history.impacts.is_empty()
+        };
+        // Collapse without impact is monotone in the amplitude around its least.
+        let (mut low, mut high) = (0.97 * published, 1.03 * published);
+        assert!(!falls(low) && falls(high), "{duration_s}");
+        while high - low > 1e-5 {
+            let middle = 0.5 * (low + high);
+            if falls(middle) {
+                high = middle
+            } else {
+                low = middle
+            }
+        }
+        assert!(
+            (high - published).abs() <= 0.5e-3 + 1e-5,
+            "{duration_s}: {high}"
+        );
+    }
+}
+
+#[test]
+fn the_mirror_image_is_exact() {
+    let arch = semicircle();
+    for kind in Pulse::ALL.iter().copied() {
+        for amplitude_g in [0.35, 0.9] {
+            let at = Request {
+                output_step_s: Some(0.01),
+                ..request(12.0)
+            };
+            let (right, left) = (
+                pulse(kind, -amplitude_g, 0.25),
+                pulse(kind, amplitude_g, 0.25),
+            );
+            let (to_right, right_samples) = run_sampled(&arch, &right, &at);
+            let (to_left, left_samples) = run_sampled(&arch, &left, &at);
+            assert_eq!(
+                to_right.end_s.to_bits(),
+                to_left.end_s.to_bits(),
+                "{kind:?}"
+            );
+            assert_eq!(
+                to_right.outcome_time_s.to_bits(),
+                to_left.outcome_time_s.to_bits()
+            );
+            assert_eq!(to_right.cost, to_left.cost);
+            let mirrored = |r: [f64; 3]| [-r[2], -r[1], -r[0]];
+            assert_eq!(right_samples.len(), left_samples.len());
+            for (r, l) in right_samples.iter().zip(&left_samples) {
+                assert!(r.time_s == l.time_s && r.phase == l.phase);
+                assert!(r.rotations_rad == mirrored(l.rotations_rad));
+                assert!(r.rates_rad_s == mirrored(l.rates_rad_s));
+                assert!(r.ground_acceleration_m_s2 == -l.ground_acceleration_m_s2);
+                let other = match l.state {
+                    "left" => "right",
+                    "right" => "left",
+                    same => same,
+                };
+                assert_eq!(r.state, other);
+            }
+            assert_eq!(to_right.impacts.len(), to_left.impacts.len());
+            for (r, l) in to_right.impacts.iter().zip(&to_left.impacts) {
+                assert!(r.time_s == l.time_s && r.sway_before == l.sway_before.opposite());
+                assert!(r.rates_rad_s().0 == mirrored(l.rates_rad_s().0));
+                assert!(r.rates_rad_s().1 == mirrored(l.rates_rad_s().1));
+            }
+            let overturned = |outcome| match outcome {
+                Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
+                other => other,
+            };
+            assert_eq!(to_right.outcome, overturned(to_left.outcome));
+            let [a, b, c] = to_left.peak_rotations_rad;
+            assert_eq!(to_right.peak_rotations_rad, [c, b, a]);
+        }
+    }
+}
+
+#[test]
+fn size_and_gravity_only_stretch_time() {
+    // R -> 4 R and t -> 2 t, or g -> g/4 and t -> 2 t with the amplitude in g kept: powers of two, so that
+    // nothing but the solver's cube roots of step sizes could differ, and times agree to its tolerance.
+    let small = semicircle();
+    let large = Arch {
+        mean_radius_m: 4.0 * small.mean_radius_m,
+        ..small.clone()
+    };
+    for kind in [Pulse::Rectangular, Pulse::OneSine, Pulse::Ricker] {
+        let (short, long) = (pulse(kind, -0.4, 0.25), pulse(kind, -0.4, 0.5));
+        let a = run(&small, &short, &request(20.0));
+        let b = run(&large, &long, &request(40.0));
+        let weak = GroundMotion::pulse(kind, -0.1 * GRAVITY, 0.5, 0.0);
+        let rocking = Rocking::new(&small, &weak, 0.25 * GRAVITY, REST_ENERGY_RATIO);
+        let c = history(&rocking, &request(40.0), |_| {}).unwrap();
+        for scaled in [&b, &c] {
+            assert_eq!(scaled.outcome, a.outcome);
+            assert_eq!(scaled.impacts.len(), a.impacts.len());
+            assert!(
+                (scaled.end_s - 2.0 * a.end_s).abs() < 1e-7 * a.end_s,
+                "{kind:?}"
+            );
+            for (x, y) in scaled.impacts.iter().zip(&a.impacts) {
+                assert!((x.time_s - 2.0 * y.time_s).abs() < 1e-7);
+            }
+            for (x, y) in scaled.peak_rotations_rad.iter().zip(a.peak_rotations_rad) {
+                assert!((x - y).abs() < 1e-8);
+            }
+        }
+    }
+}
+
+#[test]
+fn density_and_depth_change_no_bit() {
+    let arch = semicircle();
+    let heavy = Arch {
+        density_kg_m3: 2700.0,
+        depth_m: 3.3,
+        ..arch.clone()
+    };
+    let ground = pulse(Pulse::HalfSine, -0.5, 0.3);
+    let (a, b) = (
+        run(&arch, &ground, &request(20.0)),
+        run(&heavy, &ground, &request(20.0)),
+    );
+    assert_eq!(fingerprint(&a), fingerprint(&b));
+    assert!(heavy.mass_unit_kg() > 4.0 * arch.mass_unit_kg());
+}
+
+#[test]
+fn the_same_history_twice_is_the_same_to_the_last_bit() {
+    let run_anew = || {
+        let arch = seven_voussoirs();
+        let ground = pulse(Pulse::Ricker, 0.6, 0.5);
+        fingerprint(&run(&arch, &ground, &request(20.0)))
+    };
+    assert_eq!(run_anew(), std::thread::spawn(run_anew).join().unwrap());
+}
+
+#[test]
+fn below_the_incipient_acceleration_nothing_moves() {
+    let arch = semicircle();
+    let incipient_g = arch.incipient_g();
+    for kind in Pulse::ALL.iter().copied() {
+        for sign in [-1.0, 1.0] {
+            let ground = pulse(kind, sign * incipient_g * (1.0 - 1e-9), 0.3);
+            let (history, samples) = run_sampled(
+                &arch,
+                &ground,
+                &Request {
+                    output_step_s: Some(0.05),
+                    ..request(5.0)
+                },
+            );
+            assert_eq!(history.outcome, Outcome::NeverMoved, "{kind:?}");
+            assert!(history.impacts.is_empty() && history.peak_rotations_rad == [0.0; 3]);
+            assert!(
+                samples
+                    .iter()
+                    .all(|s| s.state == "rest" && s.rotations_rad == [0.0; 3])
+            );
+            let ground = pulse(kind, sign * incipient_g * 1.01, 0.3);
+            let history = run(&arch, &ground, &request(5.0));
+            assert!(history.outcome != Outcome::NeverMoved, "{kind:?}");
+            assert!(
+                history.peak_rotations_rad.iter().all(|peak| *peak > 0.0),
+                "{kind:?}"
+            );
+        }
+    }
+    let still = GroundMotion::still();
+    assert_eq!(
+        run(&arch, &still, &request(5.0)).outcome,
+        Outcome::NeverMoved
+    );
+}
+
+#[test]
+fn it_starts_where_the_push_passes_the_incipient_acceleration() {
+    // A triangle of 2 A_L and 0.8 s passes A_L at 0.2 s; phase 1 begins there.
+    let arch = semicircle();
+    let ground = pulse(Pulse::Triangular, -2.0 * arch.incipient_g(), 0.8);
+    let at = Request {
+        output_step_s: Some(1e-3),
+        ..request(0.4)
+    };
+    let (_, samples) = run_sampled(&arch, &ground, &at);
+    for sample in &samples {
+        if sample.time_s < 0.2 - 1e-9 {
+            assert_eq!((sample.phase, sample.state), (0, "rest"));
+        } else if sample.time_s > 0.2 + 1e-9 {
+            assert_eq!((sample.phase, sample.state), (1, "right"));
+        }
+    }
+    // From there q'' grows in proportion to the time since: q = j s^3 / 6 to first order.
+    let link = arch.link(0).unwrap();
+    let coefficients =
+        archrock::mechanics::structure::Mechanism::coefficients(&link.mechanism, 0.0);
+    let jerk = 2.0 * arch.incipient_g() * GRAVITY / 0.4;
+    let growth = jerk * coefficients.sway / (arch.mean_radius_m * coefficients.inertia);
+    let near = samples.iter().find(|s| s.time_s > 0.2095).unwrap();
+    let since: f64 = near.time_s - 0.2;
+    let expected = growth * since.powi(3) / 6.0;
+    // Relative deviation of the order of (p s)^2.
+    assert!((near.rotations_rad[0].abs() / expected - 1.0).abs() < 1e-2);
+}
+
+#[test]
+fn it_rests_and_starts_again_on_either_side() {
+    let arch = semicircle();
+    let incipient_g = arch.incipient_g();
+    // A push just above A_L, a long calm in between, then a push to the other side: one period of a sine.
+    let mut seen = Vec::new();
+    for (kind, amplitude_g, duration_s) in [
+        (Pulse::OneSine, 1.05 * incipient_g, 4.0),
+        (Pulse::OneSine, -1.05 * incipient_g, 4.0),
+        // A short strong step, then one of half its size, long enough for the rocking to die out under it
+        // and the structure to be pushed again and again.
+        (Pulse::Ricker, -1.1 * incipient_g, 5.0),
+        (Pulse::Ricker, 1.1 * incipient_g, 5.0),
+    ] {
+        let ground = pulse(kind, amplitude_g, duration_s);
+        let at = Request {
+            output_step_s: Some(0.002),
+            ..request(60.0)
+        };
+        let (history, samples) = run_sampled(&arch, &ground, &at);
+        let mut states: Vec<&str> = samples.iter().map(|s| s.state).collect();
+        states.dedup();
+        seen.push((kind, amplitude_g, history.outcome, states.clone()));
+        let starts = states.windows(2).filter(|pair| pair[0] == "rest").count();
+        if kind == Pulse::OneSine {
+            assert!(starts >= 2, "{states:?}");
+            // Either side, the one opposite to the ground first.
+            let sides: Vec<&str> = states
+                .windows(2)
+                .filter(|pair| pair[0] == "rest")
+                .map(|pair| pair[1])
+                .collect();
+            let expected = if amplitude_g > 0.0 {
+                ["left", "right"]
+            } else {
+                ["right", "left"]
+            };
+            assert_eq!(sides, expected);
+        }
+        // The chain starts again with every start.
+        let restarts = history
+            .impacts
+            .iter()
+            .filter(|impact| impact.impacts == 1)
+            .count();
+        assert!(restarts >= starts.min(2), "{states:?}");
+        assert!(history.energy_defect_ratio < 1e-7);
+    }
+    assert!(
+        seen.iter()
+            .any(|(_, _, outcome, _)| *outcome == Outcome::Rest)
+    );
+}
+
+#[test]
+fn a_push_barely_above_the_threshold_does_no_harm() {
+    // One-cosine starts at its peak: the structure is lifted for an instant only, by as little as rounding.
+    let arch = semicircle();
+    for exponent in 1..=13 {
+        for kind in [
+            Pulse::OneCosine,
+            Pulse::HalfSine,
+            Pulse::Triangular,
+            Pulse::Rectangular,
+        ] {
+            let amplitude_g = -arch.incipient_g() * (1.0 + 10_f64.powi(-exponent));
+            let ground = pulse(kind, amplitude_g, 0.5);
+            let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
+            let result = history(&rocking, &request(20.0), |_| {});
+            let history = result.unwrap_or_else(|error| panic!("{kind:?} 1e-{exponent}: {error}"));
+            assert!(history.energy_defect_ratio < 1e-7, "{kind:?} {exponent}");
+            assert!(!matches!(history.outcome, Outcome::Overturned(_)));
+        }
+    }
+}
+
+#[test]
+fn the_peak_is_not_below_any_sample() {
+    let arch = semicircle();
+    let incipient_g = arch.incipient_g();
+    let check = |kind: Pulse, amplitude_g: f64, duration_s: f64, end_s: f64| {
+        let ground = pulse(kind, -amplitude_g, duration_s);
+        let at = Request {
+            output_step_s: Some(end_s / 10_000.0),
+            ..request(end_s)
+        };
+        let (history, samples) = run_sampled(&arch, &ground, &at);
+        for sample in &samples {
+            for (rotation, peak) in sample.rotations_rad.iter().zip(history.peak_rotations_rad) {
+                // Of two ways to one turning point, each is exact to the error of a step.
+                assert!(
+                    rotation.abs() <= peak * (1.0 + 1e-5),
+                    "{kind:?} {amplitude_g}: {} s {rotation} {peak}",
+                    sample.time_s
+                );
+            }
+        }
+    };
+    for kind in Pulse::ALL.iter().copied() {
+        for amplitude_g in [1.02 * incipient_g, 0.4] {
+            check(kind, amplitude_g, 0.3, 3.0);
+            // The end finds it on its way out.
+            check(kind, amplitude_g, 0.3, 0.2);
+        }
+    }
+    // A peak that falls off: the whole first hop, from rest, is shorter than the first step.
+    for exponent in 1..=5 {
+        check(
+            Pulse::OneCosine,
+            incipient_g * (1.0 + 10_f64.powi(-exponent)),
+            2.0,
+            0.2,
+        );
+    }
+}
+
+#[test]
+fn a_very_short_blow_gives_its_momentum() {
+    // Rate just after: velocity of the ground times S_x / M. Gravity takes g dt S_y / M meanwhile.
+    let arch = semicircle();
+    let link = arch.link(0).unwrap();
+    let mechanism = &link.mechanism;
+    let at_zero = archrock::mechanics::structure::Mechanism::coefficients(mechanism, 0.0);
+    for start_s in [0.0, 3.7] {
+        for duration_s in [1e-6, 1e-4] {
+            let velocity_m_s = 0.5;
+            let acceleration = -velocity_m_s / duration_s;
+            let ground = GroundMotion::pulse(Pulse::Rectangular, acceleration, duration_s, start_s);
+            let end_s = start_s + 2.0 * duration_s;
+            let at = Request {
+                output_step_s: Some(end_s),
+                ..request(end_s)
+            };
+            let (_, samples) = run_sampled(&arch, &ground, &at);
+            let rate = -samples.last().unwrap().rates_rad_s[0];
+            let expected = velocity_m_s * at_zero.sway / (at_zero.inertia * arch.mean_radius_m);
+            // Of first order in the duration, with the acceleration of gravity as its measure.
+            let relative = 2.0 * GRAVITY * at_zero.rise / at_zero.sway * duration_s / velocity_m_s;
+            assert!(
+                ((rate / expected) - 1.0).abs() < 2.0 * relative + 1e-8,
+                "{rate} {expected}"
+            );
+            assert!(rate < expected);
+            // The whole history goes on from there, whenever the blow came.
+            let history = run(&arch, &ground, &request(start_s + 20.0));
+            assert_ne!(history.outcome, Outcome::NeverMoved);
+            assert!(history.peak_rotations_rad[0] > 1e-4);
+        }
+    }
+}
+
+#[test]
+fn a_late_pulse_is_the_same_pulse() {
+    let arch = semicircle();
+    let now = pulse(Pulse::HalfSine, -0.6, 0.3);
+    let later = GroundMotion::pulse(Pulse::HalfSine, -0.6 * GRAVITY, 0.3, 512.0);
+    let (a, b) = (
+        run(&arch, &now, &request(20.0)),
+        run(&arch, &later, &request(532.0)),
+    );
+    assert_eq!(a.impacts.len(), b.impacts.len());
+    for (x, y) in a.impacts.iter().zip(&b.impacts) {
+        // Times near 512 are rounded to 1e-13, once for every phase.
+        assert!(
+            (y.time_s - 512.0 - x.time_s).abs() < 1e-8,
+            "{} {}",
+            x.time_s,
+            y.time_s
+        );
+    }
+    assert_eq!(a.outcome, b.outcome);
+}
+
+#[test]
+fn released_beyond_the_critical_rotation_it_is_lost_at_once() {
+    let arch = semicircle();
+    let still = GroundMotion::still();
+    let critical = arch.link(0).unwrap().critical_rad;
+    for sway in [Sway::Right, Sway::Left] {
+        let lost = run(&arch, &still, &released(20.0, sway, 1.001 * critical));
+        assert_eq!(lost.outcome, Outcome::Overturned(sway));
+        assert!(lost.outcome_time_s == 0.0);
+        let saved = run(&arch, &still, &released(60.0, sway, 0.999 * critical));
+        assert_eq!(saved.outcome, Outcome::Rest);
+        assert!(saved.energy_defect_ratio < 1e-7);
+    }
+}
+
+#[test]
+fn a_chain_without_end_dies_out_in_finite_time() {
+    let chain = chain_of(0.15, 157.5, HingeSites::Anywhere);
+    let arch = common::arch(&chain, 3.0);
+    let still = GroundMotion::still();
+    let history = run(&arch, &still, &released(30.0, Sway::Left, 0.02));
+    assert_eq!(history.outcome, Outcome::Rest);
+    assert!(
+        history
+            .impacts
+            .windows(2)
+            .all(|pair| pair[0].time_s < pair[1].time_s)
+    );
+    // Energies after impacts fall, and the last is below the criterion for rest.
+    let rocking = Rocking::new(&arch, &still, GRAVITY, REST_ENERGY_RATIO);
+    let after: Vec<f64> = history
+        .impacts
+        .iter()
+        .map(|impact| impact.energies().1)
+        .collect();
+    assert!(after.windows(2).all(|pair| pair[0] > pair[1]));
+    let [.., last_but_one, last] = after[..] else {
+        panic!("{after:?}")
+    };
+    let least = REST_ENERGY_RATIO * rocking.barrier();
+    assert!(last < least && last_but_one >= least);
+}
+
+#[test]
+fn the_time_of_overturning_is_the_last_passage_outwards() {
+    // A cosine pushes out, pulls back and pushes again: it may pass the critical rotation, come back, and pass
+    // it once more. From the instant that is told it is never seen inside again.
+    let arch = semicircle();
+    let link = arch.link(0).unwrap();
+    let (mut overturned, mut passed_before) = (0, 0);
+    for duration_s in [0.6, 1.0, 1.5] {
+        for step in 0..60 {
+            let amplitude_g = 0.16 + 0.012 * f64::from(step);
+            let ground = pulse(Pulse::OneCosine, -amplitude_g, duration_s);
+            let at = Request {
+                output_step_s: Some(1e-3),
+                ..request(20.0)
+            };
+            let (history, samples) = run_sampled(&arch, &ground, &at);
+            if history.outcome != Outcome::Overturned(Sway::Right) || !history.impacts.is_empty() {
+                continue;
+            }
+            overturned += 1;
+            let inside = |s: &&archrock::dynamics::history::Sample<[f64; 3]>| {
+                -s.rotations_rad[0] < link.critical_rad * (1.0 - 1e-9)
+            };
+            let last_inside = samples.iter().rfind(inside).unwrap().time_s;
+            assert!(
+                last_inside <= history.outcome_time_s,
+                "{duration_s} {amplitude_g}"
+            );
+            assert!(
+                history.outcome_time_s <= last_inside + 1.001e-3,
+                "{duration_s} {amplitude_g}"
+            );
+            let first_outside = samples.iter().find(|s| !inside(s)).unwrap().time_s;
+            passed_before += usize::from(first_outside < last_inside);
+        }
+    }
+    assert!(
+        overturned > 10 && passed_before > 0,
+        "{overturned} {passed_before}"
+    );
+}

@@ -1,0 +1,328 @@
+//! Motion between impacts: energy, the work of the ground, and the instants of events.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{Outcome, Request, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::linkage::Linkage;
+use archrock::mechanics::mechanism::{HingeSites, Sway};
+use archrock::mechanics::structure::{Link, Mechanism, Structure};
+use common::{
+    GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,
+    seven_voussoirs,
+};
+
+/// `q''` at the start, by the equation of motion written out; a ground acceleration pushes it.
+fn acceleration_at_zero(arch: &Arch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
+    let c = link.mechanism.coefficients(0.0);
+    -(GRAVITY * c.rise + ground_m_s2 * c.sway) / (arch.mean_radius_m * c.inertia)
+}
+
+#[test]
+fn at_rest_the_equation_of_motion_gives_the_incipient_acceleration() {
+    for arch in [semicircle(), seven_voussoirs()] {
+        let link = arch.link(0).unwrap();
+        let c = link.mechanism.coefficients(0.0);
+        assert!((c.rise / c.sway - arch.incipient_g()).abs() < 1e-12);
+        assert!(acceleration_at_zero(&arch, link, -arch.incipient_g() * GRAVITY).abs() < 1e-12);
+        // Every later link of the chain needs more push than the first.
+        for index in 1..6 {
+            let c = arch.link(index).unwrap().mechanism.coefficients(0.0);
+            assert!(c.rise / c.sway >= arch.incipient_g() - 1e-12);
+        }
+    }
+}
+
+/// Constant of motion by central differences of the potential: `q''` from the sampled history must be the
+/// slope of the energy. Independent of the closed coefficients: kinetic energy from the bodies' own rates.
+#[test]
+fn free_motion_keeps_the_energy_of_its_bodies() {
+    let arch = semicircle();
+    let still = GroundMotion::still();
+    let link = arch.link(0).unwrap();
+    let q0 = 0.9 * link.critical_rad;
+    let request = Request {
+        output_step_s: Some(0.005),
+        ..released(0.9, Sway::Right, q0)
+    };
+    let (history, samples) = run_sampled(&arch, &still, &request);
+    let ring = arch.chain.ring();
+    let mechanism = arch.chain.link(0).unwrap().mechanism;
+    let [a, b, c, d] = mechanism.hinges_rad();
+    let [at_a, at_b, at_c, at_d] = mechanism.points();
+    let turn = |v: nalgebra::Vector2<f64>, angle: f64| nalgebra::Rotation2::new(angle) * v;
+    let spin = |v: nalgebra::Vector2<f64>, rate: f64| nalgebra::Vector2::new(-v.y, v.x) * rate;
+    let end_s = history.impacts.first().map_or(0.9, |impact| impact.time_s);
+    let scale = GRAVITY / arch.mean_radius_m;
+    let barrier = scale * link.mechanism.displacement(link.critical_rad).y;
+    let mut first = None;
+    for sample in samples.iter().filter(|sample| sample.time_s < end_s) {
+        let [left, middle, right] = sample.rotations_rad;
+        let [left_rate, middle_rate, right_rate] = sample.rates_rad_s;
+        // Positions and velocities of the centres of gravity, from the rotations alone.
+        let (bodies, bar) = (
+            [ring.sector(a, b), ring.sector(b, c), ring.sector(c, d)],
+            turn(at_b - at_a, left),
+        );
+        let g = bodies.map(|body| body.centroid());
+        let arms = [
+            turn(g[0] - at_a, left),
+            turn(g[1] - at_b, middle),
+            turn(g[2] - at_d, right),
+        ];
+        let heights = [
+            at_a.y + arms[0].y,
+            at_a.y + bar.y + arms[1].y,
+            at_d.y + arms[2].y,
+        ];
+        let velocities = [
+            spin(arms[0], left_rate),
+            spin(bar, left_rate) + spin(arms[1], middle_rate),
+            spin(arms[2], right_rate),
+        ];
+        let rates = sample.rates_rad_s;
+        let energy: f64 = (0..3)
+            .map(|i| {
+                let body = &bodies[i];
+                0.5 * body.mass * velocities[i].norm_squared()
+                    + 0.5 * body.central_polar() * rates[i] * rates[i]
+                    + scale * body.mass * heights[i]
+            })
+            .sum();
+        // The loop is closed at C, in position and in velocity.
+        let gap = at_a + bar + turn(at_c - at_b, middle) - at_d - turn(at_c - at_d, right);
+        assert!(gap.norm() < 1e-12, "{gap}");
+        let opening = spin(bar, left_rate) + spin(turn(at_c - at_b, middle), middle_rate)
+            - spin(turn(at_c - at_d, right), right_rate);
+        assert!(opening.norm() < 1e-12);
+        let start = *first.get_or_insert(energy);
+        // Samples inside steps are interpolated: some 1e-8 of the barrier.
+        assert!(
+            (energy - start).abs() < 1e-7 * barrier,
+            "{} {}",
+            sample.time_s,
+            (energy - start) / barrier
+        );
+    }
+    assert!(samples.len() > 50);
+}
+
+#[test]
+fn the_energy_defect_is_small_under_every_pulse_and_falls_with_the_tolerance() {
+    for arch in [semicircle(), seven_voussoirs()] {
+        for kind in Pulse::ALL.iter().copied() {
+            let ground = GroundMotion::pulse(kind, -1.6 * arch.incipient_g() * GRAVITY, 0.3, 0.1);
+            let defect = |relative_tolerance: f64| {
+                let history = run(
+                    &arch,
+                    &ground,
+                    &Request {
+                        relative_tolerance,
+                        ..request(20.0)
+                    },
+                );
+                assert!(
+                    history.outcome == Outcome::Rest
+                        || history.outcome == Outcome::Overturned(Sway::Right)
+                );
+                history.energy_defect_ratio
+            };
+            let defects = [1e-5, 1e-7, 1e-9, 1e-11].map(defect);
+            assert!(defects[2] < 1e-7, "{kind:?} {defects:?}");
+            // The sum of local errors: proportional to the tolerance or better down to rounding, with
+            // factors of the number of steps (tens) on either side.
+            for (defect, tolerance) in defects.into_iter().zip([1e-5, 1e-7, 1e-9, 1e-11]) {
+                assert!(
+                    defect < 30.0 * tolerance + 1e-13,
+                    "{kind:?} {tolerance}: {defect}"
+                );
+            }
+            assert!(
+                defects[3] < 1e-2 * defects[0] + 1e-13,
+                "{kind:?} {defects:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn free_rocking_from_any_height_keeps_its_energy() {
+    let arch = semicircle();
+    let still = GroundMotion::still();
+    for part in [1e-4, 0.1, 0.5, 0.9, 0.9999] {
+        let q0 = part * arch.link(0).unwrap().critical_rad;
+        let history = run(&arch, &still, &released(60.0, Sway::Left, q0));
+        assert_eq!(history.outcome, Outcome::Rest);
+        assert!(
+            history.energy_defect_ratio < 1e-8,
+            "{part}: {}",
+            history.energy_defect_ratio
+        );
+        // Nothing rises above where it was let go: the right body leads when it sways left.
+        assert!((history.peak_rotations_rad[2] - q0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_small_hop_takes_the_time_of_a_constant_acceleration() {
+    for arch in [semicircle(), seven_voussoirs()] {
+        let still = GroundMotion::still();
+        let link = arch.link(0).unwrap();
+        let acceleration = acceleration_at_zero(&arch, link, 0.0).abs();
+        let mut deviations = Vec::new();
+        for part in [1e-2, 1e-3, 1e-4, 1e-5] {
+            let q0 = part * link.critical_rad;
+            let history = run(&arch, &still, &released(60.0, Sway::Right, q0));
+            let closed = (2.0 * q0 / acceleration).sqrt();
+            let deviation = history.impacts[0].time_s / closed - 1.0;
+            // Of first order in q0/q_c: the push back falls to zero at q_c, on the mean by a third of it.
+            assert!(deviation.abs() < part, "{part} {deviation}");
+            deviations.push(deviation / part);
+            // Rates just before and the next hop, with its own constant acceleration.
+            let rate = (2.0 * acceleration * q0).sqrt();
+            assert!((history.impacts[0].rate_before_rad_s / -rate - 1.0).abs() < part);
+            let next = arch.link(1).unwrap();
+            let back = acceleration_at_zero(&arch, next, 0.0).abs();
+            let hop = 2.0 * history.impacts[0].rate_after_rad_s / back;
+            let took = history.impacts[1].time_s - history.impacts[0].time_s;
+            assert!((took / hop - 1.0).abs() < part, "{took} {hop}");
+        }
+        // Proportional to q0 indeed: the quotient has a limit.
+        assert!(
+            (deviations[3] / deviations[2] - 1.0).abs() < 0.01,
+            "{deviations:?}"
+        );
+    }
+}
+
+#[test]
+fn event_times_meet_those_of_the_smallest_tolerance() {
+    for arch in [semicircle(), seven_voussoirs()] {
+        let still = GroundMotion::still();
+        for part in [1e-4, 1e-2, 0.3, 0.9] {
+            let q0 = part * arch.link(0).unwrap().critical_rad;
+            let times = |relative_tolerance: f64| {
+                let request = Request {
+                    relative_tolerance,
+                    ..released(60.0, Sway::Right, q0)
+                };
+                let impacts = run(&arch, &still, &request).impacts;
+                impacts
+                    .iter()
+                    .map(|impact| impact.time_s)
+                    .collect::<Vec<f64>>()
+            };
+            let (usual, exact) = (times(1e-9), times(1e-13));
+            assert_eq!(usual.len(), exact.len());
+            // The first event, and the last of a sequence of tens.
+            assert!(
+                (usual[0] - exact[0]).abs() < 1e-9 * exact[0],
+                "{part} {}",
+                usual[0] - exact[0]
+            );
+            for (usual, exact) in usual.iter().zip(&exact) {
+                assert!((usual - exact).abs() < 1e-8, "{part} {}", usual - exact);
+            }
+        }
+    }
+}
+
+#[test]
+fn event_times_under_a_pulse_meet_those_of_the_smallest_tolerance() {
+    let arch = semicircle();
+    for kind in Pulse::ALL.iter().copied() {
+        let ground = GroundMotion::pulse(kind, -0.25 * GRAVITY, 0.25, 0.0);
+        let times = |relative_tolerance: f64| {
+            let impacts = run(
+                &arch,
+                &ground,
+                &Request {
+                    relative_tolerance,
+                    ..request(20.0)
+                },
+            )
+            .impacts;
+            impacts
+                .iter()
+                .map(|impact| impact.time_s)
+                .collect::<Vec<f64>>()
+        };
+        let (usual, exact) = (times(1e-9), times(1e-13));
+        for (usual, exact) in usual.iter().zip(&exact).take(3) {
+            assert!((usual - exact).abs() < 2e-8, "{kind:?} {}", usual - exact);
+        }
+    }
+}
+
+#[test]
+fn cuts_in_the_ground_motion_change_nothing() {
+    let arch = semicircle();
+    for kind in Pulse::ALL.iter().copied() {
+        let ground = GroundMotion::pulse(kind, -0.3 * GRAVITY, 0.3, 0.05);
+        let whole = run(&arch, &ground, &request(20.0));
+        for cuts in [
+            &[0.21][..],
+            &[0.01, 0.0501, 0.111, 0.25, 0.7, 1.3],
+            &[0.3, 0.3 + 1e-9],
+        ] {
+            let cut_ground = ground.cut_at(cuts);
+            assert!(cut_ground.pieces().len() > ground.pieces().len());
+            let cut = run(&arch, &cut_ground, &request(20.0));
+            assert_eq!(cut.outcome, whole.outcome, "{kind:?}");
+            for (x, y) in cut.impacts.iter().zip(&whole.impacts).take(3) {
+                // Other steps, other errors within the tolerance.
+                assert!(
+                    (x.time_s - y.time_s).abs() < 2e-8,
+                    "{kind:?} {}",
+                    x.time_s - y.time_s
+                );
+            }
+            if let Outcome::Overturned(_) = whole.outcome {
+                // It is given up at the last passage of q_c, but followed on while a cut lies ahead.
+                assert!(
+                    (cut.outcome_time_s - whole.outcome_time_s).abs() < 2e-8,
+                    "{kind:?}"
+                );
+                continue;
+            }
+            for (x, y) in cut.peak_rotations_rad.iter().zip(whole.peak_rotations_rad) {
+                assert!((x - y).abs() < 1e-8, "{kind:?} {x} {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_critical_rotation_is_where_it_turns_over() {
+    // Let go just above and just below on ground that moves a little first, so that it is not decided yet.
+    let chain = chain_of(0.15, 157.5, HingeSites::Anywhere);
+    let arch = common::arch(&chain, 8.0);
+    let link = arch.link(0).unwrap();
+    let top = link.mechanism.displacement(link.critical_rad).y;
+    for offset in [-1e-3, 1e-3] {
+        assert!(link.mechanism.displacement(link.critical_rad + offset).y < top);
+    }
+    assert!(link.mechanism.coefficients(link.critical_rad).rise.abs() < 1e-14);
+    assert!(link.limit_rad > link.critical_rad);
+    // Energy decides: a blow that gives just less or just more than the barrier.
+    let c = link.mechanism.coefficients(0.0);
+    let barrier = GRAVITY / arch.mean_radius_m * top;
+    let duration_s = 1e-7;
+    for (factor, lost) in [(0.999, false), (1.001, true)] {
+        let rate = factor * (2.0 * barrier / c.inertia).sqrt();
+        let velocity = rate * c.inertia * arch.mean_radius_m / c.sway;
+        let ground =
+            GroundMotion::pulse(Pulse::Rectangular, -velocity / duration_s, duration_s, 0.0);
+        let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
+        assert!((rocking.barrier() / barrier - 1.0).abs() < 1e-14);
+        let history = history(&rocking, &request(60.0), |_| {}).unwrap();
+        assert_eq!(
+            history.outcome == Outcome::Overturned(Sway::Right),
+            lost,
+            "{factor}"
+        );
+    }
+}

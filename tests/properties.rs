@@ -1,0 +1,137 @@
+//! Random structures, grounds and starts: whatever is thrown at it, a history is sound.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::sync::Arc;
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{Outcome, Request, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::Chain;
+use archrock::mechanics::impact::ImpactModel;
+use archrock::mechanics::mechanism::{HingeSites, Sway};
+use archrock::mechanics::structure::{Mechanism, Structure};
+use common::ring;
+use proptest::prelude::*;
+
+fn model() -> impl Strategy<Value = ImpactModel> {
+    prop_oneof![
+        6 => Just(ImpactModel::MaxRestitution),
+        1 => Just(ImpactModel::SameSections),
+        1 => Just(ImpactModel::Mirrored),
+        2 => (0.0_f64..0.95).prop_map(|restitution| ImpactModel::Prescribed { restitution }),
+    ]
+}
+
+fn sites() -> impl Strategy<Value = HingeSites> {
+    prop_oneof![
+        1 => Just(HingeSites::Anywhere),
+        2 => (5_usize..30).prop_map(HingeSites::Voussoirs),
+    ]
+}
+
+fn ground() -> impl Strategy<Value = Option<(Pulse, f64, f64, f64)>> {
+    let pulse = (
+        proptest::sample::select(Pulse::ALL.to_vec()),
+        // Factors of the incipient acceleration, to either side, and durations from a blow to a swell.
+        prop_oneof![-6.0_f64..6.0, 0.98_f64..1.05, -300.0_f64..300.0],
+        (-5.0_f64..0.7).prop_map(|exponent| 10_f64.powf(exponent)),
+        prop_oneof![Just(0.0), 0.0_f64..3.0],
+    );
+    proptest::option::weighted(0.9, pulse)
+}
+
+fn start() -> impl Strategy<Value = Option<(Sway, f64)>> {
+    let side = prop_oneof![Just(Sway::Right), Just(Sway::Left)];
+    // Parts of the critical rotation.
+    proptest::option::weighted(0.3, (side, prop_oneof![1e-6_f64..1.0, 1.0_f64..1.2]))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(160))]
+
+    #[test]
+    fn a_history_is_sound(
+        (t, embrace) in (0.08_f64..0.35, 100.0_f64..180.0),
+        (sites, model) in (sites(), model()),
+        radius in 0.5_f64..40.0,
+        gravity in prop_oneof![Just(9.81), 1.0_f64..30.0],
+        (ground, start) in (ground(), start()),
+        exponent in -10.0_f64..-6.0,
+    ) {
+        let Ok(chain) = Chain::new(ring(t, embrace), sites, model) else { return Ok(()) };
+        let arch = Arch {
+            mean_radius_m: radius,
+            depth_m: 0.7,
+            density_kg_m3: 1900.0,
+            chain: Arc::new(chain),
+        };
+        let incipient = arch.incipient_g() * gravity;
+        let ground = ground.map_or_else(GroundMotion::still, |(pulse, factor, duration_s, start_s)| {
+            GroundMotion::pulse(pulse, factor * incipient, duration_s, start_s)
+        });
+        let link = arch.link(0).unwrap();
+        let request = Request {
+            end_s: 15.0,
+            relative_tolerance: 10_f64.powf(exponent),
+            initial: start.map(|(sway, part)| (sway, (part * link.critical_rad).min(0.9 * link.limit_rad))),
+            output_step_s: Some(0.01),
+        };
+        let rocking = Rocking::new(&arch, &ground, gravity, 1e-8);
+        let mut samples = Vec::new();
+        let history = history(&rocking, &request, |sample| samples.push(*sample))
+            .map_err(|error| TestCaseError::fail(error.to_string()))?;
+
+        // Time is strictly monotone from zero to the end.
+        prop_assert!(samples[0].time_s == 0.0);
+        prop_assert!(samples.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));
+        prop_assert!(samples.last().unwrap().time_s == history.end_s);
+        prop_assert!(samples.windows(2).all(|pair| pair[0].phase <= pair[1].phase));
+        // A vanishing hop at the end of a sequence may be shorter than the spacing of times.
+        prop_assert!(history.impacts.windows(2).all(|pair| pair[0].time_s <= pair[1].time_s));
+        prop_assert!(history.end_s <= request.end_s);
+        prop_assert!(history.outcome_time_s.is_finite() && history.outcome_time_s <= history.end_s);
+
+        // Rounding, and the interpolation within a step, in units of the critical rotation.
+        let slack = link.critical_rad * (1e-12 + request.relative_tolerance);
+        for sample in &samples {
+            let all = sample.rotations_rad.iter().chain(&sample.rates_rad_s);
+            prop_assert!(all.chain([&sample.ground_acceleration_m_s2]).all(|x| x.is_finite()));
+            // All hinges are open: swaying right the left body turns clockwise, and between two bodies
+            // intrados hinges close clockwise, extrados hinges anticlockwise; left is the mirror image.
+            let [left, middle, right] = sample.rotations_rad;
+            let openings = match sample.state {
+                "right" => [-left, middle - left, middle - right, -right],
+                "left" => [right, right - middle, left - middle, left],
+                _ => [0.0; 4],
+            };
+            for opening in openings {
+                prop_assert!(opening >= -20.0 * slack, "{openings:?} at {} s", sample.time_s);
+            }
+            for (rotation, peak) in sample.rotations_rad.iter().zip(history.peak_rotations_rad) {
+                prop_assert!(rotation.abs() <= peak * (1.0 + 1e-5) + 20.0 * slack, "{rotation} {peak}");
+            }
+        }
+        // Energies never grow at an impact.
+        for impact in &history.impacts {
+            let (before, after) = impact.energies();
+            prop_assert!(after <= before * (1.0 + 1e-12));
+        }
+        // The defect counts the errors of tens of steps, relative to the largest energy there was: the
+        // barrier, or what a blow many times stronger put into it.
+        let rates = samples.iter().flat_map(|sample| sample.rates_rad_s);
+        let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let inertia = link.mechanism.coefficients(0.0).inertia;
+        let energy_ratio = 1.0 + 0.5 * inertia * fastest * fastest / rocking.barrier();
+        let bound = (300.0 * request.relative_tolerance + 1e-12) * energy_ratio;
+        prop_assert!(history.energy_defect_ratio <= bound, "{} {bound}", history.energy_defect_ratio);
+        match history.outcome {
+            Outcome::NeverMoved => prop_assert!(history.impacts.is_empty() && request.initial.is_none()),
+            Outcome::Overturned(_) => prop_assert!(history.peak_rotations_rad.iter().any(|peak| *peak > 0.0)),
+            Outcome::StillRocking => prop_assert!(history.end_s == request.end_s),
+            Outcome::Rest => prop_assert!(!history.impacts.is_empty()),
+        }
+    }
+}
