@@ -6,18 +6,38 @@ use std::ops::ControlFlow;
 use archrock::dynamics::engine::{
     EngineError, HybridSystem, Level, Observer, Settings, Transition, simulate,
 };
-use archrock::dynamics::integrator::{Cost, IntegratorError, State, Step, Task, integrate};
+use archrock::dynamics::integrator::{self, Cost, IntegratorError, State, Step, Task};
 
 fn task<const N: usize>(start_s: f64, end_s: f64, start: State<N>, tolerance: f64) -> Task<N> {
     Task {
         start_s,
         end_s,
         start,
+        start_slope: State::zeros(),
         scale: State::repeat(1.0),
         relative_tolerance: tolerance,
         first_step_s: 0.01,
         longest_step_s: f64::INFINITY,
     }
+}
+
+/// Integrates with the slope at the start filled in.
+fn integrate<const N: usize>(
+    task: &Task<N>,
+    slope: impl Fn(f64, &State<N>) -> State<N>,
+    watch: impl FnMut(&Step<N>) -> ControlFlow<()>,
+    cost: &mut Cost,
+) -> Result<State<N>, IntegratorError> {
+    let start_slope = slope(task.start_s, &task.start);
+    integrator::integrate(
+        &Task {
+            start_slope,
+            ..*task
+        },
+        slope,
+        watch,
+        cost,
+    )
 }
 
 /// `y' = -2 t y^2`, `y(0) = 1`: `y = 1 / (1 + t^2)`. The slope depends on time itself, which the stages of

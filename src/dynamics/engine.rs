@@ -472,3 +472,54 @@ pub(super) fn falling_root(start_s: f64, end_s: f64, level: impl Fn(f64) -> Leve
     }
     guess_s
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crossing(end_s: f64, level: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+        let at = |time_s: f64| {
+            let (value, rate) = level(time_s);
+            Point {
+                time_s,
+                level: Level { value, rate },
+            }
+        };
+        first_crossing(at(0.0), at(end_s), HALVINGS, &at)
+    }
+
+    fn is_at(found: Option<f64>, expected: f64) -> bool {
+        found.is_some_and(|time_s| (time_s - expected).abs() < 1e-15)
+    }
+
+    #[test]
+    fn a_hop_that_starts_at_zero_fires_where_it_lands() {
+        let hop = |t: f64| (t * (1.0 - t), 1.0 - 2.0 * t);
+        assert!(is_at(crossing(1.1, hop), 1.0));
+        assert!(is_at(crossing(100.0, hop), 1.0));
+        assert!(crossing(0.9, hop).is_none());
+    }
+
+    #[test]
+    fn a_dip_between_two_positive_ends_is_seen() {
+        let dip = |floor: f64| move |t: f64| ((t - 0.3).powi(2) + floor, 2.0 * (t - 0.3));
+        assert!(is_at(crossing(1.0, dip(-0.01)), 0.2));
+        assert!(crossing(1.0, dip(-1e-10)).is_some());
+        assert!(crossing(1.0, dip(0.0)).is_none());
+        assert!(crossing(1.0, dip(1e-10)).is_none());
+    }
+
+    #[test]
+    fn a_level_that_is_negative_at_the_start_has_to_rise_first() {
+        assert!(crossing(1.0, |t| (-1.0 - t, -1.0)).is_none());
+        assert!(crossing(1.0, |t| (t - 0.5, 1.0)).is_none());
+        let wave = |t: f64| (-(4.0 * t).cos(), 4.0 * (4.0 * t).sin());
+        assert!(is_at(crossing(2.0, wave), 0.375 * std::f64::consts::PI));
+    }
+
+    #[test]
+    fn the_first_of_several_crossings_counts() {
+        let wave = |t: f64| ((5.0 * t).cos(), -5.0 * (5.0 * t).sin());
+        assert!(is_at(crossing(1.0, wave), 0.1 * std::f64::consts::PI));
+    }
+}

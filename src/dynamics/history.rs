@@ -234,7 +234,6 @@ pub fn history<'a, S: Structure>(
     if let Some(sampler) = &mut sampler {
         sampler.finish(rocking, finish.mode, finish.time_s, &finish.state);
     }
-    // The end may find it on its way out.
     recorder.note_peak(finish.mode, &finish.state);
     recorder.check_energy(rocking, finish.mode, &finish.state);
     let (outcome, outcome_time_s) = match finish.mode {
@@ -335,8 +334,9 @@ impl<'a, S: Structure> Recorder<'a, S> {
         recorder
     }
 
+    /// All rotations grow with `q`: the largest are where it turns round, or at the start or the end.
     fn note_peak(&mut self, mode: Mode<'a, S::Mechanism>, state: &RockingState) {
-        if let Mode::Rocking { sway, link, .. } = mode {
+        if let Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link } = mode {
             let rotations = seen_from_ground::<S>(sway, link.mechanism.rotations(state[0]), 1.0);
             let peaks = self.peak_rotations_rad.as_mut().iter_mut();
             for (peak, rotation) in peaks.zip(rotations.as_ref()) {
@@ -369,8 +369,7 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
         let Mode::Rocking { link, .. } = mode else {
             return;
         };
-        // All rotations grow with q, so that the largest are where it turns round.
-        // It may also do so in the very step in which it leaves the rest, at no rate.
+        // It may turn round in the very step in which it leaves the rest, at no rate.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
             let bend = step.end_slope[1] - step.start_slope[1];
             let turn_s = falling_root(step.start_s, step.end_s, |time_s| Level {
@@ -399,7 +398,6 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
         _: usize,
         transition: &RockingTransition<'a, S>,
     ) {
-        self.note_peak(transition.from, &transition.before);
         self.check_energy(rocking, transition.from, &transition.before);
         if let Some(impact) = ImpactEvent::new(rocking.structure(), transition) {
             let (before, after) = impact.energies();

@@ -61,6 +61,10 @@ pub enum Guard {
 /// The coordinate `q`, its rate, and the work done by the ground since time zero.
 pub type RockingState = State<3>;
 
+/// A push lifts the structure when it is this many times the incipient one: by so much more than rounding
+/// that the mechanism really opens. At the very threshold it could close again at once, for ever.
+const LIFTING: f64 = 1.0 + 1e-12;
+
 /// A structure on moving ground.
 #[derive(Debug)]
 pub struct Rocking<'a, S: Structure> {
@@ -310,7 +314,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         let piece = self.piece(piece);
         match (guard, mode) {
             (Guard::Uplift(sway), _) => Level {
-                value: self.structure.incipient_g() * self.gravity_m_s2
+                value: LIFTING * self.structure.incipient_g() * self.gravity_m_s2
                     + sway.sign() * piece.acceleration_m_s2(time_s),
                 rate: sway.sign() * piece.jerk_m_s3(time_s),
             },
@@ -343,10 +347,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         match mode {
             Mode::Rest => self.guards(mode).iter().copied().find(|guard| {
                 let level = self.level(*guard, mode, piece, time_s, state);
-                // At the threshold to rounding only a growing push lifts: else a structure that has
-                // just closed there would start again for ever.
-                let rounding = 1e-12 * self.structure.incipient_g() * self.gravity_m_s2;
-                level.value < -rounding || (level.value <= 0.0 && level.rate < 0.0)
+                level.value < 0.0
             }),
             Mode::Rocking { link, .. } => {
                 let lost = self.piece(piece).is_quiet_for_good()
