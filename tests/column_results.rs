@@ -52,7 +52,8 @@ fn files_have_one_body_and_no_hinges() {
     let scenario = format!("{COLUMN}[ground.half_sine]\namplitude_g = -0.5\nduration_s = 0.4\n");
     let folder = results(&scenario, &[]);
     let (header, rows) = table(&folder.path().join("rotations.csv"));
-    let expected = "time_s,ground_acceleration_m_s2,phase,state,rotation_rad,rate_rad_s";
+    let expected = "time_s,ground_acceleration_m_s2,phase,state,rotation_rad,rate_rad_s,\
+                    thrust_excess_ratio,friction_demand";
     assert_eq!(header, expected);
     let (header, impacts) = table(&folder.path().join("impacts.csv"));
     let expected = "impact,time_s,sway_before,sway_after,restitution,energy_before_j,energy_after_j,\
@@ -100,7 +101,9 @@ fn dimensionless_columns_come_last() {
     );
     let (_, plain_rows) = table(&plain.path().join("rotations.csv"));
     let (header, rows) = table(&with.path().join("rotations.csv"));
-    assert!(header.ends_with("rate_rad_s,p_t,acceleration_over_incipient,rotation_over_critical"));
+    assert!(
+        header.ends_with("friction_demand,p_t,acceleration_over_incipient,rotation_over_critical")
+    );
     let p = (0.75 * 9.81 / 1.04_f64.sqrt() / 2.0).sqrt();
     assert_eq!(rows.len(), plain_rows.len());
     for (row, plain) in rows.iter().zip(&plain_rows) {
@@ -222,6 +225,18 @@ fn limit_and_impact_name_the_toes() {
     assert!(archrock(&["limit"], &path).contains("the right toe"));
     assert!(archrock(&["impact"], &path).contains("left toe"));
     assert!(archrock(&["check"], &path).contains("density_kg_m3 = 2000.0"));
+
+    // Pictures of mechanisms are of arches: said before anything is drawn.
+    for command in ["limit", "impact"] {
+        let picture = folder.path().join("p.svg");
+        let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
+            .args([command, "--plot"])
+            .args([&picture, &path])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(!picture.exists() && output.stdout.is_empty());
+    }
 
     // A flat one stops.
     fs::write(&path, "[column]\nheight_m = 1\nwidth_m = 2\n").unwrap();

@@ -127,7 +127,13 @@ fn a_killed_run_leaves_complete_results_or_none() {
     // What they left goes with the next run.
     assert!(spawn(0).wait().unwrap().success());
     assert!(check_results(&folder, 40.0));
-    let expected = ["events.csv", "impacts.csv", "rotations.csv", "summary.json"];
+    let expected = [
+        "events.csv",
+        "history.svg",
+        "impacts.csv",
+        "rotations.csv",
+        "summary.json",
+    ];
     assert_eq!(names(&folder), expected);
 }
 

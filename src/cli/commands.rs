@@ -7,7 +7,7 @@ use archrock::mechanics::arch;
 use archrock::mechanics::equivalent::{Block, equivalent};
 use archrock::mechanics::mechanism::Sway;
 use archrock::mechanics::structure::{Hinge, Mechanism, Structure as Rocks};
-use archrock::output::mechanisms;
+use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Arch, Scenario, Structure};
 
 use super::{Failure, Format, print};
@@ -22,22 +22,54 @@ pub fn check(path: &Path) -> Result<(), Failure> {
     print(&Scenario::read(path)?.to_toml())
 }
 
-pub fn limit(path: &Path, format: Format) -> Result<(), Failure> {
+pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Failure> {
     let scenario = Scenario::read(path)?;
     match &scenario.structure {
-        Structure::Arch(arch) => print_limit(&scenario, &build(arch, &scenario)?, format),
-        Structure::Column(column) => print_limit(&scenario, &column.build(scenario.impact), format),
+        Structure::Arch(arch) => {
+            let arch = build(arch, &scenario)?;
+            if let Some(plot) = plot {
+                write_picture(plot, &pictures::limit(&arch.chain))?;
+            }
+            print_limit(&scenario, &arch, format)
+        }
+        Structure::Column(column) => {
+            refuse_picture(plot)?;
+            print_limit(&scenario, &column.build(scenario.impact), format)
+        }
     }
 }
 
-pub fn impact(path: &Path, count: usize, format: Format) -> Result<(), Failure> {
+pub fn impact(
+    path: &Path,
+    count: usize,
+    format: Format,
+    plot: Option<&Path>,
+) -> Result<(), Failure> {
     let scenario = Scenario::read(path)?;
     match &scenario.structure {
-        Structure::Arch(arch) => print_impacts(&scenario, &build(arch, &scenario)?, count, format),
+        Structure::Arch(arch) => {
+            let arch = build(arch, &scenario)?;
+            if let Some(plot) = plot {
+                let picture = pictures::first_impact(&arch.chain);
+                let stops =
+                    || Failure::Work("the first impact stops the arch: nothing to draw".to_owned());
+                write_picture(plot, &picture.ok_or_else(stops)?)?;
+            }
+            print_impacts(&scenario, &arch, count, format)
+        }
         Structure::Column(column) => {
+            refuse_picture(plot)?;
             print_impacts(&scenario, &column.build(scenario.impact), count, format)
         }
     }
+}
+
+/// Pictures of mechanisms are of arches.
+fn refuse_picture(plot: Option<&Path>) -> Result<(), Failure> {
+    plot.map_or(Ok(()), |_| {
+        let message = "--plot draws arches only, and this is a column: leave it out";
+        Err(Failure::Input(message.to_owned()))
+    })
 }
 
 fn print_limit<S: Rocks>(
@@ -62,6 +94,11 @@ fn print_impacts<S: Rocks>(
         Format::Json => print(&pretty(&mechanisms::impacts(structure, count))),
         Format::Text => print(&impact_text(scenario, structure, count)),
     }
+}
+
+fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
+    std::fs::write(path, picture)
+        .map_err(|error| Failure::Work(format!("cannot write {}: {error}", path.display())))
 }
 
 fn pretty(value: &serde_json::Value) -> String {

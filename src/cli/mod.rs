@@ -3,6 +3,7 @@
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
 //! 2 bad usage or bad input.
 
+mod chart;
 mod commands;
 mod run;
 
@@ -37,6 +38,9 @@ enum Command {
         /// How to print.
         #[arg(long, value_enum, default_value_t)]
         format: Format,
+        /// Draw the mechanism and the thrust line as well, as SVG.
+        #[arg(long, value_name = "FILE")]
+        plot: Option<PathBuf>,
     },
     /// Print the first links of the chain of mechanisms that impacts lead through.
     Impact {
@@ -48,7 +52,12 @@ enum Command {
         /// How to print.
         #[arg(long, value_enum, default_value_t)]
         format: Format,
+        /// Draw the first impact as well, as SVG: mechanisms, bodies, impulse line.
+        #[arg(long, value_name = "FILE")]
+        plot: Option<PathBuf>,
     },
+    /// Chart incipient acceleration and restitution over thickness, for several embrace angles.
+    Chart(chart::Arguments),
     /// Check a scenario and print it with every default resolved.
     Check {
         /// Scenario file (TOML).
@@ -103,12 +112,18 @@ pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match arguments.command {
         Command::Run(run) => run::run(&run, arguments.quiet),
-        Command::Limit { scenario, format } => commands::limit(&scenario, format),
+        Command::Limit {
+            scenario,
+            format,
+            plot,
+        } => commands::limit(&scenario, format, plot.as_deref()),
         Command::Impact {
             scenario,
             count,
             format,
-        } => commands::impact(&scenario, count.into(), format),
+            plot,
+        } => commands::impact(&scenario, count.into(), format, plot.as_deref()),
+        Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),
     };
     let (code, message) = match result {

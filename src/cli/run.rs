@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Outcome, history};
 use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::structure::Structure as Rocks;
 use archrock::output::rotations::{RotationsWriter, Scales};
+use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError, results};
 use archrock::scenario::{Scenario, Structure};
 
@@ -33,6 +35,7 @@ pub struct Arguments {
 
 const ROTATIONS: &str = "rotations.csv";
 const EVENTS: &str = "events.csv";
+const PICTURE: &str = "history.svg";
 const IMPACTS: &str = "impacts.csv";
 /// Written last: a folder that has it is complete.
 const SUMMARY: &str = "summary.json";
@@ -85,20 +88,28 @@ fn run_structure<S: Rocks>(
         .map(|path| open(&path, to_stdout))
         .transpose()
         .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))?;
+    let mut timeline = Timeline::new::<S::Mechanism>(scenario.simulation.gravity_m_s2);
     let simulated = match &mut folder {
-        Some(folder) if !to_stdout => simulate(scenario, &rocking, folder.file(ROTATIONS), scales),
-        _ => simulate(
-            scenario,
-            &rocking,
-            BufWriter::new(io::stdout().lock()),
-            scales,
-        ),
+        Some(folder) if !to_stdout => {
+            let file = folder.file(ROTATIONS);
+            simulate(scenario, &rocking, file, scales, &mut timeline)
+        }
+        _ => {
+            let stdout = BufWriter::new(io::stdout().lock());
+            simulate(scenario, &rocking, stdout, scales, &mut timeline)
+        }
     };
     let (history, rows) = simulated?;
     let mut text = human_summary(scenario, structure, &ground, &history);
     if let Some(mut folder) = folder {
         results::write_events(folder.file(EVENTS), structure, &history.events)?;
         results::write_impacts(folder.file(IMPACTS), structure, &history.impacts)?;
+        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let impacts_s = history.impacts.iter().map(|impact| impact.time_s);
+        folder
+            .file(PICTURE)
+            .write_all(timeline.draw(title, impacts_s).as_bytes())
+            .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
         let summary = results::summary(scenario, structure, &history)?;
         writeln!(folder.file(SUMMARY), "{summary:#}")
             .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
@@ -111,7 +122,7 @@ fn run_structure<S: Rocks>(
         };
         let _ = writeln!(
             text,
-            "  results in {}: {rotations}{EVENTS}, {IMPACTS}, {SUMMARY}",
+            "  results in {}: {rotations}{EVENTS}, {IMPACTS}, {PICTURE}, {SUMMARY}",
             path.display()
         );
     }
@@ -125,11 +136,11 @@ fn run_structure<S: Rocks>(
 /// Opens the folder for the results.
 fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
     if without_rotations {
-        let mut folder = Folder::open(path, &[EVENTS, IMPACTS, SUMMARY])?;
+        let mut folder = Folder::open(path, &[EVENTS, IMPACTS, PICTURE, SUMMARY])?;
         folder.forget(ROTATIONS);
         Ok(folder)
     } else {
-        Folder::open(path, &[ROTATIONS, EVENTS, IMPACTS, SUMMARY])
+        Folder::open(path, &[ROTATIONS, EVENTS, IMPACTS, PICTURE, SUMMARY])
     }
 }
 
@@ -139,10 +150,12 @@ fn simulate<'a, S: Rocks>(
     rocking: &Rocking<'a, S>,
     writer: impl io::Write,
     scales: Option<Scales>,
+    timeline: &mut Timeline,
 ) -> Result<(History<'a, S>, u64), Failure> {
     let mut table = RotationsWriter::new::<S::Mechanism>(writer, scales)?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
+        timeline.push(sample);
         if written.is_ok() {
             written = table.write(sample);
         }
@@ -211,6 +224,45 @@ fn human_summary<S: Rocks>(
     let _ = writeln!(
         text,
         "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
+    );
+    if let Some(thrust) = &history.thrust {
+        let of_arch = matches!(scenario.structure, Structure::Arch(_));
+        text += &trust(thrust, of_arch);
+    }
+    text
+}
+
+/// How far the motion can be trusted to be that of four links, or of a column on its toe.
+fn trust(thrust: &ThrustRecord, of_arch: bool) -> String {
+    let Some(shares) = thrust.shares_within() else {
+        return String::new();
+    };
+    let Peak { value, time_s } = thrust.largest_excess;
+    let [close, near] = shares.map(|share| 100.0 * share);
+    let [least, most] = EXCESS_LEVELS;
+    let mut text = if !of_arch {
+        if value > 0.0 {
+            format!(
+                "  the ground would have to hold the column down (at {time_s:.4} s): it flies off\n"
+            )
+        } else {
+            String::new()
+        }
+    } else if value <= least {
+        format!(
+            "  four links suffice to {value:.4} t, by which the thrust line leaves the arch at most\n"
+        )
+    } else {
+        format!(
+            "  four links do not suffice: the thrust line leaves the arch by up to {value:.3} t (at \
+             {time_s:.4} s);\n    it stays within {least} t for {close:.1} % and within {most} t for \
+             {near:.1} % of the rocking time. Not on the safe side.\n"
+        )
+    };
+    let _ = writeln!(
+        text,
+        "  no sliding takes a friction coefficient of {:.3} for granted (at {:.4} s)",
+        thrust.largest_friction.value, thrust.largest_friction.time_s
     );
     text
 }

@@ -5,8 +5,9 @@ use super::engine::{
 };
 use super::integrator::{Cost, Step};
 use super::rocking::{Guard, Mode, Rocking, RockingState};
+use super::thrust::ThrustRecord;
 use crate::mechanics::mechanism::Sway;
-use crate::mechanics::structure::{Link, Mechanism, Structure};
+use crate::mechanics::structure::{Demand, Link, Mechanism, Structure};
 
 /// Rotations of the bodies of a structure, from left to right, anticlockwise, in radians; or their rates.
 pub type Rotations<S> = <<S as Structure>::Mechanism as Mechanism>::Rotations;
@@ -155,6 +156,10 @@ pub struct Sample<R> {
     pub rotations_rad: R,
     /// Rotation rates of the bodies.
     pub rates_rad_s: R,
+    /// What the internal forces ask of the sections.
+    pub demand: Demand,
+    /// Kinetic and potential energy over the energy barrier.
+    pub energy_ratio: f64,
     /// Rotation of the body that carries `q` over that at the unstable equilibrium of the mechanism that
     /// moves, anticlockwise: below -1 or above 1 gravity overturns the structure.
     pub rotation_over_critical: f64,
@@ -191,6 +196,8 @@ pub struct History<'a, S: Structure> {
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus what the impacts took, over the energy barrier.
     pub energy_defect_ratio: f64,
+    /// The demands over all samples, if any were asked for.
+    pub thrust: Option<ThrustRecord>,
     /// Work done by the integrator.
     pub cost: Cost,
 }
@@ -256,6 +263,7 @@ pub fn history<'a, S: Structure>(
         impacts: recorder.impacts,
         peak_rotations_rad: recorder.peak_rotations_rad,
         energy_defect_ratio: recorder.largest_defect / rocking.barrier(),
+        thrust: sampler.map(|sampler| sampler.thrust),
         cost: finish.cost,
     })
 }
@@ -458,16 +466,18 @@ struct Sampler<F, R> {
     phase: usize,
     /// The last sample is held back, in case the end falls on it.
     held: Option<Sample<R>>,
+    thrust: ThrustRecord,
     sink: F,
 }
 
 impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
-    const fn new(output_step_s: f64, sink: F) -> Self {
+    fn new(output_step_s: f64, sink: F) -> Self {
         Self {
             output_step_s,
             next: 0,
             phase: 0,
             held: None,
+            thrust: ThrustRecord::default(),
             sink,
         }
     }
@@ -479,8 +489,14 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
 
     fn push(&mut self, sample: Sample<R>) {
         if let Some(held) = self.held.replace(sample) {
-            (self.sink)(&held);
+            self.emit(&held);
         }
+    }
+
+    fn emit(&mut self, sample: &Sample<R>) {
+        self.thrust
+            .note(sample.time_s, sample.state != "rest", &sample.demand);
+        (self.sink)(sample);
     }
 
     fn sample<S: Structure>(
@@ -498,21 +514,31 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         let over_critical = |sway: Sway, link: &Link<S::Mechanism>| {
             -sway.sign() * state[0] / link.critical_rad + 0.0
         };
-        let (name, rotation_over_critical) = match mode {
-            Mode::Rest => ("rest", 0.0),
-            Mode::Rocking { sway, link, .. } => (sway.name(), over_critical(sway, link)),
-            Mode::Overturned { sway, link } => ("overturned", over_critical(sway, link)),
+        let (name, rotation_over_critical, energy) = match mode {
+            Mode::Rest => ("rest", 0.0, 0.0),
+            Mode::Rocking { sway, link, .. } => (
+                sway.name(),
+                over_critical(sway, link),
+                rocking.energy(link, state),
+            ),
+            Mode::Overturned { sway, link } => (
+                "overturned",
+                over_critical(sway, link),
+                rocking.energy(link, state),
+            ),
         };
         let (rotations_rad, rates_rad_s) = posture(rocking, mode, state);
+        // Adding zero makes a negative zero positive.
+        let ground_m_s2 = rocking.ground().pieces()[piece].acceleration_m_s2(time_s) + 0.0;
         Sample {
             time_s,
-            // Adding zero makes a negative zero positive.
-            ground_acceleration_m_s2: rocking.ground().pieces()[piece].acceleration_m_s2(time_s)
-                + 0.0,
+            ground_acceleration_m_s2: ground_m_s2,
             phase: self.phase,
             state: name,
             rotations_rad,
             rates_rad_s,
+            demand: rocking.demand(mode, ground_m_s2, state),
+            energy_ratio: energy / rocking.barrier(),
             rotation_over_critical,
         }
     }
@@ -535,9 +561,9 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         if let Some(held) = self.held.take()
             && held.time_s < time_s - 1e-9 * self.output_step_s
         {
-            (self.sink)(&held);
+            self.emit(&held);
         }
-        (self.sink)(&last);
+        self.emit(&last);
     }
 }
 

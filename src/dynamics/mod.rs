@@ -4,3 +4,4 @@ pub mod ground;
 pub mod history;
 pub mod integrator;
 pub mod rocking;
+pub mod thrust;

@@ -8,11 +8,13 @@
 //!
 //! Which structure rocks does not matter here: see [`Structure`].
 
+use nalgebra::Vector2;
+
 use super::engine::{HybridSystem, Level};
 use super::ground::{GroundMotion, Piece};
 use super::integrator::{State, Step};
 use crate::mechanics::mechanism::Sway;
-use crate::mechanics::structure::{Coefficients, Link, Mechanism, Structure};
+use crate::mechanics::structure::{Coefficients, Demand, Link, Mechanism, Motion, Structure};
 
 /// Discrete state of a rocking structure.
 #[derive(Debug)]
@@ -151,6 +153,33 @@ impl<'a, S: Structure> Rocking<'a, S> {
         let force = self.gravity_m_s2 * coefficients.rise + ground_m_s2 * coefficients.sway;
         let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
         -(force / self.structure.length_m() + inertial) / coefficients.inertia
+    }
+
+    /// What the internal forces ask of the structure's sections.
+    #[must_use]
+    pub fn demand(
+        &self,
+        mode: Mode<'a, S::Mechanism>,
+        ground_m_s2: f64,
+        state: &RockingState,
+    ) -> Demand {
+        let body_force_g =
+            |sway: Sway| Vector2::new(-sway.sign() * ground_m_s2 / self.gravity_m_s2, -1.0);
+        let (sway, link) = match mode {
+            Mode::Rest => return self.structure.demand_at_rest(body_force_g(Sway::Right)),
+            Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link } => (sway, link),
+        };
+        let (q_rad, rate) = (state[0], state[1]);
+        let coefficients = link.mechanism.coefficients(q_rad);
+        let acceleration = self.acceleration(&coefficients, rate, sway.sign() * ground_m_s2);
+        let square_s2 = self.structure.length_m() / self.gravity_m_s2;
+        let motion = Motion {
+            q_rad,
+            rate: rate * square_s2.sqrt(),
+            acceleration: acceleration * square_s2,
+            body_force_g: body_force_g(sway),
+        };
+        self.structure.demand(&link.mechanism, &motion)
     }
 
     /// Time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+
 use super::chain::Chain;
 use super::linkage::Linkage;
 use super::mechanism::Sway;
-use super::structure::{Hinge, Link, Structure};
+use super::structure::{Demand, Hinge, Link, Motion, Structure};
+use super::thrust::ThrustLine;
 
 /// An arch. Its chain of mechanisms does not depend on size or material, and may be shared.
 #[derive(Clone, Debug)]
@@ -35,9 +38,19 @@ impl Structure for Arch {
         self.chain.incipient().acceleration_g
     }
 
+    fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
+        mechanism.thrust_line(motion).demand(self.chain.sites())
+    }
+
+    fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
+        ThrustLine::at_rest(self.chain.incipient(), self.chain.ring(), body_force_g)
+            .demand(self.chain.sites())
+    }
+
     fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {
         self.chain.link(impacts).map(|link| &link.link)
     }
+
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
         self.chain.link(impacts).map_or(Vec::new(), |link| {
             let hinges = link.mechanism.hinges_from_left(self.chain.ring(), sway);

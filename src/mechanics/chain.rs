@@ -77,6 +77,12 @@ impl Chain {
         &self.ring
     }
 
+    /// Where hinges may form.
+    #[must_use]
+    pub const fn sites(&self) -> HingeSites {
+        self.sites
+    }
+
     /// Onset of rocking; its mechanism is link 0.
     #[must_use]
     pub const fn incipient(&self) -> &Incipient {

@@ -21,8 +21,9 @@ use nalgebra::Vector2;
 use super::field::Twist;
 use super::impact::ImpactModel;
 use super::mechanism::Sway;
+use super::resultant::SectionResultant;
 use super::ring::MassMoments;
-use super::structure::{Coefficients, Hinge, Link, Mechanism, Structure};
+use super::structure::{Coefficients, Demand, Hinge, Link, Mechanism, Motion, Structure};
 
 /// The column turning about its right toe; lengths in half diagonals, unit density and depth.
 #[derive(Clone, Copy, Debug)]
@@ -158,6 +159,18 @@ fn rate_ratio(sin: f64, cos: f64) -> f64 {
     opening.power(&closing) / opening.power(&opening.momentum(&moments))
 }
 
+/// What the reaction of the ground, per weight, with its moment about the middle of the base, asks of it.
+fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Demand {
+    let width = 2.0 * mechanism.sin;
+    let base = SectionResultant {
+        normal: reaction.y,
+        tangential: reaction.x,
+        moment,
+        eccentricity_ratio: moment / (reaction.y * width),
+    };
+    Demand::of_sections(std::iter::once(base), width, 1.0)
+}
+
 impl Structure for Column {
     type Mechanism = Tilting;
 
@@ -171,6 +184,23 @@ impl Structure for Column {
 
     fn incipient_g(&self) -> f64 {
         self.incipient_g
+    }
+
+    /// The column is one stone: its only section is the base, which the ground's reaction crosses at the
+    /// toe. The excess is zero unless the ground would have to pull.
+    fn demand(&self, mechanism: &Tilting, motion: &Motion) -> Demand {
+        // Acceleration of the centre of gravity, on its circle about the toe.
+        let (sin, cos) = mechanism.sin_cos_from(motion.q_rad);
+        let along = Vector2::new(cos, sin) * motion.acceleration;
+        let inward = Vector2::new(sin, -cos) * (motion.rate * motion.rate);
+        let reaction = along + inward - motion.body_force_g;
+        base_demand(mechanism, reaction, reaction.y * mechanism.sin)
+    }
+
+    fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
+        let mechanism = &self.first.mechanism;
+        let moment = body_force_g.x * mechanism.cos;
+        base_demand(mechanism, -body_force_g, moment)
     }
 
     fn link(&self, impacts: usize) -> Option<&Link<Tilting>> {
@@ -236,6 +266,38 @@ mod tests {
         let inertia = column.first.mechanism.coefficients(0.0).inertia;
         let kg_m2 = inertia * column.mass_unit_kg() * column.length_m() * column.length_m();
         assert!((kg_m2 / (kg * (16.0 + 0.64) / 3.0) - 1.0).abs() < 1e-14);
+    }
+
+    /// At the release a column falls with `q'' = -3/4 g/R sin(alpha - q)`, like the rod of the textbooks, which the
+    /// ground carries with `1 - 3/4 sin^2` of the weight and pushes with `3/4 sin cos`. At rest it carries all,
+    /// and pushes with the ground's acceleration.
+    #[test]
+    fn the_base_carries_what_it_has_to() {
+        let column = column(0.3, ImpactModel::MaxRestitution);
+        for q_rad in [0.0, 0.1, 0.3, 0.5] {
+            let (sin, cos) = (0.3_f64 - q_rad).sin_cos();
+            let motion = Motion {
+                q_rad,
+                rate: 0.0,
+                acceleration: -0.75 * sin,
+                body_force_g: Vector2::new(0.0, -1.0),
+            };
+            let demand = column.demand(&column.first.mechanism, &motion);
+            let friction = 0.75 * (sin * cos).abs() / (1.0 - 0.75 * sin * sin);
+            assert!((demand.friction - friction).abs() < 1e-15 && demand.excess_ratio == 0.0);
+        }
+        let at_rest = |push_g| column.demand_at_rest(Vector2::new(push_g, -1.0));
+        assert!(at_rest(0.2).friction == 0.2 && at_rest(0.2).excess_ratio == 0.0);
+        let beyond = at_rest(-0.4).excess_ratio - (0.2 / 0.3_f64.tan() - 0.5);
+        assert!(beyond.abs() < 1e-15);
+        // A fast column would fly off: the ground cannot pull.
+        let fast = Motion {
+            q_rad: 0.3,
+            rate: 1.1,
+            acceleration: 0.0,
+            body_force_g: Vector2::new(0.0, -1.0),
+        };
+        assert!(column.demand(&column.first.mechanism, &fast).excess_ratio > 0.0);
     }
 
     #[test]

@@ -63,7 +63,7 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
         return Err(LimitError::CannotStand);
     }
     let thrust_line = ResultantLine::through_hinges(ring, &mechanism, push(acceleration_g));
-    let excess_ratio = thrust_line.largest_excess(sections(ring, sites).into_iter());
+    let excess_ratio = thrust_line.largest_excess(sites.sections_rad(ring, CERTIFICATE_SECTIONS));
     if excess_ratio > CERTIFICATE_TOLERANCE {
         return Err(LimitError::OtherMechanism { acceleration_g });
     }
@@ -96,18 +96,6 @@ pub fn least_thickness_ratio(embrace_rad: f64, sites: HingeSites) -> Option<f64>
         }
     }
     Some(high)
-}
-
-/// Sections at which a thrust line has to be inside the ring.
-fn sections(ring: &Ring, sites: HingeSites) -> Vec<f64> {
-    let count = match sites {
-        HingeSites::Anywhere => CERTIFICATE_SECTIONS,
-        HingeSites::Voussoirs(count) => count,
-    };
-    #[expect(clippy::cast_precision_loss, reason = "section counts are small")]
-    (0..=count)
-        .map(|i| ring.embrace_rad() * (i as f64 / count as f64))
-        .collect()
 }
 
 /// Gravity and a push of `acceleration_g` to the right, as load per unit mass.

@@ -9,10 +9,11 @@
 
 use nalgebra::Vector2;
 
-use super::field::turned;
+use super::field::{Momentum, turned};
 use super::mechanism::FourLink;
 use super::ring::{MassMoments, Ring};
-use super::structure::{Coefficients, Mechanism};
+use super::structure::{Coefficients, Mechanism, Motion};
+use super::thrust::{Load, Part, ThrustLine};
 
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +56,9 @@ impl Body {
 /// The middle body moves with B and turns about it; its mass is counted as a load of the left body at B.
 #[derive(Clone, Copy, Debug)]
 pub struct Linkage {
+    ring: Ring,
+    hinges_rad: [f64; 4],
+    points: [Vector2<f64>; 4],
     /// Bar A-B.
     left: Body,
     /// Bar B-C.
@@ -78,6 +82,16 @@ fn complex_product(a: Vector2<f64>, b: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
 }
 
+/// The unit complex number that turns `from` into `to`, vectors of equal length.
+fn turn_between(from: Vector2<f64>, to: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared()
+}
+
+/// Undoes the rotation by the angle of the unit complex number `turn`.
+fn rotate_back(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
+    complex_product(Vector2::new(turn.x, -turn.y), v)
+}
+
 /// The angle by which `from` is turned to point like `to`.
 fn angle_between(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
     from.perp(&to).atan2(from.dot(&to))
@@ -91,6 +105,9 @@ impl Linkage {
         let [point_a, point_b, point_c, point_d] = mechanism.points();
         let middle = ring.sector(b, c);
         Self {
+            ring: *ring,
+            hinges_rad: mechanism.hinges_rad(),
+            points: mechanism.points(),
             left: Body::new(&ring.sector(a, b), point_a, point_b - point_a).loaded(middle.mass),
             middle: Body::new(&middle, point_b, point_c - point_b),
             right: Body::new(&ring.sector(c, d), point_d, point_c - point_d),
@@ -131,6 +148,82 @@ impl Linkage {
         )
     }
 
+    /// Derivatives of the rates of the middle and the right body with respect to `q`: the loop's
+    /// accelerations, with those along the bars on the right.
+    fn slopes(pose: &Pose, middle_rate: f64, right_rate: f64) -> (f64, f64) {
+        let inward = pose.left + pose.middle * (middle_rate * middle_rate)
+            - pose.right * (right_rate * right_rate);
+        (
+            inward.dot(&pose.right) / pose.cross,
+            inward.dot(&pose.middle) / pose.cross,
+        )
+    }
+
+    /// The thrust line in motion: from the dynamic equilibrium of the three bodies.
+    ///
+    /// The moments of the right body about D and of the middle body about B give the force at C, and
+    /// forces alone the others. `B-C` and `C-D` are never on one line before the limit position. That the
+    /// line passes through B on the left body's side as well is the equation of motion.
+    #[must_use]
+    pub fn thrust_line(&self, motion: &Motion) -> ThrustLine {
+        let pose = self.pose(motion.q_rad);
+        let (middle_rate, right_rate) = Self::rates(&pose);
+        let (middle_slope, right_slope) = Self::slopes(&pose, middle_rate, right_rate);
+        let square = motion.rate * motion.rate;
+        let spin = |rate: f64, slope: f64| {
+            (
+                rate * motion.acceleration + slope * square,
+                rate * rate * square,
+            )
+        };
+        let (left_spin, middle_spin, right_spin) = (
+            spin(-1.0, 0.0),
+            spin(middle_rate, middle_slope),
+            spin(right_rate, right_slope),
+        );
+        let turn_left = turn_between(self.left.bar, pose.left);
+        let turn_middle = turn_between(self.middle.bar, pose.middle);
+        let turn_right = turn_between(self.right.bar, pose.right);
+        let body_force = motion.body_force_g;
+        let at_b = turned(pose.left) * left_spin.0 - pose.left * left_spin.1;
+        let [point_a, point_b, _, point_d] = self.points;
+        let left = Load::of_body(point_a, rotate_back(turn_left, body_force), left_spin);
+        let middle = Load::of_body(
+            point_b,
+            rotate_back(turn_middle, body_force - at_b),
+            middle_spin,
+        );
+        let right = Load::of_body(point_d, rotate_back(turn_right, body_force), right_spin);
+
+        let [a, b, c, d] = self.hinges_rad;
+        let on_left = left.resultant(&self.ring.sector(a, b));
+        let on_middle = middle.resultant(&self.ring.sector(b, c));
+        let on_right = right.resultant(&self.ring.sector(c, d));
+        let force_c = (pose.right * on_middle.about(point_b)
+            + pose.middle * on_right.about(point_d))
+            / pose.cross;
+        let force_b = force_c - complex_product(turn_middle, on_middle.linear);
+        let force_a = force_b - complex_product(turn_left, on_left.linear);
+        let force_d = force_c + complex_product(turn_right, on_right.linear);
+
+        let still = Load::uniform(body_force);
+        let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
+            let at_hinge = Momentum::applied_at(self.points[hinge], force);
+            let known = (self.hinges_rad[hinge], at_hinge);
+            Part::new(&self.ring, end_rad, load, known)
+        };
+        ThrustLine::new(
+            &self.ring,
+            vec![
+                part(0, a, still, force_a),
+                part(0, b, left, rotate_back(turn_left, force_a)),
+                part(1, c, middle, rotate_back(turn_middle, force_b)),
+                part(2, d, right, rotate_back(turn_right, force_c)),
+                part(3, self.ring.embrace_rad(), still, force_d),
+            ],
+        )
+    }
+
     /// The limit position: the least `q` at which A, B, C, or else C, D, A, are on one line, so that
     /// the right body or the ground bar cannot follow any further.
     #[must_use]
@@ -160,12 +253,7 @@ impl Mechanism for Linkage {
     fn coefficients(&self, q_rad: f64) -> Coefficients {
         let pose = self.pose(q_rad);
         let (middle_rate, right_rate) = Self::rates(&pose);
-        // Second derivatives: the loop's accelerations, with those along the bars on the right.
-        let inward = pose.left + pose.middle * (middle_rate * middle_rate)
-            - pose.right * (right_rate * right_rate);
-        let middle_slope = inward.dot(&pose.right) / pose.cross;
-        let right_slope = inward.dot(&pose.middle) / pose.cross;
-
+        let (middle_slope, right_slope) = Self::slopes(&pose, middle_rate, right_rate);
         let first = self.middle.first(pose.middle);
         let path = turned(
             first * middle_rate + self.right.first(pose.right) * right_rate

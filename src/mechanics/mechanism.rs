@@ -156,6 +156,20 @@ pub enum HingeSites {
     Voussoirs(usize),
 }
 
+impl HingeSites {
+    /// Sections of `ring` at which a line of resultants has to be inside the ring, in radians from the
+    /// left springing: the joints, or else the ends of `parts` equal parts.
+    pub fn sections_rad(self, ring: &Ring, parts: usize) -> impl Iterator<Item = f64> + use<> {
+        let count = match self {
+            Self::Anywhere => parts,
+            Self::Voussoirs(count) => count,
+        };
+        let embrace_rad = ring.embrace_rad();
+        #[expect(clippy::cast_precision_loss, reason = "section counts are small")]
+        (0..=count).map(move |i| embrace_rad * (i as f64 / count as f64))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,3 +12,5 @@ pub mod resultant;
 pub mod ring;
 mod search;
 pub mod structure;
+pub mod survey;
+pub mod thrust;

@@ -26,9 +26,28 @@ pub struct SectionResultant {
     pub normal: f64,
     /// Along the section, positive when the part before pushes the part after outwards.
     pub tangential: f64,
+    /// Moment of the normal component about the axis, positive when it lies outwards.
+    pub moment: f64,
     /// Where the line of action crosses the section, outwards from the axis, over the thickness:
     /// within -0.5 (intrados) to 0.5 (extrados) inside the ring.
     pub eccentricity_ratio: f64,
+}
+
+impl SectionResultant {
+    /// Components and position, at a section, of a force with its moment about the centre of the ring.
+    #[must_use]
+    pub fn new(ring: &Ring, angle_rad: f64, resultant: &Momentum) -> Self {
+        let (radial, tangent) = (ring.radial(angle_rad), ring.tangent(angle_rad));
+        let normal = resultant.linear.dot(&tangent);
+        // A force N at distance e outwards from the axis has the moment -e N about its point there.
+        let moment = -resultant.about(radial);
+        Self {
+            normal,
+            tangential: resultant.linear.dot(&radial),
+            moment,
+            eccentricity_ratio: moment / (normal * ring.thickness_ratio()),
+        }
+    }
 }
 
 impl ResultantLine {
@@ -72,15 +91,7 @@ impl ResultantLine {
     /// Components and position at a section.
     #[must_use]
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
-        let resultant = self.at(angle_rad);
-        let (radial, tangent) = (self.ring.radial(angle_rad), self.ring.tangent(angle_rad));
-        let normal = resultant.linear.dot(&tangent);
-        // A force N at distance e outwards from the axis has the moment -e N about its point there.
-        SectionResultant {
-            normal,
-            tangential: resultant.linear.dot(&radial),
-            eccentricity_ratio: -resultant.about(radial) / (normal * self.ring.thickness_ratio()),
-        }
+        SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
     }
 
     /// Derivative with respect to the angle of the moment about the edge point of the section, where

@@ -23,6 +23,29 @@ pub struct Coefficients {
     pub rise: f64,
 }
 
+/// A mechanism at an instant, in its own frame, with the length of the structure and gravity as units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// The coordinate `q`.
+    pub q_rad: f64,
+    /// Its rate, times `sqrt(L/g)`.
+    pub rate: f64,
+    /// Its second derivative, times `L/g`.
+    pub acceleration: f64,
+    /// Force per unit mass in the frame of the ground, in g: gravity less the ground's acceleration.
+    pub body_force_g: Vector2<f64>,
+}
+
+/// What the motion asks of the sections of a structure: see [`super::thrust`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demand {
+    /// How far the line of thrust leaves the structure, in parts of the thickness; zero inside. The
+    /// largest over its sections.
+    pub excess_ratio: f64,
+    /// Friction coefficient that keeps the sections from sliding, the largest over them.
+    pub friction: f64,
+}
+
 /// A mechanism with one degree of freedom `q >= 0` at finite rotations, swaying right.
 pub trait Mechanism {
     /// Rotations of its bodies from left to right, anticlockwise, in radians; or their rates.
@@ -98,6 +121,10 @@ pub trait Structure {
     fn mass_unit_kg(&self) -> f64;
     /// Horizontal acceleration at which it starts to rock from rest, on either side, in units of gravity.
     fn incipient_g(&self) -> f64;
+    /// What the equilibrium of one of its mechanisms in motion asks of its sections.
+    fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
+    /// The same at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
+    fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
     /// The mechanism after a number of impacts; `None` when an impact before it stops the structure.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>>;
     /// Hinges of that mechanism from left to right, as seen when it sways to the given side; none when

@@ -2,10 +2,14 @@
 //!
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
+pub mod chart;
 mod folder;
 pub mod mechanisms;
+pub mod pictures;
 pub mod results;
 pub mod rotations;
+pub mod svg;
+pub mod timeline;
 
 use std::io;
 

@@ -198,6 +198,32 @@ pub fn summary<S: Structure>(
         "energy_defect_ratio".to_owned(),
         json!(history.energy_defect_ratio),
     );
+    if let Some(thrust) = &history.thrust {
+        let shares = thrust.shares_within();
+        let share = |level: usize| shares.map_or(Value::Null, |shares| json!(shares[level]));
+        for (name, value) in [
+            (
+                "largest_thrust_excess_ratio",
+                json!(thrust.largest_excess.value),
+            ),
+            (
+                "largest_thrust_excess_time_s",
+                json!(thrust.largest_excess.time_s),
+            ),
+            (
+                "largest_friction_demand",
+                json!(thrust.largest_friction.value),
+            ),
+            (
+                "largest_friction_demand_time_s",
+                json!(thrust.largest_friction.time_s),
+            ),
+            ("rocking_share_thrust_excess_below_0_01", share(0)),
+            ("rocking_share_thrust_excess_below_0_05", share(1)),
+        ] {
+            more.insert(name.to_owned(), value);
+        }
+    }
     more.insert("evaluations".to_owned(), json!(history.cost.evaluations));
     more.insert("steps".to_owned(), json!(history.cost.steps));
     Ok(summary)

@@ -70,6 +70,7 @@ impl<W: Write> RotationsWriter<W> {
             .to_vec();
         header.extend(columns::<M>("rotation", "rad"));
         header.extend(columns::<M>("rate", "rad_s"));
+        header.extend(["thrust_excess_ratio", "friction_demand"].map(str::to_owned));
         if scales.is_some() {
             let further = [
                 "p_t",
@@ -98,6 +99,8 @@ impl<W: Write> RotationsWriter<W> {
         )?;
         finite("of a row of rotations.csv", rotations)?;
         finite("of a row of rotations.csv", rates)?;
+        let demand = [sample.demand.excess_ratio, sample.demand.friction];
+        finite("of a row of rotations.csv", &demand)?;
         let further = self.scales.map(|scales| {
             [
                 sample.time_s * scales.frequency_rad_s,
@@ -116,6 +119,7 @@ impl<W: Write> RotationsWriter<W> {
                 sample.state,
                 rotations,
                 rates,
+                demand,
                 further,
             ))
             .map_err(OutputError::csv(WHAT))

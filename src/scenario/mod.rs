@@ -102,7 +102,8 @@ impl Arch {
     }
 
     /// Where hinges may form.
-    fn sites(&self) -> HingeSites {
+    #[must_use]
+    pub fn sites(&self) -> HingeSites {
         self.voussoirs
             .map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }

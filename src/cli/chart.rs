@@ -1,0 +1,122 @@
+//! The command `chart`.
+
+use std::io::{self, Write as _};
+use std::panic::resume_unwind;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use archrock::mechanics::limit::least_thickness_ratio;
+use archrock::mechanics::survey::{ShapeResult, shape_result};
+use archrock::output::{Folder, chart};
+use archrock::scenario::{Scenario, Structure};
+
+use super::{Failure, commands};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scenario file (TOML): its embrace angle, voussoirs and impact model count.
+    scenario: PathBuf,
+    /// Folder for the results [default: results/<name of the scenario file>].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const PICTURE: &str = "chart.svg";
+/// Written last: a folder that has it is complete.
+const TABLE: &str = "chart.csv";
+
+/// Embrace angles charted beside that of the scenario, in degrees.
+const EMBRACES_DEG: [f64; 5] = [180.0, 170.0, 157.5, 140.0, 120.0];
+
+/// Thickness ratios of a curve, between the least that stands and the largest charted.
+const THICKNESSES: u32 = 24;
+
+/// Largest thickness ratio charted, unless the scenario's is larger.
+const LARGEST_THICKNESS_RATIO: f64 = 0.3;
+
+pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+    let scenario = Scenario::read(&arguments.scenario)?;
+    let Structure::Arch(arch) = &scenario.structure else {
+        let message = "chart is of arches of all shapes, and this is a column";
+        return Err(Failure::Input(message.to_owned()));
+    };
+    // Refuses, with its reasons, an arch that has no results of its own.
+    commands::build(arch, &scenario)?;
+    let path = match (&arguments.out, arguments.scenario.file_stem()) {
+        (Some(out), _) => out.clone(),
+        (None, stem) => Path::new("results").join(stem.unwrap_or_default()),
+    };
+    let mut folder = Folder::open(&path, &[PICTURE, TABLE])?;
+    let mut embraces_deg = EMBRACES_DEG.to_vec();
+    if !embraces_deg.contains(&arch.embrace_deg) {
+        embraces_deg.push(arch.embrace_deg);
+        embraces_deg.sort_by(|a, b| b.total_cmp(a));
+    }
+    let sites = arch.sites();
+    let largest = LARGEST_THICKNESS_RATIO.max(arch.thickness_ratio);
+    let shapes: Vec<(f64, f64)> = embraces_deg
+        .into_iter()
+        .flat_map(|embrace_deg| {
+            let least = least_thickness_ratio(embrace_deg.to_radians(), sites);
+            thicknesses(least, largest).map(move |thickness_ratio| (embrace_deg, thickness_ratio))
+        })
+        .collect();
+    let results = in_parallel(&shapes, |(embrace_deg, thickness_ratio)| {
+        shape_result(*embrace_deg, *thickness_ratio, sites, scenario.impact)
+    });
+    chart::write_table(folder.file(TABLE), &results)?;
+    folder
+        .file(PICTURE)
+        .write_all(chart::draw(&results).as_bytes())
+        .map_err(|error| Failure::Work(format!("cannot write the chart: {error}")))?;
+    folder.complete()?;
+    if !quiet {
+        let count = results.len();
+        // Nobody is left to be told when standard error fails.
+        let _ = writeln!(
+            io::stderr(),
+            "{count} arches in {}: {PICTURE}, {TABLE}",
+            path.display()
+        );
+    }
+    Ok(())
+}
+
+/// From just above the least thickness ratio at which an arch stands to the largest charted.
+fn thicknesses(least: Option<f64>, largest: f64) -> impl Iterator<Item = f64> {
+    let range = least.map(|least| (1.001 * least, largest));
+    let range = range.filter(|(least, largest)| least < largest);
+    range.into_iter().flat_map(|(least, largest)| {
+        let step = (largest - least) / f64::from(THICKNESSES - 1);
+        (0..THICKNESSES).map(move |i| least + f64::from(i) * step)
+    })
+}
+
+/// The results for all shapes that have one, in their order, computed by all processors.
+fn in_parallel(
+    shapes: &[(f64, f64)],
+    of: impl Fn(&(f64, f64)) -> Option<ShapeResult> + Sync,
+) -> Vec<ShapeResult> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut done = Vec::new();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(shape) = shapes.get(index) else {
+                return done;
+            };
+            done.push((index, of(shape)));
+        }
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let mut done: Vec<_> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        workers
+            .into_iter()
+            .flat_map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)))
+            .collect()
+    });
+    done.sort_by_key(|(index, _)| *index);
+    done.into_iter().filter_map(|(_, result)| result).collect()
+}

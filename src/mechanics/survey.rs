@@ -1,0 +1,63 @@
+//! Arches of many shapes compared: onset, first impact, and what impacts tend to.
+
+use super::chain::Chain;
+use super::impact::ImpactModel;
+use super::limit::LimitError;
+use super::mechanism::HingeSites;
+use super::ring::Ring;
+
+/// What a shape tells of its rocking.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeResult {
+    /// Embrace angle in degrees.
+    pub embrace_deg: f64,
+    /// Thickness over mean radius.
+    pub thickness_ratio: f64,
+    /// Incipient acceleration in g.
+    pub incipient_g: f64,
+    /// Restitution coefficient of the first impact; `None` if it stops the arch.
+    pub first_restitution: Option<f64>,
+    /// Restitution coefficient of the impacts that the chain tends to; `None` if one stops the arch.
+    pub last_restitution: Option<f64>,
+}
+
+/// The chain has settled when an impact raises the restitution coefficient by no more than this. It rises
+/// by ever smaller, nearly geometric amounts, so that what is left is of the order of ten times as much.
+const SETTLED: f64 = 1e-7;
+
+/// Impacts after which a chain is taken as it is.
+const LONGEST: usize = 200;
+
+/// Incipient acceleration and restitution coefficients of one shape; `None` if no four-link mechanism
+/// starts: the arch cannot stand, or is too thick.
+#[must_use]
+pub fn shape_result(
+    embrace_deg: f64,
+    thickness_ratio: f64,
+    sites: HingeSites,
+    model: ImpactModel,
+) -> Option<ShapeResult> {
+    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).ok()?;
+    let chain: Result<Chain, LimitError> = Chain::new(ring, sites, model);
+    let chain = chain.ok()?;
+    let restitution = |index: usize| chain.link(index).map(|link| link.link.restitution);
+    let mut last = restitution(1);
+    for index in 2..LONGEST {
+        let next = restitution(index);
+        let settled = match (last, next) {
+            (Some(last), Some(next)) => (next - last).abs() <= SETTLED,
+            _ => true,
+        };
+        last = next;
+        if settled {
+            break;
+        }
+    }
+    Some(ShapeResult {
+        embrace_deg,
+        thickness_ratio,
+        incipient_g: chain.incipient().acceleration_g,
+        first_restitution: restitution(1),
+        last_restitution: last,
+    })
+}

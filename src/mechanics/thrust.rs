@@ -1,0 +1,218 @@
+//! The thrust line in motion, and what it asks of the sections.
+//!
+//! Between impacts gravity, the ground's acceleration and the bodies' own inertia are in equilibrium with
+//! the forces at the hinges. In the frame of its material a moving body looks undeformed, and its
+//! load per unit mass there is `c + alpha k x r + kappa r` with constants `c`, `alpha` and `kappa`
+//! (centrifugal): on a sector this integrates to its mass, first and polar moment. So the thrust line
+//! of the displaced ring is found section by section in the undeformed one.
+//!
+//! Where the line leaves the ring, four hinges are not enough: the joint there would open, the hinges
+//! travel, and the four-link motion is no longer that of rigid blocks without tension.
+
+use nalgebra::Vector2;
+
+use super::field::{Momentum, Twist, turned};
+use super::limit::Incipient;
+use super::mechanism::HingeSites;
+use super::resultant::SectionResultant;
+use super::ring::{MassMoments, Ring};
+use super::structure::Demand;
+
+/// Equal parts of the ring at whose ends the line is compared with the ring where hinges sit anywhere.
+/// The largest excess lies between two of them, which misses at most `1e-4` of the thickness.
+const SECTIONS: usize = 180;
+
+/// Excess below which the line is inside: it touches the edge at the hinges, to rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A normal force below this part of the structure's weight, tension included, counts as this
+/// much in a [`Demand`], which stays finite and goes on growing with the moment (the tension).
+const LEAST_NORMAL: f64 = 0.01;
+
+impl Demand {
+    /// Nothing is asked.
+    pub const NONE: Self = Self {
+        excess_ratio: 0.0,
+        friction: 0.0,
+    };
+
+    /// What resultants ask of their sections of the given thickness; `weight` is that of the whole
+    /// structure, in the unit of the resultants.
+    ///
+    /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, for the moment `M` about the axis and the
+    /// components `N` and `V`. Where `N < 0.01 weight` no line can be inside, or almost none: there the
+    /// excess is `(|M| - N t / 2) / (0.01 weight t)` and the friction `|V| / (0.01 weight)`, which
+    /// continue the others and are always finite.
+    #[must_use]
+    pub fn of_sections(
+        sections: impl Iterator<Item = SectionResultant>,
+        thickness: f64,
+        weight: f64,
+    ) -> Self {
+        sections.fold(Self::NONE, |demand, section| {
+            let normal = section.normal.max(LEAST_NORMAL * weight);
+            let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
+            let excess_ratio = beyond / (normal * thickness);
+            Self {
+                excess_ratio: if excess_ratio > ROUNDING {
+                    demand.excess_ratio.max(excess_ratio)
+                } else {
+                    demand.excess_ratio
+                },
+                friction: demand.friction.max(section.tangential.abs() / normal),
+            }
+        })
+    }
+}
+
+/// Load per unit mass `c + alpha k x r + kappa r` on a part of the ring, in the frame of its material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// `c` and `alpha`.
+    turning: Twist,
+    /// `kappa`.
+    centrifugal: f64,
+}
+
+impl Load {
+    /// The same force per unit mass everywhere.
+    #[must_use]
+    pub const fn uniform(force: Vector2<f64>) -> Self {
+        Self {
+            turning: Twist::translation(force),
+            centrifugal: 0.0,
+        }
+    }
+
+    /// Body force less inertia of a body that turns: `at_pole` is the body force less the acceleration
+    /// of the body's point `pole`, `(alpha, omega^2)` its angular acceleration and squared rate.
+    #[must_use]
+    pub fn of_body(
+        pole: Vector2<f64>,
+        at_pole: Vector2<f64>,
+        (acceleration, squared_rate): (f64, f64),
+    ) -> Self {
+        Self {
+            turning: Twist {
+                at_center: at_pole + turned(pole) * acceleration - pole * squared_rate,
+                rate: -acceleration,
+            },
+            centrifugal: squared_rate,
+        }
+    }
+
+    /// Its resultant on a body of the given moments.
+    #[must_use]
+    pub fn resultant(&self, body: &MassMoments) -> Momentum {
+        let mut resultant = self.turning.momentum(body);
+        resultant.linear += body.first * self.centrifugal;
+        resultant
+    }
+}
+
+/// A rigid part of the ring, in the frame of its material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Its last section.
+    pub end_rad: f64,
+    load: Load,
+    /// The resultant at the left springing if the part reached so far.
+    start: Momentum,
+}
+
+impl Part {
+    /// The part that ends at `end_rad`, under `load`, with the resultant `known` at the section
+    /// `known_rad`.
+    #[must_use]
+    pub fn new(ring: &Ring, end_rad: f64, load: Load, (known_rad, known): (f64, Momentum)) -> Self {
+        Self {
+            end_rad,
+            load,
+            start: known - load.resultant(&ring.moments_to(known_rad)),
+        }
+    }
+
+    /// The resultant at a section.
+    #[must_use]
+    pub fn at(&self, ring: &Ring, angle_rad: f64) -> Momentum {
+        self.start + self.load.resultant(&ring.moments_to(angle_rad))
+    }
+}
+
+/// The resultants over all sections of a ring that moves as rigid parts, or stands.
+///
+/// Forces are in weights of `rho d R^2`. Each is in the frame of the part's material: components and
+/// positions refer to the section where it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThrustLine {
+    ring: Ring,
+    parts: Vec<Part>,
+}
+
+impl ThrustLine {
+    /// The line over consecutive parts, from the left springing to the right.
+    pub(crate) fn new(ring: &Ring, parts: Vec<Part>) -> Self {
+        Self { ring: *ring, parts }
+    }
+
+    /// A line of the ring at rest under a force per unit mass in g.
+    ///
+    /// At rest the ring is hyperstatic, and one admissible line proves that it may stay so. This is the
+    /// mean of the two limit lines, at `A_L` to the right and to the left, weighted so that their loads
+    /// add up to the load: moments and normal forces being linear in the load, it is
+    /// inside wherever both are, and grows into that of the mechanism that starts.
+    #[must_use]
+    pub fn at_rest(incipient: &Incipient, ring: &Ring, body_force_g: Vector2<f64>) -> Self {
+        let right = incipient.thrust_line.at(0.0);
+        let end = incipient.thrust_line.at(ring.embrace_rad());
+        // In the mirror the parts before and after the section change places, and with them the sign.
+        let left = Momentum {
+            linear: Vector2::new(end.linear.x, -end.linear.y),
+            angular: end.angular,
+        };
+        let (weight, push) = (-body_force_g.y, body_force_g.x / incipient.acceleration_g);
+        Self::new(
+            ring,
+            vec![Part::new(
+                ring,
+                ring.embrace_rad(),
+                Load::uniform(body_force_g),
+                (
+                    0.0,
+                    (right + left) * (0.5 * weight) + (right - left) * (0.5 * push),
+                ),
+            )],
+        )
+    }
+
+    /// The resultant at a section; where two parts meet, as the first of them sees it.
+    #[must_use]
+    pub fn at(&self, angle_rad: f64) -> Momentum {
+        let index = self.parts.partition_point(|part| part.end_rad < angle_rad);
+        self.parts[index.min(self.parts.len() - 1)].at(&self.ring, angle_rad)
+    }
+
+    /// Components and position at a section.
+    #[must_use]
+    pub fn section(&self, angle_rad: f64) -> SectionResultant {
+        SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
+    }
+
+    /// What the line asks of the joints, or of sections all over the ring.
+    #[must_use]
+    pub fn demand(&self, sites: HingeSites) -> Demand {
+        Demand::of_sections(
+            sites
+                .sections_rad(&self.ring, SECTIONS)
+                .map(|angle| self.section(angle)),
+            self.ring.thickness_ratio(),
+            self.ring.moments_to(self.ring.embrace_rad()).mass,
+        )
+    }
+
+    /// The parts.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+}

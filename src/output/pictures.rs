@@ -1,0 +1,369 @@
+//! Pictures of mechanisms: incipient rocking, and an impact (Fig. 10 of the paper).
+
+use nalgebra::{Rotation2, Vector2};
+
+use super::svg::{Anchor, Drawing, Stroke, color};
+use crate::mechanics::chain::{ArchLink, Chain};
+use crate::mechanics::impact::closing_field;
+use crate::mechanics::mechanism::{HingeSites, Sway};
+use crate::mechanics::resultant::ResultantLine;
+use crate::mechanics::ring::{Edge, Ring};
+use crate::mechanics::structure::Mechanism as _;
+
+/// Part of the way to its limit position at which a mechanism is drawn, so that one sees it open.
+const DRAWN_PART: f64 = 0.25;
+
+/// Eccentricity, in parts of the thickness, beyond which a line of resultants is cut off.
+const DRAWN_ECCENTRICITY: f64 = 1.5;
+
+/// Places a ring of unit mean radius on the sheet.
+struct Place {
+    ring: Ring,
+    center: Vector2<f64>,
+    /// Pixels per mean radius.
+    scale: f64,
+}
+
+/// A rigid motion of a part of the ring.
+#[derive(Clone, Copy)]
+struct Displacement {
+    turn: Rotation2<f64>,
+    shift: Vector2<f64>,
+}
+
+impl Displacement {
+    fn none() -> Self {
+        Self {
+            turn: Rotation2::identity(),
+            shift: Vector2::zeros(),
+        }
+    }
+
+    /// Turns about `pole`, which moves to `moved`.
+    fn about(pole: Vector2<f64>, moved: Vector2<f64>, angle_rad: f64) -> Self {
+        let turn = Rotation2::new(angle_rad);
+        Self {
+            turn,
+            shift: moved - turn * pole,
+        }
+    }
+
+    fn of(&self, point: Vector2<f64>) -> Vector2<f64> {
+        self.turn * point + self.shift
+    }
+}
+
+impl Place {
+    /// In a rectangle of that width, with the crown at `top`.
+    fn new(ring: &Ring, middle: f64, top: f64, width: f64) -> Self {
+        let outer = ring.radius(Edge::Extrados);
+        let half = outer * (0.5 * ring.embrace_rad()).sin();
+        let scale = 0.5 * width / half;
+        Self {
+            ring: *ring,
+            center: Vector2::new(middle, top + outer * scale),
+            scale,
+        }
+    }
+
+    /// On the sheet, for a sway to that side, whose mirror image the coordinates are in.
+    fn px(&self, point: Vector2<f64>, sway: Sway) -> Vector2<f64> {
+        self.center + Vector2::new(sway.sign() * point.x, -point.y) * self.scale
+    }
+
+    /// Lowest point of the ring at rest.
+    fn bottom(&self) -> f64 {
+        let inner = self.ring.radius(Edge::Intrados);
+        self.center.y - self.scale * inner * self.ring.radial(0.0).y
+    }
+
+    /// A sector, displaced.
+    fn sector(
+        &self,
+        drawing: &mut Drawing,
+        name: &str,
+        (from, to): (f64, f64),
+        (displacement, sway): (Displacement, Sway),
+        (fill, stroke): (&str, Stroke),
+    ) {
+        if to - from < 1e-9 {
+            return;
+        }
+        let corner = |angle: f64, edge: Edge| {
+            let point = self.px(displacement.of(self.ring.point(angle, edge)), sway);
+            format!("{:.3} {:.3}", point.x, point.y)
+        };
+        let radius = |edge: Edge| self.ring.radius(edge) * self.scale;
+        // Seen in a mirror the arcs turn the other way.
+        let (there, back) = match sway {
+            Sway::Right => (1, 0),
+            Sway::Left => (0, 1),
+        };
+        let (inner, outer) = (radius(Edge::Intrados), radius(Edge::Extrados));
+        let path = format!(
+            "M{}A{inner:.3} {inner:.3} 0 0 {there} {}L{}A{outer:.3} {outer:.3} 0 0 {back} {}Z",
+            corner(from, Edge::Intrados),
+            corner(to, Edge::Intrados),
+            corner(to, Edge::Extrados),
+            corner(from, Edge::Extrados),
+        );
+        drawing.path(name, &path, fill, stroke);
+    }
+
+    /// The joints, where there are voussoirs.
+    fn joints(&self, drawing: &mut Drawing, sites: HingeSites) {
+        if let HingeSites::Voussoirs(count) = sites {
+            for angle_rad in sites.sections_rad(&self.ring, count) {
+                let [inner, outer] = [Edge::Intrados, Edge::Extrados]
+                    .map(|edge| self.px(self.ring.point(angle_rad, edge), Sway::Right));
+                let stroke = Stroke::new(color::GREY, 0.8, "");
+                drawing.curve("joint", [inner, outer], stroke);
+            }
+        }
+    }
+
+    fn whole(&self, drawing: &mut Drawing, fill: &str, stroke: Stroke) {
+        let (all, still) = (
+            (0.0, self.ring.embrace_rad()),
+            (Displacement::none(), Sway::Right),
+        );
+        self.sector(drawing, "ring", all, still, (fill, stroke));
+    }
+
+    /// The mechanism open, over the ring at rest; returns the rotations drawn, as seen.
+    fn mechanism(&self, drawing: &mut Drawing, link: &ArchLink, sway: Sway) -> [f64; 3] {
+        self.whole(drawing, "none", Stroke::new(color::GREY, 0.8, "3 3"));
+        let (linkage, points) = (&link.link.mechanism, link.mechanism.points());
+        let rotations = linkage.rotations(DRAWN_PART * link.link.limit_rad);
+        let left = Displacement::about(points[0], points[0], rotations[0]);
+        let middle = Displacement::about(points[1], left.of(points[1]), rotations[1]);
+        let right = Displacement::about(points[3], points[3], rotations[2]);
+        let [a, b, c, d] = link.mechanism.hinges_rad();
+        let none = Displacement::none();
+        let line = Stroke::new(color::BLACK, 1.2, "");
+        // In the mirror of a sway to the left the first body is the one on the right.
+        let mut looks = [
+            ("left", "#cfe3f1"),
+            ("middle", "#f6dcc4"),
+            ("right", "#cce9e0"),
+        ];
+        if sway == Sway::Left {
+            looks.reverse();
+        }
+        let still = ("still", "#eeeeee");
+        for ((name, fill), bounds, displacement) in [
+            (still, (0.0, a), none),
+            (looks[0], (a, b), left),
+            (looks[1], (b, c), middle),
+            (looks[2], (c, d), right),
+            (still, (d, self.ring.embrace_rad()), none),
+        ] {
+            self.sector(drawing, name, bounds, (displacement, sway), (fill, line));
+        }
+        let moved = [left, left, middle, right];
+        for (displacement, point) in moved.into_iter().zip(points) {
+            let at = self.px(displacement.of(point), sway);
+            let stroke = Stroke::new(color::VERMILION, 1.6, "");
+            drawing.circle("moved hinge", at, 3.5, stroke);
+        }
+        match sway {
+            Sway::Right => rotations,
+            Sway::Left => {
+                let [left, middle, right] = rotations;
+                [-right, -middle, -left]
+            }
+        }
+    }
+
+    /// The hinges with their letters, from the left; names `hinge A` and so on, with `mark` after the letter.
+    fn hinges(&self, drawing: &mut Drawing, link: &ArchLink, sway: Sway, mark: &str) {
+        let hinges = link.mechanism.hinges_from_left(&self.ring, sway);
+        for (letter, (angle_rad, edge)) in ["A", "B", "C", "D"].into_iter().zip(hinges) {
+            let at = self.px(self.ring.point(angle_rad, edge), Sway::Right);
+            drawing.circle(
+                &format!("hinge {letter}{mark}"),
+                at,
+                4.0,
+                Stroke::new(color::VERMILION, 1.8, ""),
+            );
+            let side = match edge {
+                Edge::Intrados => -1.0,
+                Edge::Extrados => 1.0,
+            };
+            let radial = self.ring.radial(angle_rad);
+            let away = Vector2::new(radial.x, -radial.y) * (side * 17.0);
+            let text = at + away + Vector2::new(0.0, 4.5);
+            drawing.label(text, Anchor::Middle, 0.0, &format!("{letter}{mark}"));
+        }
+    }
+
+    /// A line of resultants in the frame of a sway, cut off far outside the ring.
+    fn resultants(&self, drawing: &mut Drawing, name: &str, line: &ResultantLine, sway: Sway) {
+        let sections = 720;
+        let points = (0..=sections).map(|i| {
+            let angle = self.ring.embrace_rad() * f64::from(i) / f64::from(sections);
+            let e = line.section(angle).eccentricity_ratio;
+            let e = if e.is_finite() { e } else { 0.0 };
+            let e = e.clamp(-DRAWN_ECCENTRICITY, DRAWN_ECCENTRICITY);
+            let radius = 1.0 + e * self.ring.thickness_ratio();
+            self.px(self.ring.radial(angle) * radius, sway)
+        });
+        drawing.curve(name, points, Stroke::new(color::BLUE, 1.8, ""));
+    }
+}
+
+fn shape(ring: &Ring) -> String {
+    format!(
+        "embrace angle {} deg, t/R = {}",
+        rounded(ring.embrace_rad().to_degrees()),
+        rounded(ring.thickness_ratio())
+    )
+}
+
+/// A number for reading, without what rounding left behind.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+fn rotations_text([left, middle, right]: [f64; 3]) -> String {
+    format!("left {left:+.3}, middle {middle:+.3}, right {right:+.3} rad")
+}
+
+/// Incipient rocking to the right: the thrust line at `A_L` through its hinges, and the mechanism.
+///
+/// The mechanism is drawn to scale at finite rotations, at a quarter of the way to its limit position.
+#[must_use]
+pub fn limit(chain: &Chain) -> String {
+    let ring = chain.ring();
+    let link = chain
+        .link(0)
+        .expect("a chain begins with the mechanism that starts");
+    let place = |middle: f64| Place::new(ring, middle, 100.0, 400.0);
+    let height = place(0.0).bottom() + 80.0;
+    let mut drawing = Drawing::new(1000.0, height);
+    let incipient = chain.incipient();
+    let title = format!(
+        "Incipient rocking at A_L = {:.5} g; {}",
+        incipient.acceleration_g,
+        shape(ring)
+    );
+    drawing.label(Vector2::new(500.0, 28.0), Anchor::Middle, 0.0, &title);
+
+    let left = place(255.0);
+    left.whole(&mut drawing, "#f4f4f4", Stroke::new(color::BLACK, 1.2, ""));
+    left.joints(&mut drawing, chain.sites());
+    left.resultants(
+        &mut drawing,
+        "thrust line",
+        &incipient.thrust_line,
+        Sway::Right,
+    );
+    left.hinges(&mut drawing, link, Sway::Right, "");
+    let below = Vector2::new(255.0, height - 46.0);
+    let text = "Thrust line under gravity and a push of A_L to the right";
+    drawing.label(below, Anchor::Middle, 0.0, text);
+
+    let right = place(735.0);
+    let rotations = right.mechanism(&mut drawing, link, Sway::Right);
+    let times = DRAWN_PART * link.link.limit_rad / link.link.critical_rad;
+    let caption = [
+        "Mechanism, to scale, at rotations (anticlockwise) of".to_owned(),
+        rotations_text(rotations),
+        format!("({times:.1} times those of its unstable equilibrium)"),
+    ];
+    for (text, up) in caption.iter().zip([46.0, 29.0, 12.0]) {
+        drawing.label(Vector2::new(735.0, height - up), Anchor::Middle, 0.0, text);
+    }
+    drawing.finish()
+}
+
+/// The first impact after a sway to the right, as Fig. 10 of the paper: the mechanisms before and after,
+/// the bodies that both together cut out of the ring (Eq. (3)), and the impulse line. `None` when the
+/// impact stops the arch.
+#[must_use]
+pub fn first_impact(chain: &Chain) -> Option<String> {
+    let ring = chain.ring();
+    let (before, after) = (chain.link(0)?, chain.link(1)?);
+    let place = |middle: f64, top: f64, width: f64| Place::new(ring, middle, top, width);
+    let upper_end = place(0.0, 100.0, 370.0).bottom();
+    let lower_top = upper_end + 130.0;
+    let height = place(0.0, lower_top, 640.0).bottom() + 60.0;
+    let mut drawing = Drawing::new(900.0, height);
+    let title = format!(
+        "First impact: restitution (kinetic energy after/before) r = {:.6}; {}",
+        after.link.restitution,
+        shape(ring)
+    );
+    drawing.label(Vector2::new(450.0, 28.0), Anchor::Middle, 0.0, &title);
+    for (middle, link, sway, mark, text) in [
+        (225.0, before, Sway::Right, "", "u before the impact"),
+        (675.0, after, Sway::Left, "'", "u' after the impact"),
+    ] {
+        let place = place(middle, 100.0, 370.0);
+        let rotations = place.mechanism(&mut drawing, link, sway);
+        let below = Vector2::new(middle, upper_end + 30.0);
+        let text = format!("{text}, hinges A{mark} to D{mark}, drawn at rotations of");
+        drawing.label(below, Anchor::Middle, 0.0, &text);
+        let below = below + Vector2::new(0.0, 18.0);
+        drawing.label(below, Anchor::Middle, 0.0, &rotations_text(rotations));
+    }
+
+    let place = place(450.0, lower_top, 640.0);
+    let closing = closing_field(&before.mechanism, ring);
+    let field = after.mechanism.field();
+    // All in the frame of the new mechanism, which sways left: drawn in a mirror.
+    let cut = closing.minus(&field);
+    let mut bounds = [cut.cuts_rad(), &[0.0, ring.embrace_rad()]].concat();
+    bounds.sort_by(f64::total_cmp);
+    bounds.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let moves = |mechanism: [f64; 4], angle: f64| mechanism[0] < angle && angle < mechanism[3];
+    let hinges_before = before
+        .mechanism
+        .hinges_rad()
+        .map(|angle| ring.embrace_rad() - angle);
+    let [a, b, c, d] = hinges_before;
+    let mut number = 0;
+    for pair in bounds.windows(2).rev() {
+        let (from, to) = (pair[0], pair[1]);
+        let middle = 0.5 * (from + to);
+        let moving = moves([d, c, b, a], middle) || moves(after.mechanism.hinges_rad(), middle);
+        let fill = match (moving, number % 2) {
+            (false, _) => "#ffffff",
+            (true, 0) => "#eeeeee",
+            (true, _) => "#e0e0e0",
+        };
+        let name = if moving {
+            number += 1;
+            format!("body {number}")
+        } else {
+            "still".to_owned()
+        };
+        place.sector(
+            &mut drawing,
+            &name,
+            (from, to),
+            (Displacement::none(), Sway::Left),
+            (fill, Stroke::new(color::GREY, 0.9, "")),
+        );
+        if moving {
+            let out = 1.0 + 0.5 * ring.thickness_ratio() + 30.0 / place.scale;
+            let at = place.px(ring.radial(middle) * out, Sway::Left);
+            let at = at + Vector2::new(0.0, 4.5);
+            drawing.label(at, Anchor::Middle, 0.0, &number.to_string());
+        }
+    }
+    place.whole(&mut drawing, "none", Stroke::new(color::BLACK, 1.2, ""));
+    place.joints(&mut drawing, chain.sites());
+    let change = closing.minus(&field.scaled(after.link.rate_ratio));
+    let line = ResultantLine::through_hinges(ring, &after.mechanism, change);
+    place.resultants(&mut drawing, "impulse line", &line, Sway::Left);
+    place.hinges(&mut drawing, after, Sway::Left, "'");
+    for (angle, edge) in before.mechanism.hinges_from_left(ring, Sway::Right) {
+        let at = place.px(ring.point(angle, edge), Sway::Right);
+        drawing.circle("hinge before", at, 2.5, Stroke::new(color::GREY, 1.2, ""));
+    }
+    let below = Vector2::new(450.0, height - 28.0);
+    let text = "Impulse line through the hinges of u'; the bodies are cut out by the hinges of u (grey) and u'";
+    drawing.label(below, Anchor::Middle, 0.0, text);
+    Some(drawing.finish())
+}

@@ -1,0 +1,313 @@
+//! `history.svg`: a history at a glance, over a shared time axis.
+
+use nalgebra::Vector2;
+
+use super::svg::{Anchor, Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
+use crate::dynamics::history::Sample;
+use crate::mechanics::structure::Mechanism;
+
+/// Columns that a curve is thinned to, at most: about two to a pixel.
+const COLUMNS: usize = 1600;
+
+/// Marks and bands narrower than this many pixels are not told apart.
+const NARROWEST_PX: f64 = 1.0;
+
+/// Where the excess of the thrust line is cut off, in parts of the thickness: a structure that falls has
+/// values that would hide all others.
+const LARGEST_EXCESS: f64 = 1.0;
+
+/// A long series of values thinned to the least and largest of each of equal groups.
+#[derive(Clone, Debug)]
+struct Envelope {
+    group: usize,
+    /// Samples in the last column.
+    in_last: usize,
+    /// Time and value of the least and the largest of each column.
+    columns: Vec<[(f64, f64); 2]>,
+    last: Option<(f64, f64)>,
+}
+
+impl Envelope {
+    const fn new() -> Self {
+        Self {
+            group: 1,
+            in_last: 0,
+            columns: Vec::new(),
+            last: None,
+        }
+    }
+
+    fn push(&mut self, time_s: f64, value: f64) {
+        let point = (time_s, value);
+        self.last = Some(point);
+        if self.in_last < self.group
+            && let Some(column) = self.columns.last_mut()
+        {
+            *column = joined(*column, [point; 2]);
+            self.in_last += 1;
+            return;
+        }
+        if self.columns.len() == COLUMNS {
+            self.columns = self
+                .columns
+                .chunks(2)
+                .map(|pair| joined(pair[0], pair[pair.len() - 1]))
+                .collect();
+            self.group *= 2;
+        }
+        self.columns.push([point; 2]);
+        self.in_last = 1;
+    }
+
+    /// The points to draw, in the order of time.
+    fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+        let mut points: Vec<(f64, f64)> = Vec::new();
+        let extremes = self.columns.iter().flat_map(|[low, high]| {
+            if low.0 <= high.0 {
+                [*low, *high]
+            } else {
+                [*high, *low]
+            }
+        });
+        for point in extremes.chain(self.last) {
+            if points.last().is_none_or(|last| last.0 < point.0) {
+                points.push(point);
+            }
+        }
+        points.into_iter()
+    }
+
+    fn values(&self) -> impl Iterator<Item = f64> {
+        self.columns.iter().flatten().map(|(_, value)| *value)
+    }
+}
+
+fn joined(a: [(f64, f64); 2], b: [(f64, f64); 2]) -> [(f64, f64); 2] {
+    let low = if b[0].1 < a[0].1 { b[0] } else { a[0] };
+    let high = if b[1].1 > a[1].1 { b[1] } else { a[1] };
+    [low, high]
+}
+
+/// Collects the samples of a history, thinned, and draws them.
+#[derive(Clone, Debug)]
+pub struct Timeline {
+    gravity_m_s2: f64,
+    bodies: &'static [&'static str],
+    ground_g: Envelope,
+    rotations_rad: Vec<Envelope>,
+    excess_ratio: Envelope,
+    energy_ratio: Envelope,
+    /// When each state began.
+    states: Vec<(f64, &'static str)>,
+    end_s: f64,
+}
+
+impl Timeline {
+    /// An empty one, for the mechanisms of a structure.
+    #[must_use]
+    pub fn new<M: Mechanism>(gravity_m_s2: f64) -> Self {
+        Self {
+            gravity_m_s2,
+            bodies: M::BODIES,
+            ground_g: Envelope::new(),
+            rotations_rad: vec![Envelope::new(); M::BODIES.len()],
+            excess_ratio: Envelope::new(),
+            energy_ratio: Envelope::new(),
+            states: Vec::new(),
+            end_s: 0.0,
+        }
+    }
+
+    /// Takes a sample. Samples come in the order of time.
+    pub fn push<R: AsRef<[f64]>>(&mut self, sample: &Sample<R>) {
+        let time_s = sample.time_s;
+        self.end_s = time_s;
+        let ground_g = sample.ground_acceleration_m_s2 / self.gravity_m_s2;
+        self.ground_g.push(time_s, ground_g);
+        let rotations = sample.rotations_rad.as_ref();
+        for (envelope, rotation) in self.rotations_rad.iter_mut().zip(rotations) {
+            envelope.push(time_s, *rotation);
+        }
+        let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
+        self.excess_ratio.push(time_s, excess_ratio);
+        self.energy_ratio.push(time_s, sample.energy_ratio);
+        if self.states.last().is_none_or(|last| last.1 != sample.state) {
+            self.states.push((time_s, sample.state));
+        }
+    }
+
+    /// The picture, with the instants of the impacts.
+    #[must_use]
+    pub fn draw(&self, title: &str, impacts_s: impl Iterator<Item = f64>) -> String {
+        let (left, width) = (85.0, 790.0);
+        let mut drawing = Drawing::new(900.0, 860.0);
+        drawing.label(Vector2::new(450.0, 24.0), Anchor::Middle, 0.0, title);
+        let time = Scale::exactly(0.0, self.end_s.max(f64::MIN_POSITIVE), 10);
+        let named = |bodies: &[&'static str]| -> Vec<&'static str> {
+            bodies
+                .iter()
+                .map(|body| if body.is_empty() { "rotation" } else { *body })
+                .collect()
+        };
+        let rotations = named(self.bodies)
+            .into_iter()
+            .zip(&self.rotations_rad)
+            .zip(CURVES)
+            .map(|((name, envelope), stroke)| (name, envelope, stroke))
+            .collect::<Vec<_>>();
+        let black = Stroke::new(color::BLACK, 1.4, "");
+        let panels = [
+            ("Ground (g)", 130.0, vec![("ground", &self.ground_g, black)]),
+            ("Rotation (rad)", 260.0, rotations),
+            (
+                "Energy / barrier",
+                120.0,
+                vec![("energy", &self.energy_ratio, black)],
+            ),
+            (
+                "Excess / t (up to 1)",
+                120.0,
+                vec![("excess", &self.excess_ratio, black)],
+            ),
+        ];
+        let mut top = 70.0;
+        let mut rocking_panel = None;
+        let last = panels.len() - 1;
+        for (index, (label, height, curves)) in panels.into_iter().enumerate() {
+            let frame = Frame {
+                left,
+                top,
+                width,
+                height,
+            };
+            // A little room, so that no curve runs along the frame.
+            let values = curves
+                .iter()
+                .flat_map(|(_, envelope, _)| envelope.values().map(|value| 1.03 * value));
+            let axes = Axes {
+                frame,
+                x: time,
+                y: Scale::around(values.chain([0.0]), if height > 200.0 { 6 } else { 3 }),
+            };
+            self.shade(&mut drawing, &axes);
+            let time_label = (index == last).then_some("Time (s)");
+            axes.draw(&mut drawing, time_label, label);
+            for (name, envelope, stroke) in curves {
+                let points = envelope.points().map(|(t, value)| axes.place(t, value));
+                drawing.curve(name, points, stroke);
+            }
+            if index == 1 {
+                rocking_panel = Some(axes);
+            }
+            top += height + 22.0;
+        }
+        if let Some(axes) = rocking_panel {
+            mark_impacts(&mut drawing, &axes, impacts_s);
+        }
+        self.explain(&mut drawing, top + 44.0);
+        drawing.finish()
+    }
+
+    /// Shades the states.
+    fn shade(&self, drawing: &mut Drawing, axes: &Axes) {
+        let ends = self.states.iter().skip(1).map(|(start_s, _)| *start_s);
+        for ((start_s, state), end_s) in self.states.iter().zip(ends.chain([self.end_s])) {
+            let Some(fill) = shade_of(state) else {
+                continue;
+            };
+            let from = axes.place(*start_s, axes.y.low).x;
+            let frame = Frame {
+                left: from,
+                width: axes.place(end_s, axes.y.low).x - from,
+                ..axes.frame
+            };
+            if frame.width >= NARROWEST_PX {
+                drawing.band(state, &frame, fill, 0.22);
+            }
+        }
+    }
+
+    /// The legend.
+    fn explain(&self, drawing: &mut Drawing, y: f64) {
+        let bodies = self.bodies.iter().zip(CURVES);
+        let named = bodies.filter(|(body, _)| !body.is_empty());
+        let at = Vector2::new(85.0, y);
+        drawing.legend(at, 100.0, named.map(|(body, stroke)| (*body, stroke)));
+        let mut x = 400.0;
+        for (state, text) in [("right", "sways right"), ("left", "sways left")] {
+            let frame = Frame {
+                left: x,
+                top: y - 7.0,
+                width: 24.0,
+                height: 14.0,
+            };
+            drawing.band("key", &frame, shade_of(state).unwrap_or("#ffffff"), 0.22);
+            let at = Vector2::new(x + 30.0, y + 4.5);
+            drawing.label(at, Anchor::Start, 0.0, text);
+            x += 125.0;
+        }
+        let mark = Vector2::new(660.0, y + 6.0);
+        draw_mark(drawing, "", mark);
+        let at = Vector2::new(672.0, y + 4.5);
+        drawing.label(at, Anchor::Start, 0.0, "impacts");
+    }
+}
+
+fn shade_of(state: &str) -> Option<&'static str> {
+    match state {
+        "right" => Some(color::SKY),
+        "left" => Some(color::ORANGE),
+        "overturned" => Some(color::BLACK),
+        _ => None,
+    }
+}
+
+/// Marks impacts along the lower side, those apart from the last mark.
+fn mark_impacts(drawing: &mut Drawing, axes: &Axes, impacts_s: impl Iterator<Item = f64>) {
+    let mut last_px = f64::NEG_INFINITY;
+    for time_s in impacts_s {
+        let at = axes.place(time_s, axes.y.low);
+        if at.x - last_px >= NARROWEST_PX {
+            draw_mark(drawing, "impact", at);
+            last_px = at.x;
+        }
+    }
+}
+
+/// A small triangle that stands on its tip's opposite side, pointing upwards from `foot`.
+fn draw_mark(drawing: &mut Drawing, name: &str, foot: Vector2<f64>) {
+    let path = format!("M{:.2} {:.2}l4 0l-4 -11l-4 11Z", foot.x, foot.y);
+    let stroke = Stroke::new(color::VERMILION, 0.8, "");
+    drawing.path(name, &path, color::VERMILION, stroke);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_envelope_keeps_extremes_and_ends_in_few_points() {
+        let mut envelope = Envelope::new();
+        let count = 100_003;
+        for i in 0..count {
+            let spike = if i == 77_777 { 5.0 } else { 0.0 };
+            envelope.push(f64::from(i), (f64::from(i) * 0.1).sin() + spike);
+        }
+        let points: Vec<_> = envelope.points().collect();
+        assert!(points.len() <= 2 * COLUMNS + 1, "{}", points.len());
+        assert!(points.is_sorted_by(|a, b| a.0 < b.0));
+        assert!(points.iter().any(|point| point.0 == 77_777.0));
+        assert_eq!(points[points.len() - 1].0, f64::from(count - 1));
+        assert!(points[0].0 < 200.0);
+    }
+
+    #[test]
+    fn a_short_series_is_kept_as_it_is() {
+        let mut envelope = Envelope::new();
+        let values = [(0.0, 1.0), (0.1, -2.0), (0.2, 3.0)];
+        for (time_s, value) in values {
+            envelope.push(time_s, value);
+        }
+        assert_eq!(envelope.points().collect::<Vec<_>>(), values);
+    }
+}

@@ -1,0 +1,418 @@
+//! What the pictures show: read back from the SVG and compared with the mechanics.
+#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use archrock::mechanics::chain::Chain;
+use archrock::mechanics::impact::ImpactModel;
+use archrock::mechanics::mechanism::{HingeSites, Sway};
+use archrock::mechanics::ring::{Edge, Ring};
+use archrock::mechanics::survey::shape_result;
+use archrock::output::pictures;
+use nalgebra::Vector2;
+use roxmltree::{Document, Node};
+
+/// Coordinates are written to thousandths of a pixel, paths of curves to hundredths.
+const PIXEL: f64 = 0.02;
+
+fn chain(thickness_ratio: f64, embrace_deg: f64) -> Chain {
+    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
+    Chain::new(ring, HingeSites::Anywhere, ImpactModel::MaxRestitution).unwrap()
+}
+
+fn named<'a>(document: &'a Document<'a>, name: &str) -> Vec<Node<'a, 'a>> {
+    document
+        .descendants()
+        .filter(|node| node.attribute("data-name") == Some(name))
+        .collect()
+}
+
+fn number(node: &Node<'_, '_>, attribute: &str) -> f64 {
+    node.attribute(attribute).unwrap().parse().unwrap()
+}
+
+fn center(node: &Node<'_, '_>) -> Vector2<f64> {
+    Vector2::new(number(node, "cx"), number(node, "cy"))
+}
+
+/// The points of a curve, which is one polyline.
+fn points(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
+    let path = node.attribute("d").unwrap();
+    assert_eq!(path.matches('M').count(), 1, "one stroke");
+    let numbers: Vec<f64> = path
+        .trim_start_matches('M')
+        .split_whitespace()
+        .map(|text| text.parse().unwrap())
+        .collect();
+    numbers
+        .chunks_exact(2)
+        .map(|pair| Vector2::new(pair[0], pair[1]))
+        .collect()
+}
+
+fn texts(document: &Document<'_>) -> Vec<String> {
+    document
+        .descendants()
+        .filter_map(|node| node.text().filter(|_| node.has_tag_name("text")))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Place and scale of a ring on the sheet, from its first and last hinge: centre and pixels per radius.
+struct Sheet {
+    center: Vector2<f64>,
+    scale: f64,
+}
+
+impl Sheet {
+    fn new(shown: [Vector2<f64>; 2], exact: [Vector2<f64>; 2]) -> Self {
+        let scale = (shown[1].x - shown[0].x) / (exact[1].x - exact[0].x);
+        let flipped = Vector2::new(exact[0].x, -exact[0].y);
+        Self {
+            center: shown[0] - flipped * scale,
+            scale,
+        }
+    }
+
+    fn back(&self, shown: Vector2<f64>) -> Vector2<f64> {
+        let away = (shown - self.center) / self.scale;
+        Vector2::new(away.x, -away.y)
+    }
+}
+
+/// Checks the hinges A to D of a picture and returns the sheet they define.
+fn check_hinges(document: &Document<'_>, chain: &Chain, link: usize, sway: Sway) -> Sheet {
+    let mark = if link == 0 { "" } else { "'" };
+    let ring = chain.ring();
+    let mechanism = chain.link(link).unwrap().mechanism;
+    let exact = mechanism
+        .hinges_from_left(ring, sway)
+        .map(|(angle, edge)| ring.point(angle, edge));
+    let shown = ["A", "B", "C", "D"].map(|letter| {
+        let circles = named(document, &format!("hinge {letter}{mark}"));
+        assert_eq!(circles.len(), 1);
+        center(&circles[0])
+    });
+    let sheet = Sheet::new([shown[0], shown[3]], [exact[0], exact[3]]);
+    assert!(sheet.scale > 100.0);
+    for (shown, exact) in shown.into_iter().zip(exact) {
+        let error = (sheet.back(shown) - exact).norm() * sheet.scale;
+        assert!(error < PIXEL, "{error}");
+    }
+    for letter in ["A", "B", "C", "D"] {
+        assert!(texts(document).contains(&format!("{letter}{mark}")));
+    }
+    sheet
+}
+
+/// Distance of the curve's points from the axis over the thickness: the eccentricity drawn.
+fn eccentricities(curve: &[Vector2<f64>], sheet: &Sheet, ring: &Ring) -> Vec<f64> {
+    let radius = |point: &Vector2<f64>| sheet.back(*point).norm();
+    curve
+        .iter()
+        .map(|point| (radius(point) - 1.0) / ring.thickness_ratio())
+        .collect()
+}
+
+#[test]
+fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
+    for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
+        let chain = chain(thickness_ratio, embrace_deg);
+        let picture = pictures::limit(&chain);
+        let document = Document::parse(&picture).unwrap();
+        let sheet = check_hinges(&document, &chain, 0, Sway::Right);
+        let lines = named(&document, "thrust line");
+        assert_eq!(lines.len(), 1);
+        let curve = points(&lines[0]);
+        let tolerance = 2.0 * PIXEL / (sheet.scale * thickness_ratio);
+        for e in eccentricities(&curve, &sheet, chain.ring()) {
+            assert!(e.abs() < 0.5 + tolerance, "{e}");
+        }
+        // Between points of the polyline, half a pixel apart or so, it passes through the hinges.
+        for point in chain.link(0).unwrap().mechanism.points() {
+            let nearest = curve
+                .iter()
+                .map(|shown| (sheet.back(*shown) - point).norm() * sheet.scale)
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1.0, "{nearest}");
+        }
+        let acceleration = format!("{:.5} g", chain.incipient().acceleration_g);
+        assert!(texts(&document)[0].contains(&acceleration));
+    }
+}
+
+#[test]
+fn joints_are_drawn_where_there_are_voussoirs() {
+    let ring = Ring::new(0.15, 157.5_f64.to_radians()).unwrap();
+    let sites = HingeSites::Voussoirs(7);
+    let chain = Chain::new(ring, sites, ImpactModel::MaxRestitution).unwrap();
+    for picture in [
+        pictures::limit(&chain),
+        pictures::first_impact(&chain).unwrap(),
+    ] {
+        let document = Document::parse(&picture).unwrap();
+        assert_eq!(named(&document, "joint").len(), 8);
+    }
+    // The hinges are at joints.
+    let picture = pictures::limit(&chain);
+    let document = Document::parse(&picture).unwrap();
+    check_hinges(&document, &chain, 0, Sway::Right);
+}
+
+/// Each displaced body has its corners where the circle arcs begin and end: read from its path.
+fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
+    let path = node.attribute("d").unwrap().replace(['M', 'L', 'Z'], " ");
+    path.split('A')
+        .flat_map(|piece| {
+            let numbers: Vec<f64> = piece
+                .split_whitespace()
+                .map(|text| text.parse().unwrap())
+                .collect();
+            // An arc's radii and flags come before its end.
+            let skip = numbers.len() % 2 + if numbers.len() > 4 { 4 } else { 0 };
+            numbers[skip.min(numbers.len())..]
+                .chunks_exact(2)
+                .map(|pair| Vector2::new(pair[0], pair[1]))
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+#[test]
+fn limit_shows_rigid_bodies_joined_at_hinges() {
+    let chain = chain(0.15, 180.0);
+    let picture = pictures::limit(&chain);
+    let document = Document::parse(&picture).unwrap();
+    let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
+    assert_eq!(hinges.len(), 4);
+    let body = |name: &str| corners(&named(&document, name)[0]);
+    // B is a corner of the left and the middle body, C of the middle and the right one.
+    for (hinge, bodies) in [
+        (hinges[0], ["still", "left"]),
+        (hinges[1], ["left", "middle"]),
+        (hinges[2], ["middle", "right"]),
+    ] {
+        for name in bodies {
+            let nearest = body(name)
+                .iter()
+                .map(|corner| (corner - hinge).norm())
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < PIXEL, "{name}: {nearest}");
+        }
+    }
+    // Rigid: the bars A-B, B-C and C-D keep their lengths.
+    let points = chain.link(0).unwrap().mechanism.points();
+    let bar = |points: &[Vector2<f64>], i: usize| (points[i + 1] - points[i]).norm();
+    let scale = bar(&hinges, 0) / bar(&points, 0);
+    for i in [1, 2] {
+        assert!((bar(&hinges, i) - scale * bar(&points, i)).abs() < PIXEL);
+    }
+    // It sways right, which lowers B.
+    assert!(hinges[1].x - hinges[0].x > scale * (points[1].x - points[0].x));
+}
+
+/// Fig. 10 and Eq. (3) of the paper: for the semicircle, whose last hinges share the right springing, the
+/// seventh body is empty.
+#[test]
+fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
+    let chain = chain(0.15, 180.0);
+    let picture = pictures::first_impact(&chain).unwrap();
+    let document = Document::parse(&picture).unwrap();
+    let sheet = check_hinges(&document, &chain, 1, Sway::Left);
+    assert!(texts(&document)[0].contains("r = 0.681186"));
+    let angles: [f64; 7] = [
+        0.0, 24.01353, 76.37611, 81.78741, 133.81620, 139.56130, 180.0,
+    ];
+    for (index, pair) in angles.windows(2).enumerate() {
+        let bodies = named(&document, &format!("body {}", index + 1));
+        assert_eq!(bodies.len(), 1);
+        assert!(texts(&document).contains(&(index + 1).to_string()));
+        let expected: Vec<_> = pair
+            .iter()
+            .flat_map(|angle| {
+                [Edge::Intrados, Edge::Extrados]
+                    .map(|edge| chain.ring().point(angle.to_radians(), edge))
+            })
+            .collect();
+        let shown = corners(&bodies[0]);
+        assert_eq!(shown.len(), 4);
+        for corner in shown {
+            let nearest = expected
+                .iter()
+                .map(|point| (sheet.back(corner) - point).norm() * sheet.scale)
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < PIXEL, "{nearest}");
+        }
+    }
+    assert!(named(&document, "body 7").is_empty());
+    let lines = named(&document, "impulse line");
+    assert_eq!(lines.len(), 1);
+    let drawn = eccentricities(&points(&lines[0]), &sheet, chain.ring());
+    let worst = drawn
+        .into_iter()
+        .fold(0.0, |worst: f64, e| worst.max(e.abs()));
+    // Published: |e|/t = 0.50199 at most; a hundredth of a pixel is 3e-4 of t.
+    assert!((worst - 0.50199).abs() < 5e-4, "{worst}");
+}
+
+fn archrock(arguments: &[&str], folder: &Path) {
+    let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+}
+
+fn scenario(folder: &Path, more: &str) {
+    let text = format!(
+        "title = \"A < B & C\"\n[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\n\
+         embrace_deg = 180.0\n{more}"
+    );
+    fs::write(folder.join("s.toml"), text).unwrap();
+}
+
+#[test]
+fn run_draws_the_history() {
+    let folder = tempfile::tempdir().unwrap();
+    scenario(
+        folder.path(),
+        "[ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n\
+         [simulation]\noutput_step_s = 1e-4\n",
+    );
+    archrock(&["run", "s.toml", "--out", "out"], folder.path());
+    let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
+    // Thirty thousand samples of six quantities; thinned.
+    assert!(text.len() < 400_000, "{}", text.len());
+    let document = Document::parse(&text).unwrap();
+    assert_eq!(texts(&document)[0], "A < B & C");
+    for label in [
+        "Ground (g)",
+        "Rotation (rad)",
+        "Energy / barrier",
+        "Time (s)",
+    ] {
+        assert!(texts(&document).iter().any(|text| text == label), "{label}");
+    }
+    let curve = |name: &str| {
+        let found = named(&document, name);
+        let curves: Vec<_> = found
+            .iter()
+            .filter(|node| node.has_tag_name("path"))
+            .collect();
+        assert_eq!(curves.len(), 1, "{name}");
+        points(curves[0])
+    };
+    // The largest rotations have the ratio of the published peaks to each other and to zero, where all start.
+    let peak = |name: &str| {
+        let points = curve_of(&document, name);
+        let start = points[0].y;
+        points
+            .iter()
+            .map(|point| point.y - start)
+            .fold(
+                0.0,
+                |peak: f64, y| if y.abs() > peak.abs() { y } else { peak },
+            )
+    };
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/summary.json")).unwrap())
+            .unwrap();
+    let key = |name: &str| summary[name].as_f64().unwrap();
+    let scale = peak("right") / key("peak_rotation_right_rad");
+    for (name, sign) in [("left", 1.0), ("middle", -1.0)] {
+        let expected = sign * scale * key(&format!("peak_rotation_{name}_rad"));
+        assert!((peak(name) - expected).abs() < 0.1, "{name}");
+    }
+    // One time axis: the curves begin and end together, at the frame.
+    let (left, right) = (85.0, 875.0);
+    for name in ["ground", "middle", "energy", "excess"] {
+        let points = curve(name);
+        assert!((points[0].x - left).abs() < PIXEL);
+        assert!((points[points.len() - 1].x - right).abs() < PIXEL);
+    }
+    // The first impact, published at 1.0279 s, has its mark at that part of the time.
+    let end_s = key("outcome_time_s");
+    let marks = named(&document, "impact");
+    let foot: f64 = marks[0].attribute("d").unwrap()[1..]
+        .split(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    let expected = left + (right - left) * 1.0279 / end_s;
+    assert!((foot - expected).abs() < 0.05, "{foot} {expected}");
+    assert!(marks.len() > 10);
+    // Sways right until there, in each of four panels.
+    let bands = named(&document, "right");
+    let bands: Vec<_> = bands
+        .iter()
+        .filter(|node| node.has_tag_name("rect"))
+        .filter(|node| (number(node, "x") - left).abs() < PIXEL)
+        .collect();
+    assert_eq!(bands.len(), 4);
+    assert!((number(bands[0], "width") - (expected - left)).abs() < 0.1);
+}
+
+fn curve_of(document: &Document<'_>, name: &str) -> Vec<Vector2<f64>> {
+    let found = named(document, name);
+    points(found.iter().find(|node| node.has_tag_name("path")).unwrap())
+}
+
+#[test]
+fn a_run_in_which_nothing_moves_has_its_picture_too() {
+    let folder = tempfile::tempdir().unwrap();
+    scenario(folder.path(), "[simulation]\nduration_s = 1.0\n");
+    archrock(&["run", "s.toml", "--out", "out"], folder.path());
+    let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    Document::parse(&text).unwrap();
+}
+
+#[test]
+fn chart_has_a_curve_for_every_angle_and_the_published_values() {
+    let folder = tempfile::tempdir().unwrap();
+    scenario(folder.path(), "");
+    archrock(&["chart", "s.toml", "--out", "out"], folder.path());
+    let table = fs::read_to_string(folder.path().join("out/chart.csv")).unwrap();
+    let header = table.lines().next().unwrap();
+    assert_eq!(
+        header,
+        "embrace_deg,thickness_ratio,incipient_acceleration_g,first_restitution,last_restitution"
+    );
+    // Published: A_L of the semicircle with t/R = 0.30, and the least thickness of Milankovitch.
+    let rows: Vec<Vec<Option<f64>>> = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().ok()).collect())
+        .collect();
+    let semicircle: Vec<_> = rows.iter().filter(|row| row[0] == Some(180.0)).collect();
+    assert_eq!(semicircle.len(), 24);
+    assert!((semicircle[0][1].unwrap() / 1.001 - 0.10748).abs() < 1e-5);
+    assert!((semicircle[23][2].unwrap() - 0.518069).abs() < 1e-6);
+    let picture = fs::read_to_string(folder.path().join("out/chart.svg")).unwrap();
+    let document = Document::parse(&picture).unwrap();
+    for angle in ["180", "170", "157.5", "140", "120"] {
+        for label in ["A_L (g)", "r, first impact", "r, repeating impacts"] {
+            let curve = curve_of(&document, &format!("{label} {angle} deg"));
+            assert!(curve.len() > 10 && curve.len() <= 24, "{}", curve.len());
+        }
+    }
+    // A_L grows with the thickness: upwards on the sheet.
+    let curve = curve_of(&document, "A_L (g) 180 deg");
+    assert!(curve.is_sorted_by(|a, b| a.x < b.x && a.y > b.y));
+}
+
+/// 0.6812 is the paper's; the chain from there is checked elsewhere, here that it has settled.
+#[test]
+fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
+    let sites = HingeSites::Anywhere;
+    let result = shape_result(180.0, 0.15, sites, ImpactModel::MaxRestitution).unwrap();
+    assert!((result.first_restitution.unwrap() - 0.681_185_59).abs() < 1e-8);
+    let chain = chain(0.15, 180.0);
+    let limit = chain.link(400).unwrap().link.restitution;
+    assert!((result.last_restitution.unwrap() - limit).abs() < 1e-5);
+    assert!(shape_result(180.0, 0.1, sites, ImpactModel::MaxRestitution).is_none());
+}

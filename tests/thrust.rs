@@ -1,0 +1,394 @@
+//! The thrust line in motion, against statics, dynamics formulated otherwise, and published numbers.
+#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{History, Request, Sample, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::Chain;
+use archrock::mechanics::impact::ImpactModel;
+use archrock::mechanics::linkage::Linkage;
+use archrock::mechanics::mechanism::HingeSites;
+use archrock::mechanics::resultant::SectionResultant;
+use archrock::mechanics::ring::Ring;
+use archrock::mechanics::structure::{Demand, Mechanism as _, Motion, Structure as _};
+use archrock::mechanics::thrust::ThrustLine;
+use nalgebra::{SMatrix, SVector, Vector2};
+
+const G: f64 = 9.81;
+
+fn arch(embrace_deg: f64, thickness_ratio: f64, radius_m: f64, sites: HingeSites) -> Arch {
+    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
+    Arch {
+        mean_radius_m: radius_m,
+        depth_m: 1.0,
+        density_kg_m3: 2000.0,
+        chain: Chain::new(ring, sites, ImpactModel::MaxRestitution)
+            .unwrap()
+            .into(),
+    }
+}
+
+fn arches() -> [Arch; 4] {
+    [
+        arch(180.0, 0.15, 5.0, HingeSites::Anywhere),
+        arch(157.5, 0.15, 5.0, HingeSites::Anywhere),
+        arch(157.5, 0.15, 5.0, HingeSites::Voussoirs(7)),
+        arch(140.0, 0.3, 5.0, HingeSites::Anywhere),
+    ]
+}
+
+/// A motion that obeys the equation of motion, in the units of [`Motion`].
+fn motion(linkage: &Linkage, q_rad: f64, rate: f64, push_g: f64) -> Motion {
+    let coefficients = linkage.coefficients(q_rad);
+    let force = push_g * coefficients.sway - coefficients.rise;
+    Motion {
+        q_rad,
+        rate,
+        acceleration: (force - 0.5 * coefficients.inertia_slope * rate * rate)
+            / coefficients.inertia,
+        body_force_g: Vector2::new(push_g, -1.0),
+    }
+}
+
+/// A few motions: rising, falling, under a push, near the limit position, starting.
+fn motions(linkage: &Linkage) -> Vec<Motion> {
+    let limit = linkage.limit_rad();
+    [
+        (0.0, 0.0, 0.5),
+        (0.1, 0.3, 0.0),
+        (0.3, -0.4, 0.2),
+        (0.6, 0.2, -0.3),
+        (0.95, 0.1, 1.0),
+    ]
+    .map(|(part, rate, push)| motion(linkage, part * limit, rate, push))
+    .to_vec()
+}
+
+#[test]
+fn at_the_onset_it_is_the_line_of_limit_analysis() {
+    for arch in arches() {
+        let incipient = arch.chain.incipient();
+        let linkage = arch.link(0).unwrap().mechanism;
+        let push = incipient.acceleration_g;
+        let onset = motion(&linkage, 0.0, 0.0, push);
+        // A_L is exact to rounding where joints are given, and flat in hinges placed to 1e-8 elsewhere.
+        assert!(onset.acceleration.abs() < 1e-12, "{}", onset.acceleration);
+        let line = linkage.thrust_line(&onset);
+        let at_rest = ThrustLine::at_rest(incipient, arch.chain.ring(), onset.body_force_g);
+        for i in 0..=50 {
+            let angle = arch.chain.ring().embrace_rad() * f64::from(i) / 50.0;
+            let expected = incipient.thrust_line.at(angle);
+            for line in [&line, &at_rest] {
+                let difference = line.at(angle) - expected;
+                assert!(difference.linear.norm() < 1e-12, "{angle}");
+                assert!(difference.angular.abs() < 1e-12, "{angle}");
+            }
+        }
+    }
+}
+
+/// The nine equations of motion of three free bodies in nine unknowns, four hinge forces and `q''`, with
+/// velocities and accelerations by differences of positions: nothing in common with the closed form but
+/// the angles of the bodies.
+#[test]
+fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
+    for arch in arches() {
+        let ring = *arch.chain.ring();
+        let mechanism = arch.chain.link(0).unwrap().mechanism;
+        let linkage = arch.link(0).unwrap().mechanism;
+        let [a, b, c, d] = mechanism.hinges_rad();
+        let [point_a, point_b, _, point_d] = mechanism.points();
+        let bodies = [ring.sector(a, b), ring.sector(b, c), ring.sector(c, d)];
+        let place = |q: f64| {
+            let turns = linkage.rotations(q);
+            let turned = |i: usize, v: Vector2<f64>| nalgebra::Rotation2::new(turns[i]) * v;
+            let moved_b = point_a + turned(0, point_b - point_a);
+            let moved_c = moved_b + turned(1, mechanism.points()[2] - point_b);
+            let centroids = [
+                point_a + turned(0, bodies[0].centroid() - point_a),
+                moved_b + turned(1, bodies[1].centroid() - point_b),
+                point_d + turned(2, bodies[2].centroid() - point_d),
+            ];
+            (turns, centroids, [point_a, moved_b, moved_c, point_d])
+        };
+        for motion in motions(&linkage).into_iter().skip(1).take(3) {
+            let h = 1e-4;
+            let (before, now, after) = (
+                place(motion.q_rad - h),
+                place(motion.q_rad),
+                place(motion.q_rad + h),
+            );
+            let hinges = now.2;
+            let mut matrix = SMatrix::<f64, 9, 9>::zeros();
+            let mut right = SVector::<f64, 9>::zeros();
+            for i in 0..3 {
+                let (mass, polar) = (bodies[i].mass, bodies[i].central_polar());
+                let path = (after.1[i] - before.1[i]) / (2.0 * h);
+                let bend = (after.1[i] - now.1[i] * 2.0 + before.1[i]) / (h * h);
+                let turn = (after.0[i] - before.0[i]) / (2.0 * h);
+                let turn_bend = (after.0[i] - 2.0 * now.0[i] + before.0[i]) / (h * h);
+                let square = motion.rate * motion.rate;
+                // mass * (path q'' + bend q'^2) = weight + force before - force after, likewise moments.
+                for axis in 0..2 {
+                    let row = 3 * i + axis;
+                    matrix[(row, 2 * i + axis)] = 1.0;
+                    matrix[(row, 2 * i + 2 + axis)] = -1.0;
+                    matrix[(row, 8)] = -mass * path[axis];
+                    right[row] = mass * (bend[axis] * square - motion.body_force_g[axis]);
+                }
+                let row = 3 * i + 2;
+                for (hinge, sign) in [(i, 1.0), (i + 1, -1.0)] {
+                    let arm = hinges[hinge] - now.1[i];
+                    matrix[(row, 2 * hinge)] = -sign * arm.y;
+                    matrix[(row, 2 * hinge + 1)] = sign * arm.x;
+                }
+                matrix[(row, 8)] = -polar * turn;
+                right[row] = polar * turn_bend * square;
+            }
+            let solution = matrix.lu().solve(&right).unwrap();
+            // Differences err by h^2 times fourth derivatives, and by 1e-16 / h^2.
+            let tolerance = 3e-6 * solution.norm();
+            assert!((solution[8] - motion.acceleration).abs() < tolerance);
+            let line = linkage.thrust_line(&motion);
+            let turns = [0.0, now.0[0], now.0[1], now.0[2], 0.0];
+            for hinge in 0..4 {
+                let force = nalgebra::Rotation2::new(turns[hinge])
+                    * line.at(mechanism.hinges_rad()[hinge]).linear;
+                let expected = Vector2::new(solution[2 * hinge], solution[2 * hinge + 1]);
+                assert!(
+                    (force - expected).norm() < tolerance,
+                    "hinge {hinge}: {force} {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_line_passes_through_the_hinges_from_both_sides() {
+    for arch in arches() {
+        let ring = arch.chain.ring();
+        let embrace = ring.embrace_rad();
+        // The thick arch stops at its first impact and has one mechanism only.
+        for link in (0..3).map_while(|index| arch.chain.link(index)) {
+            let (mechanism, linkage) = (link.mechanism, link.link.mechanism);
+            for motion in motions(&linkage) {
+                let line = linkage.thrust_line(&motion);
+                let parts = line.parts();
+                assert!((parts[4].end_rad - embrace).abs() < 1e-15);
+                for (hinge, angle) in mechanism.hinges_rad().into_iter().enumerate() {
+                    let pole = mechanism.points()[hinge];
+                    // Of both parts that meet there: the moment about the hinge is zero, and the forces
+                    // are equal but for the rotation. For B, left side, this is the equation of motion.
+                    let forces = [parts[hinge], parts[hinge + 1]].map(|part| {
+                        let resultant = part.at(ring, angle);
+                        let scale = 1.0 + resultant.linear.norm();
+                        assert!(resultant.about(pole).abs() < 1e-12 * scale, "{hinge}");
+                        resultant.linear.norm()
+                    });
+                    assert!((forces[0] - forces[1]).abs() < 1e-12 * (1.0 + forces[0]));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_parts_that_stand_carry_their_weight_to_the_springings() {
+    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
+    let ring = arch.chain.ring();
+    let linkage = arch.link(0).unwrap().mechanism;
+    let a = arch.chain.link(0).unwrap().mechanism.hinges_rad()[0];
+    let line = linkage.thrust_line(&motion(&linkage, 0.02, 0.1, 0.0));
+    // Nothing is accelerated before A: between springing and hinge the force grows by the weight.
+    let weight = line.at(a).linear - line.at(0.0).linear;
+    let expected = Vector2::new(0.0, -ring.sector(0.0, a).mass);
+    assert!((weight - expected).norm() < 1e-14);
+}
+
+#[test]
+fn at_rest_the_line_stays_inside_up_to_the_onset() {
+    for arch in arches() {
+        let ring = arch.chain.ring();
+        let limit_g = arch.incipient_g();
+        for part in [-1.0, -0.7, 0.0, 0.3, 0.999] {
+            let body_force = Vector2::new(part * limit_g, -1.0);
+            assert_eq!(arch.demand_at_rest(body_force).excess_ratio, 0.0, "{part}");
+            // Equilibrium of the whole ring: what comes in and the load go out.
+            let line = ThrustLine::at_rest(arch.chain.incipient(), ring, body_force);
+            let load = line.at(ring.embrace_rad()).linear - line.at(0.0).linear;
+            let mass = ring.moments_to(ring.embrace_rad()).mass;
+            assert!((load - body_force * mass).norm() < 1e-14);
+        }
+        // Mirror images ask the same.
+        let [left, right] = [-0.6, 0.6].map(|part| {
+            arch.demand_at_rest(Vector2::new(part * limit_g, -1.0))
+                .friction
+        });
+        assert!((left - right).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_push_beyond_the_onset_at_rest_would_leave_the_ring() {
+    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
+    let demand = arch.demand_at_rest(Vector2::new(1.2 * arch.incipient_g(), -1.0));
+    assert!(demand.excess_ratio > 0.01, "{demand:?}");
+}
+
+#[test]
+fn a_section_in_tension_has_a_finite_excess_that_grows_with_it() {
+    let of = |normal: f64, moment: f64| {
+        let section = SectionResultant {
+            normal,
+            tangential: 0.3,
+            moment,
+            eccentricity_ratio: moment / (normal * 0.2),
+        };
+        Demand::of_sections([section].into_iter(), 0.2, 10.0)
+    };
+    // Moment 0.05 on N = 1 and t = 0.2: |e|/t = 0.25, inside; 0.12: 0.6, out by 0.1.
+    assert_eq!(of(1.0, 0.05).excess_ratio, 0.0);
+    assert!((of(1.0, -0.12).excess_ratio - 0.1).abs() < 1e-15);
+    assert!((of(1.0, 0.0).friction - 0.3).abs() < 1e-15);
+    // A tenth of a weight in tension, over the hundredth that counts at least: half of its ten parts.
+    assert!((of(-1.0, 0.0).excess_ratio - 5.0).abs() < 1e-14);
+    let mut before = 0.0;
+    for normal in [0.2, 0.1, 0.01, 0.0, -0.01, -0.1, -3.0] {
+        let demand = of(normal, 0.03);
+        assert!(demand.excess_ratio.is_finite() && demand.excess_ratio > before);
+        assert!(demand.friction.is_finite());
+        before = demand.excess_ratio;
+    }
+}
+
+type ArchSample = Sample<[f64; 3]>;
+
+fn pulse_history(arch: &Arch, amplitude_g: f64, duration_s: f64, end_s: f64) -> Vec<ArchSample> {
+    let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude_g * G, duration_s, 0.0);
+    let rocking = Rocking::new(arch, &ground, G, 1e-8);
+    let mut samples = Vec::new();
+    run(&rocking, end_s, |sample| samples.push(*sample));
+    samples
+}
+
+fn run<'a>(
+    rocking: &Rocking<'a, Arch>,
+    end_s: f64,
+    sink: impl FnMut(&ArchSample),
+) -> History<'a, Arch> {
+    let request = Request {
+        end_s,
+        relative_tolerance: 1e-9,
+        initial: None,
+        output_step_s: Some(0.001),
+    };
+    history(rocking, &request, sink).unwrap()
+}
+
+/// Eccentricities of the line at a sample of the first half cycle, swaying right.
+fn eccentricity(arch: &Arch, sample: &ArchSample, angle_deg: f64) -> f64 {
+    assert_eq!(sample.state, "right");
+    let linkage = arch.link(0).unwrap().mechanism;
+    let motion = motion(
+        &linkage,
+        -sample.rotations_rad[0],
+        -sample.rates_rad_s[0] * (arch.mean_radius_m / G).sqrt(),
+        -sample.ground_acceleration_m_s2 / G,
+    );
+    let line = linkage.thrust_line(&motion);
+    line.section(angle_deg.to_radians()).eccentricity_ratio
+}
+
+fn at(samples: &[ArchSample], time_s: f64) -> &ArchSample {
+    let found = samples.iter().find(|sample| sample.time_s >= time_s);
+    found.expect("a sample at that time")
+}
+
+/// Published to two digits: |e|/t about 0.55 at the joint at 22.5 degrees, after the pulse.
+#[test]
+fn seven_voussoirs_leave_the_ring_at_the_second_joint() {
+    let arch = arch(157.5, 0.15, 10.0, HingeSites::Voussoirs(7));
+    let samples = pulse_history(&arch, -0.5, 0.25, 0.5);
+    for time_s in [0.26, 0.3, 0.4, 0.5] {
+        let sample = at(&samples, time_s);
+        let e = eccentricity(&arch, sample, 22.5);
+        assert!((e + 0.55).abs() < 5e-3, "{e}");
+        // No joint is worse, so that this is the demand.
+        assert!((sample.demand.excess_ratio - (e.abs() - 0.5)).abs() < 1e-9);
+    }
+}
+
+/// Published to two digits: about 0.52 near 30 and 86 degrees after the pulse; near 78 during it.
+#[test]
+fn the_semicircle_leaves_the_ring_beside_its_hinges() {
+    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
+    let samples = pulse_history(&arch, -0.3, 0.2, 1.0);
+    for (time_s, angle_deg, edge) in [(0.05, 78.0, 1.0), (0.5, 30.0, -1.0), (0.5, 86.0, 1.0)] {
+        let e = eccentricity(&arch, at(&samples, time_s), angle_deg);
+        assert!((e * edge - 0.52).abs() < 6e-3, "{angle_deg}: {e}");
+    }
+    // Finely enough divided: a hundred times finer finds the same but for 1e-4 of the thickness.
+    for time_s in [0.05, 0.15, 0.5, 0.9] {
+        let sample = at(&samples, time_s);
+        let fine = (0..=18_000)
+            .map(|i| eccentricity(&arch, sample, f64::from(i) * 0.01).abs() - 0.5)
+            .fold(0.0, f64::max);
+        assert!((sample.demand.excess_ratio - fine).abs() < 1e-4, "{fine}");
+    }
+}
+
+#[test]
+fn the_record_of_a_history_is_that_of_its_samples() {
+    let arch = arch(157.5, 0.15, 10.0, HingeSites::Voussoirs(7));
+    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.4 * G, 0.1, 0.5);
+    let rocking = Rocking::new(&arch, &ground, G, 1e-8);
+    let mut samples: Vec<ArchSample> = Vec::new();
+    let record = run(&rocking, 3.0, |sample| samples.push(*sample))
+        .thrust
+        .unwrap();
+    let (still, moving): (Vec<&ArchSample>, Vec<&ArchSample>) =
+        samples.iter().partition(|sample| sample.state == "rest");
+    assert!(still.len() > 400 && moving.len() > 100);
+    assert!(still.iter().all(|sample| sample.demand.excess_ratio == 0.0));
+    let largest = |of: &dyn Fn(&ArchSample) -> f64| {
+        let values = samples.iter().map(|sample| (of(sample), sample.time_s));
+        values.fold(
+            (0.0, 0.0),
+            |best, new| if new.0 > best.0 { new } else { best },
+        )
+    };
+    for (peak, expected) in [
+        (
+            record.largest_excess,
+            largest(&|sample| sample.demand.excess_ratio),
+        ),
+        (
+            record.largest_friction,
+            largest(&|sample| sample.demand.friction),
+        ),
+    ] {
+        assert_eq!((peak.value, peak.time_s), expected);
+    }
+    let shares = record.shares_within().unwrap();
+    for (share, level) in shares.into_iter().zip([0.01, 0.05]) {
+        let count = moving
+            .iter()
+            .filter(|sample| sample.demand.excess_ratio <= level)
+            .count();
+        assert_eq!(share, count as f64 / moving.len() as f64);
+    }
+    assert!(shares[0] < shares[1]);
+}
+
+#[test]
+fn where_nothing_moves_there_are_no_shares() {
+    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
+    let ground = GroundMotion::pulse(Pulse::Rectangular, 0.1 * G, 0.5, 0.0);
+    let rocking = Rocking::new(&arch, &ground, G, 1e-8);
+    let record = run(&rocking, 1.0, |_| ()).thrust.unwrap();
+    assert_eq!(record.shares_within(), None);
+    assert_eq!(record.largest_excess.value, 0.0);
+    assert!(record.largest_friction.value > 0.1);
+}
