@@ -11,7 +11,7 @@
 //!   motions of its parts ([`mechanics::field`]), four-link mechanisms ([`mechanics::mechanism`]), the
 //!   onset of rocking by limit analysis ([`mechanics::limit`]), the mechanism at finite rotations
 //!   ([`mechanics::linkage`]), the impact ([`mechanics::impact`]) and the chain of mechanisms that impacts
-//!   lead through ([`mechanics::chain`]).
+//!   lead through ([`mechanics::chain`]); Housner's free-standing column ([`mechanics::column`]).
 //! - [`dynamics`]: motion in time. An engine for systems that jump between modes ([`dynamics::engine`]),
 //!   the ground ([`dynamics::ground`]), rocking as such a system ([`dynamics::rocking`]) and its history
 //!   ([`dynamics::history`]).

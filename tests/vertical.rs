@@ -209,19 +209,20 @@ fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
         );
         let (_, rows) = run(&arch, &ground, G, None, 0.2);
         let mut text = Vec::new();
-        let mut table = RotationsWriter::new::<Linkage>(&mut text, ground.has_vertical()).unwrap();
+        let mut table =
+            RotationsWriter::new::<Linkage>(&mut text, ground.has_vertical(), None).unwrap();
         for row in &rows {
             table.write(row).unwrap();
         }
         table.finish().unwrap();
         let text = String::from_utf8(text).unwrap();
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
-        assert_eq!(lines[0][9], "rate_right_rad_s");
+        assert_eq!(lines[0][11], "friction_demand");
         if amplitude.y == 0.0 {
-            assert!(lines.iter().all(|line| line.len() == 10));
+            assert!(lines.iter().all(|line| line.len() == 12));
         } else {
-            assert_eq!(lines[0][10], "vertical_acceleration_m_s2");
-            assert!(lines[1][10] == "-1.5" && lines.last().unwrap()[10] == "0.0");
+            assert_eq!(lines[0][12], "vertical_acceleration_m_s2");
+            assert!(lines[1][12] == "-1.5" && lines.last().unwrap()[12] == "0.0");
         }
     }
 }

@@ -37,9 +37,12 @@ const LARGEST_THICKNESS_RATIO: f64 = 0.3;
 
 pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
+    let Structure::Arch(arch) = &scenario.structure else {
+        let message = "chart is of arches of all shapes, and this is a column";
+        return Err(Failure::Input(message.to_owned()));
+    };
     // Refuses, with its reasons, an arch that has no results of its own.
-    commands::arch(&scenario)?;
-    let Structure::Arch(arch) = &scenario.structure;
+    commands::build(arch, &scenario)?;
     let path = match (&arguments.out, arguments.scenario.file_stem()) {
         (Some(out), _) => out.clone(),
         (None, stem) => Path::new("results").join(stem.unwrap_or_default()),

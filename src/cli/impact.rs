@@ -11,8 +11,9 @@ use archrock::mechanics::impact::{Impact, ImpactModel, closing_field, impact as 
 use archrock::mechanics::mechanism::{FourLink, HingeSites, Sway};
 use archrock::mechanics::resultant::{Extremes, Extremum};
 use archrock::mechanics::ring::Edge;
+use archrock::mechanics::structure::{Hinge, Structure as Rocks};
 use archrock::output::{Folder, impact as output, pictures};
-use archrock::scenario::Scenario;
+use archrock::scenario::{Scenario, Structure};
 use serde_json::json;
 
 use super::commands::{self, degrees, pretty};
@@ -48,6 +49,13 @@ pub struct Arguments {
     format: Format,
 }
 
+impl Arguments {
+    /// Whether something is asked that only arches have.
+    fn of_arches_only(&self) -> bool {
+        self.models || self.certificate || self.line.is_some() || self.plot.is_some()
+    }
+}
+
 /// The impact that was asked about.
 struct Chosen<'a> {
     index: usize,
@@ -58,7 +66,22 @@ struct Chosen<'a> {
 
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
-    let arch = commands::arch(&scenario)?;
+    let arch = match &scenario.structure {
+        Structure::Column(column) if !arguments.of_arches_only() => {
+            let column = column.build(scenario.impact);
+            let count = arguments.count.into();
+            return match arguments.format {
+                Format::Json => print(&pretty(
+                    &json!({ "impacts": output::chain(&column, count) }),
+                )),
+                Format::Text => print(&chain_text(&scenario, &column, count)),
+            };
+        }
+        _ => commands::arch(
+            &scenario,
+            "--models, --certificate, --line and --plot speak of",
+        )?,
+    };
     let chosen = || choose(&arch, arguments.link.into());
     if let Some(path) = &arguments.line {
         write_line(path, &arch, &chosen()?)?;
@@ -195,29 +218,48 @@ fn certify(arch: &Arch, chosen: &Chosen<'_>, joints: Option<u16>) -> Result<Proj
     project(&closing, ring, &joints_rad).map_err(|error| Failure::Work(error.to_string()))
 }
 
-fn chain_text(scenario: &Scenario, arch: &Arch, count: usize) -> String {
+/// The chain of mechanisms of any structure.
+fn chain_text<S: Rocks>(scenario: &Scenario, structure: &S, count: usize) -> String {
     let mut text = format!(
-        "impacts after a first sway to the right, model {} (angles in degrees from the left springing;\n\
-         I intrados, E extrados; r = kinetic energy after / before)\n\n\
-         impact         r  sway   {:>12}{:>12}{:>12}{:>12}\n",
+        "impacts after a first sway to the right, model {} (r = kinetic energy after / before",
         scenario.impact.name(),
-        "A",
-        "B",
-        "C",
-        "D"
     );
+    let of_arch = matches!(
+        structure.hinges(0, Sway::Right).first(),
+        Some(Hinge::Section { .. })
+    );
+    if of_arch {
+        text += ";\nangles in degrees from the left springing; I intrados, E extrados";
+    }
+    text += ")\n\nimpact         r  sway   ";
+    let names: &[&str] = if of_arch {
+        &commands::HINGES
+    } else {
+        &["turns about"]
+    };
+    for name in names {
+        let _ = write!(text, "{name:>12}");
+    }
+    text.push('\n');
     for index in 0..=count {
-        let Some(link) = arch.chain.link(index) else {
-            let _ = writeln!(text, "{index:>6}  no mechanism can follow: the arch stops");
+        let Some(link) = structure.link(index) else {
+            let _ = writeln!(text, "{index:>6}  no mechanism can follow: it stops");
             break;
         };
         let restitution = match index {
             0 => String::new(),
-            _ => format!("{:.6}", link.link.restitution),
+            _ => format!("{:.6}", link.restitution),
         };
         let sway = output::sway(index);
         let _ = write!(text, "{index:>6}  {restitution:>8}  {:5}  ", sway.name());
-        text += &hinges(arch, &link.mechanism, sway);
+        for hinge in structure.hinges(index, sway) {
+            let _ = match hinge {
+                Hinge::Section { angle_rad, edge } => {
+                    write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge))
+                }
+                Hinge::Toe(side) => write!(text, "{:>12}", format!("{} toe", side.name())),
+            };
+        }
         text.push('\n');
     }
     text

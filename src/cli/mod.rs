@@ -17,7 +17,7 @@ use archrock::output::OutputError;
 use archrock::scenario::ScenarioErrors;
 use clap::{Parser, Subcommand, ValueEnum};
 
-/// Simulates masonry arches that rock under ground motion.
+/// Simulates masonry arches and free-standing columns that rock under ground motion.
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
 struct Arguments {
@@ -32,7 +32,7 @@ struct Arguments {
 enum Command {
     /// Simulate the time history of a scenario and write it as CSV and JSON.
     Run(run::Arguments),
-    /// Print the incipient rocking acceleration and the mechanism, on both sides.
+    /// Print the incipient rocking acceleration, the mechanism on both sides, and the equivalent block.
     Limit {
         /// Scenario file (TOML).
         scenario: PathBuf,

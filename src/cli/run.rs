@@ -8,13 +8,11 @@ use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Outcome, history};
 use archrock::dynamics::rocking::Rocking;
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::linkage::Linkage;
-use archrock::mechanics::structure::Structure as _;
-use archrock::output::rotations::RotationsWriter;
+use archrock::mechanics::structure::Structure as Rocks;
+use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError, results};
-use archrock::scenario::Scenario;
+use archrock::scenario::{Scenario, Structure};
 
 use super::{Failure, commands};
 
@@ -29,9 +27,14 @@ pub struct Arguments {
     /// written unless --out is given.
     #[arg(long, value_name = "-", value_parser = ["-"])]
     rotations: Option<String>,
+    /// Add dimensionless columns to the rotations: p_t (time), acceleration_over_incipient and
+    /// rotation_over_critical.
+    #[arg(long)]
+    dimensionless: bool,
 }
 
 const ROTATIONS: &str = "rotations.csv";
+const EVENTS: &str = "events.csv";
 const PICTURE: &str = "history.svg";
 const IMPACTS: &str = "impacts.csv";
 /// Written last: a folder that has it is complete.
@@ -39,14 +42,41 @@ const SUMMARY: &str = "summary.json";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
-    let arch = commands::arch(&scenario)?;
+    match &scenario.structure {
+        Structure::Arch(arch) => {
+            let arch = commands::build(arch, &scenario)?;
+            run_structure(arguments, quiet, &scenario, &arch)
+        }
+        Structure::Column(column) => {
+            run_structure(arguments, quiet, &scenario, &column.build(scenario.impact))
+        }
+    }
+}
+
+fn run_structure<S: Rocks>(
+    arguments: &Arguments,
+    quiet: bool,
+    scenario: &Scenario,
+    structure: &S,
+) -> Result<(), Failure> {
     let ground = scenario.ground_motion();
     let rocking = Rocking::new(
-        &arch,
+        structure,
         &ground,
         scenario.simulation.gravity_m_s2,
         scenario.simulation.rest_energy_ratio,
     );
+    let scales = arguments
+        .dimensionless
+        .then(|| {
+            Scales::new(structure, scenario.simulation.gravity_m_s2).ok_or_else(|| {
+                Failure::Input(
+                    "the mechanism has no unstable equilibrium to measure by: leave --dimensionless out"
+                        .to_owned(),
+                )
+            })
+        })
+        .transpose()?;
     let to_stdout = arguments.rotations.is_some();
     let path = match (&arguments.out, arguments.scenario.file_stem()) {
         (Some(out), _) => Some(out.clone()),
@@ -58,27 +88,29 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .map(|path| open(&path, to_stdout))
         .transpose()
         .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))?;
-    let mut timeline = Timeline::new::<Linkage>(scenario.simulation.gravity_m_s2);
+    let mut timeline = Timeline::new::<S::Mechanism>(scenario.simulation.gravity_m_s2);
     let simulated = match &mut folder {
         Some(folder) if !to_stdout => {
-            simulate(&scenario, &rocking, folder.file(ROTATIONS), &mut timeline)
+            let file = folder.file(ROTATIONS);
+            simulate(scenario, &rocking, file, scales, &mut timeline)
         }
         _ => {
             let stdout = BufWriter::new(io::stdout().lock());
-            simulate(&scenario, &rocking, stdout, &mut timeline)
+            simulate(scenario, &rocking, stdout, scales, &mut timeline)
         }
     };
     let (history, rows) = simulated?;
-    let mut text = human_summary(&scenario, &arch, &ground, &history);
+    let mut text = human_summary(scenario, structure, &ground, &history);
     if let Some(mut folder) = folder {
-        results::write_impacts(folder.file(IMPACTS), &arch, &history.impacts)?;
+        results::write_events(folder.file(EVENTS), structure, &history.events)?;
+        results::write_impacts(folder.file(IMPACTS), structure, &history.impacts)?;
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
         let impacts_s = history.impacts.iter().map(|impact| impact.time_s);
         folder
             .file(PICTURE)
             .write_all(timeline.draw(title, impacts_s).as_bytes())
             .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-        let summary = results::summary(&scenario, &arch, &history)?;
+        let summary = results::summary(scenario, structure, &history)?;
         writeln!(folder.file(SUMMARY), "{summary:#}")
             .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
         let path = folder.path().to_owned();
@@ -90,7 +122,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         };
         let _ = writeln!(
             text,
-            "  results in {}: {rotations}{IMPACTS}, {PICTURE}, {SUMMARY}",
+            "  results in {}: {rotations}{EVENTS}, {IMPACTS}, {PICTURE}, {SUMMARY}",
             path.display()
         );
     }
@@ -104,22 +136,24 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 /// Opens the folder for the results.
 fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
     if without_rotations {
-        let mut folder = Folder::open(path, &[IMPACTS, PICTURE, SUMMARY])?;
+        let mut folder = Folder::open(path, &[EVENTS, IMPACTS, PICTURE, SUMMARY])?;
         folder.forget(ROTATIONS);
         Ok(folder)
     } else {
-        Folder::open(path, &[ROTATIONS, IMPACTS, PICTURE, SUMMARY])
+        Folder::open(path, &[ROTATIONS, EVENTS, IMPACTS, PICTURE, SUMMARY])
     }
 }
 
 /// Simulates and writes the rotations; returns the number of rows as well.
-fn simulate<'a>(
+fn simulate<'a, S: Rocks>(
     scenario: &Scenario,
-    rocking: &Rocking<'a, Arch>,
+    rocking: &Rocking<'a, S>,
     writer: impl io::Write,
+    scales: Option<Scales>,
     timeline: &mut Timeline,
-) -> Result<(History<'a, Arch>, u64), Failure> {
-    let mut table = RotationsWriter::new::<Linkage>(writer, rocking.ground().has_vertical())?;
+) -> Result<(History<'a, S>, u64), Failure> {
+    let vertical = rocking.ground().has_vertical();
+    let mut table = RotationsWriter::new::<S::Mechanism>(writer, vertical, scales)?;
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
         timeline.push(sample);
@@ -132,11 +166,11 @@ fn simulate<'a>(
 }
 
 /// What happened, when, and what it compares with.
-fn human_summary(
+fn human_summary<S: Rocks>(
     scenario: &Scenario,
-    arch: &Arch,
+    structure: &S,
     ground: &GroundMotion,
-    history: &History<'_, Arch>,
+    history: &History<'_, S>,
 ) -> String {
     let mut text = String::new();
     if let Some(title) = &scenario.title {
@@ -169,15 +203,16 @@ fn human_summary(
         );
     }
     if history.outcome != Outcome::NeverMoved {
-        let [left, middle, right] = history.peak_rotations_rad;
         let _ = writeln!(
             text,
-            "  peak rotations {left:.5} left, {middle:.5} middle, {right:.5} right body, in rad\n  \
-             energy defect {:.1e} of the barrier, {} steps, {} evaluations",
-            history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
+            "  peak rotation in rad: {}\n  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
+            commands::by_body::<S::Mechanism>(&history.peak_rotations_rad),
+            history.energy_defect_ratio,
+            history.cost.steps,
+            history.cost.evaluations
         );
     }
-    let incipient_g = arch.incipient_g();
+    let incipient_g = structure.incipient_g();
     let peak_g = ground.peak_m_s2() / scenario.simulation.gravity_m_s2;
     let reaches = if peak_g > 0.0 {
         format!(
@@ -192,20 +227,29 @@ fn human_summary(
         "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
     );
     if let Some(thrust) = &history.thrust {
-        text += &trust(thrust);
+        let of_arch = matches!(scenario.structure, Structure::Arch(_));
+        text += &trust(thrust, of_arch);
     }
     text
 }
 
-/// How far the motion can be trusted to be that of four links.
-fn trust(thrust: &ThrustRecord) -> String {
+/// How far the motion can be trusted to be that of four links, or of a column on its toe.
+fn trust(thrust: &ThrustRecord, of_arch: bool) -> String {
     let Some(shares) = thrust.shares_within() else {
         return String::new();
     };
     let Peak { value, time_s } = thrust.largest_excess;
     let [close, near] = shares.map(|share| 100.0 * share);
     let [least, most] = EXCESS_LEVELS;
-    let mut text = if value <= least {
+    let mut text = if !of_arch {
+        if value > 0.0 {
+            format!(
+                "  the ground would have to hold the column down (at {time_s:.4} s): it flies off\n"
+            )
+        } else {
+            String::new()
+        }
+    } else if value <= least {
         format!(
             "  four links suffice to {value:.4} t, by which the thrust line leaves the arch at most\n"
         )

@@ -169,7 +169,10 @@ pub enum EngineError {
     #[error(transparent)]
     Integrator(#[from] IntegratorError),
     /// Too many events.
-    #[error("more than {most} transitions by {time_s} s")]
+    #[error(
+        "more than {most} transitions by {time_s} s: the motion chatters; raise rest_energy_ratio, so that \
+         it rests earlier, or shorten duration_s"
+    )]
     TooManyTransitions {
         /// Time in seconds.
         time_s: f64,

@@ -108,6 +108,39 @@ impl<'a, S: Structure> ImpactEvent<'a, S> {
     }
 }
 
+named! {
+    /// What a transition is.
+    pub enum EventKind {
+        /// The ground lifts a structure at rest off.
+        Uplift = "uplift",
+        /// The hinges close, and another mechanism opens.
+        Impact = "impact",
+        /// The hinges close, and the structure comes to rest.
+        Rest = "rest",
+        /// The structure is lost.
+        Overturned = "overturned",
+    }
+}
+
+/// A transition of a history, and the state that it leads to.
+#[derive(Clone, Copy, Debug)]
+pub struct Event<R> {
+    /// Instant in seconds.
+    pub time_s: f64,
+    /// What happened.
+    pub kind: EventKind,
+    /// Side to which the structure sways from here on; `None` at rest.
+    pub sway: Option<Sway>,
+    /// Impacts since it last left the rest, which is the index of its mechanism; `None` at rest.
+    pub mechanism: Option<usize>,
+    /// Rotations of the bodies.
+    pub rotations_rad: R,
+    /// Rotation rates of the bodies just after.
+    pub rates_rad_s: R,
+    /// Kinetic and potential energy just after, in the unit of [`Rocking::barrier`].
+    pub energy: f64,
+}
+
 /// State of a structure at an instant of the output.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<R> {
@@ -129,6 +162,9 @@ pub struct Sample<R> {
     pub demand: Demand,
     /// Kinetic and potential energy over the energy barrier.
     pub energy_ratio: f64,
+    /// Rotation of the body that carries `q` over that at the unstable equilibrium of the mechanism that
+    /// moves, anticlockwise: below -1 or above 1 gravity overturns the structure.
+    pub rotation_over_critical: f64,
 }
 
 /// What is to be simulated.
@@ -153,6 +189,8 @@ pub struct History<'a, S: Structure> {
     pub outcome_time_s: f64,
     /// When the simulation ended.
     pub end_s: f64,
+    /// All transitions, impacts included: the phase that follows the `i`-th is `i + 1`.
+    pub events: Vec<Event<Rotations<S>>>,
     /// All impacts.
     pub impacts: Vec<ImpactEvent<'a, S>>,
     /// Largest magnitudes of the rotations.
@@ -223,6 +261,7 @@ pub fn history<'a, S: Structure>(
         outcome,
         outcome_time_s,
         end_s: finish.time_s,
+        events: recorder.events,
         impacts: recorder.impacts,
         peak_rotations_rad: recorder.peak_rotations_rad,
         energy_defect_ratio: recorder.largest_defect / rocking.barrier(),
@@ -248,10 +287,35 @@ fn seen_from_ground<S: Structure>(
     rotations
 }
 
+/// Rotations of the bodies and their rates, in the frame of the ground.
+fn posture<S: Structure>(
+    rocking: &Rocking<'_, S>,
+    mode: Mode<'_, S::Mechanism>,
+    state: &RockingState,
+) -> (Rotations<S>, Rotations<S>) {
+    let seen = |sway, link: &Link<S::Mechanism>, q_rad, moved, rate| {
+        (
+            seen_from_ground::<S>(sway, link.mechanism.rotations(q_rad), moved),
+            seen_from_ground::<S>(sway, link.mechanism.rotation_rates(q_rad), rate),
+        )
+    };
+    match mode {
+        Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link } => {
+            seen(sway, link, state[0], 1.0, state[1])
+        }
+        Mode::Rest => {
+            let link = rocking.structure().link(0);
+            let link = link.expect("a structure has its first mechanism");
+            seen(Sway::Right, link, 0.0, 0.0, 0.0)
+        }
+    }
+}
+
 type RockingTransition<'a, S> = Transition<Mode<'a, <S as Structure>::Mechanism>, Guard, 3>;
 
 /// Keeps what a summary needs.
 struct Recorder<'a, S: Structure> {
+    events: Vec<Event<Rotations<S>>>,
     impacts: Vec<ImpactEvent<'a, S>>,
     peak_rotations_rad: Rotations<S>,
     last_outward_s: Option<f64>,
@@ -263,14 +327,9 @@ struct Recorder<'a, S: Structure> {
 
 impl<'a, S: Structure> Recorder<'a, S> {
     fn new(rocking: &Rocking<'a, S>, mode: Mode<'a, S::Mechanism>, state: &RockingState) -> Self {
-        let mut none = rocking
-            .structure()
-            .link(0)
-            .expect("a structure has its first mechanism")
-            .mechanism
-            .rotations(0.0);
-        none.as_mut().fill(0.0);
+        let (none, _) = posture(rocking, Mode::Rest, state);
         let mut recorder = Self {
+            events: Vec::new(),
             impacts: Vec::new(),
             peak_rotations_rad: none,
             last_outward_s: None,
@@ -360,10 +419,45 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
             self.energy_without_work -= before - left;
             self.impacts.push(impact);
         }
+        self.events.push(event(rocking, transition));
         if let Mode::Rest = transition.to {
             self.last_rest_s = Some(transition.time_s);
             // At rest there is no energy; what is left is the defect so far, and goes on.
         }
+    }
+}
+
+fn event<'a, S: Structure>(
+    rocking: &Rocking<'a, S>,
+    transition: &RockingTransition<'a, S>,
+) -> Event<Rotations<S>> {
+    let kind = match (transition.guard, transition.to) {
+        (Guard::Uplift(_), _) => EventKind::Uplift,
+        (Guard::Closing, Mode::Rest) => EventKind::Rest,
+        (Guard::Closing, _) => EventKind::Impact,
+        (Guard::Critical | Guard::Limit, _) => EventKind::Overturned,
+    };
+    let impacts = |mode| match mode {
+        Mode::Rocking { impacts, .. } => Some(impacts),
+        Mode::Rest | Mode::Overturned { .. } => None,
+    };
+    let (sway, mechanism, energy) = match transition.to {
+        Mode::Rest => (None, None, 0.0),
+        Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link } => (
+            Some(sway),
+            impacts(transition.to).or(impacts(transition.from)),
+            rocking.energy(link, &transition.after),
+        ),
+    };
+    let (rotations_rad, rates_rad_s) = posture(rocking, transition.to, &transition.after);
+    Event {
+        time_s: transition.time_s,
+        kind,
+        sway,
+        mechanism,
+        rotations_rad,
+        rates_rad_s,
+        energy,
     }
 }
 
@@ -419,41 +513,36 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         S::Mechanism: Mechanism<Rotations = R>,
         R: AsRef<[f64]> + AsMut<[f64]>,
     {
-        let (name, sway) = match mode {
-            Mode::Rest => ("rest", Sway::Right),
-            Mode::Rocking { sway, .. } => (sway.name(), sway),
-            Mode::Overturned { sway, .. } => ("overturned", sway),
+        let over_critical = |sway: Sway, link: &Link<S::Mechanism>| {
+            -sway.sign() * state[0] / link.critical_rad + 0.0
         };
-        let (rotations_rad, rates_rad_s, energy) = match mode {
-            Mode::Rocking { link, .. } | Mode::Overturned { link, .. } => (
-                link.mechanism.rotations(state[0]),
-                link.mechanism.rotation_rates(state[0]),
+        let (name, rotation_over_critical, energy) = match mode {
+            Mode::Rest => ("rest", 0.0, 0.0),
+            Mode::Rocking { sway, link, .. } => (
+                sway.name(),
+                over_critical(sway, link),
                 rocking.energy(link, state),
             ),
-            Mode::Rest => {
-                let link = rocking
-                    .structure()
-                    .link(0)
-                    .expect("a structure has its first mechanism");
-                (
-                    link.mechanism.rotations(0.0),
-                    link.mechanism.rotation_rates(0.0),
-                    0.0,
-                )
-            }
+            Mode::Overturned { sway, link } => (
+                "overturned",
+                over_critical(sway, link),
+                rocking.energy(link, state),
+            ),
         };
-        let moved = if matches!(mode, Mode::Rest) { 0.0 } else { 1.0 };
+        let (rotations_rad, rates_rad_s) = posture(rocking, mode, state);
         let (ground, _) = rocking.ground().pieces()[piece].at(time_s);
         Sample {
             time_s,
-            ground_acceleration_m_s2: ground.x,
-            vertical_acceleration_m_s2: ground.y,
+            // Adding zero makes a negative zero positive.
+            ground_acceleration_m_s2: ground.x + 0.0,
+            vertical_acceleration_m_s2: ground.y + 0.0,
             phase: self.phase,
             state: name,
-            rotations_rad: seen_from_ground::<S>(sway, rotations_rad, moved),
-            rates_rad_s: seen_from_ground::<S>(sway, rates_rad_s, moved * state[1]),
+            rotations_rad,
+            rates_rad_s,
             demand: rocking.demand(mode, piece, time_s, state),
             energy_ratio: energy / rocking.barrier(),
+            rotation_over_critical,
         }
     }
 

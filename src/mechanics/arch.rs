@@ -6,7 +6,8 @@ use nalgebra::Vector2;
 
 use super::chain::Chain;
 use super::linkage::Linkage;
-use super::structure::{Demand, Link, Motion, Structure};
+use super::mechanism::Sway;
+use super::structure::{Demand, Hinge, Link, Motion, Structure};
 use super::thrust::ThrustLine;
 
 /// An arch. Its chain of mechanisms does not depend on size or material, and may be shared.
@@ -56,5 +57,24 @@ impl Structure for Arch {
 
     fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {
         self.chain.link(impacts).map(|link| &link.link)
+    }
+
+    fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
+        self.chain.link(impacts).map_or(Vec::new(), |link| {
+            let hinges = link.mechanism.hinges_from_left(self.chain.ring(), sway);
+            hinges
+                .map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
+                .to_vec()
+        })
+    }
+
+    fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
+        let line = self
+            .chain
+            .link(impacts)
+            .and_then(|link| link.impulse_line.as_ref());
+        line.map_or(Vec::new(), |line| {
+            line.hinge_impulses_from_left(sway).to_vec()
+        })
     }
 }

@@ -1,7 +1,9 @@
-//! Mechanics of the ring: pure functions, no time, no files.
+//! Mechanics of the arch and the column: pure functions, no time, no files.
 pub mod arch;
 pub mod certificate;
 pub mod chain;
+pub mod column;
+pub mod equivalent;
 pub mod field;
 pub mod impact;
 pub mod impulse_line;

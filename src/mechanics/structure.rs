@@ -6,6 +6,9 @@
 
 use nalgebra::Vector2;
 
+use super::mechanism::Sway;
+use super::ring::Edge;
+
 /// Coefficients of the equation of motion of a system with one degree of freedom,
 /// `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`, at some `q`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +81,20 @@ pub struct Link<M> {
     pub restitution: f64,
 }
 
+/// A place about which one part of a structure turns against another, or against the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hinge {
+    /// At an edge of a section of an arch.
+    Section {
+        /// The section, in radians from the left springing.
+        angle_rad: f64,
+        /// The edge.
+        edge: Edge,
+    },
+    /// At a toe of the base of a column, on this side.
+    Toe(Sway),
+}
+
 impl<M: Mechanism> Link<M> {
     /// The link of a mechanism with its limit, and with the impact that leads to it.
     #[must_use]
@@ -110,6 +127,12 @@ pub trait Structure {
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
     /// The mechanism after a number of impacts; `None` when an impact before it stops the structure.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>>;
+    /// Hinges of that mechanism from left to right, as seen when it sways to the given side; none when
+    /// there is no such mechanism.
+    fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
+    /// Impulses at those hinges of the impact that leads to the mechanism, in the frame of the ground,
+    /// for a unit closing rate, in units of mass and length; none where they are not known.
+    fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>>;
 }
 
 /// The unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which `S_y`, the slope of

@@ -1,6 +1,6 @@
 //! A folder of results that are replaced as a whole.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -12,6 +12,9 @@ use super::OutputError;
 ///
 /// Every file is written under a hidden name and gets its own when all are complete. The last of them,
 /// the seal, is taken away first and comes back last: a folder that has it holds results of one run.
+///
+/// A run that is killed leaves its hidden files. They are locked as long as they are being written, so
+/// that the next run knows them from those of one that is still at work, and takes them away.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -46,6 +49,7 @@ impl Folder {
                 folder.made.push(ancestor.to_owned());
             }
         }
+        remove_abandoned(path);
         for name in names {
             let file = tempfile::Builder::new()
                 .prefix(&format!("{PREFIX}{name}-"))
@@ -55,6 +59,9 @@ impl Folder {
                     "cannot write in the folder {}",
                     path.display()
                 )))?;
+            // Where files cannot be locked, what a killed run leaves stays, or goes while it is still
+            // being written by another; the latter then says so.
+            let _ = file.as_file().try_lock();
             folder
                 .files
                 .push(((*name).to_owned(), BufWriter::new(file)));
@@ -120,6 +127,23 @@ impl Drop for Folder {
         for made in self.made.iter().rev() {
             // Somebody else may have put something there meanwhile; then it stays.
             let _ = fs::remove_dir(made);
+        }
+    }
+}
+
+/// Removes the hidden files of runs that were killed. That is tidiness: what cannot be had stays.
+fn remove_abandoned(path: &Path) {
+    let entries = fs::read_dir(path).into_iter().flatten().flatten();
+    for entry in entries {
+        let hidden = entry
+            .file_name()
+            .to_str()
+            .is_some_and(|name| name.starts_with(PREFIX));
+        if hidden
+            && let Ok(file) = File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
         }
     }
 }
@@ -191,6 +215,19 @@ mod tests {
             );
             assert_eq!(names(root.path()), ["mine.txt", "seal.json", "x.csv"]);
         }
+    }
+
+    #[test]
+    fn what_a_killed_run_left_goes_and_what_another_is_writing_stays() {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join(".archrock-x.csv-dead"), "half").unwrap();
+        let mut working = Folder::open(root.path(), &["x.csv"]).unwrap();
+        working.file("x.csv").write_all(b"slow").unwrap();
+        let other = Folder::open(root.path(), &["x.csv"]).unwrap();
+        assert_eq!(names(root.path()).len(), 2);
+        drop(other);
+        working.complete().unwrap();
+        assert_eq!(names(root.path()), ["x.csv"]);
     }
 
     #[test]

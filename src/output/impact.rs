@@ -14,6 +14,7 @@ use crate::mechanics::chain::ArchLink;
 use crate::mechanics::impact::{Impact, ImpactModel};
 use crate::mechanics::impulse_line::ImpulseLine;
 use crate::mechanics::mechanism::{FourLink, HingeSites, Sway};
+use crate::mechanics::structure::{Hinge, Structure};
 
 /// The sway of a link of the chain that begins with a sway to the right.
 #[must_use]
@@ -25,30 +26,40 @@ pub const fn sway(link: usize) -> Sway {
     }
 }
 
-/// Result of `impact`: the first `count` links of the chain that begins with a sway to the right; fewer
-/// when an impact stops the arch.
+/// Result of `impact` for any structure: the first `count` links of the chain that begins with a sway to
+/// the right; fewer when an impact stops the structure.
 #[must_use]
-pub fn impacts(arch: &Arch, count: usize) -> Value {
-    let links = (1..=count).map_while(|index| {
-        let (before, after) = (arch.chain.link(index - 1)?, arch.chain.link(index)?);
-        Some(impact(arch, index, before, after))
-    });
-    links.collect::<Vec<_>>().into()
+pub fn chain<S: Structure>(structure: &S, count: usize) -> Vec<Value> {
+    let side = |index: usize| {
+        let sway = sway(index);
+        json!({ "sway": sway.name(), "hinges": hinges(&structure.hinges(index, sway)) })
+    };
+    (1..=count)
+        .map_while(|index| Some((index, structure.link(index)?)))
+        .map(|(index, after)| {
+            json!({
+                "index": index,
+                "restitution": after.restitution,
+                "before": side(index - 1),
+                "after": side(index),
+            })
+        })
+        .collect()
 }
 
-fn impact(arch: &Arch, index: usize, before: &ArchLink, after: &ArchLink) -> Value {
-    let ring = arch.chain.ring();
-    let side = |mechanism: &FourLink, sway: Sway| json!({ "sway": sway.name(), "hinges": hinges(mechanism, ring, sway) });
-    let sway_after = sway(index);
-    let line = after.impulse_line.as_ref();
-    json!({
-        "index": index,
-        "restitution": after.link.restitution,
-        "before": side(&before.mechanism, sway_after.opposite()),
-        "after": side(&after.mechanism, sway_after),
-        "impulses": line.map(|line| impulses(arch, line, sway_after)),
-        "impulse_line": line.map(|line| extremes(arch, line, sway_after)),
-    })
+/// The same for an arch, with the impulses and the extremes of the impulse line.
+#[must_use]
+pub fn impacts(arch: &Arch, count: usize) -> Value {
+    let mut impacts = chain(arch, count);
+    for (index, impact) in (1..).zip(&mut impacts) {
+        let line = arch
+            .chain
+            .link(index)
+            .and_then(|link| link.impulse_line.as_ref());
+        impact["impulses"] = line.map(|line| impulses(arch, line, sway(index))).into();
+        impact["impulse_line"] = line.map(|line| extremes(arch, line, sway(index))).into();
+    }
+    impacts.into()
 }
 
 fn impulses(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
@@ -80,6 +91,11 @@ fn extremes(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
     })
 }
 
+fn sections(arch: &Arch, impact: &Impact, sway: Sway) -> [Hinge; 4] {
+    let hinges = impact.mechanism.hinges_from_left(arch.chain.ring(), sway);
+    hinges.map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
+}
+
 /// Impact models side by side, for the impact that leads to link `index`; null where a model finds no
 /// mechanism that could follow.
 #[must_use]
@@ -88,7 +104,7 @@ pub fn models(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>)
         let sway = sway(index);
         json!({
             "restitution": impact.restitution,
-            "after": { "sway": sway.name(), "hinges": hinges(&impact.mechanism, arch.chain.ring(), sway) },
+            "after": { "sway": sway.name(), "hinges": hinges(&sections(arch, impact, sway)) },
             "impulses": impact.impulse_line.as_ref().map(|line| impulses(arch, line, sway)),
             "impulse_line": impact.impulse_line.as_ref().map(|line| extremes(arch, line, sway)),
         })

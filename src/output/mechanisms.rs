@@ -2,30 +2,42 @@
 
 use serde_json::{Value, json};
 
-use crate::mechanics::chain::Chain;
-use crate::mechanics::mechanism::{FourLink, Sway};
-use crate::mechanics::ring::Ring;
+use crate::mechanics::equivalent::{Block, equivalent};
+use crate::mechanics::mechanism::Sway;
+use crate::mechanics::structure::{Hinge, Structure};
 
-/// The hinges of a mechanism as `[{angle_deg, edge}]`, from the left springing.
+/// Hinges from left to right: `{angle_deg, edge}`, the angle from the left springing, for an arch,
+/// `{toe}` for a column.
 #[must_use]
-pub fn hinges(mechanism: &FourLink, ring: &Ring, sway: Sway) -> Value {
-    mechanism
-        .hinges_from_left(ring, sway)
-        .map(
-            |(angle_rad, edge)| json!({ "angle_deg": angle_rad.to_degrees(), "edge": edge.name() }),
-        )
-        .to_vec()
-        .into()
+pub fn hinges(hinges: &[Hinge]) -> Value {
+    hinges
+        .iter()
+        .map(|hinge| match hinge {
+            Hinge::Section { angle_rad, edge } => {
+                json!({ "angle_deg": angle_rad.to_degrees(), "edge": edge.name() })
+            }
+            Hinge::Toe(side) => json!({ "toe": side.name() }),
+        })
+        .collect()
 }
 
-/// Result of `limit`: incipient acceleration and mechanism on both sides.
+/// Result of `limit`: incipient acceleration and mechanism on both sides, and the equivalent blocks
+/// (see [`crate::mechanics::equivalent`]), the same on both.
 #[must_use]
-pub fn limit(chain: &Chain) -> Value {
-    let incipient = chain.incipient();
+pub fn limit<S: Structure>(structure: &S, gravity_m_s2: f64) -> Value {
     let both =
         |of: &dyn Fn(Sway) -> Value| json!({ "right": of(Sway::Right), "left": of(Sway::Left) });
+    let block = |block: Block| json!({ "p_rad_s": block.frequency_rad_s, "half_diagonal_m": block.half_diagonal_m });
+    let equivalent = equivalent(structure, gravity_m_s2).map(|blocks| {
+        json!({
+            "slenderness_rad": blocks.slenderness_rad,
+            "at_rest": blocks.at_rest.map(block),
+            "at_critical": blocks.at_critical.map(block),
+        })
+    });
     json!({
-        "incipient_acceleration_g": both(&|_| incipient.acceleration_g.into()),
-        "mechanism": both(&|sway| hinges(&incipient.mechanism, chain.ring(), sway)),
+        "incipient_acceleration_g": both(&|_| structure.incipient_g().into()),
+        "mechanism": both(&|sway| hinges(&structure.hinges(0, sway))),
+        "equivalent_block": equivalent,
     })
 }

@@ -4,7 +4,8 @@ use std::io::Write;
 
 use super::{OutputError, finite};
 use crate::dynamics::history::Sample;
-use crate::mechanics::structure::Mechanism;
+use crate::mechanics::equivalent::equivalent;
+use crate::mechanics::structure::{Mechanism, Structure};
 
 /// Column of a quantity of a body: `rotation_left_rad`, or `rotation_rad` where there is only one body.
 fn column(quantity: &str, body: &str, unit: &str) -> String {
@@ -23,9 +24,37 @@ pub(super) fn columns<M: Mechanism>(quantity: &str, unit: &str) -> Vec<String> {
         .collect()
 }
 
+/// What makes a history dimensionless, as papers plot it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// `p`, that of the equivalent block at the unstable equilibrium (see
+    /// [`crate::mechanics::equivalent`]); a column's own.
+    pub frequency_rad_s: f64,
+    /// `g A_L`, the acceleration that starts the structure.
+    pub incipient_m_s2: f64,
+}
+
+impl Scales {
+    /// The scales of a structure under gravity; `None` if it has no unstable equilibrium.
+    #[must_use]
+    pub fn new<S: Structure>(structure: &S, gravity_m_s2: f64) -> Option<Self> {
+        Some(Self {
+            frequency_rad_s: equivalent(structure, gravity_m_s2)?
+                .at_critical?
+                .frequency_rad_s,
+            incipient_m_s2: structure.incipient_g() * gravity_m_s2,
+        })
+    }
+}
+
 /// Writes samples as rows of CSV.
+///
+/// With scales, three columns follow the others: `p_t` (time times `p`), `acceleration_over_incipient`
+/// (ground acceleration over `g A_L`) and `rotation_over_critical` (see
+/// [`Sample::rotation_over_critical`]).
 pub struct RotationsWriter<W: Write> {
     csv: csv::Writer<W>,
+    scales: Option<Scales>,
     rows: u64,
     /// Whether there is a column for the vertical acceleration.
     vertical: bool,
@@ -37,7 +66,11 @@ impl<W: Write> RotationsWriter<W> {
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn new<M: Mechanism>(writer: W, vertical: bool) -> Result<Self, OutputError> {
+    pub fn new<M: Mechanism>(
+        writer: W,
+        vertical: bool,
+        scales: Option<Scales>,
+    ) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
         let mut header: Vec<String> = ["time_s", "ground_acceleration_m_s2", "phase", "state"]
             .map(str::to_owned)
@@ -48,9 +81,18 @@ impl<W: Write> RotationsWriter<W> {
         if vertical {
             header.push("vertical_acceleration_m_s2".to_owned());
         }
+        if scales.is_some() {
+            let further = [
+                "p_t",
+                "acceleration_over_incipient",
+                "rotation_over_critical",
+            ];
+            header.extend(further.map(str::to_owned));
+        }
         csv.write_record(header).map_err(OutputError::csv(WHAT))?;
         Ok(Self {
             csv,
+            scales,
             rows: 0,
             vertical,
         })
@@ -72,6 +114,15 @@ impl<W: Write> RotationsWriter<W> {
         finite("of a row of rotations.csv", rates)?;
         let demand = [sample.demand.excess_ratio, sample.demand.friction];
         finite("of a row of rotations.csv", &demand)?;
+        let further = self.scales.map(|scales| {
+            [
+                sample.time_s * scales.frequency_rad_s,
+                sample.ground_acceleration_m_s2 / scales.incipient_m_s2,
+                sample.rotation_over_critical,
+            ]
+        });
+        let further = further.as_ref().map_or(&[][..], |values| values.as_slice());
+        finite("of a row of rotations.csv", further)?;
         self.rows += 1;
         self.csv
             .serialize((
@@ -83,6 +134,7 @@ impl<W: Write> RotationsWriter<W> {
                 rates,
                 demand,
                 vertical.as_slice(),
+                further,
             ))
             .map_err(OutputError::csv(WHAT))
     }

@@ -8,7 +8,7 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::path::Path;
 
 use super::table::{Count, Number, OneOf, Reading, Table, Text, Writer};
-use super::{Arch, Ground, Initial, PulseGround, Record, Scenario, Simulation, Structure};
+use super::{Arch, Column, Ground, Initial, PulseGround, Record, Scenario, Simulation, Structure};
 use crate::dynamics::ground::{Pulse, WaveTrain};
 use crate::mechanics::impact::ImpactModel;
 use crate::mechanics::limit::{LimitError, least_thickness_ratio};
@@ -17,6 +17,8 @@ use crate::mechanics::mechanism::Sway;
 /// Lengths and densities: so wide that only slips of the pen are outside, and so that
 /// no product of them leaves the range of an `f64`.
 const MAGNITUDE: Number = Number(Included(1e-3), Included(1e6));
+const DEPTH_M: f64 = 1.0;
+const DENSITY_KG_M3: f64 = 2000.0;
 /// A structure as thick as its diameter has no hole.
 const THICKNESS_RATIO: Number = Number(Excluded(0.0), Excluded(2.0));
 const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
@@ -79,6 +81,7 @@ impl Scenario {
         }
         match structure {
             Structure::Arch(arch) => arch.write(out),
+            Structure::Column(column) => column.write(out),
         }
         if let Some(ground) = ground {
             ground.write(out);
@@ -94,7 +97,7 @@ impl Scenario {
 impl Structure {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
         let arch = table.table("arch", |table| Arch::read(table).map(Self::Arch));
-        let column = table.not_yet("column", "this version does not simulate columns yet");
+        let column = table.table("column", |table| Column::read(table).map(Self::Column));
         table.exactly_one("tables", vec![("arch", arch), ("column", column)])
     }
 }
@@ -109,8 +112,8 @@ impl Arch {
             vec![("thickness_ratio", ratio), ("thickness_m", from_m)],
         );
         let embrace_deg = table.required("embrace_deg", &EMBRACE_DEG);
-        let depth_m = table.or("depth_m", &MAGNITUDE, 1.0);
-        let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, 2000.0);
+        let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
+        let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
         let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
         let arch = Self {
             mean_radius_m: mean_radius_m?,
@@ -195,6 +198,35 @@ impl Arch {
         if let Some(voussoirs) = voussoirs {
             out.count("voussoirs", voussoirs);
         }
+    }
+}
+
+impl Column {
+    fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let height_m = table.required("height_m", &MAGNITUDE);
+        let width_m = table.required("width_m", &MAGNITUDE);
+        let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
+        let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
+        Ok(Self {
+            height_m: height_m?,
+            width_m: width_m?,
+            depth_m: depth_m?,
+            density_kg_m3: density_kg_m3?,
+        })
+    }
+
+    fn write(&self, out: &mut Writer) {
+        let Self {
+            height_m,
+            width_m,
+            depth_m,
+            density_kg_m3,
+        } = *self;
+        out.table("column");
+        out.number("height_m", height_m);
+        out.number("width_m", width_m);
+        out.number("depth_m", depth_m);
+        out.number("density_kg_m3", density_kg_m3);
     }
 }
 

@@ -42,14 +42,16 @@ use crate::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
 use crate::dynamics::history::Request;
 use crate::mechanics::arch;
 use crate::mechanics::chain::Chain;
+use crate::mechanics::column;
 use crate::mechanics::impact::ImpactModel;
 use crate::mechanics::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::linkage::Linkage;
 use crate::mechanics::mechanism::{HingeSites, Sway};
 use crate::mechanics::ring::Ring;
+use crate::mechanics::structure::Structure as _;
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
-pub use record::{Column, Component, Format, Layout, Record, Scaling, Series, Unit};
+pub use record::{Component, Format, Layout, Record, Scaling, Series, TableColumn, Unit};
 use table::Writer;
 
 /// What to simulate, every default resolved.
@@ -74,6 +76,8 @@ pub struct Scenario {
 pub enum Structure {
     /// A circular arch, from `[arch]`.
     Arch(Arch),
+    /// A free-standing column, from `[column]`.
+    Column(Column),
 }
 
 /// A circular arch of constant thickness.
@@ -127,6 +131,36 @@ impl Arch {
     }
 }
 
+/// A free-standing column: a rectangular block on rigid ground, which does not slide.
+///
+/// It may have any proportions. A column wider than `sqrt(2)` times its height stops at its first impact;
+/// and one that starts to rock from rest needs a friction coefficient of its width over its height.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Height, in 0.001 to 1e6.
+    pub height_m: f64,
+    /// Width in the plane of the motion, in 0.001 to 1e6.
+    pub width_m: f64,
+    /// Length out of plane, in 0.001 to 1e6.
+    pub depth_m: f64,
+    /// Density, in 0.001 to 1e6.
+    pub density_kg_m3: f64,
+}
+
+impl Column {
+    /// The column, ready to rock.
+    #[must_use]
+    pub fn build(&self, model: ImpactModel) -> column::Column {
+        column::Column::new(
+            self.height_m,
+            self.width_m,
+            self.depth_m,
+            self.density_kg_m3,
+            model,
+        )
+    }
+}
+
 impl Structure {
     /// `q` at the limit position of the mechanism that starts, for a structure that stands.
     fn limit_rad(&self) -> f64 {
@@ -134,6 +168,10 @@ impl Structure {
             Self::Arch(arch) => arch.incipient().map_or(0.0, |incipient| {
                 Linkage::new(&arch.ring(), &incipient.mechanism).limit_rad()
             }),
+            Self::Column(column) => {
+                let column = column.build(ImpactModel::MaxRestitution);
+                column.link(0).map_or(0.0, |link| link.limit_rad)
+            }
         }
     }
 }
@@ -331,6 +369,8 @@ mod tests {
     use proptest::prelude::*;
 
     const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+
+    const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
 
     fn parse(text: &str) -> Result<Scenario, ScenarioErrors> {
         Scenario::parse(text, "s.toml")
@@ -540,16 +580,55 @@ duration_s = 1.0
 
     #[test]
     fn structures() {
-        let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
-        let words: &[&str] = &["table `column`", "does not simulate columns yet"];
-        assert_errors(column, &[(1, 1, words)]);
         let beside: &[&str] = &["`column` stands beside `arch`", "exactly one"];
-        assert_errors(&format!("{ARCH}{column}"), &[(5, 1, words), (5, 1, beside)]);
+        assert_errors(&format!("{ARCH}{COLUMN}"), &[(5, 1, beside)]);
         assert_errors(
             "arch = 5",
             &[(1, 8, &["`arch = 5`", "a whole number", "a table"])],
         );
         assert_errors("[[arch]]\n", &[(1, 1, &["an array", "a table"])]);
+    }
+
+    #[test]
+    fn columns() {
+        let scenario = parse(COLUMN).expect("valid");
+        let expected = Column {
+            height_m: 4.0,
+            width_m: 0.8,
+            depth_m: 1.0,
+            density_kg_m3: 2000.0,
+        };
+        assert_eq!(scenario.structure, Structure::Column(expected));
+        assert_errors(
+            "[column]\nheight = 4\nwidth_m = -0.8\nmean_radius_m = 5\n",
+            &[
+                (1, 1, &["[column] lacks `height_m`", "at least 0.001"]),
+                (2, 1, &["`height` in [column], did you mean `height_m`?"]),
+                (
+                    3,
+                    11,
+                    &["`width_m = -0.8` is out of range", "at most 1000000.0"],
+                ),
+                (
+                    4,
+                    1,
+                    &["`mean_radius_m` in [column]", "height_m, width_m, depth_m"],
+                ),
+            ],
+        );
+        let released = |rotation: &str| {
+            parse(&format!(
+                "{COLUMN}[initial]\nsway = 'left'\nrotation_rad = {rotation}"
+            ))
+        };
+        assert!(released("1.57").is_ok());
+        let flat = released("1.571").expect_err("lies on its side");
+        let words = "s.toml:6:16: `rotation_rad = 1.571` is beyond the limit position";
+        assert!(flat.to_string().starts_with(words), "{flat}");
+        assert!(
+            flat.to_string().ends_with("below 1.5707963267948966"),
+            "{flat}"
+        );
     }
 
     #[test]
@@ -756,8 +835,24 @@ duration_s = 1.0
         (low.ln()..high.ln()).prop_map(move |x| x.exp().clamp(low, high))
     }
 
-    /// Arches that stand and start as four-link mechanisms.
     fn any_structure() -> impl Strategy<Value = Structure> {
+        prop_oneof![any_arch(), any_column()]
+    }
+
+    fn any_column() -> impl Strategy<Value = Structure> {
+        let size = || magnitude(1e-3, 1e6);
+        (size(), size(), size(), size()).prop_map(|(height_m, width_m, depth_m, density_kg_m3)| {
+            Structure::Column(Column {
+                height_m,
+                width_m,
+                depth_m,
+                density_kg_m3,
+            })
+        })
+    }
+
+    /// Arches that stand and start as four-link mechanisms.
+    fn any_arch() -> impl Strategy<Value = Structure> {
         (
             magnitude(1e-3, 1e6),
             0.13..0.3,

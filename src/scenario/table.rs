@@ -205,14 +205,6 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A table that the format has and this version does not: an error if given.
-    pub(super) fn not_yet<T>(&mut self, key: &'static str, what: &str) -> Reading<Option<T>> {
-        match self.entry(key)? {
-            None => Ok(None),
-            Some(_) => Err(self.wrong(key, format!("is not supported: {what}"))),
-        }
-    }
-
     /// The value of the only one of several keys, which exclude each other, that is given.
     pub(super) fn exactly_one<T>(
         &mut self,

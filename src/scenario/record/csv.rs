@@ -3,7 +3,7 @@
 //! Read line by line, so that every fault has its line: numbers contain no line breaks.
 
 use super::{
-    COLUMN_NUMBER, Column, LEAST_STEP_S, LONGEST_S, LineFault, MOST_SAMPLES, Samples, number,
+    COLUMN_NUMBER, LEAST_STEP_S, LONGEST_S, LineFault, MOST_SAMPLES, Samples, TableColumn, number,
 };
 use crate::scenario::error::excerpt;
 
@@ -13,8 +13,8 @@ use crate::scenario::error::excerpt;
 /// the columns, and must where a column is chosen by name.
 pub(super) fn parse(
     text: &str,
-    time: &Column,
-    acceleration: &Column,
+    time: &TableColumn,
+    acceleration: &TableColumn,
 ) -> Result<Samples, LineFault> {
     let mut rows = text
         .lines()
@@ -34,7 +34,7 @@ pub(super) fn parse(
         .unwrap_or(',');
     let most_columns = *COLUMN_NUMBER.range.end();
     let names: Vec<_> = cells(first, delimiter).take(most_columns).collect();
-    let column = |column: &Column| {
+    let column = |column: &TableColumn| {
         column.index(&names).map_err(|message| LineFault {
             line: first_line,
             message,
@@ -43,7 +43,7 @@ pub(super) fn parse(
     let columns = [column(time)?, column(acceleration)?];
     let by_name = [time, acceleration]
         .iter()
-        .any(|column| matches!(column, Column::Name(_)));
+        .any(|column| matches!(column, TableColumn::Name(_)));
     let no_numbers = || {
         let mut cells = columns.iter().filter_map(|index| names.get(*index));
         cells.all(|cell| number(cell).is_err())
@@ -107,7 +107,7 @@ fn cells(row: &str, delimiter: char) -> impl Iterator<Item = &str> {
         .map(|cell| cell.trim().trim_matches('"').trim())
 }
 
-impl Column {
+impl TableColumn {
     /// The index from 0.
     fn index(&self, names: &[&str]) -> Result<usize, String> {
         let wanted = match self {

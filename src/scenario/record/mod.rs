@@ -100,7 +100,7 @@ named! {
 
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Column {
+pub enum TableColumn {
     /// By its number, from 1.
     Number(usize),
     /// By its name in the first row.
@@ -115,9 +115,9 @@ pub enum Layout {
     /// As a table.
     Csv {
         /// Times in s.
-        time_column: Column,
+        time_column: TableColumn,
         /// Accelerations.
-        acceleration_column: Column,
+        acceleration_column: TableColumn,
         /// Their unit.
         unit: Unit,
     },
@@ -370,8 +370,9 @@ impl Layout {
             all: Unit::ALL,
             name: Unit::name,
         };
-        let time_column = table.or("time_column", &AnyColumn, Column::Number(1));
-        let acceleration_column = table.or("acceleration_column", &AnyColumn, Column::Number(2));
+        let time_column = table.or("time_column", &AnyColumn, TableColumn::Number(1));
+        let acceleration_column =
+            table.or("acceleration_column", &AnyColumn, TableColumn::Number(2));
         let unit = table.optional("unit", &units);
         match format? {
             Format::At2 => {
@@ -407,8 +408,8 @@ impl Layout {
                     ("acceleration_column", acceleration_column),
                 ] {
                     match column {
-                        Column::Number(number) => out.count(key, *number),
-                        Column::Name(name) => out.text(key, name),
+                        TableColumn::Number(number) => out.count(key, *number),
+                        TableColumn::Name(name) => out.text(key, name),
                     }
                 }
                 out.text("unit", unit.name());
@@ -421,16 +422,16 @@ impl Layout {
 struct AnyColumn;
 
 impl Rule for AnyColumn {
-    type Value = Column;
+    type Value = TableColumn;
 
     fn allowed(&self) -> String {
         format!("the name of a column, or {}", COLUMN_NUMBER.allowed())
     }
 
-    fn read(&self, value: &DeValue<'_>) -> Result<Column, String> {
+    fn read(&self, value: &DeValue<'_>) -> Result<TableColumn, String> {
         match value {
-            DeValue::String(name) => Ok(Column::Name(name.to_string())),
-            _ => COLUMN_NUMBER.read(value).map(Column::Number),
+            DeValue::String(name) => Ok(TableColumn::Name(name.to_string())),
+            _ => COLUMN_NUMBER.read(value).map(TableColumn::Number),
         }
     }
 }
@@ -497,8 +498,8 @@ mod tests {
 
     fn csv_layout() -> Layout {
         Layout::Csv {
-            time_column: Column::Number(1),
-            acceleration_column: Column::Name("a".to_owned()),
+            time_column: TableColumn::Number(1),
+            acceleration_column: TableColumn::Name("a".to_owned()),
             unit: Unit::Gravity,
         }
     }
@@ -616,8 +617,8 @@ mod tests {
             acceleration_column: acceleration,
             unit: Unit::Gravity,
         };
-        let name = |name: &str| Column::Name(name.to_owned());
-        let number = Column::Number;
+        let name = |name: &str| TableColumn::Name(name.to_owned());
+        let number = TableColumn::Number;
         for (text, layout) in [
             ("t,a\n0,1\n0.5,-2\n", csv_layout()),
             ("# made by hand\n\nt;a\r\n0;1\r\n0.5;-2", csv_layout()),
@@ -657,8 +658,8 @@ mod tests {
         fault("t,a\n0,1\n", 2, "number of samples is 1");
         // A first row that is half a number is no header.
         let numbered = Layout::Csv {
-            time_column: Column::Number(1),
-            acceleration_column: Column::Number(2),
+            time_column: TableColumn::Number(1),
+            acceleration_column: TableColumn::Number(2),
             unit: Unit::Gravity,
         };
         assert_fault("0,1x\n1,2\n", &numbered, 1, "`1x`");

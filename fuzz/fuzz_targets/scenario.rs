@@ -1,0 +1,21 @@
+//! The scenario reader: any text is read, or said to be wrong in words that a terminal can show.
+#![no_main]
+
+use archrock::scenario::Scenario;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    match Scenario::parse(text, "s.toml") {
+        // What is valid reads back the same.
+        Ok(scenario) => assert_eq!(Scenario::parse(&scenario.to_toml(), "s.toml"), Ok(scenario)),
+        Err(errors) => {
+            assert!(!errors.as_slice().is_empty());
+            let lines = text.split('\n').count();
+            for error in errors.as_slice() {
+                let place = error.place.expect("an error in a text has a place");
+                assert!((1..=lines).contains(&place.line) && place.column >= 1);
+                assert!(!error.message.chars().any(char::is_control), "{}", error.message);
+            }
+        }
+    }
+});

@@ -1,0 +1,325 @@
+//! The free-standing column of Housner (1963): a rigid block that rocks about the toes of its base.
+//!
+//! A column of height `2h` and width `2b` has the half diagonal `R = sqrt(b^2 + h^2)`, the unit of length
+//! here, and the slenderness `alpha = atan(b / h)`. Swaying right it turns clockwise by `q` about its right
+//! toe, and with `m` its mass
+//!
+//! `4/3 m R^2 q'' + m g R sin(alpha - q) + m a_g R cos(alpha - q) = 0`,
+//!
+//! so that a push of `tan(alpha)` times gravity starts it, `q = alpha` is its unstable equilibrium, and at
+//! `q = pi/2` it lies on its side. With `p^2 = 3 g / (4 R)` the slender column obeys
+//! `q'' = p^2 (q - alpha) - p^2 a_g / g`.
+//!
+//! At an impact it goes from one toe to the other. There is one mechanism that can follow, so the models
+//! that search for it ([`ImpactModel::MaxRestitution`], [`ImpactModel::SameSections`],
+//! [`ImpactModel::Mirrored`]) are the same: Housner's.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::Vector2;
+
+use super::field::Twist;
+use super::impact::ImpactModel;
+use super::mechanism::Sway;
+use super::resultant::SectionResultant;
+use super::ring::MassMoments;
+use super::structure::{Coefficients, Demand, Hinge, Link, Mechanism, Motion, Structure};
+
+/// The column turning about its right toe; lengths in half diagonals, unit density and depth.
+#[derive(Clone, Copy, Debug)]
+pub struct Tilting {
+    /// Sine and cosine of the slenderness: from the sides, not from the angle, in whose digits a flat
+    /// column has lost its height.
+    sin: f64,
+    cos: f64,
+    mass: f64,
+}
+
+impl Tilting {
+    /// Sine and cosine of `alpha - angle_rad`.
+    fn sin_cos_from(&self, angle_rad: f64) -> (f64, f64) {
+        let (sin, cos) = angle_rad.sin_cos();
+        (
+            self.sin * cos - self.cos * sin,
+            self.cos * cos + self.sin * sin,
+        )
+    }
+}
+
+impl Mechanism for Tilting {
+    /// The column.
+    type Rotations = [f64; 1];
+    const BODIES: &'static [&'static str] = &[""];
+
+    fn coefficients(&self, q_rad: f64) -> Coefficients {
+        let (sin, cos) = self.sin_cos_from(q_rad);
+        Coefficients {
+            inertia: 4.0 / 3.0 * self.mass,
+            inertia_slope: 0.0,
+            sway: self.mass * cos,
+            rise: self.mass * sin,
+        }
+    }
+
+    /// Differences of sines and cosines as products, which keep their digits at small rotations.
+    fn displacement(&self, q_rad: f64) -> Vector2<f64> {
+        let chord = 2.0 * self.mass * (0.5 * q_rad).sin();
+        let (sin, cos) = self.sin_cos_from(0.5 * q_rad);
+        Vector2::new(chord * cos, chord * sin)
+    }
+
+    fn rotations(&self, q_rad: f64) -> [f64; 1] {
+        [-q_rad]
+    }
+
+    fn rotation_rates(&self, _: f64) -> [f64; 1] {
+        [-1.0]
+    }
+}
+
+/// A free-standing column.
+#[derive(Clone, Debug)]
+pub struct Column {
+    half_diagonal_m: f64,
+    slenderness_rad: f64,
+    mass_unit_kg: f64,
+    incipient_g: f64,
+    first: Link<Tilting>,
+    /// The link after any number of impacts.
+    next: Option<Link<Tilting>>,
+}
+
+impl Column {
+    /// A column of the given height and width, depth out of plane and density, under an impact model. All
+    /// are positive and finite.
+    #[must_use]
+    pub fn new(
+        height_m: f64,
+        width_m: f64,
+        depth_m: f64,
+        density_kg_m3: f64,
+        model: ImpactModel,
+    ) -> Self {
+        let diagonal_m = height_m.hypot(width_m);
+        let half_diagonal_m = 0.5 * diagonal_m;
+        let slenderness_rad = width_m.atan2(height_m);
+        let (sin, cos) = (width_m / diagonal_m, height_m / diagonal_m);
+        let tilting = Tilting {
+            sin,
+            cos,
+            mass: 4.0 * sin * cos,
+        };
+        let link = |rate_ratio, restitution| Link {
+            critical_rad: slenderness_rad,
+            ..Link::new(tilting, FRAC_PI_2, rate_ratio, restitution)
+        };
+        let rate_ratio = match model {
+            ImpactModel::Prescribed { restitution } => restitution.sqrt(),
+            ImpactModel::MaxRestitution | ImpactModel::SameSections | ImpactModel::Mirrored => {
+                rate_ratio(sin, cos)
+            }
+        };
+        let restitution = match model {
+            ImpactModel::Prescribed { restitution } => restitution,
+            _ => rate_ratio * rate_ratio,
+        };
+        Self {
+            half_diagonal_m,
+            slenderness_rad,
+            mass_unit_kg: density_kg_m3 * depth_m * half_diagonal_m * half_diagonal_m,
+            incipient_g: sin / cos,
+            first: link(1.0, 1.0),
+            next: (rate_ratio > 0.0).then(|| link(rate_ratio, restitution)),
+        }
+    }
+
+    /// Slenderness `alpha`: angle of the diagonal with the vertical, in radians.
+    #[must_use]
+    pub const fn slenderness_rad(&self) -> f64 {
+        self.slenderness_rad
+    }
+}
+
+/// Rate after an impact for a unit rate before it: the projection of the closing motion, a rotation about
+/// one toe, onto the opening motion, the rotation about the other, in the kinetic-energy metric. That is
+/// the conservation of angular momentum about the new toe, and gives `1 - 3/2 sin^2(alpha)`. The arguments are
+/// sine and cosine of the slenderness.
+///
+/// Not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: so flat a column would go on
+/// turning about the toe that is just leaving the ground, into the ground. It stops.
+fn rate_ratio(sin: f64, cos: f64) -> f64 {
+    // About the middle of the base; the mass cancels.
+    let moments = MassMoments {
+        mass: 1.0,
+        first: Vector2::new(0.0, cos),
+        polar: 1.0 / 3.0 + cos * cos,
+    };
+    let closing = Twist::rotation(Vector2::new(sin, 0.0), 1.0).momentum(&moments);
+    let opening = Twist::rotation(Vector2::new(-sin, 0.0), 1.0);
+    opening.power(&closing) / opening.power(&opening.momentum(&moments))
+}
+
+/// What the reaction of the ground, per weight, with its moment about the middle of the base, asks of it.
+fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Demand {
+    let width = 2.0 * mechanism.sin;
+    let base = SectionResultant {
+        normal: reaction.y,
+        tangential: reaction.x,
+        moment,
+        eccentricity_ratio: moment / (reaction.y * width),
+    };
+    Demand::of_sections(std::iter::once(base), width, 1.0)
+}
+
+impl Structure for Column {
+    type Mechanism = Tilting;
+
+    fn length_m(&self) -> f64 {
+        self.half_diagonal_m
+    }
+
+    fn mass_unit_kg(&self) -> f64 {
+        self.mass_unit_kg
+    }
+
+    fn incipient_g(&self) -> f64 {
+        self.incipient_g
+    }
+
+    /// The column is one stone: its only section is the base, which the ground's reaction crosses at the
+    /// toe. The excess is zero unless the ground would have to pull.
+    fn demand(&self, mechanism: &Tilting, motion: &Motion) -> Demand {
+        // Acceleration of the centre of gravity, on its circle about the toe.
+        let (sin, cos) = mechanism.sin_cos_from(motion.q_rad);
+        let along = Vector2::new(cos, sin) * motion.acceleration;
+        let inward = Vector2::new(sin, -cos) * (motion.rate * motion.rate);
+        let reaction = along + inward - motion.body_force_g;
+        base_demand(mechanism, reaction, reaction.y * mechanism.sin)
+    }
+
+    fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
+        let mechanism = &self.first.mechanism;
+        let moment = body_force_g.x * mechanism.cos;
+        base_demand(mechanism, -body_force_g, moment)
+    }
+
+    fn link(&self, impacts: usize) -> Option<&Link<Tilting>> {
+        if impacts == 0 {
+            Some(&self.first)
+        } else {
+            self.next.as_ref()
+        }
+    }
+
+    fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
+        self.link(impacts)
+            .map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
+    }
+
+    /// None: a column is told by the restitution coefficient alone.
+    fn hinge_impulses(&self, _: usize, _: Sway) -> Vec<Vector2<f64>> {
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn column(slenderness_rad: f64, model: ImpactModel) -> Column {
+        Column::new(2.0, 2.0 * slenderness_rad.tan(), 1.0, 1.0, model)
+    }
+
+    proptest! {
+        #[test]
+        fn restitution_is_the_one_of_housner(slenderness_rad in 1e-6_f64..0.955) {
+            let column = column(slenderness_rad, ImpactModel::MaxRestitution);
+            let housner = 1.0 - 1.5 * slenderness_rad.sin().powi(2);
+            // 0.9553 is asin(sqrt(2/3)).
+            let link = column.link(1).unwrap();
+            prop_assert!((link.rate_ratio - housner).abs() < 1e-15);
+            prop_assert!((link.restitution - housner * housner).abs() < 2e-15);
+        }
+
+        /// Positions by the rotation of the diagonal; derivatives by central differences, which err by
+        /// `h^2` and by `1e-16 / h`.
+        #[test]
+        fn coefficients_are_derivatives(slenderness_rad in 0.01_f64..1.5, q in 0.0_f64..FRAC_PI_2) {
+            let tilting = column(slenderness_rad, ImpactModel::Mirrored).first.mechanism;
+            let mass = 2.0 * (2.0 * slenderness_rad).sin();
+            let gravity_center = |q: f64| {
+                let angle = slenderness_rad - q;
+                Vector2::new(-angle.sin(), angle.cos()) * mass
+            };
+            let moved = tilting.displacement(q) - (gravity_center(q) - gravity_center(0.0));
+            prop_assert!(moved.norm() < 1e-15 * 4.0);
+            let h = 1e-5;
+            let slope = (gravity_center(q + h) - gravity_center(q - h)) / (2.0 * h);
+            let exact = tilting.coefficients(q);
+            prop_assert!((slope - Vector2::new(exact.sway, exact.rise)).norm() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn mass_and_size_are_those_of_the_block() {
+        let column = Column::new(4.0, 0.8, 0.5, 2200.0, ImpactModel::MaxRestitution);
+        let kg = column.mass_unit_kg() * column.first.mechanism.mass;
+        assert!((kg - 4.0 * 0.8 * 0.5 * 2200.0).abs() < 1e-9);
+        assert!((column.length_m() - 2.0 * 1.04_f64.sqrt()).abs() < 1e-15);
+        // Moment of inertia about the toe, m (H^2 + W^2) / 3.
+        let inertia = column.first.mechanism.coefficients(0.0).inertia;
+        let kg_m2 = inertia * column.mass_unit_kg() * column.length_m() * column.length_m();
+        assert!((kg_m2 / (kg * (16.0 + 0.64) / 3.0) - 1.0).abs() < 1e-14);
+    }
+
+    /// At the release a column falls with `q'' = -3/4 g/R sin(alpha - q)`, like the rod of the textbooks, which the
+    /// ground carries with `1 - 3/4 sin^2` of the weight and pushes with `3/4 sin cos`. At rest it carries all,
+    /// and pushes with the ground's acceleration.
+    #[test]
+    fn the_base_carries_what_it_has_to() {
+        let column = column(0.3, ImpactModel::MaxRestitution);
+        for q_rad in [0.0, 0.1, 0.3, 0.5] {
+            let (sin, cos) = (0.3_f64 - q_rad).sin_cos();
+            let motion = Motion {
+                q_rad,
+                rate: 0.0,
+                acceleration: -0.75 * sin,
+                body_force_g: Vector2::new(0.0, -1.0),
+            };
+            let demand = column.demand(&column.first.mechanism, &motion);
+            let friction = 0.75 * (sin * cos).abs() / (1.0 - 0.75 * sin * sin);
+            assert!((demand.friction - friction).abs() < 1e-15 && demand.excess_ratio == 0.0);
+        }
+        let at_rest = |push_g| column.demand_at_rest(Vector2::new(push_g, -1.0));
+        assert!(at_rest(0.2).friction == 0.2 && at_rest(0.2).excess_ratio == 0.0);
+        let beyond = at_rest(-0.4).excess_ratio - (0.2 / 0.3_f64.tan() - 0.5);
+        assert!(beyond.abs() < 1e-15);
+        // A fast column would fly off: the ground cannot pull.
+        let fast = Motion {
+            q_rad: 0.3,
+            rate: 1.1,
+            acceleration: 0.0,
+            body_force_g: Vector2::new(0.0, -1.0),
+        };
+        assert!(column.demand(&column.first.mechanism, &fast).excess_ratio > 0.0);
+    }
+
+    #[test]
+    fn flat_columns_stop_at_the_first_impact() {
+        let flattest_rad = (2.0_f64 / 3.0).sqrt().asin();
+        let next = |slenderness_rad, model| column(slenderness_rad, model).link(1).is_some();
+        for model in [
+            ImpactModel::MaxRestitution,
+            ImpactModel::SameSections,
+            ImpactModel::Mirrored,
+        ] {
+            assert!(next(flattest_rad - 1e-9, model) && !next(flattest_rad + 1e-9, model));
+        }
+        let prescribed = |restitution| ImpactModel::Prescribed { restitution };
+        assert!(next(1.2, prescribed(0.5)) && !next(0.2, prescribed(0.0)));
+        let column = column(0.2, prescribed(0.49));
+        let link = column.link(7).unwrap();
+        assert!(link.restitution == 0.49 && (link.rate_ratio - 0.7).abs() < 1e-15);
+    }
+}

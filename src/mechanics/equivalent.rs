@@ -1,0 +1,95 @@
+//! The free-standing block that rocks like a structure, as far as one block can.
+//!
+//! A structure with one degree of freedom has the kinetic energy `M(q) q'^2 / 2`. In the coordinate
+//! `s = int sqrt(M) dq` its mass is one, and it falls through the potential `U = g int S_y dq` by
+//! `s'' = -dU/ds`. So a small disturbance of a motion near `q` grows as `exp(n t)` with
+//!
+//! `n^2 = -d2U/ds2 = -(U'' - U' M' / (2 M)) / M`,
+//!
+//! a prime being `d/dq`; no choice of the coordinate changes `n`. For Housner's block of half diagonal `R`
+//! and slenderness `alpha`, `n^2 = p^2 cos(alpha - q)` with `p^2 = 3 g / (4 R)`. The equivalent block starts
+//! at the same push, `tan(alpha) = A_L`, and has the same `n`
+//!
+//! - at the unstable equilibrium, where `U' = 0`: `p_c^2 = -U''(q_c) / M(q_c)`, or
+//! - at rest: `p_0^2 = n^2(0) / cos(alpha)`.
+//!
+//! The two agree for a column, whose own `p` and `alpha` they are. For an arch they part: the mechanism
+//! stiffens or softens on its way. The first describes narrow escapes and overturning, the second
+//! small rocking.
+
+use super::structure::{Link, Mechanism, Structure};
+
+/// A free-standing block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Frequency parameter `p = sqrt(3 g / (4 R))`, in rad/s.
+    pub frequency_rad_s: f64,
+    /// Half diagonal `R = 3 g / (4 p^2)`, in metres.
+    pub half_diagonal_m: f64,
+}
+
+/// The blocks equivalent to a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equivalent {
+    /// Slenderness `alpha = atan(A_L)` of both, in radians.
+    pub slenderness_rad: f64,
+    /// The one that grows as fast from rest; `None` if the structure's own disturbances do not grow there.
+    pub at_rest: Option<Block>,
+    /// The one that grows as fast from the unstable equilibrium.
+    pub at_critical: Option<Block>,
+}
+
+/// The blocks equivalent to the mechanism that starts `structure` under gravity.
+#[must_use]
+pub fn equivalent<S: Structure>(structure: &S, gravity_m_s2: f64) -> Option<Equivalent> {
+    let link = structure.link(0)?;
+    let slenderness_rad = structure.incipient_g().atan();
+    let block = |squared: f64| {
+        let per_s2 = squared * gravity_m_s2 / structure.length_m();
+        (per_s2 > 0.0).then(|| Block {
+            frequency_rad_s: per_s2.sqrt(),
+            half_diagonal_m: 0.75 * gravity_m_s2 / per_s2,
+        })
+    };
+    Some(Equivalent {
+        slenderness_rad,
+        at_rest: block(growth_squared(link, 0.0) / slenderness_rad.cos()),
+        at_critical: block(growth_squared(link, link.critical_rad)),
+    })
+}
+
+/// `n^2` for unit gravity and length.
+fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
+    let rise = |q| link.mechanism.coefficients(q).rise;
+    // Central difference over five points. Its error is the fourth power of a thousandth, far below what
+    // a mechanism changes over its way to q_c, and as much again by rounding.
+    let step = 1e-3 * link.critical_rad;
+    let near = rise(q_rad + step) - rise(q_rad - step);
+    let far = rise(q_rad + 2.0 * step) - rise(q_rad - 2.0 * step);
+    let stiffness = (8.0 * near - far) / (12.0 * step);
+    let here = link.mechanism.coefficients(q_rad);
+    (0.5 * here.rise * here.inertia_slope / here.inertia - stiffness) / here.inertia
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::column::Column;
+    use crate::mechanics::impact::ImpactModel;
+
+    /// Slender and fat; `step^4 = 1e-12` and rounding by `1e-16 / 1e-3` are the errors.
+    #[test]
+    fn a_column_is_its_own_equivalent_block() {
+        for (height_m, width_m) in [(1e3, 1e-3), (4.0, 0.8), (1.0, 1.0), (1.0, 3.0)] {
+            let column = Column::new(height_m, width_m, 1.0, 1.0, ImpactModel::MaxRestitution);
+            let blocks = equivalent(&column, 1.62).unwrap();
+            assert!((blocks.slenderness_rad - column.slenderness_rad()).abs() < 1e-15);
+            let half_diagonal_m = 0.5 * (height_m * height_m + width_m * width_m).sqrt();
+            for block in [blocks.at_rest.unwrap(), blocks.at_critical.unwrap()] {
+                assert!((block.half_diagonal_m / half_diagonal_m - 1.0).abs() < 1e-11);
+                let frequency_rad_s = (0.75 * 1.62 / half_diagonal_m).sqrt();
+                assert!((block.frequency_rad_s / frequency_rad_s - 1.0).abs() < 1e-11);
+            }
+        }
+    }
+}

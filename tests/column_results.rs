@@ -1,0 +1,253 @@
+//! Result files and printed results of a column, and the events of any run.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::{Value, json};
+
+const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
+
+fn archrock(arguments: &[&str], scenario: &Path) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
+        .args(arguments)
+        .arg(scenario)
+        .output()
+        .unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A folder with the results of a run of this scenario.
+fn results(scenario: &str, arguments: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    fs::write(&path, scenario).unwrap();
+    let out = folder.path().to_str().unwrap();
+    archrock(&[&["run", "--out", out], arguments].concat(), &path);
+    folder
+}
+
+/// Header and rows of a table.
+fn table(path: &Path) -> (String, Vec<HashMap<String, String>>) {
+    let mut csv = csv::Reader::from_path(path).unwrap();
+    let header = csv.headers().unwrap().clone();
+    let rows = csv.deserialize().map(Result::unwrap).collect();
+    (header.iter().collect::<Vec<_>>().join(","), rows)
+}
+
+fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+/// The tangent of the slenderness, 0.8 m over 4 m, but for the last digit.
+fn assert_incipient(both: &Value) {
+    for side in ["right", "left"] {
+        assert!((both[side].as_f64().unwrap() - 0.2).abs() < 1e-16);
+    }
+}
+
+#[test]
+fn files_have_one_body_and_no_hinges() {
+    let scenario = format!("{COLUMN}[ground.half_sine]\namplitude_g = -0.5\nduration_s = 0.4\n");
+    let folder = results(&scenario, &[]);
+    let (header, rows) = table(&folder.path().join("rotations.csv"));
+    let expected = "time_s,ground_acceleration_m_s2,phase,state,rotation_rad,rate_rad_s,\
+                    thrust_excess_ratio,friction_demand";
+    assert_eq!(header, expected);
+    let (header, impacts) = table(&folder.path().join("impacts.csv"));
+    let expected = "impact,time_s,sway_before,sway_after,restitution,energy_before_j,energy_after_j,\
+                    rate_before_rad_s,rate_after_rad_s";
+    assert_eq!(header, expected);
+    // The first impact is from the right toe to the left one, at the rates of Housner.
+    let first = &impacts[0];
+    let rate_ratio = 1.0 - 1.5 * (0.04 / 1.04);
+    assert_eq!(
+        (&*first["sway_before"], &*first["sway_after"]),
+        ("right", "left")
+    );
+    assert!((number(first, "restitution") - rate_ratio * rate_ratio).abs() < 1e-15);
+    let (before, after) = (
+        number(first, "rate_before_rad_s"),
+        number(first, "rate_after_rad_s"),
+    );
+    assert!(before > 0.0 && (after / before - rate_ratio).abs() < 1e-15);
+    // Half of m (H^2 + W^2) / 3 times the square of the rate.
+    let inertia = 4.0 * 0.8 * 2000.0 * (16.0 + 0.64) / 3.0;
+    let energy_j = 0.5 * inertia * before * before;
+    assert!((number(first, "energy_before_j") / energy_j - 1.0).abs() < 1e-13);
+
+    let summary = summary(folder.path());
+    let peak = summary["peak_rotation_rad"].as_f64().unwrap();
+    let sampled = rows.iter().map(|row| number(row, "rotation_rad").abs());
+    let sampled = sampled.fold(0.0, f64::max);
+    // At most p^2 alpha dt^2 / 8 apart.
+    assert!(peak >= sampled && peak - sampled < 3e-6);
+    assert_incipient(&summary["incipient_acceleration_g"]);
+    assert_eq!(summary["impacts"], impacts.len());
+}
+
+#[test]
+fn dimensionless_columns_come_last() {
+    let scenario = format!(
+        "{COLUMN}[ground.half_sine]\namplitude_g = -0.5\nduration_s = 0.4\n[simulation]\nduration_s = 1\n"
+    );
+    let (plain, with) = (
+        results(&scenario, &[]),
+        results(&scenario, &["--dimensionless"]),
+    );
+    let (_, plain_rows) = table(&plain.path().join("rotations.csv"));
+    let (header, rows) = table(&with.path().join("rotations.csv"));
+    assert!(
+        header.ends_with("friction_demand,p_t,acceleration_over_incipient,rotation_over_critical")
+    );
+    let p = (0.75 * 9.81 / 1.04_f64.sqrt() / 2.0).sqrt();
+    assert_eq!(rows.len(), plain_rows.len());
+    for (row, plain) in rows.iter().zip(&plain_rows) {
+        assert!(plain.iter().all(|(column, value)| row[column] == *value));
+        let close = |column, expected: f64| (number(row, column) - expected).abs() < 1e-11;
+        assert!(close("p_t", p * number(row, "time_s")));
+        let push = number(row, "ground_acceleration_m_s2") / (0.2 * 9.81);
+        assert!(close("acceleration_over_incipient", push));
+        let rotation = number(row, "rotation_rad") / 0.2_f64.atan();
+        assert!(close("rotation_over_critical", rotation));
+    }
+    let scales = &summary(plain.path())["dimensionless"];
+    for (key, expected) in [
+        ("p_rad_s", p),
+        ("p_t_p", 0.4 * p),
+        ("peak_acceleration_over_incipient", 2.5),
+    ] {
+        assert!(
+            (scales[key].as_f64().unwrap() - expected).abs() < 1e-11,
+            "{key}"
+        );
+    }
+}
+
+/// Events are the phases of the rotations, and hold the impacts: a column that rocks to its rest, one that
+/// overturns after an impact, and an arch.
+#[test]
+fn events_are_the_phases_of_the_rotations() {
+    let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
+    let rectangle = |push, duration| {
+        format!("[ground.rectangular]\namplitude_g = {push}\nduration_s = {duration}\n")
+    };
+    let column = |push, duration| format!("{COLUMN}{}", rectangle(push, duration));
+    for (scenario, end) in [
+        (
+            format!("{}[simulation]\nduration_s = 40\n", column(0.4, 0.25)),
+            "rest",
+        ),
+        (
+            format!(
+                "{}[initial]\nsway = 'left'\nrotation_rad = 0.1\n",
+                column(-0.3, 9.0)
+            ),
+            "overturned",
+        ),
+        (format!("{arch}{}", rectangle(-0.3, 0.2)), "rest"),
+    ] {
+        let folder = results(&scenario, &[]);
+        let (header, events) = table(&folder.path().join("events.csv"));
+        assert!(header.starts_with("time_s,phase,kind,sway,mechanism,rotation_"));
+        assert!(header.ends_with("energy_j"));
+        let (_, impacts) = table(&folder.path().join("impacts.csv"));
+        let (_, rows) = table(&folder.path().join("rotations.csv"));
+        let closing =
+            |event: &&HashMap<String, String>| ["impact", "rest"].contains(&event["kind"].as_str());
+        let closings: Vec<_> = events.iter().filter(closing).collect();
+        assert_eq!(closings.len(), impacts.len());
+        for (event, impact) in closings.iter().zip(&impacts) {
+            assert_eq!(event["time_s"], impact["time_s"]);
+            if event["kind"] == "impact" {
+                assert_eq!(event["sway"], impact["sway_after"]);
+                let (energy, after) = (number(event, "energy_j"), number(impact, "energy_after_j"));
+                // Positions of the linkage at `q = 0` are rounded: 1e-16 of its weight times its size.
+                assert!((energy - after).abs() < 1e-9);
+                for (column, value) in impact
+                    .iter()
+                    .filter(|(column, _)| column.contains("_after_rad"))
+                {
+                    assert_eq!(event[&column.replace("_after", "")], *value, "{column}");
+                }
+            } else {
+                assert!(event["sway"].is_empty() && event["mechanism"].is_empty());
+                assert!(number(event, "energy_j") == 0.0);
+            }
+        }
+        for (index, event) in events.iter().enumerate() {
+            assert_eq!(event["phase"], (index + 1).to_string());
+            let begun = number(event, "time_s");
+            let phase = |row: &&HashMap<String, String>| number(row, "phase") > index as f64;
+            assert!(
+                rows.iter()
+                    .filter(phase)
+                    .all(|row| number(row, "time_s") >= begun)
+            );
+            if let Some(row) = rows.iter().find(|row| row["phase"] == event["phase"]) {
+                let state = match event["kind"].as_str() {
+                    kind @ ("rest" | "overturned") => kind,
+                    _ => &event["sway"],
+                };
+                assert_eq!(row["state"], state);
+            }
+        }
+        assert_eq!(events.last().unwrap()["kind"], end);
+        assert_eq!(rows.last().unwrap()["phase"], events.len().to_string());
+    }
+}
+
+#[test]
+fn limit_and_impact_name_the_toes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    fs::write(&path, COLUMN).unwrap();
+    let limit: Value =
+        serde_json::from_str(&archrock(&["limit", "--format", "json"], &path)).unwrap();
+    assert_incipient(&limit["incipient_acceleration_g"]);
+    let toes = json!({ "right": [{ "toe": "right" }], "left": [{ "toe": "left" }] });
+    assert_eq!(limit["mechanism"], toes);
+    let block = &limit["equivalent_block"]["at_critical"];
+    let half_diagonal_m = block["half_diagonal_m"].as_f64().unwrap();
+    assert!((half_diagonal_m - 1.04_f64.sqrt() * 2.0).abs() < 1e-10);
+    let arguments = ["impact", "--count", "3", "--format", "json"];
+    let impact: Value = serde_json::from_str(&archrock(&arguments, &path)).unwrap();
+    assert_eq!(impact["impacts"].as_array().unwrap().len(), 3);
+    let after = json!({ "sway": "left", "hinges": [{ "toe": "left" }] });
+    assert_eq!(impact["impacts"][2]["after"], after);
+    assert!(archrock(&["limit"], &path).contains("the right toe"));
+    assert!(archrock(&["impact"], &path).contains("left toe"));
+    assert!(archrock(&["check"], &path).contains("density_kg_m3 = 2000.0"));
+
+    // Pictures of mechanisms are of arches: said before anything is drawn.
+    for command in ["limit", "impact"] {
+        let picture = folder.path().join("p.svg");
+        let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
+            .args([command, "--plot"])
+            .args([&picture, &path])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(!picture.exists() && output.stdout.is_empty());
+    }
+
+    // A flat one stops.
+    fs::write(&path, "[column]\nheight_m = 1\nwidth_m = 2\n").unwrap();
+    let impact: Value = serde_json::from_str(&archrock(&arguments, &path)).unwrap();
+    assert_eq!(impact, json!({ "impacts": [] }));
+    assert!(archrock(&["impact"], &path).contains("it stops"));
+    let flat = "[column]\nheight_m = 1\nwidth_m = 2\n[initial]\nsway = 'left'\nrotation_rad = 0.3";
+    let folder = results(flat, &[]);
+    let (_, impacts) = table(&folder.path().join("impacts.csv"));
+    assert_eq!(number(&impacts[0], "restitution"), 0.0);
+    assert_eq!(number(&impacts[0], "rate_after_rad_s"), 0.0);
+    assert_eq!(summary(folder.path())["outcome"], "rest");
+}

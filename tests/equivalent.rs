@@ -1,0 +1,163 @@
+//! Equivalent blocks and the dimensionless view, against the motions they stand for.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::sync::Arc;
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{Request, Sample, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::Chain;
+use archrock::mechanics::column::Column;
+use archrock::mechanics::equivalent::equivalent;
+use archrock::mechanics::impact::ImpactModel;
+use archrock::mechanics::mechanism::{HingeSites, Sway};
+use archrock::mechanics::ring::Ring;
+use archrock::mechanics::structure::{Mechanism as _, Structure};
+use archrock::output::rotations::Scales;
+
+const GRAVITY_M_S2: f64 = 9.81;
+
+fn arch(thickness_ratio: f64, embrace_deg: f64, mean_radius_m: f64) -> Arch {
+    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
+    let chain = Chain::new(ring, HingeSites::Anywhere, ImpactModel::Mirrored).unwrap();
+    Arch {
+        mean_radius_m,
+        depth_m: 1.0,
+        density_kg_m3: 2000.0,
+        chain: Arc::new(chain),
+    }
+}
+
+const ARCHES: [(f64, f64); 3] = [(0.15, 180.0), (0.15, 157.5), (0.2, 140.0)];
+
+/// Released a little before the unstable equilibrium, a structure falls back as `cosh(p_c t)`. The next
+/// terms are of the order of the distance, 1e-5 of `q_c` at the start and 12 times that at the end.
+#[test]
+fn an_arch_leaves_its_unstable_equilibrium_at_the_rate_of_the_block() {
+    for (thickness_ratio, embrace_deg) in ARCHES {
+        let arch = arch(thickness_ratio, embrace_deg, 3.0);
+        let critical_rad = arch.link(0).unwrap().critical_rad;
+        let blocks = equivalent(&arch, GRAVITY_M_S2).unwrap();
+        let p_c = blocks.at_critical.unwrap().frequency_rad_s;
+        let still = GroundMotion::still();
+        let rocking = Rocking::new(&arch, &still, GRAVITY_M_S2, 1e-8);
+        let distance = 1e-5;
+        let request = Request {
+            end_s: 3.2 / p_c,
+            relative_tolerance: 1e-13,
+            initial: Some((Sway::Right, critical_rad * (1.0 - distance))),
+            output_step_s: Some(0.1 / p_c),
+        };
+        history(&rocking, &request, |sample| {
+            let left = 1.0 + sample.rotation_over_critical;
+            let expected = distance * (p_c * sample.time_s).cosh();
+            assert!((left / expected - 1.0).abs() < 1e-3, "{left} {expected}");
+        })
+        .unwrap();
+    }
+}
+
+/// A hop that starts at the rate `v` against the deceleration `k`, both in the coordinate of unit mass, obeys
+/// `s'' = n^2 s - k` up to the order `s^2` and lasts `2 atanh(n v / k) / n = 2 v / k (1 + (n v / k)^2 / 3)`. With
+/// `n^2 = p_0^2 cos(alpha)` the first term beyond `2 v / k` so tells `p_0`; the third derivative of the
+/// potential adds the next order, `v^2` times as small, which the extrapolation from two hops removes.
+#[test]
+fn small_hops_last_as_long_as_those_of_the_block() {
+    for (thickness_ratio, embrace_deg) in ARCHES {
+        let arch = arch(thickness_ratio, embrace_deg, 3.0);
+        let link = arch.link(0).unwrap();
+        let blocks = equivalent(&arch, GRAVITY_M_S2).unwrap();
+        let at_zero = link.mechanism.coefficients(0.0);
+        let still = GroundMotion::still();
+        let rocking = Rocking::new(&arch, &still, GRAVITY_M_S2, 1e-8);
+        // n^2 from half a hop: released at q, it closes with the rate v after atanh(n v / k) / n.
+        let measured = |part: f64| {
+            let request = Request {
+                end_s: 10.0,
+                relative_tolerance: 1e-13,
+                initial: Some((Sway::Left, part * link.critical_rad)),
+                output_step_s: None,
+            };
+            let history = history(&rocking, &request, |_| {}).unwrap();
+            let impact = &history.impacts[0];
+            let deceleration = GRAVITY_M_S2 / 3.0 * at_zero.rise / at_zero.inertia.sqrt();
+            let straight_s = -impact.rate_before_rad_s * at_zero.inertia.sqrt() / deceleration;
+            (impact.time_s / straight_s - 1.0) * 3.0 / (straight_s * straight_s)
+        };
+        let (coarse, fine) = (measured(2e-2), measured(1e-2));
+        let growth_squared = 2.0 * fine - coarse;
+        let p_0 = blocks.at_rest.unwrap().frequency_rad_s;
+        let expected = p_0 * p_0 * blocks.slenderness_rad.cos();
+        assert!(
+            (growth_squared / expected - 1.0).abs() < 1e-3,
+            "{growth_squared} {expected}"
+        );
+    }
+}
+
+/// Dimensionless history: time, acceleration and rotation of the samples, and instants of the impacts.
+fn dimensionless<S: Structure>(
+    structure: &S,
+    p_t_p: f64,
+    amplitude: f64,
+) -> (Vec<[f64; 3]>, Vec<f64>) {
+    let scales = Scales::new(structure, GRAVITY_M_S2).unwrap();
+    let p = scales.frequency_rad_s;
+    let ground = GroundMotion::pulse(
+        Pulse::OneSine,
+        amplitude * scales.incipient_m_s2,
+        p_t_p / p,
+        0.0,
+    );
+    let rocking = Rocking::new(structure, &ground, GRAVITY_M_S2, 1e-8);
+    let request = Request {
+        end_s: 12.1 / p,
+        relative_tolerance: 1e-12,
+        initial: None,
+        output_step_s: Some(0.25 / p),
+    };
+    let mut rows = Vec::new();
+    let history = history(&rocking, &request, |sample: &Sample<_>| {
+        rows.push([
+            sample.time_s * p,
+            sample.ground_acceleration_m_s2 / scales.incipient_m_s2,
+            sample.rotation_over_critical,
+        ]);
+    })
+    .unwrap();
+    let impacts = history.impacts.iter().map(|impact| impact.time_s * p);
+    (rows, impacts.collect())
+}
+
+#[track_caller]
+fn assert_same(a: &(Vec<[f64; 3]>, Vec<f64>), b: &(Vec<[f64; 3]>, Vec<f64>), tolerance: f64) {
+    assert_eq!((a.0.len(), a.1.len()), (b.0.len(), b.1.len()));
+    assert!(a.1.len() > 2, "{} impacts", a.1.len());
+    let values = |x: &(Vec<[f64; 3]>, Vec<f64>)| [x.0.concat(), x.1.clone()].concat();
+    for (a, b) in values(a).into_iter().zip(values(b)) {
+        assert!((a - b).abs() < tolerance, "{a} {b}");
+    }
+}
+
+/// Size cancels out of the dimensionless view.
+#[test]
+fn large_and_small_structures_look_alike() {
+    let of_arch = |radius_m| dimensionless(&arch(0.15, 157.5, radius_m), 1.0, 2.0);
+    assert_same(&of_arch(1.0), &of_arch(37.0), 1e-9);
+    let column = |size: f64| {
+        let column = Column::new(4.0 * size, size, 1.0, 1.0, ImpactModel::SameSections);
+        dimensionless(&column, 1.0, 2.0)
+    };
+    assert_same(&column(0.1), &column(7.0), 1e-9);
+}
+
+/// So does the slenderness of slender columns that lose the same energy, up to its square.
+#[test]
+fn slender_columns_look_alike() {
+    let column = |width_m: f64| {
+        let model = ImpactModel::Prescribed { restitution: 0.8 };
+        dimensionless(&Column::new(4.0, width_m, 1.0, 1.0, model), 1.0, 2.0)
+    };
+    assert_same(&column(0.004), &column(0.002), 1e-5);
+}

@@ -1,0 +1,267 @@
+//! The program under bad circumstances: killed, unread, out of space, and with very much to write.
+#![cfg(target_os = "linux")]
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::fs::{self, OpenOptions};
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use serde_json::Value;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_archrock");
+
+/// A column that loses no energy and so rocks until the end of the run.
+fn endless(rotation_rad: f64, duration_s: f64, output_step_s: f64) -> String {
+    format!(
+        "[column]\nheight_m = 4\nwidth_m = 0.8\n\
+         [impact]\nmodel = 'prescribed'\nrestitution = 1\n\
+         [initial]\nsway = 'right'\nrotation_rad = {rotation_rad}\n\
+         [simulation]\nduration_s = {duration_s}\noutput_step_s = {output_step_s}\n"
+    )
+}
+
+fn program(arguments: &[&str]) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command.args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn names(path: &Path) -> Vec<String> {
+    let entries = fs::read_dir(path).unwrap();
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Rows of a table without its header, split at the commas; the file ends with a whole line.
+fn rows(path: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(path).unwrap();
+    assert!(text.ends_with('\n'), "{} is cut off", path.display());
+    let split = |line: &str| line.split(',').map(str::to_owned).collect();
+    text.lines().skip(1).map(split).collect()
+}
+
+/// Checks that what is in the folder under the names of results is complete, and, with the summary, that
+/// it is all of one run. Returns whether the summary is there.
+fn check_results(folder: &Path, duration_s: f64) -> bool {
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let found = |name: &str| folder.join(name).exists();
+    if found("rotations.csv") {
+        let rotations = rows(&folder.join("rotations.csv"));
+        assert!(number(&rotations.last().unwrap()[0]) == duration_s);
+    }
+    for name in ["events.csv", "impacts.csv"] {
+        if found(name) {
+            let first = rows(&folder.join(name)).len();
+            assert!(first > 0, "{name} has no rows");
+        }
+    }
+    if !found("summary.json") {
+        return false;
+    }
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap();
+    let released = summary["scenario"]["initial"]["rotation_rad"]
+        .as_f64()
+        .unwrap();
+    let rotations = rows(&folder.join("rotations.csv"));
+    assert!(number(&rotations[0][4]) == -released);
+    let (impacts, events) = (
+        rows(&folder.join("impacts.csv")),
+        rows(&folder.join("events.csv")),
+    );
+    assert_eq!(summary["impacts"], impacts.len());
+    assert_eq!(events.len(), impacts.len());
+    assert_eq!(events.last().unwrap()[0], impacts.last().unwrap()[1]);
+    assert_eq!(rotations.last().unwrap()[2], events.last().unwrap()[1]);
+    true
+}
+
+#[test]
+fn a_killed_run_leaves_complete_results_or_none() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("results");
+    let scenarios: Vec<_> = [0.05, 0.15]
+        .map(|rotation| {
+            let path = root.path().join(format!("{rotation}.toml"));
+            fs::write(&path, endless(rotation, 40.0, 2e-3)).unwrap();
+            path.to_str().unwrap().to_owned()
+        })
+        .to_vec();
+    let spawn = |turn: usize| {
+        let out = folder.to_str().unwrap();
+        program(&["run", &scenarios[turn % 2], "--out", out, "--quiet"])
+            .spawn()
+            .unwrap()
+    };
+    let begin = Instant::now();
+    assert!(spawn(0).wait().unwrap().success());
+    let whole = begin.elapsed();
+    assert!(check_results(&folder, 40.0));
+    // Delays spread over the run and denser at its end, where the files get their names, by the golden
+    // ratio; what the machine adds makes them random.
+    let (mut killed, mut finished) = (0, 0);
+    for turn in 1..=60_u32 {
+        let part = (f64::from(turn) * 0.618_033_988_75).fract();
+        let delay = whole.mul_f64(if turn % 3 == 0 {
+            part
+        } else {
+            0.8 + 0.3 * part
+        });
+        let mut child = spawn(turn as usize);
+        std::thread::sleep(delay);
+        child.kill().unwrap();
+        if child.wait().unwrap().success() {
+            finished += 1;
+            assert!(check_results(&folder, 40.0));
+        } else {
+            killed += 1;
+            check_results(&folder, 40.0);
+        }
+    }
+    assert!(killed > 5, "{killed} killed, {finished} finished");
+    // What they left goes with the next run.
+    assert!(spawn(0).wait().unwrap().success());
+    assert!(check_results(&folder, 40.0));
+    let expected = [
+        "events.csv",
+        "history.svg",
+        "impacts.csv",
+        "rotations.csv",
+        "summary.json",
+    ];
+    assert_eq!(names(&folder), expected);
+}
+
+/// Exit code and standard error of the scenario, run with these arguments and standard output.
+fn run_into(stdout: Stdio, arguments: &[&str]) -> (Option<i32>, String) {
+    let root = tempfile::tempdir().unwrap();
+    let scenario = root.path().join("s.toml");
+    fs::write(&scenario, endless(0.1, 10.0, 1e-3)).unwrap();
+    let mut command = program(arguments);
+    let output = command.arg(scenario).stdout(stdout).stderr(Stdio::piped());
+    let output = output.spawn().unwrap().wait_with_output().unwrap();
+    (
+        output.status.code(),
+        String::from_utf8(output.stderr).unwrap(),
+    )
+}
+
+#[test]
+fn a_full_disk_is_said_once() {
+    for (arguments, what) in [
+        (
+            &["run", "--rotations", "-"][..],
+            "cannot write the rotations",
+        ),
+        (&["limit"], "cannot write to standard output"),
+        (
+            &["impact", "--format", "json"],
+            "cannot write to standard output",
+        ),
+        (&["check"], "cannot write to standard output"),
+    ] {
+        let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let (code, message) = run_into(full.into(), arguments);
+        assert_eq!(code, Some(1), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+        let start = format!("error: {what}: No space left on device");
+        assert!(message.starts_with(&start), "{message}");
+    }
+}
+
+/// A bound on the size of files stands for a disk that fills up on the way.
+#[test]
+fn a_disk_that_fills_up_leaves_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let (scenario, out) = (root.path().join("s.toml"), root.path().join("out"));
+    fs::write(&scenario, endless(0.1, 10.0, 1e-3)).unwrap();
+    let output = Command::new("sh")
+        .args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 64; exec \"$0\" run \"$1\" --out \"$2\"",
+        ])
+        .args([Path::new(PROGRAM), &scenario, &out])
+        .output()
+        .unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    assert!(
+        message.starts_with("error: cannot write the rotations: "),
+        "{message}"
+    );
+    assert_eq!(names(root.path()), ["s.toml"]);
+}
+
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let root = tempfile::tempdir().unwrap();
+    let scenario = root.path().join("s.toml");
+    fs::write(&scenario, endless(0.1, 100.0, 1e-3)).unwrap();
+    let path = scenario.to_str().unwrap();
+    for arguments in [&["run", "--rotations", "-", path][..], &["check", path]] {
+        let mut child = program(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut first = [0];
+        let mut pipe = child.stdout.take().unwrap();
+        pipe.read_exact(&mut first).unwrap();
+        drop(pipe);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+    }
+}
+
+/// Largest memory that a process has had resident, in KiB.
+fn peak_memory_kib(process: u32) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"));
+    line.unwrap()
+        .split_whitespace()
+        .nth(1)
+        .unwrap()
+        .parse()
+        .unwrap()
+}
+
+/// A million rows; the few hundred impacts among them are kept, the rows are not: they are some 60 MB.
+#[test]
+fn a_long_output_streams() {
+    let root = tempfile::tempdir().unwrap();
+    let scenario = root.path().join("s.toml");
+    fs::write(&scenario, endless(0.19, 1000.0, 1e-3)).unwrap();
+    let mut child = program(&["run", "--quiet", "--rotations", "-"])
+        .arg(&scenario)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    let mut early_kib = 0;
+    let mut count = 0_u32;
+    for line in lines {
+        line.unwrap();
+        count += 1;
+        if count == 20_000 {
+            early_kib = peak_memory_kib(child.id());
+        }
+        // While the pipe is full the program waits, so that it can be asked.
+        if count == 990_000 {
+            let late_kib = peak_memory_kib(child.id());
+            assert!(
+                late_kib < early_kib + 1024,
+                "{early_kib} KiB, {late_kib} KiB"
+            );
+        }
+    }
+    assert!(child.wait().unwrap().success());
+    // The header and both ends.
+    assert_eq!(count, 1_000_002);
+}
