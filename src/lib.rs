@@ -10,12 +10,15 @@
 //! - [`mechanics`]: pure functions. The ring and its sectors in closed form ([`mechanics::ring`]), rigid
 //!   motions of its parts ([`mechanics::field`]), four-link mechanisms ([`mechanics::mechanism`]), the
 //!   onset of rocking by limit analysis ([`mechanics::limit`]), the mechanism at finite rotations
-//!   ([`mechanics::linkage`]), the impact ([`mechanics::impact`]) and the chain of mechanisms that impacts
-//!   lead through ([`mechanics::chain`]); Housner's free-standing column ([`mechanics::column`]).
+//!   ([`mechanics::linkage`]), the impact ([`mechanics::impact`]), its impulses
+//!   ([`mechanics::impulse_line`]) and what certifies it ([`mechanics::certificate`]), and the chain of
+//!   mechanisms that impacts lead through ([`mechanics::chain`]). The thrust line in motion
+//!   ([`mechanics::thrust`]) tells how far four links suffice. An arch ([`mechanics::arch`]) and
+//!   Housner's column ([`mechanics::column`]) are structures of one kind ([`mechanics::structure`]).
 //! - [`dynamics`]: motion in time. An engine for systems that jump between modes ([`dynamics::engine`]),
 //!   the ground ([`dynamics::ground`]), rocking as such a system ([`dynamics::rocking`]) and its history
 //!   ([`dynamics::history`]).
-//! - [`scenario`]: what is to be simulated, as a TOML file. [`output`]: results as CSV and JSON.
+//! - [`scenario`]: what is to be simulated, as a TOML file. [`output`]: results as CSV, JSON and pictures.
 //!
 //! The arch of the paper, and the history of the README:
 //!
