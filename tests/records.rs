@@ -86,6 +86,43 @@ fn further_corners_change_nothing() {
     }
 }
 
+/// A record cut into two files, which share the sample at the cut, is the record.
+#[test]
+fn a_record_in_two_files_is_the_same_motion() {
+    let record = scaled(&synthetic(7, 6.0, 0.01), 0.3 * G);
+    let (first, second) = (&record[..=250], &record[250..]);
+    let samples: Vec<Vec<(f64, f64)>> = [&record[..], first, second]
+        .into_iter()
+        .map(|part| {
+            let folder = tempfile::tempdir().unwrap();
+            let mut text = String::from("t,a\n");
+            for (time_s, acceleration) in part {
+                writeln!(text, "{time_s:?},{acceleration:?}").unwrap();
+            }
+            let keys = "file = 'a.csv'\nunit = \"m/s2\"";
+            let scenario = scenario(folder.path(), &[("a.csv", &text)], keys).unwrap();
+            let Some(Ground::Record(read)) = scenario.ground else {
+                panic!("a record")
+            };
+            read.main.samples.to_vec()
+        })
+        .collect();
+    let joined = [&samples[1][..], &samples[2][1..]].concat();
+    let arch = semicircle();
+    let histories = [&samples[0], &joined].map(|samples| {
+        let ground = GroundMotion::record(samples, &[], 0.0);
+        let (history, rows) = run(&arch, &ground, G, None, 12.0);
+        let times: Vec<u64> = history.impacts.iter().map(|i| i.time_s.to_bits()).collect();
+        let rotations: Vec<[u64; 3]> = rows
+            .iter()
+            .map(|row| row.rotations_rad.map(f64::to_bits))
+            .collect();
+        (times, rotations)
+    });
+    assert!(histories[0].0.len() > 20);
+    assert_eq!(histories[0], histories[1]);
+}
+
 /// The same numbers are the same motion, whatever file they come from.
 #[test]
 fn the_way_a_record_is_written_changes_no_bit() {
