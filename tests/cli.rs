@@ -368,3 +368,65 @@ fn usage_errors_have_exit_code_two() {
     let version = archrock(folder.path(), &["--version"]);
     assert_eq!(version.status.code(), Some(0));
 }
+
+/// Random scenarios, from the file to the results. What the numbers must obey is tested in the library;
+/// here it is that they arrive: finite, in order, under their names.
+#[test]
+fn random_scenarios_run_to_an_outcome() {
+    use archrock::dynamics::ground::Pulse;
+    use proptest::prelude::*;
+    use proptest::test_runner::{Config, TestRunner};
+
+    let structure = prop_oneof![
+        4 => (0.11_f64..0.25, 130.0_f64..180.0).prop_map(|(ratio, embrace)| format!(
+            "[arch]\nmean_radius_m = 4\nthickness_ratio = {ratio:?}\nembrace_deg = {embrace:?}\n"
+        )),
+        1 => (1.0_f64..8.0).prop_map(|height| format!(
+            "[column]\nheight_m = {height:?}\nwidth_m = 0.7\n"
+        )),
+    ];
+    let kind = proptest::sample::select(Pulse::ALL);
+    let strategy = (structure, kind, -1.5_f64..1.5, -0.5_f64..0.5, 0.01_f64..1.5);
+    let mut runner = TestRunner::new(Config::with_cases(48));
+    let result = runner.run(&strategy, |(structure, kind, amplitude, vertical, duration)| {
+        let folder = tempfile::tempdir().unwrap();
+        let name = kind.name();
+        let text = format!(
+            "{structure}[ground.{name}]\namplitude_g = {amplitude:?}\nduration_s = {duration:?}\n\
+             vertical_amplitude_g = {vertical:?}\n"
+        );
+        scenario(folder.path(), &text);
+        let output = archrock(folder.path(), &["run", "s.toml", "--out", "o", "--dimensionless"]);
+        if output.status.code() == Some(2) {
+            // Only the arch may be to blame: too thin to stand.
+            prop_assert!(stderr(&output).contains("cannot carry its own weight"));
+            return Ok(());
+        }
+        prop_assert_eq!(output.status.code(), Some(0), "{}\n{}", text, stderr(&output));
+        let results = folder.path().join("o");
+        let outcome = summary(&results)["outcome"].as_str().unwrap().to_owned();
+        let outcomes = ["never_moved", "rest", "overturned", "still_rocking"];
+        prop_assert!(outcomes.contains(&outcome.as_str()));
+        for table in ["rotations.csv", "events.csv", "impacts.csv"] {
+            let mut reader = csv::Reader::from_path(results.join(table)).unwrap();
+            let header = reader.headers().unwrap().clone();
+            let names = ["state", "kind", "sway", "sway_before", "sway_after"];
+            let mut last_s = f64::NEG_INFINITY;
+            for row in reader.records().map(Result::unwrap) {
+                for (column, value) in header.iter().zip(&row) {
+                    if names.contains(&column) || value.is_empty() {
+                        continue;
+                    }
+                    let number: f64 = value.parse().unwrap();
+                    prop_assert!(number.is_finite(), "{} {}", table, column);
+                    if column == "time_s" {
+                        prop_assert!(number >= last_s, "{} {}", table, number);
+                        last_s = number;
+                    }
+                }
+            }
+        }
+        Ok(())
+    });
+    result.unwrap();
+}

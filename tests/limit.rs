@@ -233,10 +233,10 @@ fn the_least_thickness_of_a_semicircle_is_milankovitchs() {
 #[test]
 fn thick_shallow_rings_are_out_of_scope() {
     // With its hinges A and B kept apart by 0.001 rad the best four-link mechanism needs 9.6828 and 7.4102 g.
-    // The infimum is lower and equals statics (9.6633 and 7.3967): A and B merge in one section of the
-    // springing that parts altogether. The climb ends on the way there, at 7.4268 g for the second ring:
-    // what is reported is not below the truth and within 0.5 % of it.
-    for (t, embrace, statics) in [(0.30, 90.0, 9.6633), (0.60, 120.0, 7.3967)] {
+    // The infimum is lower and equals statics (9.6633 and 7.3966): A and B merge in one section of the
+    // springing that parts altogether. What is reported is not below the truth, and above it by no more
+    // than the 1e-7 rad that the search keeps hinges apart.
+    for (t, embrace, statics) in [(0.30, 90.0, 9.6633), (0.60, 120.0, 7.3966)] {
         let ring = ring(t, embrace);
         let Err(LimitError::OtherMechanism { acceleration_g }) =
             incipient(&ring, HingeSites::Anywhere)
@@ -244,13 +244,12 @@ fn thick_shallow_rings_are_out_of_scope() {
             panic!("{t} {embrace} must be refused");
         };
         assert!(
-            acceleration_g > statics - 0.5e-4 && acceleration_g < 1.005 * statics,
+            acceleration_g > statics - 0.5e-4 && acceleration_g < statics + 1e-4,
             "{acceleration_g}"
         );
         // 720 sections miss little of where the line touches: the error falls with their square.
         let push = static_limit_g(&ring, &even_sections(&ring, 720)).unwrap();
         assert!((push - statics).abs() < 1e-4, "{push}");
-        assert!(push <= acceleration_g + 1e-6, "{push} {acceleration_g}");
     }
     for (t, embrace) in [(0.40, 90.0), (0.80, 120.0)] {
         let ring = ring(t, embrace);

@@ -13,7 +13,7 @@ use super::ring::{Edge, Ring};
 
 /// Lattice intervals where hinges sit anywhere. From 12 to 60 intervals give the same A_L and the same
 /// first six restitution coefficients, to 1e-9, for 138 arches from 70 to 180 degrees and t/R 0.03 to 0.29.
-const LATTICE_INTERVALS: usize = 30;
+const LATTICE_INTERVALS: usize = 20;
 
 /// One more lattice section this part of an interval inside each springing, for maxima close to them.
 const NEAR_SPRINGING: f64 = 0.002;
@@ -273,6 +273,9 @@ fn ascend_all_sides(
 /// Newton's method converges in under ten steps from the lattice; crossing kinks adds a few.
 const MOST_NEWTON_STEPS: usize = 100;
 
+/// A body shorter than this is none: its hinges have merged.
+const LEAST_BODY_RAD: f64 = 1e-7;
+
 /// Interval of a hinge in which the objective is smooth.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
@@ -323,12 +326,31 @@ impl<O: Objective> Climber<'_, O> {
         self.evaluate(mechanism).0
     }
 
+    /// Where a hinge may move while the others stay: in its cell, and on its side of its neighbours.
+    fn range(&self, angles: &[f64; 4], i: usize) -> (f64, f64) {
+        let cell = self.cells[i];
+        let before = i
+            .checked_sub(1)
+            .map_or(cell.low, |j| angles[j] + LEAST_BODY_RAD);
+        let after = angles
+            .get(i + 1)
+            .map_or(cell.high, |angle| angle - LEAST_BODY_RAD);
+        (cell.low.max(before), cell.high.min(after))
+    }
+
+    /// Whether a hinge that wants to move along `slope` is stopped by an end of its cell, or by a neighbour
+    /// with which it merges.
+    fn is_stopped(&self, angles: &[f64; 4], i: usize, slope: f64) -> bool {
+        let (low, high) = self.range(angles, i);
+        (angles[i] <= low && slope < 0.0) || (angles[i] >= high && slope > 0.0)
+    }
+
     /// One Newton step of the hinges that are free to move; `None` when nothing improves.
     fn step(&self, mechanism: &FourLink) -> Option<FourLink> {
         let angles = mechanism.hinges_rad();
         let (value, gradient) = self.evaluate(mechanism);
         let free: Vec<usize> = (0..4)
-            .filter(|i| !self.cells[*i].stops(angles[*i], gradient[*i]))
+            .filter(|i| !self.is_stopped(&angles, *i, gradient[*i]))
             .collect();
         let slope = free.iter().map(|i| gradient[*i].abs()).fold(0.0, f64::max);
         if slope <= 1e-15 * value.abs() {
@@ -349,13 +371,14 @@ impl<O: Objective> Climber<'_, O> {
         for _ in 0..40 {
             let mut moved = angles;
             for (i, change) in free.iter().zip(step.iter()) {
-                moved[*i] = (moved[*i] + change).clamp(self.cells[*i].low, self.cells[*i].high);
+                let (low, high) = self.range(&moved, *i);
+                moved[*i] = (moved[*i] + change).min(high).max(low);
             }
             if let Some(candidate) = FourLink::new(self.ring, moved) {
                 let (trial, trial_gradient) = self.evaluate(&candidate);
                 let trial_slope = free
                     .iter()
-                    .filter(|i| !self.cells[**i].stops(moved[**i], trial_gradient[**i]))
+                    .filter(|i| !self.is_stopped(&moved, **i, trial_gradient[**i]))
                     .map(|i| trial_gradient[*i].abs())
                     .fold(0.0, f64::max);
                 // Near the top the value is flat to rounding, and the slope tells.
@@ -377,7 +400,8 @@ impl<O: Objective> Climber<'_, O> {
             let h = 1e-6;
             let shifted = |by: f64| {
                 let mut moved = angles;
-                moved[*i] = (moved[*i] + by).clamp(self.cells[*i].low, self.cells[*i].high);
+                let (low, high) = self.range(&angles, *i);
+                moved[*i] = (moved[*i] + by).min(high).max(low);
                 let mechanism = FourLink::new(self.ring, moved)?;
                 Some((moved[*i], self.evaluate(&mechanism).1))
             };
