@@ -84,6 +84,14 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     };
     let chosen = || choose(&arch, arguments.link.into());
     if let Some(path) = &arguments.line {
+        let others = arguments.models || arguments.certificate || arguments.plot.is_some();
+        if path == Path::new("-") && others {
+            return Err(Failure::Input(
+                "--line - takes all of standard output: leave --models, --certificate and --plot out, or \
+                 give --line a file"
+                    .to_owned(),
+            ));
+        }
         write_line(path, &arch, &chosen()?)?;
         if path == Path::new("-") {
             return Ok(());
@@ -386,9 +394,9 @@ fn certificate_text(
     let mut text = format!(
         "\ncertificate of impact {}: the most energy that any motion keeps that opens joints and closes none\n\
          (any number of hinges; {} joints)\n\n\
-         r, four hinges, model {:<16} {four_link:>10.6}\n\
-         r, any number of hinges              {:>10.6}\n\
-         gap                                  {gap:>10.6}\n\n",
+         r, four hinges, model {:<16} {four_link:>12.8}\n\
+         r, any number of hinges                {:>12.8}\n\
+         gap                                    {gap:>12.8}\n\n",
         chosen.index,
         projection.joints.len(),
         scenario.impact.name(),
@@ -413,9 +421,14 @@ fn certificate_text(
             writeln!(
                 text,
                 "The impulse line of the four hinges leaves the ring by {:.2} % of the thickness at {:.2} deg: \
-                 other\nhinges keep more energy, by the gap above.",
+                 other\nhinges keep more energy, {}.",
                 100.0 * (eccentricity.value - 0.5),
-                degrees(eccentricity.angle_rad)
+                degrees(eccentricity.angle_rad),
+                if gap > 1e-6 {
+                    "by the gap above"
+                } else {
+                    "which these joints are too few to show"
+                }
             )
         };
     }

@@ -213,19 +213,36 @@ fn human_summary<S: Rocks>(
         );
     }
     let incipient_g = structure.incipient_g();
-    let peak_g = ground.peak_m_s2() / scenario.simulation.gravity_m_s2;
-    let reaches = if peak_g > 0.0 {
+    let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.simulation.gravity_m_s2;
+    let mut reaches = if peaks_g.x > 0.0 {
         format!(
-            "reaches {peak_g:.4} g, {:.2} times as much",
-            peak_g / incipient_g
+            "reaches {:.4} g, {:.2} times as much",
+            peaks_g.x,
+            peaks_g.x / incipient_g
         )
     } else {
         "stays still".to_owned()
     };
+    if peaks_g.y > 0.0 {
+        let _ = write!(
+            reaches,
+            " sideways;\n    vertically it reaches {:.4} g, and A_L counts in gravity plus that",
+            peaks_g.y
+        );
+    }
     let _ = writeln!(
         text,
         "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
     );
+    if history.end_s >= scenario.simulation.duration_s && ground.end_s() > history.end_s {
+        let _ = writeln!(
+            text,
+            "  the run ends at {:.4} s and the ground moves until {:.4} s: a longer duration_s in [simulation] \
+             shows the rest",
+            history.end_s,
+            ground.end_s()
+        );
+    }
     if let Some(thrust) = &history.thrust {
         let of_arch = matches!(scenario.structure, Structure::Arch(_));
         text += &trust(thrust, of_arch);

@@ -542,12 +542,23 @@ impl GroundMotion {
         &self.pieces
     }
 
-    /// Largest magnitude of the horizontal acceleration, in m/s2: pieces are monotone, so it is at one of
-    /// their ends.
+    /// Largest magnitudes of the horizontal and the vertical acceleration up to a time, in m/s2: pieces are
+    /// monotone, so they are at ends of pieces, or at that time.
     #[must_use]
-    pub fn peak_m_s2(&self) -> f64 {
-        let ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
-        ends.map(|end| end.x.abs()).fold(0.0, f64::max)
+    pub fn peaks_m_s2(&self, until_s: f64) -> Vector2<f64> {
+        let pieces = self.pieces.iter().filter(|piece| piece.start_s < until_s);
+        pieces
+            .filter(|piece| !piece.is_quiet_for_good())
+            .flat_map(|piece| {
+                [piece.start_s, piece.end_s.min(until_s)].map(|t| piece.at(t).0.abs())
+            })
+            .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at))
+    }
+
+    /// When the ground falls quiet for good, in seconds.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |piece| piece.start_s)
     }
 
     /// Whether the ground ever moves vertically.
@@ -708,7 +719,7 @@ mod tests {
         for (pulse, train) in trains() {
             let amplitude = Vector2::new(2.0, 0.0);
             let ground = GroundMotion::pulse_along(pulse, amplitude, 0.3, 0.1, train);
-            assert!((ground.peak_m_s2() - 2.0).abs() < 1e-12);
+            assert!((ground.peaks_m_s2(f64::INFINITY).x - 2.0).abs() < 1e-12);
             // The pieces end at the extrema: nothing between is beyond.
             let moving = ground.pieces().iter().filter(|p| !p.is_quiet_for_good());
             let inside = moving.flat_map(|piece| {
@@ -781,7 +792,7 @@ mod tests {
             // b is published with five digits.
             assert!((ours - published).abs() < 4e-5, "{since}");
         }
-        assert!((ground.peak_m_s2() - 1.0).abs() < 1e-14);
+        assert!((ground.peaks_m_s2(f64::INFINITY).x - 1.0).abs() < 1e-14);
     }
 
     #[test]
@@ -858,7 +869,7 @@ mod tests {
         ] {
             assert!((at(time) - Vector2::new(x, y)).norm() < 1e-11, "{time}");
         }
-        assert!(ground.has_vertical() && ground.peak_m_s2() == 2.0);
+        assert!(ground.has_vertical() && ground.peaks_m_s2(f64::INFINITY).x == 2.0);
         let none = GroundMotion::record(&[], &[], 0.25);
         assert!(none.pieces().len() == 2 && !none.has_vertical());
     }

@@ -198,7 +198,8 @@ pub struct History<'a, S: Structure> {
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus what the impacts took, over the energy barrier.
     pub energy_defect_ratio: f64,
-    /// The demands over all samples, if any were asked for.
+    /// The demands over all samples, if any were asked for; of a structure that overturns, over those before
+    /// it passes the unstable equilibrium for the last time.
     pub thrust: Option<ThrustRecord>,
     /// Work done by the integrator.
     pub cost: Cost,
@@ -265,7 +266,10 @@ pub fn history<'a, S: Structure>(
         impacts: recorder.impacts,
         peak_rotations_rad: recorder.peak_rotations_rad,
         energy_defect_ratio: recorder.largest_defect / rocking.barrier(),
-        thrust: sampler.map(|sampler| sampler.thrust),
+        thrust: sampler.map(|sampler| match outcome {
+            Outcome::Overturned(_) => sampler.thrust_before_critical,
+            _ => sampler.thrust,
+        }),
         cost: finish.cost,
     })
 }
@@ -469,6 +473,8 @@ struct Sampler<F, R> {
     /// The last sample is held back, in case the end falls on it.
     held: Option<Sample<R>>,
     thrust: ThrustRecord,
+    /// The same up to the last sample before the unstable equilibrium.
+    thrust_before_critical: ThrustRecord,
     sink: F,
 }
 
@@ -480,6 +486,7 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
             phase: 0,
             held: None,
             thrust: ThrustRecord::default(),
+            thrust_before_critical: ThrustRecord::default(),
             sink,
         }
     }
@@ -498,6 +505,9 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
     fn emit(&mut self, sample: &Sample<R>) {
         self.thrust
             .note(sample.time_s, sample.state != "rest", &sample.demand);
+        if sample.rotation_over_critical.abs() < 1.0 {
+            self.thrust_before_critical = self.thrust;
+        }
         (self.sink)(sample);
     }
 

@@ -265,13 +265,11 @@ pub fn limit(chain: &Chain) -> String {
 
     let right = place(735.0);
     let rotations = right.mechanism(&mut drawing, link, Sway::Right);
-    let times = DRAWN_PART * link.link.limit_rad / link.link.critical_rad;
     let caption = [
         "Mechanism, to scale, at rotations (anticlockwise) of".to_owned(),
         rotations_text(rotations),
-        format!("({times:.1} times those of its unstable equilibrium)"),
     ];
-    for (text, up) in caption.iter().zip([46.0, 29.0, 12.0]) {
+    for (text, up) in caption.iter().zip([46.0, 29.0]) {
         drawing.label(Vector2::new(735.0, height - up), Anchor::Middle, 0.0, text);
     }
     drawing.finish()

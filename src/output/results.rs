@@ -202,7 +202,8 @@ pub fn summary<S: Structure>(
             Some(Ground::Pulse(pulse)) => Some(pulse.duration_s * p_rad_s),
             Some(Ground::Record(_)) | None => None,
         };
-        let peak = scenario.ground_motion().peak_m_s2() / scales.incipient_m_s2;
+        let peaks_m_s2 = scenario.ground_motion().peaks_m_s2(history.end_s);
+        let peak = peaks_m_s2.x / scales.incipient_m_s2;
         finite("dimensionless", &[p_rad_s, p_t_p.unwrap_or(0.0), peak])?;
         more.insert(
             "dimensionless".to_owned(),
