@@ -208,20 +208,23 @@ impl Timeline {
         drawing.finish()
     }
 
-    /// Shades the states.
+    /// Shades the states. What is too narrow to be seen is shaded like what follows it: hops that become
+    /// ever shorter leave no gap.
     fn shade(&self, drawing: &mut Drawing, axes: &Axes) {
+        let place = |time_s: f64| axes.place(time_s, axes.y.low).x;
         let ends = self.states.iter().skip(1).map(|(start_s, _)| *start_s);
-        for ((start_s, state), end_s) in self.states.iter().zip(ends.chain([self.end_s])) {
-            let Some(fill) = shade_of(state) else {
-                continue;
-            };
-            let from = axes.place(*start_s, axes.y.low).x;
+        let mut from = place(0.0);
+        for ((_, state), end_s) in self.states.iter().zip(ends.chain([self.end_s])) {
             let frame = Frame {
                 left: from,
-                width: axes.place(end_s, axes.y.low).x - from,
+                width: place(end_s) - from,
                 ..axes.frame
             };
-            if frame.width >= NARROWEST_PX {
+            if frame.width < NARROWEST_PX {
+                continue;
+            }
+            from = place(end_s);
+            if let Some(fill) = shade_of(state) {
                 drawing.band(state, &frame, fill, 0.22);
             }
         }
