@@ -51,7 +51,9 @@ use crate::mechanics::ring::Ring;
 use crate::mechanics::structure::Structure as _;
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
-pub use record::{Component, Format, Layout, Record, Scaling, Series, TableColumn, Unit};
+pub use record::{
+    Component, Format, Layout, LineFault, Record, Scaling, Series, TableColumn, Unit,
+};
 use table::Writer;
 
 /// What to simulate, every default resolved.

@@ -22,6 +22,7 @@
 mod at2;
 mod csv;
 
+use std::fmt;
 use std::fs;
 use std::io::Read as _;
 use std::ops::Bound::{Excluded, Included};
@@ -365,6 +366,17 @@ impl Format {
 }
 
 impl Layout {
+    /// The samples in the contents of a file: times in s, increasing by at least a microsecond, and
+    /// accelerations in the unit of the file. There are from 2 to 1 800 000, all finite.
+    ///
+    /// # Errors
+    ///
+    /// The first thing that is wrong with the contents.
+    pub fn samples(&self, contents: &[u8]) -> Result<Vec<(f64, f64)>, LineFault> {
+        // Headers may be in any encoding; the numbers are the same in all of them.
+        parse(&String::from_utf8_lossy(contents), self)
+    }
+
     fn read(table: &mut Table<'_>, format: Reading<Format>) -> Reading<Self> {
         let units = OneOf {
             all: Unit::ALL,
@@ -436,12 +448,23 @@ impl Rule for AnyColumn {
     }
 }
 
-/// What is wrong with a record's file, at a line from 1.
-#[derive(Debug, PartialEq, Eq)]
-struct LineFault {
-    line: usize,
-    message: String,
+/// What is wrong with a record's file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LineFault {
+    /// Line, from 1.
+    pub line: usize,
+    /// The offending value, and what is allowed instead.
+    pub message: String,
 }
+
+impl fmt::Display for LineFault {
+    /// `line: message`, to follow the name of the file and a colon.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.line, self.message)
+    }
+}
+
+impl std::error::Error for LineFault {}
 
 /// Reads a file of at most 64 MiB, or says what is wrong with it.
 fn read_samples(path: &Path, layout: &Layout) -> Result<Samples, String> {
@@ -456,12 +479,10 @@ fn read_samples(path: &Path, layout: &Layout) -> Result<Samples, String> {
     if bytes.len() as u64 > MOST_BYTES {
         return Err("is larger than 64 MiB, too large for a record".to_owned());
     }
-    // Headers may be in any encoding; the numbers are the same in all of them.
-    let text = String::from_utf8_lossy(&bytes);
-    parse(&text, layout).map_err(|LineFault { line, message }| {
+    layout.samples(&bytes).map_err(|fault| {
         let path = path.display().to_string();
         let path = path.replace(char::is_control, "\u{fffd}");
-        format!("is faulty: {path}:{line}: {message}")
+        format!("is faulty: {path}:{fault}")
     })
 }
 

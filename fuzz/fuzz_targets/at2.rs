@@ -1,0 +1,9 @@
+//! The reader of AT2 files.
+#![no_main]
+
+mod common;
+
+use archrock::scenario::Layout;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|contents: &[u8]| common::check(&Layout::At2, contents));
