@@ -4,6 +4,7 @@
 //! Run with `cargo bench`.
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 use std::sync::{Arc, LazyLock};
 
 use archrock::dynamics::engine::HybridSystem;
@@ -75,7 +76,7 @@ fn history_of_a_rectangular_pulse(bencher: Bencher, (amplitude_g, duration_s): (
         output_step_s: None,
     };
     bencher.bench(|| {
-        let history = history(&rocking, &request, |_| ());
+        let history = history(&rocking, &request, |_| ControlFlow::Continue(()));
         history.map(|history| history.outcome)
     });
 }

@@ -23,6 +23,8 @@
 //! The arch of the paper, and the history of the README:
 //!
 //! ```
+//! use std::ops::ControlFlow;
+//!
 //! use archrock::dynamics::ground::{GroundMotion, Pulse};
 //! use archrock::dynamics::history::{Outcome, Request, history};
 //! use archrock::dynamics::rocking::Rocking;
@@ -51,7 +53,7 @@
 //!     initial: None,
 //!     output_step_s: None,
 //! };
-//! let history = history(&rocking, &request, |_| {})?;
+//! let history = history(&rocking, &request, |_| ControlFlow::Continue(()))?;
 //! assert_eq!(history.outcome, Outcome::Rest);
 //! assert!((history.impacts[0].time_s - 1.0279).abs() < 1e-4);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
 use archrock::dynamics::engine::{EngineError, Observer, Settings, Transition, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
@@ -47,7 +48,7 @@ fn released(sway: Sway, rotation_rad: f64) -> Request {
 
 fn run<'a>(column: &'a Column, ground: &'a GroundMotion, request: &Request) -> History<'a, Column> {
     let rocking = Rocking::new(column, ground, GRAVITY_M_S2, 1e-8);
-    history(&rocking, request, |_| {}).unwrap()
+    history(&rocking, request, |_| ControlFlow::Continue(())).unwrap()
 }
 
 fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
@@ -128,7 +129,7 @@ fn peaks_decay_with_the_restitution() {
         peaks.resize(sample.phase + 1, 0.0);
         let [rotation] = sample.rotations_rad;
         if sample.state == "rest" {
-            return;
+            return ControlFlow::Continue(());
         }
         // Released to the left, it turns anticlockwise; then the sides alternate.
         let side = if sample.phase.is_multiple_of(2) {
@@ -138,6 +139,7 @@ fn peaks_decay_with_the_restitution() {
         };
         assert!(side * rotation >= 0.0 && (sample.state == "left") == (side > 0.0));
         peaks[sample.phase] = peaks[sample.phase].max(rotation.abs());
+        ControlFlow::Continue(())
     })
     .unwrap();
     assert!(history.peak_rotations_rad[0] == theta_0);
@@ -309,6 +311,7 @@ fn mirrored_pulses_give_mirrored_motions_to_the_last_bit() {
             let history = history(&rocking, &request, |sample: &Sample<[f64; 1]>| {
                 let values = [sample.rotations_rad[0], sample.rates_rad_s[0]];
                 rows.push((sample.time_s, values.map(|value| sign * value + 0.0)));
+                ControlFlow::Continue(())
             })
             .unwrap();
             let events: Vec<_> = history
@@ -367,13 +370,22 @@ fn chattering_on_a_pushing_ground_ends_in_rest() {
 struct Nobody;
 
 impl<'a> Observer<Rocking<'a, Column>, 3> for Nobody {
-    fn step(&mut self, _: &Rocking<'a, Column>, _: Mode<'a, Tilting>, _: usize, _: &Step<3>) {}
+    fn step(
+        &mut self,
+        _: &Rocking<'a, Column>,
+        _: Mode<'a, Tilting>,
+        _: usize,
+        _: &Step<3>,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
     fn transition(
         &mut self,
         _: &Rocking<'a, Column>,
         _: usize,
         _: &Transition<Mode<'a, Tilting>, Guard, 3>,
-    ) {
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
     }
 }
 
@@ -447,7 +459,7 @@ fn columns_of_all_proportions_rock() {
                     relative_tolerance: 1e-9,
                     ..REQUEST
                 };
-                let history = history(&rocking, &request, |_| {}).unwrap();
+                let history = history(&rocking, &request, |_| ControlFlow::Continue(())).unwrap();
                 // It lifts off when it is pushed enough, and then only.
                 let uplifts = history
                     .events

@@ -1,6 +1,7 @@
 //! Equivalent blocks and the dimensionless view, against the motions they stand for.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
@@ -53,6 +54,7 @@ fn an_arch_leaves_its_unstable_equilibrium_at_the_rate_of_the_block() {
             let left = 1.0 + sample.rotation_over_critical;
             let expected = distance * (p_c * sample.time_s).cosh();
             assert!((left / expected - 1.0).abs() < 1e-3, "{left} {expected}");
+            ControlFlow::Continue(())
         })
         .unwrap();
     }
@@ -79,7 +81,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
                 initial: Some((Sway::Left, part * link.critical_rad)),
                 output_step_s: None,
             };
-            let history = history(&rocking, &request, |_| {}).unwrap();
+            let history = history(&rocking, &request, |_| ControlFlow::Continue(())).unwrap();
             let impact = &history.impacts[0];
             let deceleration = GRAVITY_M_S2 / 3.0 * at_zero.rise / at_zero.inertia.sqrt();
             let straight_s = -impact.rate_before_rad_s * at_zero.inertia.sqrt() / deceleration;
@@ -124,6 +126,7 @@ fn dimensionless<S: Structure>(
             sample.ground_acceleration_m_s2 / scales.incipient_m_s2,
             sample.rotation_over_critical,
         ]);
+        ControlFlow::Continue(())
     })
     .unwrap();
     let impacts = history.impacts.iter().map(|impact| impact.time_s * p);

@@ -13,6 +13,7 @@ use common::{
     GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,
     seven_voussoirs,
 };
+use std::ops::ControlFlow;
 
 fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
     GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0)
@@ -178,7 +179,7 @@ fn size_and_gravity_only_stretch_time() {
         let b = run(&large, &long, &request(40.0));
         let weak = GroundMotion::pulse(kind, -0.1 * GRAVITY, 0.5, 0.0);
         let rocking = Rocking::new(&small, &weak, 0.25 * GRAVITY, REST_ENERGY_RATIO);
-        let c = history(&rocking, &request(40.0), |_| {}).unwrap();
+        let c = history(&rocking, &request(40.0), |_| ControlFlow::Continue(())).unwrap();
         for scaled in [&b, &c] {
             assert_eq!(scaled.outcome, a.outcome);
             assert_eq!(scaled.impacts.len(), a.impacts.len());
@@ -359,7 +360,7 @@ fn a_push_barely_above_the_threshold_does_no_harm() {
             let amplitude_g = -arch.incipient_g() * (1.0 + 10_f64.powi(-exponent));
             let ground = pulse(kind, amplitude_g, 0.5);
             let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
-            let result = history(&rocking, &request(20.0), |_| {});
+            let result = history(&rocking, &request(20.0), |_| ControlFlow::Continue(()));
             let history = result.unwrap_or_else(|error| panic!("{kind:?} 1e-{exponent}: {error}"));
             assert!(history.energy_defect_ratio < 1e-7, "{kind:?} {exponent}");
             assert!(!matches!(history.outcome, Outcome::Overturned(_)));

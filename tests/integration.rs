@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use archrock::dynamics::engine::{
-    EngineError, HybridSystem, Level, Observer, Settings, Transition, simulate,
+    EngineError, Finish, HybridSystem, Level, Observer, Settings, Transition, simulate,
 };
 use archrock::dynamics::integrator::{self, Cost, IntegratorError, State, Step, Task};
 
@@ -266,32 +266,89 @@ impl HybridSystem<2> for Ball {
     }
 }
 
+/// Writes everything down, and breaks when it has had enough.
 #[derive(Default)]
 struct Log {
     bounces: Vec<(f64, State<2>, State<2>)>,
     steps: Vec<Step<2>>,
+    most_bounces: Option<usize>,
+    most_steps: Option<usize>,
+}
+
+fn until(count: usize, most: Option<usize>) -> ControlFlow<()> {
+    if most.is_some_and(|most| count >= most) {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    }
 }
 
 impl Observer<Ball, 2> for Log {
-    fn step(&mut self, _: &Ball, _: bool, _: usize, step: &Step<2>) {
+    fn step(&mut self, _: &Ball, _: bool, _: usize, step: &Step<2>) -> ControlFlow<()> {
         self.steps.push(*step);
+        until(self.steps.len(), self.most_steps)
     }
 
-    fn transition(&mut self, _: &Ball, _: usize, transition: &Transition<bool, (), 2>) {
+    fn transition(
+        &mut self,
+        _: &Ball,
+        _: usize,
+        transition: &Transition<bool, (), 2>,
+    ) -> ControlFlow<()> {
         self.bounces
             .push((transition.time_s, transition.before, transition.after));
+        until(self.bounces.len(), self.most_bounces)
     }
 }
 
 fn throw(ball: &Ball, state: State<2>, end_s: f64) -> (Log, Result<f64, EngineError>) {
+    let mut log = Log::default();
+    let finish = throw_and_log(ball, state, end_s, &mut log);
+    (log, finish.map(|finish| finish.time_s))
+}
+
+fn throw_and_log(
+    ball: &Ball,
+    state: State<2>,
+    end_s: f64,
+    log: &mut Log,
+) -> Result<Finish<bool, 2>, EngineError> {
     let settings = Settings {
         end_s,
         relative_tolerance: 1e-10,
         most_transitions: 200,
     };
-    let mut log = Log::default();
-    let finish = simulate(ball, false, state, &settings, &mut log);
-    (log, finish.map(|finish| finish.time_s))
+    simulate(ball, false, state, &settings, log)
+}
+
+#[test]
+fn an_observer_that_breaks_ends_the_simulation_there() {
+    let ball = Ball {
+        longest_step_s: 0.05,
+        ..BALL
+    };
+    let height = State::<2>::new(1.3, 0.0);
+    let (whole, _) = throw(&ball, height, 100.0);
+    for most_bounces in [1, 5] {
+        let mut log = Log {
+            most_bounces: Some(most_bounces),
+            ..Log::default()
+        };
+        let finish = throw_and_log(&ball, height, 100.0, &mut log).unwrap();
+        let (time_s, _, after) = whole.bounces[most_bounces - 1];
+        assert!(finish.stopped && log.bounces.len() == most_bounces);
+        assert_eq!((finish.time_s, finish.state), (time_s, after));
+    }
+    for most_steps in [1, 7, 40] {
+        let mut log = Log {
+            most_steps: Some(most_steps),
+            ..Log::default()
+        };
+        let finish = throw_and_log(&ball, height, 100.0, &mut log).unwrap();
+        let last = &whole.steps[most_steps - 1];
+        assert!(finish.stopped && log.steps.len() == most_steps);
+        assert_eq!((finish.time_s, finish.state), (last.end_s, last.end));
+    }
 }
 
 #[test]

@@ -14,6 +14,7 @@ use common::{
     GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,
     seven_voussoirs,
 };
+use std::ops::ControlFlow;
 
 /// `q''` at the start, by the equation of motion written out; a ground acceleration pushes it.
 fn acceleration_at_zero(arch: &Arch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
@@ -318,7 +319,7 @@ fn the_critical_rotation_is_where_it_turns_over() {
             GroundMotion::pulse(Pulse::Rectangular, -velocity / duration_s, duration_s, 0.0);
         let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
         assert!((rocking.barrier() / barrier - 1.0).abs() < 1e-14);
-        let history = history(&rocking, &request(60.0), |_| {}).unwrap();
+        let history = history(&rocking, &request(60.0), |_| ControlFlow::Continue(())).unwrap();
         assert_eq!(
             history.outcome == Outcome::Overturned(Sway::Right),
             lost,

@@ -3,6 +3,7 @@
 
 mod common;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
@@ -81,7 +82,10 @@ proptest! {
         };
         let rocking = Rocking::new(&arch, &ground, gravity, 1e-8);
         let mut samples = Vec::new();
-        let history = history(&rocking, &request, |sample| samples.push(*sample))
+        let history = history(&rocking, &request, |sample| {
+            samples.push(*sample);
+            ControlFlow::Continue(())
+        })
             .map_err(|error| TestCaseError::fail(error.to_string()))?;
 
         // Time is strictly monotone from zero to the end.

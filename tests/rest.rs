@@ -1,6 +1,7 @@
 //! What the rest criterion costs: nothing that is reported.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use archrock::dynamics::history::{Outcome, history};
@@ -16,7 +17,7 @@ fn outcome_and_peaks<S: Structure>(
     let ground = scenario.ground_motion();
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
     let rocking = Rocking::new(structure, &ground, gravity_m_s2, rest_energy_ratio);
-    let history = history(&rocking, &scenario.request(), |_| {}).unwrap();
+    let history = history(&rocking, &scenario.request(), |_| ControlFlow::Continue(())).unwrap();
     (
         history.outcome,
         history.peak_rotations_rad.as_ref().to_vec(),

@@ -14,6 +14,7 @@ use archrock::mechanics::ring::Ring;
 use archrock::mechanics::structure::{Demand, Mechanism as _, Motion, Structure as _};
 use archrock::mechanics::thrust::ThrustLine;
 use nalgebra::{SMatrix, SVector, Vector2};
+use std::ops::ControlFlow;
 
 const G: f64 = 9.81;
 
@@ -269,14 +270,17 @@ fn pulse_history(arch: &Arch, amplitude_g: f64, duration_s: f64, end_s: f64) -> 
     let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude_g * G, duration_s, 0.0);
     let rocking = Rocking::new(arch, &ground, G, 1e-8);
     let mut samples = Vec::new();
-    run(&rocking, end_s, |sample| samples.push(*sample));
+    run(&rocking, end_s, |sample| {
+        samples.push(*sample);
+        ControlFlow::Continue(())
+    });
     samples
 }
 
 fn run<'a>(
     rocking: &Rocking<'a, Arch>,
     end_s: f64,
-    sink: impl FnMut(&ArchSample),
+    sink: impl FnMut(&ArchSample) -> ControlFlow<()>,
 ) -> History<'a, Arch> {
     let request = Request {
         end_s,
@@ -345,9 +349,12 @@ fn the_record_of_a_history_is_that_of_its_samples() {
     let ground = GroundMotion::pulse(Pulse::Rectangular, -0.4 * G, 0.1, 0.5);
     let rocking = Rocking::new(&arch, &ground, G, 1e-8);
     let mut samples: Vec<ArchSample> = Vec::new();
-    let record = run(&rocking, 3.0, |sample| samples.push(*sample))
-        .thrust
-        .unwrap();
+    let record = run(&rocking, 3.0, |sample| {
+        samples.push(*sample);
+        ControlFlow::Continue(())
+    })
+    .thrust
+    .unwrap();
     let (still, moving): (Vec<&ArchSample>, Vec<&ArchSample>) =
         samples.iter().partition(|sample| sample.state == "rest");
     assert!(still.len() > 400 && moving.len() > 100);
@@ -387,7 +394,9 @@ fn where_nothing_moves_there_are_no_shares() {
     let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
     let ground = GroundMotion::pulse(Pulse::Rectangular, 0.1 * G, 0.5, 0.0);
     let rocking = Rocking::new(&arch, &ground, G, 1e-8);
-    let record = run(&rocking, 1.0, |_| ()).thrust.unwrap();
+    let record = run(&rocking, 1.0, |_| ControlFlow::Continue(()))
+        .thrust
+        .unwrap();
     assert_eq!(record.shares_within(), None);
     assert_eq!(record.largest_excess.value, 0.0);
     assert!(record.largest_friction.value > 0.1);

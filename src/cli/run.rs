@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write as _};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::GroundMotion;
@@ -157,8 +158,10 @@ fn simulate<'a, S: Rocks>(
     let mut written = Ok(());
     let history = history(rocking, &scenario.request(), |sample| {
         timeline.push(sample);
-        if written.is_ok() {
-            written = table.write(sample);
+        written = table.write(sample);
+        match written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
         }
     })?;
     written?;

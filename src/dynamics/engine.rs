@@ -106,25 +106,25 @@ pub struct Transition<M, G, const N: usize> {
     pub after: State<N>,
 }
 
-/// Listener to a simulation. Steps and transitions come in the order of time.
+/// Listener to a simulation. Steps and transitions come in the order of time; to break ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
     /// A stretch of motion without event.
-    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>);
+    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>) -> ControlFlow<()>;
     /// An event.
     fn transition(
         &mut self,
         system: &S,
         piece: usize,
         transition: &Transition<S::Mode, S::Guard, N>,
-    );
+    ) -> ControlFlow<()>;
 }
 
 impl<S: HybridSystem<N>, A: Observer<S, N>, B: Observer<S, N>, const N: usize> Observer<S, N>
     for (&mut A, &mut B)
 {
-    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>) {
-        self.0.step(system, mode, piece, step);
-        self.1.step(system, mode, piece, step);
+    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>) -> ControlFlow<()> {
+        self.0.step(system, mode, piece, step)?;
+        self.1.step(system, mode, piece, step)
     }
 
     fn transition(
@@ -132,9 +132,9 @@ impl<S: HybridSystem<N>, A: Observer<S, N>, B: Observer<S, N>, const N: usize> O
         system: &S,
         piece: usize,
         transition: &Transition<S::Mode, S::Guard, N>,
-    ) {
-        self.0.transition(system, piece, transition);
-        self.1.transition(system, piece, transition);
+    ) -> ControlFlow<()> {
+        self.0.transition(system, piece, transition)?;
+        self.1.transition(system, piece, transition)
     }
 }
 
@@ -152,12 +152,14 @@ pub struct Settings {
 /// Final state and cost of a simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Finish<M, const N: usize> {
-    /// Time of the last transition, or the end of the simulation, in seconds.
+    /// When it ended, in seconds: at the last transition, at the end asked for, or where an observer broke.
     pub time_s: f64,
     /// Last mode.
     pub mode: M,
     /// Last state.
     pub state: State<N>,
+    /// Whether an observer broke.
+    pub stopped: bool,
     /// Work done.
     pub cost: Cost,
 }
@@ -181,7 +183,7 @@ pub enum EngineError {
     },
 }
 
-/// Runs `system` from time zero until it is over, or until the end in the settings.
+/// Runs `system` from time zero until it is over, until the end in the settings, or until `observer` breaks.
 ///
 /// # Errors
 /// When the integration breaks down or the number of transitions passes its bound.
@@ -196,6 +198,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
         time_s: 0.0,
         mode,
         state,
+        stopped: false,
         cost: Cost::default(),
     };
     let mut piece = 0;
@@ -208,11 +211,15 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
             return Ok(now);
         }
         let at_once = system.fired_at_once(now.mode, piece, now.time_s, &now.state);
-        let fired = match at_once {
-            Some(guard) => Some(guard),
+        let advanced = match at_once {
+            Some(guard) => Advanced::Fired(guard),
             None => advance(system, piece, &mut now, settings, observer)?,
         };
-        if let Some(guard) = fired {
+        if let Advanced::Stopped = advanced {
+            now.stopped = true;
+            return Ok(now);
+        }
+        if let Advanced::Fired(guard) = advanced {
             transitions += 1;
             if transitions > settings.most_transitions {
                 return Err(EngineError::TooManyTransitions {
@@ -229,20 +236,43 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
                 before: now.state,
                 after,
             };
-            observer.transition(system, piece, &transition);
             (now.mode, now.state) = (to, after);
+            if observer.transition(system, piece, &transition).is_break() {
+                now.stopped = true;
+                return Ok(now);
+            }
         }
     }
 }
 
-/// Moves on to the next event (which is returned) or to the end of the piece.
+/// How far a motion went.
+enum Advanced<G> {
+    /// To the end of the piece.
+    Smoothly,
+    /// To an event.
+    Fired(G),
+    /// To where the observer broke.
+    Stopped,
+}
+
+impl<G> Advanced<G> {
+    fn after(flow: ControlFlow<()>, fired: Option<G>) -> Self {
+        match (flow, fired) {
+            (ControlFlow::Break(()), _) => Self::Stopped,
+            (_, Some(guard)) => Self::Fired(guard),
+            (_, None) => Self::Smoothly,
+        }
+    }
+}
+
+/// Moves on to the next event or to the end of the piece.
 fn advance<S: HybridSystem<N>, const N: usize>(
     system: &S,
     piece: usize,
     now: &mut Finish<S::Mode, N>,
     settings: &Settings,
     observer: &mut impl Observer<S, N>,
-) -> Result<Option<S::Guard>, EngineError> {
+) -> Result<Advanced<S::Guard>, EngineError> {
     let end_s = system.piece_end_s(piece).min(settings.end_s);
     let mode = now.mode;
     if system.is_still(mode) {
@@ -258,9 +288,9 @@ fn advance<S: HybridSystem<N>, const N: usize>(
         if let Some((_, time_s)) = event {
             step.end_s = time_s;
         }
-        observer.step(system, mode, piece, &step);
         now.time_s = step.end_s;
-        return Ok(event.map(|(guard, _)| guard));
+        let flow = observer.step(system, mode, piece, &step);
+        return Ok(Advanced::after(flow, event.map(|(guard, _)| guard)));
     }
 
     let slope = |time_s: f64, state: &State<N>| system.slope(mode, piece, time_s, state);
@@ -283,20 +313,24 @@ fn advance<S: HybridSystem<N>, const N: usize>(
     };
     now.cost.evaluations += 1;
     let mut event = None;
+    let mut stopped_s = None;
     let watch = |step: &Step<N>| match first_event(system, mode, piece, step) {
         Some((guard, time_s)) => {
             event = Some((guard, time_s, *step));
             ControlFlow::Break(())
         }
         None => {
-            observer.step(system, mode, piece, step);
-            ControlFlow::Continue(())
+            let flow = observer.step(system, mode, piece, step);
+            if flow.is_break() {
+                stopped_s = Some(step.end_s);
+            }
+            flow
         }
     };
     let last = integrate(&task, slope, watch, &mut now.cost)?;
     let Some((guard, time_s, step)) = event else {
-        (now.time_s, now.state) = (end_s, last);
-        return Ok(None);
+        (now.time_s, now.state) = (stopped_s.unwrap_or(end_s), last);
+        return Ok(stopped_s.map_or(Advanced::Smoothly, |_| Advanced::Stopped));
     };
     let landed = land(
         system,
@@ -308,9 +342,9 @@ fn advance<S: HybridSystem<N>, const N: usize>(
         &step,
         &mut now.cost,
     )?;
-    observer.step(system, mode, piece, &landed);
     (now.time_s, now.state) = (landed.end_s, landed.end);
-    Ok(Some(guard))
+    let flow = observer.step(system, mode, piece, &landed);
+    Ok(Advanced::after(flow, Some(guard)))
 }
 
 /// The step again, cut off where the guard fires.

@@ -1,5 +1,7 @@
 //! A rocking history: what happened, and when.
 
+use std::ops::ControlFlow;
+
 use super::engine::{
     EngineError, HybridSystem, Level, Observer, Settings, Transition, falling_root, simulate,
 };
@@ -195,6 +197,9 @@ pub struct History<'a, S: Structure> {
     pub impacts: Vec<ImpactEvent<'a, S>>,
     /// Largest magnitudes of the rotations.
     pub peak_rotations_rad: Rotations<S>,
+    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity
+    /// alone overturns.
+    pub peak_over_critical: f64,
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus what the impacts took, over the energy barrier.
     pub energy_defect_ratio: f64,
@@ -209,14 +214,14 @@ pub struct History<'a, S: Structure> {
 const MOST_TRANSITIONS: usize = 1_000_000;
 
 /// Simulates, and hands the samples asked for to `sink`, in the order of time: one at every multiple of
-/// the output step from zero on, and a last one at the end.
+/// the output step from zero on, and a last one at the end. Where the sink breaks, the history ends.
 ///
 /// # Errors
 /// When the integration fails.
 pub fn history<'a, S: Structure>(
     rocking: &Rocking<'a, S>,
     request: &Request,
-    sink: impl FnMut(&Sample<Rotations<S>>),
+    sink: impl FnMut(&Sample<Rotations<S>>) -> ControlFlow<()>,
 ) -> Result<History<'a, S>, EngineError> {
     let (mode, state) = match request.initial {
         Some((sway, rotation_rad)) => (
@@ -241,8 +246,11 @@ pub fn history<'a, S: Structure>(
         &settings,
         &mut (&mut recorder, &mut sampler),
     )?;
-    if let Some(sampler) = &mut sampler {
-        sampler.finish(rocking, finish.mode, finish.time_s, &finish.state);
+    if let Some(sampler) = &mut sampler
+        && !finish.stopped
+    {
+        // It ends here anyway.
+        let _ = sampler.finish(rocking, finish.mode, finish.time_s, &finish.state);
     }
     recorder.note_peak(finish.mode, &finish.state);
     recorder.check_energy(rocking, finish.mode, &finish.state);
@@ -265,6 +273,7 @@ pub fn history<'a, S: Structure>(
         events: recorder.events,
         impacts: recorder.impacts,
         peak_rotations_rad: recorder.peak_rotations_rad,
+        peak_over_critical: recorder.peak_over_critical,
         energy_defect_ratio: recorder.largest_defect / rocking.barrier(),
         thrust: sampler.map(|sampler| match outcome {
             Outcome::Overturned(_) => sampler.thrust_before_critical,
@@ -322,6 +331,7 @@ struct Recorder<'a, S: Structure> {
     events: Vec<Event<Rotations<S>>>,
     impacts: Vec<ImpactEvent<'a, S>>,
     peak_rotations_rad: Rotations<S>,
+    peak_over_critical: f64,
     last_outward_s: Option<f64>,
     last_rest_s: Option<f64>,
     /// Initial energy minus what the impacts took.
@@ -336,6 +346,7 @@ impl<'a, S: Structure> Recorder<'a, S> {
             events: Vec::new(),
             impacts: Vec::new(),
             peak_rotations_rad: none,
+            peak_over_critical: 0.0,
             last_outward_s: None,
             last_rest_s: None,
             energy_without_work: match mode {
@@ -356,6 +367,7 @@ impl<'a, S: Structure> Recorder<'a, S> {
             for (peak, rotation) in peaks.zip(rotations.as_ref()) {
                 *peak = peak.max(rotation.abs());
             }
+            self.peak_over_critical = self.peak_over_critical.max(state[0] / link.critical_rad);
         }
     }
 
@@ -379,9 +391,9 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
         mode: Mode<'a, S::Mechanism>,
         _: usize,
         step: &Step<3>,
-    ) {
+    ) -> ControlFlow<()> {
         let Mode::Rocking { link, .. } = mode else {
-            return;
+            return ControlFlow::Continue(());
         };
         // It may turn round in the very step in which it leaves the rest, at no rate.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
@@ -404,6 +416,7 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
             });
             self.last_outward_s = Some(passage_s);
         }
+        ControlFlow::Continue(())
     }
 
     fn transition(
@@ -411,7 +424,7 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
         rocking: &Rocking<'a, S>,
         _: usize,
         transition: &RockingTransition<'a, S>,
-    ) {
+    ) -> ControlFlow<()> {
         self.check_energy(rocking, transition.from, &transition.before);
         if let Some(impact) = ImpactEvent::new(rocking.structure(), transition) {
             let (before, after) = impact.energies();
@@ -428,6 +441,7 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for Recorder<'a, S> {
             self.last_rest_s = Some(transition.time_s);
             // At rest there is no energy; what is left is the defect so far, and goes on.
         }
+        ControlFlow::Continue(())
     }
 }
 
@@ -478,7 +492,7 @@ struct Sampler<F, R> {
     sink: F,
 }
 
-impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
+impl<R: Copy, F: FnMut(&Sample<R>) -> ControlFlow<()>> Sampler<F, R> {
     fn new(output_step_s: f64, sink: F) -> Self {
         Self {
             output_step_s,
@@ -496,19 +510,20 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         self.next as f64 * self.output_step_s
     }
 
-    fn push(&mut self, sample: Sample<R>) {
-        if let Some(held) = self.held.replace(sample) {
-            self.emit(&held);
+    fn push(&mut self, sample: Sample<R>) -> ControlFlow<()> {
+        match self.held.replace(sample) {
+            Some(held) => self.emit(&held),
+            None => ControlFlow::Continue(()),
         }
     }
 
-    fn emit(&mut self, sample: &Sample<R>) {
+    fn emit(&mut self, sample: &Sample<R>) -> ControlFlow<()> {
         self.thrust
             .note(sample.time_s, sample.state != "rest", &sample.demand);
         if sample.rotation_over_critical.abs() < 1.0 {
             self.thrust_before_critical = self.thrust;
         }
-        (self.sink)(sample);
+        (self.sink)(sample)
     }
 
     fn sample<S: Structure>(
@@ -563,7 +578,8 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         mode: Mode<'_, S::Mechanism>,
         time_s: f64,
         state: &RockingState,
-    ) where
+    ) -> ControlFlow<()>
+    where
         S::Mechanism: Mechanism<Rotations = R>,
         R: AsRef<[f64]> + AsMut<[f64]>,
     {
@@ -574,16 +590,16 @@ impl<R: Copy, F: FnMut(&Sample<R>)> Sampler<F, R> {
         if let Some(held) = self.held.take()
             && held.time_s < time_s - 1e-9 * self.output_step_s
         {
-            self.emit(&held);
+            self.emit(&held)?;
         }
-        self.emit(&last);
+        self.emit(&last)
     }
 }
 
 impl<'a, S, F> Observer<Rocking<'a, S>, 3> for Option<Sampler<F, Rotations<S>>>
 where
     S: Structure,
-    F: FnMut(&Sample<Rotations<S>>),
+    F: FnMut(&Sample<Rotations<S>>) -> ControlFlow<()>,
 {
     fn step(
         &mut self,
@@ -591,20 +607,29 @@ where
         mode: Mode<'a, S::Mechanism>,
         piece: usize,
         step: &Step<3>,
-    ) {
-        let Some(sampler) = self else { return };
+    ) -> ControlFlow<()> {
+        let Some(sampler) = self else {
+            return ControlFlow::Continue(());
+        };
         while sampler.next_s() < step.end_s {
             let time_s = sampler.next_s().max(step.start_s);
             let state = rocking.between(step, time_s);
             let sample = sampler.sample(rocking, mode, piece, time_s, &state);
-            sampler.push(sample);
             sampler.next += 1;
+            sampler.push(sample)?;
         }
+        ControlFlow::Continue(())
     }
 
-    fn transition(&mut self, _: &Rocking<'a, S>, _: usize, _: &RockingTransition<'a, S>) {
+    fn transition(
+        &mut self,
+        _: &Rocking<'a, S>,
+        _: usize,
+        _: &RockingTransition<'a, S>,
+    ) -> ControlFlow<()> {
         if let Some(sampler) = self {
             sampler.phase += 1;
         }
+        ControlFlow::Continue(())
     }
 }

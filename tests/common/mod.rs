@@ -2,6 +2,7 @@
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use archrock::dynamics::ground::GroundMotion;
@@ -73,7 +74,11 @@ pub fn run_sampled<'a>(
 ) -> (History<'a, Arch>, Vec<Sample<[f64; 3]>>) {
     let rocking = Rocking::new(arch, ground, GRAVITY, REST_ENERGY_RATIO);
     let mut samples = Vec::new();
-    let history = history(&rocking, request, |sample| samples.push(*sample)).unwrap();
+    let history = history(&rocking, request, |sample| {
+        samples.push(*sample);
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     (history, samples)
 }
 

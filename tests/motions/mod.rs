@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
 use archrock::dynamics::ground::GroundMotion;
@@ -48,7 +49,11 @@ pub fn run<'a>(
     };
     let rocking = Rocking::new(arch, ground, gravity_m_s2, 1e-8 * G / gravity_m_s2);
     let mut samples = Vec::new();
-    let history = history(&rocking, &request, |sample| samples.push(*sample)).unwrap();
+    let history = history(&rocking, &request, |sample| {
+        samples.push(*sample);
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     (history, samples)
 }
 
