@@ -78,3 +78,4 @@ pub mod dynamics;
 pub mod mechanics;
 pub mod output;
 pub mod scenario;
+pub mod studies;

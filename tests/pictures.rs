@@ -9,8 +9,8 @@ use archrock::mechanics::chain::Chain;
 use archrock::mechanics::impact::ImpactModel;
 use archrock::mechanics::mechanism::{HingeSites, Sway};
 use archrock::mechanics::ring::{Edge, Ring};
-use archrock::mechanics::survey::shape_result;
 use archrock::output::pictures;
+use archrock::studies::survey::shape_result;
 use nalgebra::Vector2;
 use roxmltree::{Document, Node};
 

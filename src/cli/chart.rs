@@ -1,17 +1,16 @@
 //! The command `chart`.
 
-use std::io::{self, Write as _};
-use std::panic::resume_unwind;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::io::Write as _;
+use std::path::PathBuf;
 
 use archrock::mechanics::limit::least_thickness_ratio;
-use archrock::mechanics::survey::{ShapeResult, shape_result};
 use archrock::output::{Folder, chart};
 use archrock::scenario::{Scenario, Structure};
+use archrock::studies::survey::shape_result;
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
-use super::{Failure, commands};
+use super::study::say;
+use super::{Failure, commands, results_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -43,10 +42,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     };
     // Refuses, with its reasons, an arch that has no results of its own.
     commands::build(arch, &scenario)?;
-    let path = match (&arguments.out, arguments.scenario.file_stem()) {
-        (Some(out), _) => out.clone(),
-        (None, stem) => Path::new("results").join(stem.unwrap_or_default()),
-    };
+    let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
     let mut folder = Folder::open(&path, &[PICTURE, TABLE])?;
     let mut embraces_deg = EMBRACES_DEG.to_vec();
     if !embraces_deg.contains(&arch.embrace_deg) {
@@ -62,9 +58,12 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             thicknesses(least, largest).map(move |thickness_ratio| (embrace_deg, thickness_ratio))
         })
         .collect();
-    let results = in_parallel(&shapes, |(embrace_deg, thickness_ratio)| {
-        shape_result(*embrace_deg, *thickness_ratio, sites, scenario.impact)
-    });
+    let results: Vec<_> = shapes
+        .par_iter()
+        .filter_map(|(embrace_deg, thickness_ratio)| {
+            shape_result(*embrace_deg, *thickness_ratio, sites, scenario.impact)
+        })
+        .collect();
     chart::write_table(folder.file(TABLE), &results)?;
     folder
         .file(PICTURE)
@@ -73,12 +72,10 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     folder.complete()?;
     if !quiet {
         let count = results.len();
-        // Nobody is left to be told when standard error fails.
-        let _ = writeln!(
-            io::stderr(),
+        say(&format!(
             "{count} arches in {}: {PICTURE}, {TABLE}",
             path.display()
-        );
+        ));
     }
     Ok(())
 }
@@ -91,32 +88,4 @@ fn thicknesses(least: Option<f64>, largest: f64) -> impl Iterator<Item = f64> {
         let step = (largest - least) / f64::from(THICKNESSES - 1);
         (0..THICKNESSES).map(move |i| least + f64::from(i) * step)
     })
-}
-
-/// The results for all shapes that have one, in their order, computed by all processors.
-fn in_parallel(
-    shapes: &[(f64, f64)],
-    of: impl Fn(&(f64, f64)) -> Option<ShapeResult> + Sync,
-) -> Vec<ShapeResult> {
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut done = Vec::new();
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(shape) = shapes.get(index) else {
-                return done;
-            };
-            done.push((index, of(shape)));
-        }
-    };
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    let mut done: Vec<_> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)))
-            .collect()
-    });
-    done.sort_by_key(|(index, _)| *index);
-    done.into_iter().filter_map(|(_, result)| result).collect()
 }

@@ -6,10 +6,13 @@
 mod chart;
 mod commands;
 mod impact;
+mod map;
+mod merge;
 mod run;
+mod study;
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use archrock::dynamics::engine::EngineError;
@@ -47,6 +50,10 @@ enum Command {
     Impact(impact::Arguments),
     /// Chart incipient acceleration and restitution over thickness, for several embrace angles.
     Chart(chart::Arguments),
+    /// Simulate the history of every cell of a map and draw what overturns: see [map] in the scenario.
+    Map(map::Arguments),
+    /// Join the parts of a study that were computed with --shard.
+    Merge(merge::Arguments),
     /// Check a scenario and print it with every default resolved.
     Check {
         /// Scenario file (TOML).
@@ -108,6 +115,8 @@ pub fn main() -> ExitCode {
         } => commands::limit(&scenario, format, plot.as_deref()),
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
+        Command::Map(map) => map::map(&map, arguments.quiet),
+        Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),
     };
     let (code, message) = match result {
@@ -118,6 +127,12 @@ pub fn main() -> ExitCode {
     // Nobody is left to be told when standard error fails.
     let _ = writeln!(io::stderr(), "error: {message}");
     ExitCode::from(code)
+}
+
+/// The folder for the results of a scenario, unless another is asked for.
+fn results_folder(out: Option<&Path>, scenario: &Path) -> PathBuf {
+    let own = || Path::new("results").join(scenario.file_stem().unwrap_or_default());
+    out.map_or_else(own, Path::to_owned)
 }
 
 /// Prints a result on standard output.

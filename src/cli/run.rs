@@ -15,7 +15,7 @@ use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError, results};
 use archrock::scenario::{Scenario, Structure};
 
-use super::{Failure, commands};
+use super::{Failure, commands, results_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -79,11 +79,8 @@ fn run_structure<S: Rocks>(
         })
         .transpose()?;
     let to_stdout = arguments.rotations.is_some();
-    let path = match (&arguments.out, arguments.scenario.file_stem()) {
-        (Some(out), _) => Some(out.clone()),
-        (None, Some(stem)) if !to_stdout => Some(Path::new("results").join(stem)),
-        (None, _) => None,
-    };
+    let path = (!to_stdout || arguments.out.is_some())
+        .then(|| results_folder(arguments.out.as_deref(), &arguments.scenario));
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let mut folder = path
         .map(|path| open(&path, to_stdout))

@@ -14,5 +14,4 @@ pub mod resultant;
 pub mod ring;
 mod search;
 pub mod structure;
-pub mod survey;
 pub mod thrust;

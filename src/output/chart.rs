@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::svg::{Anchor, Axes, CURVES, Drawing, Frame, Scale};
 use super::{OutputError, finite};
-use crate::mechanics::survey::ShapeResult;
+use crate::studies::survey::ShapeResult;
 
 /// Writes a row per shape. Where an impact stops the arch the restitution coefficient is left empty.
 ///

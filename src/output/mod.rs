@@ -5,12 +5,15 @@
 pub mod chart;
 mod folder;
 pub mod impact;
+pub mod map;
 pub mod mechanisms;
+pub mod part;
 pub mod pictures;
 pub mod results;
 pub mod rotations;
 pub mod svg;
 pub mod timeline;
+pub mod verdict;
 
 use std::io;
 

@@ -184,6 +184,23 @@ impl Drawing {
         );
     }
 
+    /// What `draw` draws, as far as it is within a frame.
+    pub fn within(&mut self, frame: &Frame, draw: impl FnOnce(&mut Self)) {
+        let Frame {
+            left,
+            top,
+            width,
+            height,
+        } = frame;
+        let _ = writeln!(
+            self.text,
+            "<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"{left} {top} {width} {height}\">"
+        );
+        draw(self);
+        self.text += "</svg>\n";
+    }
+
     /// A line of text whose baseline is at `at`, turned anticlockwise by `turn_deg`.
     pub fn label(&mut self, at: Vector2<f64>, anchor: Anchor, turn_deg: f64, text: &str) {
         let anchor = match anchor {
@@ -249,7 +266,16 @@ pub struct Scale {
     pub low: f64,
     /// Value at its end.
     pub high: f64,
-    step: f64,
+    steps: Steps,
+}
+
+/// How ticks follow one another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Steps {
+    /// By the same difference.
+    Linear(f64),
+    /// By about the same ratio; equal ratios are equal distances.
+    Logarithmic,
 }
 
 impl Scale {
@@ -272,7 +298,7 @@ impl Scale {
         Self {
             low: (low / step + 1e-9).floor() * step,
             high: (high / step - 1e-9).ceil() * step,
-            step,
+            steps: Steps::Linear(step),
         }
     }
 
@@ -282,18 +308,58 @@ impl Scale {
         Self {
             low,
             high,
-            step: tick_step(high - low, ticks),
+            steps: Steps::Linear(tick_step(high - low, ticks)),
+        }
+    }
+
+    /// The logarithmic scale from `low > 0` to `high` exactly.
+    #[must_use]
+    pub const fn logarithmic(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            high,
+            steps: Steps::Logarithmic,
         }
     }
 
     /// Positions of the ticks with their texts.
     #[must_use]
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        let first = (self.low / self.step - 1e-6).ceil();
-        let count = (self.high / self.step + 1e-6).floor() - first;
+        match self.steps {
+            Steps::Linear(step) => self.linear_ticks(step),
+            Steps::Logarithmic => self.logarithmic_ticks(),
+        }
+    }
+
+    /// Powers of ten with their multiples, fewer the more of them there are.
+    fn logarithmic_ticks(&self) -> Vec<(f64, String)> {
+        let decades = (self.high / self.low).log10();
+        let digits: &[u32] = match decades {
+            _ if decades < 1.0 => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
+            _ if decades < 2.0 => &[1, 2, 3, 5, 7],
+            _ if decades < 4.0 => &[1, 2, 5],
+            _ => &[1],
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "exponents of an f64")]
+        let [first, last] = [self.low, self.high].map(|end| end.log10().floor() as i32);
+        (first..=last)
+            .flat_map(|exponent| digits.iter().map(move |digit| (*digit, exponent)))
+            .filter_map(|(digit, exponent)| {
+                let text = format!("{digit}e{exponent}");
+                let value: f64 = text.parse().ok()?;
+                let within = value >= self.low * (1.0 - 1e-9) && value <= self.high * (1.0 + 1e-9);
+                let plain = (-4..5).contains(&exponent);
+                within.then(|| (value, if plain { value.to_string() } else { text }))
+            })
+            .collect()
+    }
+
+    fn linear_ticks(&self, step: f64) -> Vec<(f64, String)> {
+        let first = (self.low / step - 1e-6).ceil();
+        let count = (self.high / step + 1e-6).floor() - first;
         let largest = self.low.abs().max(self.high.abs());
         // Powers of ten outside the range of plain reading.
-        let exponent = self.step.log10().floor();
+        let exponent = step.log10().floor();
         let plain = largest < 1e5 && exponent >= -5.0;
         #[expect(
             clippy::cast_possible_truncation,
@@ -303,7 +369,7 @@ impl Scale {
         let (count, digits) = (count.max(0.0) as u32, (-exponent).max(0.0) as usize);
         (0..=count)
             .map(|i| {
-                let value = (first + f64::from(i)) * self.step + 0.0;
+                let value = (first + f64::from(i)) * step + 0.0;
                 let text = if plain {
                     format!("{value:.digits$}")
                 } else {
@@ -315,7 +381,10 @@ impl Scale {
     }
 
     fn part(&self, value: f64) -> f64 {
-        (value - self.low) / (self.high - self.low)
+        match self.steps {
+            Steps::Linear(_) => (value - self.low) / (self.high - self.low),
+            Steps::Logarithmic => (value / self.low).ln() / (self.high / self.low).ln(),
+        }
     }
 }
 
@@ -422,6 +491,21 @@ mod tests {
         assert_eq!(texts(Scale::around([], 2)), ["0.0", "0.5", "1.0"]);
         assert_eq!(texts(Scale::around([0.0; 3], 2)), ["-1", "0", "1"]);
         assert_eq!(texts(Scale::around([2e-9, 4e-9], 2)).len(), 3);
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_digits_times_powers_of_ten() {
+        assert_eq!(
+            texts(Scale::logarithmic(0.05, 1.0)),
+            ["0.05", "0.1", "0.2", "0.5", "1"]
+        );
+        assert_eq!(texts(Scale::logarithmic(0.3, 0.5)), ["0.3", "0.4", "0.5"]);
+        assert_eq!(
+            texts(Scale::logarithmic(1e-6, 1.0)),
+            ["1e-6", "1e-5", "0.0001", "0.001", "0.01", "0.1", "1"]
+        );
+        let scale = Scale::logarithmic(0.1, 10.0);
+        assert!((scale.part(1.0) - 0.5).abs() < 1e-15);
     }
 
     #[test]

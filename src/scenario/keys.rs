@@ -8,7 +8,9 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::path::Path;
 
 use super::table::{Count, Number, OneOf, Reading, Table, Text, Writer};
-use super::{Arch, Column, Ground, Initial, PulseGround, Record, Scenario, Simulation, Structure};
+use super::{
+    Arch, Column, Ground, Initial, Map, PulseGround, Record, Scenario, Simulation, Structure,
+};
 use crate::dynamics::ground::{Pulse, WaveTrain};
 use crate::mechanics::impact::ImpactModel;
 use crate::mechanics::limit::{LimitError, least_thickness_ratio};
@@ -16,26 +18,28 @@ use crate::mechanics::mechanism::Sway;
 
 /// Lengths and densities: so wide that only slips of the pen are outside, and so that
 /// no product of them leaves the range of an `f64`.
-const MAGNITUDE: Number = Number(Included(1e-3), Included(1e6));
+pub(super) const MAGNITUDE: Number = Number(Included(1e-3), Included(1e6));
 const DEPTH_M: f64 = 1.0;
 const DENSITY_KG_M3: f64 = 2000.0;
 /// A structure as thick as its diameter has no hole.
-const THICKNESS_RATIO: Number = Number(Excluded(0.0), Excluded(2.0));
+pub(super) const THICKNESS_RATIO: Number = Number(Excluded(0.0), Excluded(2.0));
 const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
-const EMBRACE_DEG: Number = Number(Excluded(0.0), Included(180.0));
+pub(super) const EMBRACE_DEG: Number = Number(Excluded(0.0), Included(180.0));
 const VOUSSOIRS: Count = Count {
     range: 3..=200,
     why: "four hinges need four joints",
 };
-const AMPLITUDE_G: Number = Number(Included(-1e3), Included(1e3));
+/// What is beyond is no ground motion.
+pub(super) const LARGEST_G: f64 = 1e3;
+pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
-const DURATION_S: Number = Number(Excluded(0.0), Included(1e6));
+pub(super) const DURATION_S: Number = Number(Excluded(0.0), Included(1e6));
 /// At one the envelope of the velocity pulse is as long as a period; far beyond nothing is a pulse.
 const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
 const CYCLES: Number = Number(Included(1.0), Included(100.0));
 const PHASE_DEG: Number = Number(Included(-360.0), Included(360.0));
 const START_S: Number = Number(Included(0.0), Included(1e6));
-const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
+pub(super) const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
 const ROTATION_RAD: Number = Number(Excluded(0.0), Excluded(PI));
 const RELATIVE_TOLERANCE: Number = Number(Included(1e-13), Included(1e-3));
 const REST_ENERGY_RATIO: Number = Number(Included(1e-16), Included(0.1));
@@ -57,6 +61,10 @@ impl Scenario {
         let initial = table.table("initial", |table| {
             Initial::read(table, structure.as_ref().ok())
         });
+        let map = table.table("map", |table| {
+            let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
+            Map::read(table, structure, ground, impact.as_ref().ok())
+        });
         Ok(Self {
             title: title?,
             structure: structure?,
@@ -64,6 +72,7 @@ impl Scenario {
             impact: impact?,
             initial: initial?,
             simulation: simulation?,
+            map: map?,
         })
     }
 
@@ -75,6 +84,7 @@ impl Scenario {
             impact,
             initial,
             simulation,
+            map,
         } = self;
         if let Some(title) = title {
             out.text("title", title);
@@ -91,6 +101,9 @@ impl Scenario {
             initial.write(out);
         }
         simulation.write(out);
+        if let Some(map) = map {
+            map.write(out);
+        }
     }
 }
 

@@ -27,7 +27,9 @@
 
 mod error;
 mod keys;
+mod map;
 mod record;
+mod sequence;
 mod table;
 
 use std::fs::File;
@@ -49,11 +51,14 @@ use crate::mechanics::linkage::Linkage;
 use crate::mechanics::mechanism::{HingeSites, Sway};
 use crate::mechanics::ring::Ring;
 use crate::mechanics::structure::Structure as _;
+use crate::studies::specimen::Conditions;
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
+pub use map::{Axis, Boundary, Cell, Cells, Map, Quantity};
 pub use record::{
     Component, Format, Layout, LineFault, Record, Scaling, Series, TableColumn, Unit,
 };
+pub use sequence::{Sequence, Spacing};
 use table::Writer;
 
 /// What to simulate, every default resolved.
@@ -71,6 +76,8 @@ pub struct Scenario {
     pub initial: Option<Initial>,
     /// How the motion is computed.
     pub simulation: Simulation,
+    /// What varies over an overturning map.
+    pub map: Option<Map>,
 }
 
 /// What stands on the ground.
@@ -343,6 +350,17 @@ impl Scenario {
         }
     }
 
+    /// How all histories of a study are computed.
+    #[must_use]
+    pub const fn conditions(&self) -> Conditions {
+        Conditions {
+            gravity_m_s2: self.simulation.gravity_m_s2,
+            end_s: self.simulation.duration_s,
+            relative_tolerance: self.simulation.relative_tolerance,
+            rest_energy_ratio: self.simulation.rest_energy_ratio,
+        }
+    }
+
     /// The scenario as TOML text, every default written out.
     ///
     /// Reading the text of a valid scenario gives an equal scenario.
@@ -421,6 +439,7 @@ mod tests {
                 rest_energy_ratio: 1e-8,
                 gravity_m_s2: 9.81,
             },
+            map: None,
         };
         assert_eq!(scenario, expected);
     }
@@ -480,6 +499,7 @@ mod tests {
                 rest_energy_ratio: 0.1,
                 gravity_m_s2: 1.62,
             },
+            map: None,
         };
         assert_eq!(scenario, Ok(expected));
     }
@@ -949,7 +969,7 @@ duration_s = 1.0
             initial in proptest::option::of(any_initial()),
             simulation in any_simulation(),
         ) {
-            let scenario = Scenario { title, structure, ground, impact, initial, simulation };
+            let scenario = Scenario { title, structure, ground, impact, initial, simulation, map: None };
             prop_assert_eq!(parse(&scenario.to_toml()), Ok(scenario));
         }
 

@@ -241,6 +241,12 @@ impl<'a> Table<'a> {
             .ok_or(Reported)
     }
 
+    /// Whether the file gives a table for the key.
+    pub(super) fn gives_table(&self, key: &str) -> bool {
+        let entry = self.entries.get(key);
+        entry.is_some_and(|entry| matches!(entry.get_ref(), DeValue::Table(_)))
+    }
+
     /// Whether the file gives the key.
     pub(super) fn gives(&self, key: &str) -> bool {
         self.entries.contains_key(key)
@@ -260,6 +266,11 @@ impl<'a> Table<'a> {
             }
         };
         self.fault(span.start, message)
+    }
+
+    /// Records that the table as a whole is wrong: `message` follows its name.
+    pub(super) fn wrong_itself(&mut self, message: impl fmt::Display) -> Reported {
+        self.fault(self.offset, format!("{} {message}", self.name))
     }
 
     fn fault(&mut self, offset: usize, message: String) -> Reported {
@@ -370,6 +381,29 @@ impl Rule for Number {
             Some(x) if self.contains(x) => Ok(x),
             _ => Err("is out of range".to_owned()),
         }
+    }
+}
+
+/// An array whose elements follow a rule.
+pub(super) struct List<'a, R>(pub(super) &'a R);
+
+impl<R: Rule> Rule for List<'_, R> {
+    type Value = Vec<R::Value>;
+
+    fn allowed(&self) -> String {
+        format!("an array, each element {}", self.0.allowed())
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<Self::Value, String> {
+        let DeValue::Array(elements) = value else {
+            return Err(format!("is {}", kind_of(value)));
+        };
+        let read = |(index, element): (usize, &Spanned<DeValue<'_>>)| {
+            let place = index + 1;
+            let wrong = |wrong| format!("has an element, number {place}, that {wrong}");
+            self.0.read(element.get_ref()).map_err(wrong)
+        };
+        elements.iter().enumerate().map(read).collect()
     }
 }
 
@@ -494,6 +528,19 @@ impl Writer {
 
     pub(super) fn count(&mut self, key: &str, n: usize) {
         self.0 += &format!("{key} = {n}\n");
+    }
+
+    /// A table within a line, of values as TOML writes them.
+    pub(super) fn inline(&mut self, key: &str, values: &[(&str, String)]) {
+        let values: Vec<_> = values
+            .iter()
+            .map(|(key, value)| format!("{key} = {value}"))
+            .collect();
+        self.0 += &format!("{key} = {{ {} }}\n", values.join(", "));
+    }
+
+    pub(super) fn numbers(&mut self, key: &str, numbers: &[f64]) {
+        self.0 += &format!("{key} = {numbers:?}\n");
     }
 
     pub(super) fn text(&mut self, key: &str, text: &str) {

@@ -32,6 +32,7 @@ use std::sync::Arc;
 use toml::de::DeValue;
 
 use super::error::excerpt;
+use super::keys::LARGEST_G;
 use super::table::{Count, Number, OneOf, Reading, Rule, Table, Text, Writer};
 use crate::dynamics::ground::GroundMotion;
 
@@ -46,11 +47,9 @@ const MOST_SAMPLES: usize = 1_800_000;
 const LONGEST_S: f64 = 1e6;
 /// Samples that are closer are a slip of the pen; what jumps may jump in a microsecond.
 const LEAST_STEP_S: f64 = 1e-6;
-/// As for pulses: what is beyond is no ground motion.
-const MOST_G: f64 = 1e3;
 
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
-const PEAK_G: Number = Number(Excluded(0.0), Included(MOST_G));
+const PEAK_G: Number = Number(Excluded(0.0), Included(LARGEST_G));
 const START_S: Number = Number(Included(0.0), Included(LONGEST_S));
 const COLUMN_NUMBER: Count = Count {
     range: 1..=10_000,
@@ -303,8 +302,9 @@ impl Series {
             return Err(table.wrong("peak_g", "cannot be reached: the record is zero throughout"));
         }
         let peak_g = (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs();
-        if peak_g.is_nan() || peak_g > MOST_G {
-            let wrong = format!("reaches {peak_g:?} g as scaled; allowed is at most {MOST_G:?} g");
+        if peak_g.is_nan() || peak_g > LARGEST_G {
+            let wrong =
+                format!("reaches {peak_g:?} g as scaled; allowed is at most {LARGEST_G:?} g");
             return Err(table.wrong("file", wrong));
         }
         let first_s = self.samples.first().map_or(0.0, |sample| sample.0);

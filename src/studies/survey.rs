@@ -1,10 +1,10 @@
 //! Arches of many shapes compared: onset, first impact, and what impacts tend to.
 
-use super::chain::Chain;
-use super::impact::ImpactModel;
-use super::limit::LimitError;
-use super::mechanism::HingeSites;
-use super::ring::Ring;
+use crate::mechanics::chain::Chain;
+use crate::mechanics::impact::ImpactModel;
+use crate::mechanics::limit::LimitError;
+use crate::mechanics::mechanism::HingeSites;
+use crate::mechanics::ring::Ring;
 
 /// What a shape tells of its rocking.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,174 @@
+//! Increasing numbers: a list, or a range and how many.
+
+use toml::de::DeValue;
+
+use super::table::{Count, List, Number, OneOf, Reading, Rule, Table, Writer};
+
+named! {
+    /// How the numbers of a range are spaced.
+    pub enum Spacing {
+        /// By the same difference.
+        Linear = "linear",
+        /// By the same ratio.
+        Logarithmic = "logarithmic",
+    }
+}
+
+/// Increasing numbers, each another case of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sequence {
+    /// `{ from = 0.1, to = 2.0, count = 20, spacing = "logarithmic" }`: ends included, linear by default.
+    Range {
+        /// The first.
+        from: f64,
+        /// The last, above the first.
+        to: f64,
+        /// How many, at least 2.
+        count: usize,
+        /// How the others lie between.
+        spacing: Spacing,
+    },
+    /// `[0.1, 0.5, 2.0]`: at least one.
+    List(Vec<f64>),
+}
+
+/// An array of ascending numbers.
+struct Ascending<'a>(&'a Number);
+
+impl Rule for Ascending<'_> {
+    type Value = Vec<f64>;
+
+    fn allowed(&self) -> String {
+        format!(
+            "an array of ascending numbers or {{ from = ..., to = ..., count = ... }}, each {}",
+            self.0.allowed()
+        )
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
+        let values = List(self.0).read(value)?;
+        if values.is_empty() {
+            Err("is empty".to_owned())
+        } else if values.is_sorted_by(|earlier, later| earlier < later) {
+            Ok(values)
+        } else {
+            Err("does not ascend".to_owned())
+        }
+    }
+}
+
+/// As many as a study may have in one direction.
+const COUNT: Count = Count {
+    range: 2..=10_000,
+    why: "the ends",
+};
+
+impl Sequence {
+    /// The numbers.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        match self {
+            Self::List(values) => values.clone(),
+            Self::Range {
+                from,
+                to,
+                count,
+                spacing,
+            } => (0..*count)
+                .map(|index| between(*from, *to, index, count - 1, *spacing))
+                .collect(),
+        }
+    }
+
+    /// How the numbers are best drawn along an axis.
+    #[must_use]
+    pub const fn spacing(&self) -> Spacing {
+        match self {
+            Self::Range { spacing, .. } => *spacing,
+            Self::List(_) => Spacing::Linear,
+        }
+    }
+
+    /// The numbers of a key, each of which follows `rule`, if given.
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        key: &'static str,
+        rule: &Number,
+    ) -> Reading<Option<Self>> {
+        if table.gives_table(key) {
+            return table.table(key, |table| Self::read_range(table, rule));
+        }
+        let values = table.optional(key, &Ascending(rule))?;
+        Ok(values.map(Self::List))
+    }
+
+    fn read_range(table: &mut Table<'_>, rule: &Number) -> Reading<Self> {
+        let from = table.required("from", rule);
+        let to = table.required("to", rule);
+        let count = table.required("count", &COUNT);
+        let spacings = OneOf {
+            all: Spacing::ALL,
+            name: Spacing::name,
+        };
+        let spacing = table.or("spacing", &spacings, Spacing::Linear);
+        let (from, to, count, spacing) = (from?, to?, count?, spacing?);
+        if to <= from {
+            let wrong = format!(
+                "is not above `from`; allowed is {}, above {from:?}",
+                rule.allowed()
+            );
+            return Err(table.wrong("to", wrong));
+        }
+        if spacing == Spacing::Logarithmic && from * to <= 0.0 {
+            let wrong = "goes with numbers of one sign; allowed is \"linear\" between these";
+            return Err(table.wrong("spacing", wrong));
+        }
+        let range = Self::Range {
+            from,
+            to,
+            count,
+            spacing,
+        };
+        if range
+            .values()
+            .is_sorted_by(|earlier, later| earlier < later)
+        {
+            Ok(range)
+        } else {
+            let wrong = "is more than there are numbers between; allowed are fewer";
+            Err(table.wrong("count", wrong))
+        }
+    }
+
+    pub(super) fn write(&self, key: &str, out: &mut Writer) {
+        match self {
+            Self::List(values) => out.numbers(key, values),
+            Self::Range {
+                from,
+                to,
+                count,
+                spacing,
+            } => out.inline(
+                key,
+                &[
+                    ("from", format!("{from:?}")),
+                    ("to", format!("{to:?}")),
+                    ("count", count.to_string()),
+                    ("spacing", format!("{:?}", spacing.name())),
+                ],
+            ),
+        }
+    }
+}
+
+/// The ends are exact, and so is what is symmetric about zero.
+fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "at most ten thousand")]
+    let part = index as f64 / last as f64;
+    match spacing {
+        _ if index == 0 => from,
+        _ if index == last => to,
+        Spacing::Linear => from * (1.0 - part) + to * part,
+        Spacing::Logarithmic => from * (to / from).powf(part),
+    }
+}

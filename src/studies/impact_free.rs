@@ -1,0 +1,97 @@
+//! Overturning without impact: in the first fall from rest, before the hinges ever close.
+//!
+//! Nothing of the impact model enters here, so this boundary is what other programs and closed forms can be
+//! compared with. Along the amplitude it has one edge, which may be bisected; the set of pulses that overturn
+//! after impacts has many.
+
+use std::ops::ControlFlow;
+
+use crate::dynamics::engine::{EngineError, Observer, Settings, Transition, simulate};
+use crate::dynamics::integrator::Step;
+use crate::dynamics::rocking::{Guard, Mode, Rocking, RockingState};
+use crate::mechanics::structure::Structure;
+
+/// So long that the first fall is over: near the unstable equilibrium a motion dwells for some forty of its
+/// time scales before rounding decides.
+const END_S: f64 = 1e6;
+
+/// Whether a structure at rest is overturned before its first impact.
+///
+/// # Errors
+/// When the integration fails.
+pub fn overturns<S: Structure>(
+    rocking: &Rocking<'_, S>,
+    relative_tolerance: f64,
+) -> Result<bool, EngineError> {
+    let settings = Settings {
+        end_s: END_S,
+        relative_tolerance,
+        // Leaving the rest, and what ends that.
+        most_transitions: 2,
+    };
+    let state = RockingState::zeros();
+    let finish = simulate(rocking, Mode::Rest, state, &settings, &mut FirstFall)?;
+    Ok(matches!(finish.mode, Mode::Overturned { .. }))
+}
+
+/// Breaks when the hinges close.
+struct FirstFall;
+
+impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for FirstFall {
+    fn step(
+        &mut self,
+        _: &Rocking<'a, S>,
+        _: Mode<'a, S::Mechanism>,
+        _: usize,
+        _: &Step<3>,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn transition(
+        &mut self,
+        _: &Rocking<'a, S>,
+        _: usize,
+        transition: &Transition<Mode<'a, S::Mechanism>, Guard, 3>,
+    ) -> ControlFlow<()> {
+        match transition.guard {
+            Guard::Closing => ControlFlow::Break(()),
+            Guard::Uplift(_) | Guard::Critical | Guard::Limit => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Ratio of the amplitudes at which the edge is looked for: pulses whose side lobes lift the structure first
+/// can have narrow gaps in what overturns without impact, and one that is narrower goes unseen.
+const STRIDE: f64 = 1.05;
+
+/// Relative width to which the edge is bisected: the integration at the default tolerance knows no more.
+const RESOLUTION: f64 = 1e-9;
+
+/// The least amplitude from `from` to `to` that overturns without impact, from a function that tells
+/// whether one does: the first found in strides of 5 %, bisected to `1e-9` of it. `None` if none does.
+///
+/// # Errors
+/// Those of the function.
+pub fn least_amplitude<E>(
+    from: f64,
+    to: f64,
+    overturns: impl Fn(f64) -> Result<bool, E>,
+) -> Result<Option<f64>, E> {
+    let (mut low, mut high) = (from, from);
+    while !overturns(high)? {
+        if high >= to {
+            return Ok(None);
+        }
+        (low, high) = (high, (high * STRIDE).min(to));
+    }
+    while high - low > RESOLUTION * high {
+        let middle = 0.5 * (low + high);
+        if overturns(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok(Some(high))
+}
