@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use archrock::output::part::{Header, Rows};
-use archrock::output::{Folder, map as output};
+use archrock::output::{Folder, map as output, verdict};
 use archrock::scenario::{Boundary, Cell, Cells, Quantity, Scenario};
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
@@ -73,6 +73,15 @@ fn cells(scenario: &Scenario) -> Result<Cells<'_>, Failure> {
 }
 
 impl BoundaryOption {
+    /// Says that a study is none that has boundaries.
+    pub fn refuse(self) -> Result<(), Failure> {
+        if self.no_impact {
+            let message = "--no-impact is about maps";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        Ok(())
+    }
+
     fn check(self, cells: &Cells<'_>) -> Result<(), Failure> {
         if self.no_impact && !has_boundary(cells) {
             let message = "--no-impact is about maps one of whose axes is amplitude_g";
@@ -159,7 +168,7 @@ fn summary(cells: &Cells<'_>, rows: &Rows) -> String {
         ),
         ("cannot_stand", "cannot stand"),
         ("not_four_links", "are too thick for four links"),
-        (output::FAILED, "failed"),
+        (verdict::FAILED, "failed"),
     ]
     .into_iter()
     .filter(|(outcome, _)| output::count(rows, outcome) > 0)
@@ -170,7 +179,7 @@ fn summary(cells: &Cells<'_>, rows: &Rows) -> String {
         text += &format!("{separator}{count} {label}");
     }
     let reason = rows.iter().find_map(|(index, row)| {
-        (output::outcome(row) == output::FAILED).then(|| cells.cell(*index))
+        (output::outcome(row) == verdict::FAILED).then(|| cells.cell(*index))
     });
     if let Some(Cell::Failed(error)) = reason {
         text += &format!("; the first that failed: {error}");

@@ -10,6 +10,7 @@ mod map;
 mod merge;
 mod run;
 mod study;
+mod suite;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -52,6 +53,8 @@ enum Command {
     Chart(chart::Arguments),
     /// Simulate the history of every cell of a map and draw what overturns: see [map] in the scenario.
     Map(map::Arguments),
+    /// Shake with every record of a suite at every level and draw the fragility: see [suite] in the scenario.
+    Suite(suite::Arguments),
     /// Join the parts of a study that were computed with --shard.
     Merge(merge::Arguments),
     /// Check a scenario and print it with every default resolved.
@@ -116,6 +119,7 @@ pub fn main() -> ExitCode {
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => map::map(&map, arguments.quiet),
+        Command::Suite(suite) => suite::suite(&suite, arguments.quiet),
         Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),
     };

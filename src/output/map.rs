@@ -22,14 +22,11 @@ pub fn row(cells: &Cells<'_>, index: usize) -> Result<String, OutputError> {
         Cell::NoArch(LimitError::OtherMechanism { .. } | LimitError::NoPush) => {
             verdict::none("not_four_links")
         }
-        Cell::Failed(_) => verdict::none(FAILED),
+        Cell::Failed(_) => verdict::none(verdict::FAILED),
     };
     let [x, y] = cells.coordinates(index);
     Ok(format!("{x:?},{y:?},{}", fields.join(",")))
 }
-
-/// Outcome of a cell whose history could not be computed.
-pub const FAILED: &str = "failed";
 
 /// The outcome of a row.
 #[must_use]

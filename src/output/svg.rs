@@ -380,6 +380,15 @@ impl Scale {
             .collect()
     }
 
+    /// The value at a part of the axis, from 0 to 1.
+    #[must_use]
+    pub fn at(&self, part: f64) -> f64 {
+        match self.steps {
+            Steps::Linear(_) => self.low + part * (self.high - self.low),
+            Steps::Logarithmic => self.low * (self.high / self.low).powf(part),
+        }
+    }
+
     fn part(&self, value: f64) -> f64 {
         match self.steps {
             Steps::Linear(_) => (value - self.low) / (self.high - self.low),

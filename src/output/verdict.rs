@@ -15,6 +15,9 @@ pub const COLUMNS: [&str; 7] = [
     "energy_defect_ratio",
 ];
 
+/// Outcome where a history could not be computed.
+pub const FAILED: &str = "failed";
+
 /// The fields of a verdict. Only what overturned has a sway and impacts before it.
 ///
 /// # Errors

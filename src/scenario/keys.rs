@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::table::{Count, Number, OneOf, Reading, Table, Text, Writer};
 use super::{
-    Arch, Column, Ground, Initial, Map, PulseGround, Record, Scenario, Simulation, Structure,
+    Arch, Column, Ground, Initial, Map, PulseGround, Record, Scenario, Simulation, Structure, Suite,
 };
 use crate::dynamics::ground::{Pulse, WaveTrain};
 use crate::mechanics::impact::ImpactModel;
@@ -65,6 +65,9 @@ impl Scenario {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
             Map::read(table, structure, ground, impact.as_ref().ok())
         });
+        let suite = table.table("suite", |table| {
+            Suite::read(table, folder, simulation.as_ref().ok())
+        });
         Ok(Self {
             title: title?,
             structure: structure?,
@@ -73,6 +76,7 @@ impl Scenario {
             initial: initial?,
             simulation: simulation?,
             map: map?,
+            suite: suite?,
         })
     }
 
@@ -85,6 +89,7 @@ impl Scenario {
             initial,
             simulation,
             map,
+            suite,
         } = self;
         if let Some(title) = title {
             out.text("title", title);
@@ -103,6 +108,9 @@ impl Scenario {
         simulation.write(out);
         if let Some(map) = map {
             map.write(out);
+        }
+        if let Some(suite) = suite {
+            suite.write(out);
         }
     }
 }

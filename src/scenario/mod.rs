@@ -30,6 +30,7 @@ mod keys;
 mod map;
 mod record;
 mod sequence;
+mod suite;
 mod table;
 
 use std::fs::File;
@@ -59,6 +60,7 @@ pub use record::{
     Component, Format, Layout, LineFault, Record, Scaling, Series, TableColumn, Unit,
 };
 pub use sequence::{Sequence, Spacing};
+pub use suite::{Measure, Shaken, Shakes, Suite};
 use table::Writer;
 
 /// What to simulate, every default resolved.
@@ -78,6 +80,8 @@ pub struct Scenario {
     pub simulation: Simulation,
     /// What varies over an overturning map.
     pub map: Option<Map>,
+    /// Which records shake the structure for its fragility.
+    pub suite: Option<Suite>,
 }
 
 /// What stands on the ground.
@@ -440,6 +444,7 @@ mod tests {
                 gravity_m_s2: 9.81,
             },
             map: None,
+            suite: None,
         };
         assert_eq!(scenario, expected);
     }
@@ -500,6 +505,7 @@ mod tests {
                 gravity_m_s2: 1.62,
             },
             map: None,
+            suite: None,
         };
         assert_eq!(scenario, Ok(expected));
     }
@@ -583,7 +589,7 @@ duration_s = 1.0
         assert_eq!(
             errors.to_string(),
             "s.toml:1:1: unknown key `titel` in the scenario, did you mean `title`?; allowed are \
-             title, arch, column, simulation, ground, impact, initial\n\
+             title, arch, column, simulation, ground, impact, initial, map, suite\n\
              s.toml:6:13: `voussoirs = 2` is out of range; allowed is a whole number from 3 (four \
              hinges need four joints) to 200"
         );
@@ -969,7 +975,7 @@ duration_s = 1.0
             initial in proptest::option::of(any_initial()),
             simulation in any_simulation(),
         ) {
-            let scenario = Scenario { title, structure, ground, impact, initial, simulation, map: None };
+            let scenario = Scenario { title, structure, ground, impact, initial, simulation, map: None, suite: None };
             prop_assert_eq!(parse(&scenario.to_toml()), Ok(scenario));
         }
 

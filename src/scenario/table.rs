@@ -268,6 +268,23 @@ impl<'a> Table<'a> {
         self.fault(span.start, message)
     }
 
+    /// Records that an element of the array which the file gives for `key` is wrong; the first is at 0. A
+    /// value that is no array stands for its only element.
+    pub(super) fn wrong_element(
+        &mut self,
+        key: &'static str,
+        index: usize,
+        message: impl fmt::Display,
+    ) -> Reported {
+        let array = self.entries.get(key).map(Spanned::get_ref);
+        let Some(element) = array.and_then(|array| array.as_array()?.get(index)) else {
+            return self.wrong(key, message);
+        };
+        let span = element.span();
+        let value = excerpt(&self.legible.text[span.clone()]);
+        self.fault(span.start, format!("`{value}` in `{key}` {message}"))
+    }
+
     /// Records that the table as a whole is wrong: `message` follows its name.
     pub(super) fn wrong_itself(&mut self, message: impl fmt::Display) -> Reported {
         self.fault(self.offset, format!("{} {message}", self.name))
@@ -407,6 +424,43 @@ impl<R: Rule> Rule for List<'_, R> {
     }
 }
 
+/// Values that follow a rule: a single one, or an array of at least one.
+pub(super) struct OneOrMore<'a, R>(pub(super) &'a R);
+
+impl<R: Rule> Rule for OneOrMore<'_, R> {
+    type Value = Vec<R::Value>;
+
+    fn allowed(&self) -> String {
+        format!("{} or an array of at least one", self.0.allowed())
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<Self::Value, String> {
+        match value {
+            DeValue::Array(elements) if elements.is_empty() => Err("is empty".to_owned()),
+            DeValue::Array(_) => List(self.0).read(value),
+            _ => Ok(vec![self.0.read(value)?]),
+        }
+    }
+}
+
+/// Yes or no.
+pub(super) struct Switch;
+
+impl Rule for Switch {
+    type Value = bool;
+
+    fn allowed(&self) -> String {
+        "true or false".to_owned()
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<bool, String> {
+        match value {
+            DeValue::Boolean(value) => Ok(*value),
+            _ => Err(format!("is {}", kind_of(value))),
+        }
+    }
+}
+
 /// A whole number in a range.
 pub(super) struct Count {
     pub(super) range: RangeInclusive<usize>,
@@ -543,19 +597,38 @@ impl Writer {
         self.0 += &format!("{key} = {numbers:?}\n");
     }
 
+    pub(super) fn switch(&mut self, key: &str, value: bool) {
+        self.0 += &format!("{key} = {value}\n");
+    }
+
     pub(super) fn text(&mut self, key: &str, text: &str) {
-        let mut quoted = String::new();
-        for c in text.chars() {
-            match c {
-                '"' | '\\' => quoted.extend(['\\', c]),
-                c if c.is_control() => quoted += &format!("\\u{:04x}", u32::from(c)),
-                c => quoted.push(c),
-            }
+        self.0 += &format!("{key} = {}\n", quoted(text));
+    }
+
+    /// An array, an element a line.
+    pub(super) fn texts<'a>(&mut self, key: &str, texts: impl IntoIterator<Item = &'a str>) {
+        self.0 += &format!("{key} = [\n");
+        for text in texts {
+            self.0 += &format!("    {},\n", quoted(text));
         }
-        self.0 += &format!("{key} = \"{quoted}\"\n");
+        self.0 += "]\n";
     }
 
     pub(super) fn finish(self) -> String {
         self.0
     }
+}
+
+/// A string as TOML writes it.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted += &format!("\\u{:04x}", u32::from(c)),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
 }

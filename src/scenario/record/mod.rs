@@ -22,6 +22,7 @@
 mod at2;
 mod csv;
 
+use std::ffi::OsStr;
 use std::fmt;
 use std::fs;
 use std::io::Read as _;
@@ -49,7 +50,7 @@ const LONGEST_S: f64 = 1e6;
 const LEAST_STEP_S: f64 = 1e-6;
 
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
-const PEAK_G: Number = Number(Excluded(0.0), Included(LARGEST_G));
+pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(LARGEST_G));
 const START_S: Number = Number(Included(0.0), Included(LONGEST_S));
 const COLUMN_NUMBER: Count = Count {
     range: 1..=10_000,
@@ -128,7 +129,7 @@ pub enum Layout {
 pub enum Scaling {
     /// This factor.
     Factor(f64),
-    /// The positive factor that makes their largest magnitude so large, in units of gravity.
+    /// The factor of the same sign that makes their largest magnitude so large, in units of gravity.
     PeakG(f64),
 }
 
@@ -238,6 +239,64 @@ impl Record {
 }
 
 impl Series {
+    /// The accelerations of a file as they are there; the error follows its name.
+    pub(super) fn of_file(folder: &Path, file: String, layout: Layout) -> Result<Self, String> {
+        let samples = read_samples(&folder.join(&file), &layout)?;
+        Ok(Self {
+            file,
+            layout,
+            scaling: Scaling::Factor(1.0),
+            samples: samples.into(),
+        })
+    }
+
+    /// The same record, differently scaled.
+    #[must_use]
+    pub(super) fn scaled(&self, scaling: Scaling) -> Self {
+        Self {
+            scaling,
+            ..self.clone()
+        }
+    }
+
+    /// Checksum of the samples: the same for files that differ in nothing but how they are written.
+    #[must_use]
+    pub fn checksum(&self) -> u32 {
+        let mut hasher = crc32fast::Hasher::new();
+        for (time_s, acceleration) in self.samples.iter() {
+            hasher.update(&time_s.to_le_bytes());
+            hasher.update(&acceleration.to_le_bytes());
+        }
+        hasher.finalize()
+    }
+
+    /// Largest magnitude as scaled, in units of gravity.
+    pub(super) fn peak_g(&self, gravity_m_s2: f64) -> f64 {
+        (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs()
+    }
+
+    /// Says when that is more than any ground does.
+    pub(super) fn check_strength(&self, gravity_m_s2: f64) -> Result<(), String> {
+        let peak_g = self.peak_g(gravity_m_s2);
+        if peak_g <= LARGEST_G {
+            Ok(())
+        } else {
+            Err(format!(
+                "reaches {peak_g:?} g as scaled; allowed is at most {LARGEST_G:?} g"
+            ))
+        }
+    }
+
+    /// Time of the first sample in s, on the clock of the file.
+    pub(super) fn first_s(&self) -> f64 {
+        self.samples.first().map_or(0.0, |sample| sample.0)
+    }
+
+    /// Time of the last sample in s, on the clock of the file.
+    pub(super) fn last_s(&self) -> f64 {
+        self.samples.last().map_or(0.0, |sample| sample.0)
+    }
+
     /// Times in s and accelerations in m/s2.
     fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Samples {
         let factor = self.factor(gravity_m_s2);
@@ -264,31 +323,18 @@ impl Series {
 
     fn read(table: &mut Table<'_>, purpose: Reading<Purpose<'_>>) -> Reading<Self> {
         let file = table.required("file", &Text);
-        let formats = OneOf {
-            all: Format::ALL,
-            name: Format::name,
-        };
-        let format = table.optional("format", &formats);
+        let format = Format::read(table);
         let scaling = Scaling::read(table);
         let format = match (&file, format?) {
             (_, Some(format)) => Ok(format),
-            (Ok(file), None) => Format::of_ending(file).ok_or_else(|| {
-                let wrong =
-                    "has an ending that tells no format: give `format` as well, \"at2\" or \"csv\"";
-                table.wrong("file", wrong)
-            }),
+            (Ok(file), None) => Format::of_ending(file).map_err(|wrong| table.wrong("file", wrong)),
             (Err(reported), None) => Err(*reported),
         };
         let layout = Layout::read(table, format);
         let (file, scaling, layout, purpose) = (file?, scaling?, layout?, purpose?);
-        let samples = read_samples(&purpose.folder.join(&file), &layout)
-            .map_err(|wrong| table.wrong("file", wrong))?;
-        let series = Self {
-            file,
-            layout,
-            scaling,
-            samples: samples.into(),
-        };
+        let series = Self::of_file(purpose.folder, file, layout)
+            .map_err(|wrong| table.wrong("file", wrong))?
+            .scaled(scaling);
         series.check(table, &purpose)?;
         Ok(series)
     }
@@ -301,13 +347,9 @@ impl Series {
         {
             return Err(table.wrong("peak_g", "cannot be reached: the record is zero throughout"));
         }
-        let peak_g = (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs();
-        if peak_g.is_nan() || peak_g > LARGEST_G {
-            let wrong =
-                format!("reaches {peak_g:?} g as scaled; allowed is at most {LARGEST_G:?} g");
-            return Err(table.wrong("file", wrong));
-        }
-        let first_s = self.samples.first().map_or(0.0, |sample| sample.0);
+        self.check_strength(gravity_m_s2)
+            .map_err(|wrong| table.wrong("file", wrong))?;
+        let first_s = self.first_s();
         if purpose.start_s + first_s < 0.0 {
             let wrong = format!(
                 "begins at {first_s:?} s; allowed is a `start_s` of at least {:?}, so that it does not \
@@ -358,10 +400,24 @@ impl Scaling {
 }
 
 impl Format {
-    fn of_ending(file: &str) -> Option<Self> {
-        let ending = Path::new(file).extension()?.to_str()?;
+    /// The format of a file; the error follows its name.
+    pub(super) fn of_ending(file: &str) -> Result<Self, &'static str> {
+        let ending = Path::new(file)
+            .extension()
+            .and_then(OsStr::to_str)
+            .unwrap_or_default();
         let mut formats = Self::ALL.iter().copied();
-        formats.find(|format| ending.eq_ignore_ascii_case(format.name()))
+        formats
+            .find(|format| ending.eq_ignore_ascii_case(format.name()))
+            .ok_or("has an ending that tells no format: give `format` as well, \"at2\" or \"csv\"")
+    }
+
+    pub(super) fn read(table: &mut Table<'_>) -> Reading<Option<Self>> {
+        let formats = OneOf {
+            all: Self::ALL,
+            name: Self::name,
+        };
+        table.optional("format", &formats)
     }
 }
 
@@ -377,7 +433,7 @@ impl Layout {
         parse(&String::from_utf8_lossy(contents), self)
     }
 
-    fn read(table: &mut Table<'_>, format: Reading<Format>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>, format: Reading<Format>) -> Reading<Self> {
         let units = OneOf {
             all: Unit::ALL,
             name: Unit::name,
@@ -406,26 +462,37 @@ impl Layout {
         }
     }
 
-    fn write(&self, out: &mut Writer) {
+    /// The format of the file.
+    pub(super) const fn format(&self) -> Format {
         match self {
-            Self::At2 => out.text("format", Format::At2.name()),
-            Self::Csv {
-                time_column,
-                acceleration_column,
-                unit,
-            } => {
-                out.text("format", Format::Csv.name());
-                for (key, column) in [
-                    ("time_column", time_column),
-                    ("acceleration_column", acceleration_column),
-                ] {
-                    match column {
-                        TableColumn::Number(number) => out.count(key, *number),
-                        TableColumn::Name(name) => out.text(key, name),
-                    }
+            Self::At2 => Format::At2,
+            Self::Csv { .. } => Format::Csv,
+        }
+    }
+
+    fn write(&self, out: &mut Writer) {
+        out.text("format", self.format().name());
+        self.write_columns(out);
+    }
+
+    /// What there is to say of a table besides.
+    pub(super) fn write_columns(&self, out: &mut Writer) {
+        if let Self::Csv {
+            time_column,
+            acceleration_column,
+            unit,
+        } = self
+        {
+            for (key, column) in [
+                ("time_column", time_column),
+                ("acceleration_column", acceleration_column),
+            ] {
+                match column {
+                    TableColumn::Number(number) => out.count(key, *number),
+                    TableColumn::Name(name) => out.text(key, name),
                 }
-                out.text("unit", unit.name());
             }
+            out.text("unit", unit.name());
         }
     }
 }

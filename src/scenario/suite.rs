@@ -1,0 +1,430 @@
+//! The suite of records: `[suite]`.
+//!
+//! ```toml
+//! [suite]
+//! records = ["records/*.at2", "north.csv"]   # files or patterns of files, relative to the scenario file
+//! scales = { from = 0.2, to = 3.0, count = 20, spacing = "logarithmic" }   # or peaks_g
+//! both_signs = true                          # every record mirrored as well
+//! time_column = 1                            # of the CSV files, as in [ground.record]
+//! acceleration_column = 2
+//! unit = "cm/s2"
+//! ```
+//!
+//! Every record shakes the structure at every level: multiplied by every factor of `scales`, or scaled to
+//! every peak of `peaks_g`. `[ground]` has no part in it.
+
+use std::collections::BTreeMap;
+use std::ops::Bound::{Excluded, Included};
+use std::path::{Component as PathPart, Path, PathBuf};
+
+use glob::MatchOptions;
+
+use super::record::{self, Format, Layout, Record, Scaling, Series};
+use super::sequence::Sequence;
+use super::table::{Number, OneOrMore, Reading, Switch, Table, Text, Writer};
+use super::{Component, Scenario, Simulation, Structure};
+use crate::dynamics::engine::EngineError;
+use crate::mechanics::limit::LimitError;
+use crate::studies::specimen::{Specimen, Verdict};
+
+named! {
+    /// What the levels of a suite are, by its key in `[suite]`.
+    pub enum Measure {
+        /// Factors of the records.
+        Scale = "scales",
+        /// Peak accelerations that the records are scaled to, in units of gravity.
+        PeakG = "peaks_g",
+    }
+}
+
+/// As far as records are scaled; what is beyond is a slip of the pen, or of the unit.
+const MOST_SCALE: f64 = 1e6;
+const SCALE: Number = Number(Excluded(0.0), Included(MOST_SCALE));
+
+impl Measure {
+    /// What a single level may be.
+    const fn range(self) -> &'static Number {
+        match self {
+            Self::Scale => &SCALE,
+            Self::PeakG => &record::PEAK_G,
+        }
+    }
+
+    /// What one of the levels is called.
+    #[must_use]
+    pub const fn column(self) -> &'static str {
+        match self {
+            Self::Scale => "scale",
+            Self::PeakG => "peak_g",
+        }
+    }
+
+    const fn scaling(self, level: f64) -> Scaling {
+        match self {
+            Self::Scale => Scaling::Factor(level),
+            Self::PeakG => Scaling::PeakG(level),
+        }
+    }
+}
+
+/// Which records shake the structure, and how strongly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Suite {
+    /// The records as they are in their files, by the names of these: at least one.
+    pub records: Vec<Series>,
+    /// What the levels are.
+    pub measure: Measure,
+    /// How strong each record is made, above 0.
+    pub levels: Sequence,
+    /// Whether every record comes mirrored as well.
+    pub both_signs: bool,
+}
+
+/// Cases of a suite: their rows must fit into memory.
+const MOST_CASES: usize = 1_000_000;
+
+/// A file that the key `records` names.
+struct Listed {
+    file: String,
+    /// Which element of the key names it first.
+    element: usize,
+    format: Format,
+}
+
+impl Suite {
+    /// Reads `[suite]` with its records; `None`: what the simulation is, is not known.
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        simulation: Option<&Simulation>,
+    ) -> Reading<Self> {
+        let patterns = table.required(RECORDS, &OneOrMore(&Text));
+        let format = Format::read(table);
+        let levels = Measure::ALL.iter().map(|&measure| {
+            let levels = Sequence::read(table, measure.name(), measure.range());
+            let levels = levels.map(|levels| levels.map(|levels| (measure, levels)));
+            (measure.name(), levels)
+        });
+        let levels = levels.collect();
+        let levels = table.exactly_one("keys", levels);
+        let both_signs = table.or("both_signs", &Switch, true);
+        let listed = match (patterns, format) {
+            (Ok(patterns), Ok(format)) => list(table, folder, &patterns, format),
+            (Err(reported), _) | (_, Err(reported)) => Err(reported),
+        };
+        // The keys of tables are given if and only if one of the files is a table.
+        let layout = Layout::read(
+            table,
+            listed.as_ref().map_err(|reported| *reported).map(|listed| {
+                let is_table = |listed: &Listed| listed.format == Format::Csv;
+                if listed.iter().any(is_table) {
+                    Format::Csv
+                } else {
+                    Format::At2
+                }
+            }),
+        );
+        let (listed, layout, (measure, levels), both_signs) =
+            (listed?, layout?, levels?, both_signs?);
+        let values = levels.values();
+        let cases = listed.len() * (1 + usize::from(both_signs)) * values.len();
+        if cases > MOST_CASES {
+            return Err(table.wrong_itself(format!(
+                "has {cases} cases, {} records at {} levels; allowed are at most {MOST_CASES}",
+                listed.len(),
+                values.len()
+            )));
+        }
+        let strongest = measure.scaling(values[values.len() - 1]);
+        let records: Vec<_> = listed
+            .into_iter()
+            .map(
+                |Listed {
+                     file,
+                     element,
+                     format,
+                 }| {
+                    let layout = match format {
+                        Format::At2 => Layout::At2,
+                        Format::Csv => layout.clone(),
+                    };
+                    Series::of_file(folder, file.clone(), layout)
+                        .and_then(|series| suits(&series, strongest, simulation).map(|()| series))
+                        .map_err(|wrong| {
+                            let wrong = format!("names {file}, which {wrong}");
+                            table.wrong_element(RECORDS, element, wrong)
+                        })
+                },
+            )
+            .collect();
+        Ok(Self {
+            records: records.into_iter().collect::<Reading<_>>()?,
+            measure,
+            levels,
+            both_signs,
+        })
+    }
+
+    pub(super) fn write(&self, out: &mut Writer) {
+        let Self {
+            records,
+            measure,
+            levels,
+            both_signs,
+        } = self;
+        out.table("suite");
+        out.texts(RECORDS, records.iter().map(|series| series.file.as_str()));
+        let layouts = || records.iter().map(|series| &series.layout);
+        // Files of both formats were told apart by their endings.
+        if let Some(first) = layouts().next()
+            && layouts().all(|layout| layout.format() == first.format())
+        {
+            out.text("format", first.format().name());
+        }
+        if let Some(table) = layouts().find(|layout| layout.format() == Format::Csv) {
+            table.write_columns(out);
+        }
+        levels.write(measure.name(), out);
+        out.switch("both_signs", *both_signs);
+    }
+}
+
+const RECORDS: &str = "records";
+
+/// Says why a record cannot shake the structure as strongly as it shall.
+fn suits(
+    series: &Series,
+    strongest: Scaling,
+    simulation: Option<&Simulation>,
+) -> Result<(), String> {
+    let Some(&Simulation {
+        gravity_m_s2,
+        duration_s,
+        ..
+    }) = simulation
+    else {
+        return Ok(());
+    };
+    let own_g = series.peak_g(gravity_m_s2);
+    if own_g == 0.0 {
+        return Err("is zero throughout: it shakes nothing".to_owned());
+    }
+    if let Scaling::PeakG(peak_g) = strongest
+        && peak_g / own_g > MOST_SCALE
+    {
+        return Err(format!(
+            "has a peak of {own_g:?} g, which no factor up to {MOST_SCALE:?} brings to {peak_g:?} g"
+        ));
+    }
+    series.scaled(strongest).check_strength(gravity_m_s2)?;
+    let lasts_s = start_s(series) + series.last_s();
+    if lasts_s > duration_s {
+        return Err(format!(
+            "lasts {lasts_s:?} s and would be cut off; allowed is a `duration_s` in [simulation] of at least \
+             that, and here it is {duration_s:?}"
+        ));
+    }
+    Ok(())
+}
+
+/// Time of the simulation at the file's time zero: no record begins before the simulation does.
+fn start_s(series: &Series) -> f64 {
+    (-series.first_s()).max(0.0)
+}
+
+/// All files that the patterns name, in the order of their names, each once.
+fn list(
+    table: &mut Table<'_>,
+    folder: &Path,
+    patterns: &[String],
+    format: Option<Format>,
+) -> Reading<Vec<Listed>> {
+    let mut found = BTreeMap::new();
+    let mut all_well = Ok(());
+    for (element, pattern) in patterns.iter().enumerate() {
+        match find(folder, pattern) {
+            Ok(files) => {
+                for file in files {
+                    found.entry(file).or_insert(element);
+                }
+            }
+            Err(wrong) => all_well = Err(table.wrong_element(RECORDS, element, wrong)),
+        }
+    }
+    let listed: Vec<_> = found
+        .into_iter()
+        .map(|(file, element)| {
+            let format = format
+                .map_or_else(|| Format::of_ending(&file), Ok)
+                .map_err(|wrong| {
+                    let wrong = format!("names {file}, which {wrong}");
+                    table.wrong_element(RECORDS, element, wrong)
+                })?;
+            Ok(Listed {
+                file,
+                element,
+                format,
+            })
+        })
+        .collect();
+    all_well?;
+    listed.into_iter().collect()
+}
+
+/// The files that a pattern names, relative to the folder; or why none, to follow the pattern.
+fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
+    // A name that is also a pattern is the name, so that a resolved scenario reads back the same.
+    let path = folder.join(pattern);
+    if path.is_dir() {
+        return Err(
+            "is a folder; allowed is a file or a pattern such as \"folder/*.at2\"".to_owned(),
+        );
+    }
+    if path.is_file() {
+        return Ok(vec![file_name(Path::new(pattern))?]);
+    }
+    if !pattern.contains(['*', '?', '[']) {
+        return Err(
+            "is not there; allowed is a file or a pattern such as \"folder/*.at2\"".to_owned(),
+        );
+    }
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    // Patterns say nothing of what they are relative to.
+    let folder =
+        std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
+    let escaped = folder.to_str().map(glob::Pattern::escape).ok_or(
+        "is relative to a folder whose name is not UTF-8 text; allowed are files one by one",
+    )?;
+    let absolute = Path::new(&escaped).join(pattern);
+    let options = MatchOptions {
+        // As in a shell: hidden files are of other programs.
+        require_literal_leading_dot: true,
+        require_literal_separator: true,
+        case_sensitive: true,
+    };
+    let matches = glob::glob_with(&absolute.to_string_lossy(), options)
+        .map_err(|error| format!("is no pattern of files: {}", error.msg))?;
+    let mut files = Vec::new();
+    for path in matches {
+        let path = path.map_err(|error| format!("cannot be looked for: {}", error.error()))?;
+        if path.is_file() {
+            files.push(file_name(path.strip_prefix(&folder).unwrap_or(&path))?);
+        }
+    }
+    if files.is_empty() {
+        return Err("matches no file".to_owned());
+    }
+    Ok(files)
+}
+
+/// The name of a file as it stands in scenarios and results, which have a line for each.
+fn file_name(path: &Path) -> Result<String, String> {
+    let plain: PathBuf = path
+        .components()
+        .filter(|part| *part != PathPart::CurDir)
+        .collect();
+    match plain.to_str() {
+        Some(name) if !name.contains(char::is_control) => Ok(name.to_owned()),
+        _ => Err(format!(
+            "names {:?}; allowed are names in UTF-8 without control characters",
+            plain.display().to_string()
+        )),
+    }
+}
+
+/// A record that shakes the structure, and what became of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shaken<'a> {
+    /// The file.
+    pub record: &'a str,
+    /// Whether the record is mirrored.
+    pub mirrored: bool,
+    /// What it is multiplied by, above 0.
+    pub scale: f64,
+    /// Its peak as scaled, in units of gravity.
+    pub peak_g: f64,
+    /// Its history, or why it could not be computed.
+    pub ended: Result<Verdict, EngineError>,
+}
+
+/// The cases of a suite, each a function of its index alone: the levels of a record follow one another, then
+/// those of the record mirrored, then the next record.
+#[derive(Debug)]
+pub struct Shakes<'a> {
+    scenario: &'a Scenario,
+    suite: &'a Suite,
+    specimen: Specimen,
+    levels: Vec<f64>,
+}
+
+impl<'a> Shakes<'a> {
+    /// The cases of a scenario's suite.
+    ///
+    /// # Errors
+    /// As [`super::Arch::build`].
+    pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, LimitError> {
+        let specimen = match &scenario.structure {
+            Structure::Arch(arch) => Specimen::Arch(arch.build(scenario.impact)?),
+            Structure::Column(column) => Specimen::Column(column.build(scenario.impact)),
+        };
+        Ok(Self {
+            scenario,
+            suite,
+            specimen,
+            levels: suite.levels.values(),
+        })
+    }
+
+    const fn signs(&self) -> usize {
+        if self.suite.both_signs { 2 } else { 1 }
+    }
+
+    /// Number of cases.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.suite.records.len() * self.signs() * self.levels.len()
+    }
+
+    /// What the cases depend on besides the scenario: the records, by name and checksum.
+    #[must_use]
+    pub fn inputs(&self) -> Vec<String> {
+        let records = self.suite.records.iter();
+        records
+            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
+            .collect()
+    }
+
+    /// The history of a case.
+    #[must_use]
+    pub fn case(&self, index: usize) -> Shaken<'a> {
+        let level = self.levels[index % self.levels.len()];
+        let shake = index / self.levels.len();
+        let mirrored = shake % self.signs() == 1;
+        let series = &self.suite.records[shake / self.signs()];
+        let conditions = self.scenario.conditions();
+        let own_g = series.peak_g(conditions.gravity_m_s2);
+        let (scale, peak_g) = match self.suite.measure {
+            Measure::Scale => (level, level * own_g),
+            Measure::PeakG => (level / own_g, level),
+        };
+        let signed = if mirrored { -level } else { level };
+        let record = Record {
+            component: Component::Horizontal,
+            main: series.scaled(self.suite.measure.scaling(signed)),
+            vertical: None,
+            start_s: start_s(series),
+        };
+        let ground = record.motion(conditions.gravity_m_s2);
+        Shaken {
+            record: &series.file,
+            mirrored,
+            scale,
+            peak_g,
+            ended: self.specimen.verdict(&ground, &conditions),
+        }
+    }
+}
