@@ -133,9 +133,9 @@ fn counts(results: &Results) -> String {
         .map(|(count, label)| format!("{count} {label}"))
         .collect();
     format!(
-        "{} cases of {} records: {}",
+        "{} cases of {}: {}",
         results.count(),
-        results.records().len(),
+        results.records_in_words(),
         counts.join(", ")
     )
 }

@@ -158,8 +158,7 @@ impl Results {
             .values()
             .map(|row| Case::read(row, measure))
             .collect::<Option<_>>()?;
-        let names: BTreeSet<&str> = cases.iter().map(|case| case.record.as_str()).collect();
-        let indices: BTreeMap<&str, usize> = names.into_iter().zip(0..).collect();
+        let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
         let observations: Vec<Observation> = cases
             .iter()
             .filter(|case| !case.failed())
@@ -192,10 +191,19 @@ impl Results {
         self.cases.len()
     }
 
-    /// Names of the records.
+    /// Number of records.
     #[must_use]
-    pub fn records(&self) -> BTreeSet<&str> {
-        self.cases.iter().map(|case| case.record.as_str()).collect()
+    pub fn record_count(&self) -> usize {
+        names(&self.cases).len()
+    }
+
+    /// How many records there are.
+    #[must_use]
+    pub fn records_in_words(&self) -> String {
+        match self.record_count() {
+            1 => "1 record".to_owned(),
+            count => format!("{count} records"),
+        }
     }
 
     /// Names of the records of whose cases all overturned, or none, as `wanted`.
@@ -309,7 +317,7 @@ impl Results {
             "dispersion_standard_error_by_record": dispersion_error_by_record,
             "log_likelihood": log_likelihood,
             "no_fit": self.no_fit(),
-            "records": self.records().len(),
+            "records": self.record_count(),
             "cases": self.count() - failed,
             "overturned": self.cases.iter().filter(|case| case.overturned()).count(),
             "still_rocking_counted_as_not_overturned": self.outcome_count("still_rocking"),
@@ -404,10 +412,7 @@ impl Results {
             x - advance
         };
         let cases = self.count() - self.outcome_count(verdict::FAILED);
-        let text = format!(
-            "fraction of {} records, {cases} cases",
-            self.records().len()
-        );
+        let text = format!("fraction of {}, {cases} cases", self.records_in_words());
         let left = entry(drawing, &text, 300.0);
         drawing.circle("", Vector2::new(left + 15.0, 54.0), 4.5, POINT);
         match self.curve_in_words() {
@@ -422,7 +427,7 @@ impl Results {
             }
             None => {
                 let reason = format!("no curve: {}", self.no_fit().unwrap_or_default());
-                for (text, y) in wrapped(&reason, 120).iter().zip([86.0, 104.0]) {
+                for (text, y) in wrapped(&reason, 115).iter().zip([86.0, 103.0, 120.0]) {
                     drawing.label(Vector2::new(FRAME.left, y), Anchor::Start, 0.0, text);
                 }
             }
@@ -433,9 +438,9 @@ impl Results {
 /// Where the curve is drawn.
 const FRAME: Frame = Frame {
     left: 85.0,
-    top: 120.0,
+    top: 135.0,
     width: 790.0,
-    height: 420.0,
+    height: 405.0,
 };
 
 const CURVE: Stroke = Stroke::new(color::BLUE, 2.0, "");
@@ -468,6 +473,11 @@ fn draw_band(drawing: &mut Drawing, axes: &Axes, fit: &Fragility) {
         .collect();
     let path = format!("M{}Z", path.join(" "));
     drawing.path("band", &path, BAND, Stroke::new(BAND, 0.0, ""));
+}
+
+/// Names of the records.
+fn names(cases: &[Case]) -> BTreeSet<&str> {
+    cases.iter().map(|case| case.record.as_str()).collect()
 }
 
 fn levels_of(cases: &[Case]) -> Vec<Level> {

@@ -1,0 +1,871 @@
+//! Suites of records: rows against runs of the same scenario, parts against the whole, and what is said where
+//! there is no curve.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use archrock::output::part::Rows;
+use archrock::output::suite::Results;
+use archrock::scenario::{Layout, Scenario};
+use serde_json::Value;
+
+const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n";
+const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
+                    [simulation]\nduration_s = 30.0\n";
+const FILES: [&str; 4] = ["suite.svg", "fragility.csv", "fragility.json", "suite.csv"];
+
+fn archrock(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_archrock"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Runs a command that is to succeed; returns what it says.
+#[track_caller]
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    stderr(&output)
+}
+
+/// Runs a command whose input is wrong; returns what it says.
+#[track_caller]
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(output.stdout.is_empty());
+    stderr(&output)
+}
+
+fn scenarios() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
+}
+
+/// A folder with the first records of the repository, one of them as a table in cm/s2 as well.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let records = folder.path().join("records");
+    fs::create_dir(&records).unwrap();
+    for name in ["wave-1.at2", "wave-2.at2", "wave-6.at2"] {
+        fs::copy(scenarios().join("records").join(name), records.join(name)).unwrap();
+    }
+    let mut table = String::from("t;up;a\n");
+    for (time_s, acceleration_g) in samples(&records.join("wave-1.at2")) {
+        // The table begins before time zero.
+        table += &format!("{};0;{}\n", time_s - 1.0, 0.7 * acceleration_g);
+    }
+    fs::write(folder.path().join("north, \"old\".csv"), table).unwrap();
+    folder
+}
+
+fn samples(path: &Path) -> Vec<(f64, f64)> {
+    Layout::At2.samples(&fs::read(path).unwrap()).unwrap()
+}
+
+fn write(folder: &Path, name: &str, text: &str) {
+    fs::write(folder.join(name), text).unwrap();
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap()
+}
+
+fn rows(folder: &Path) -> Vec<csv::StringRecord> {
+    let mut table = csv::Reader::from_path(folder.join("suite.csv")).unwrap();
+    let columns = "record,sign,scale,peak_g,outcome,overturning_sway,impacts,impacts_before_overturning,\
+                   outcome_time_s,peak_rotation_over_critical,energy_defect_ratio";
+    assert_eq!(
+        table.headers().unwrap(),
+        &columns.split(',').collect::<csv::StringRecord>()
+    );
+    table.records().map(Result::unwrap).collect()
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&read(path)).unwrap()
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().unwrap()
+}
+
+/// Two records and a table, either scaled or brought to peaks.
+fn mixed(levels: &str) -> String {
+    format!(
+        "{COLUMN}[suite]\nrecords = ['records/wave-[12].at2', 'north, \"old\".csv']\n\
+         acceleration_column = 'a'\nunit = 'g'\n{levels}\n"
+    )
+}
+
+#[test]
+fn rows_are_what_runs_of_the_same_scenario_give() {
+    let folder = folder();
+    let folder = folder.path();
+    for levels in ["scales = [0.5, 1.5, 4.0]", "peaks_g = [0.15, 0.45, 1.2]"] {
+        write(folder, "s.toml", &mixed(levels));
+        done(folder, &["suite", "s.toml", "--out", "o", "--quiet"]);
+        let rows = rows(&folder.join("o"));
+        assert_eq!(rows.len(), 3 * 2 * 3);
+        let outcome = |row: &csv::StringRecord| row[4].to_owned();
+        assert!(rows.iter().any(|row| outcome(row) == "overturned"));
+        assert!(rows.iter().any(|row| outcome(row) == "rest"));
+        for row in rows.iter().step_by(5).chain(rows.last()) {
+            let signed = number(&row[1]) * number(&row[2]);
+            let table = if row[0].ends_with(".csv") {
+                "acceleration_column = 'a'\nunit = 'g'\nstart_s = 1.0\n"
+            } else {
+                ""
+            };
+            let file = &row[0];
+            let text =
+                format!("{COLUMN}[ground.record]\nfile = '{file}'\nscale = {signed:?}\n{table}");
+            write(folder, "run.toml", &text);
+            done(folder, &["run", "run.toml", "--out", "r", "--quiet"]);
+            let run = json(&folder.join("r/summary.json"));
+            assert_eq!(run["outcome"], row[4]);
+            assert_eq!(
+                run["overturning_sway"].as_str().unwrap_or_default(),
+                &row[5]
+            );
+            assert_eq!(run["impacts"].to_string(), row[6]);
+            // A peak in g is scaled to by another order of multiplications.
+            let time_s = run["outcome_time_s"].as_f64().unwrap();
+            assert!((time_s - number(&row[8])).abs() < 1e-6, "{row:?} {time_s}");
+            let peak_g = samples_of(folder, file)
+                .iter()
+                .map(|s| s.1.abs())
+                .fold(0.0, f64::max);
+            let peak_g = peak_g * signed.abs();
+            assert!((peak_g / number(&row[3]) - 1.0).abs() < 1e-14, "{row:?}");
+            // Slenderness 0.8 / 4: the critical rotation is its angle.
+            let rotation = run["peak_rotation_rad"].as_f64().unwrap() / 0.2_f64.atan();
+            if &row[4] != "overturned" {
+                assert!(
+                    (rotation - number(&row[9])).abs() < 1e-6,
+                    "{row:?} {rotation}"
+                );
+            }
+        }
+    }
+}
+
+/// Samples of a record of `folder()`, in g.
+fn samples_of(folder: &Path, file: &str) -> Vec<(f64, f64)> {
+    if file.ends_with(".at2") {
+        return samples(&folder.join(file));
+    }
+    let text = read(&folder.join(file));
+    let numbers = |line: &str| -> Vec<f64> { line.split(';').map(number).collect() };
+    let lines = text.lines().skip(1).map(numbers);
+    lines.map(|cells| (cells[0], cells[2])).collect()
+}
+
+#[test]
+fn a_mirrored_record_does_the_same_to_the_other_side() {
+    let folder = folder();
+    let folder = folder.path();
+    for structure in [COLUMN, ARCH] {
+        let text = format!(
+            "{structure}[suite]\nrecords = 'records/*.at2'\nscales = [0.5, 1.5, 3.0, 6.0]\n"
+        );
+        write(folder, "s.toml", &text);
+        done(folder, &["suite", "s.toml", "--out", "both", "--quiet"]);
+        let both = rows(&folder.join("both"));
+        let mut overturned = 0;
+        for record in both.chunks(8) {
+            for (row, mirrored) in record[..4].iter().zip(&record[4..]) {
+                assert_eq!((&row[1], &mirrored[1]), ("1", "-1"));
+                for column in [0, 2, 3, 4, 6, 7] {
+                    assert_eq!(row[column], mirrored[column]);
+                }
+                for column in [8, 9] {
+                    let (one, other) = (number(&row[column]), number(&mirrored[column]));
+                    // Rounding may differ, since the mechanisms are searched on either side.
+                    assert!((one - other).abs() < 1e-6, "{row:?} {mirrored:?}");
+                }
+                if &row[4] == "overturned" {
+                    overturned += 1;
+                    assert_ne!(row[5], mirrored[5]);
+                }
+            }
+        }
+        assert!(overturned > 0);
+
+        write(folder, "s.toml", &format!("{text}both_signs = false\n"));
+        done(folder, &["suite", "s.toml", "--out", "one", "--quiet"]);
+        let one: Vec<_> = both.iter().filter(|row| &row[1] == "1").cloned().collect();
+        assert_eq!(rows(&folder.join("one")), one);
+    }
+}
+
+#[test]
+fn the_curve_is_that_of_the_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = scenarios().join("column-suite.toml");
+    let said = done(folder.path(), &["suite", file.to_str().unwrap()]);
+    let results = folder.path().join("results/column-suite");
+    let rows = rows(&results);
+    let fragility = json(&results.join("fragility.json"));
+    let mut levels = csv::Reader::from_path(results.join("fragility.csv")).unwrap();
+    assert_eq!(&levels.headers().unwrap()[0], "peak_g");
+    let levels: Vec<_> = levels.records().map(Result::unwrap).collect();
+    assert_eq!((rows.len(), levels.len()), (160, 20));
+    let median = fragility["median"].as_f64().unwrap();
+    let mut log_likelihood = 0.0;
+    for level in &levels {
+        let at: Vec<_> = rows.iter().filter(|row| row[3] == level[0]).collect();
+        let overturned = at.iter().filter(|row| &row[4] == "overturned").count();
+        assert_eq!(level[1], at.len().to_string());
+        assert_eq!(level[2], overturned.to_string());
+        assert_eq!((&level[3], &level[4]), ("0", "0"));
+        let (overturned, all) = (overturned as f64, at.len() as f64);
+        assert_eq!(number(&level[5]), overturned / all);
+        let [p, low, high] = [6, 7, 8].map(|column| number(&level[column]));
+        assert!(0.0 < low && low < p && p < high && high < 1.0);
+        assert_eq!(number(&level[0]) < median, p < 0.5);
+        log_likelihood += overturned * p.ln() + (all - overturned) * (1.0 - p).ln();
+    }
+    let expected = fragility["log_likelihood"].as_f64().unwrap();
+    // The probabilities near one keep fewer digits of their complement.
+    assert!(
+        (log_likelihood / expected - 1.0).abs() < 1e-9,
+        "{log_likelihood} {expected}"
+    );
+    assert_eq!(fragility["no_fit"], Value::Null);
+    assert_eq!(fragility["records"], 8);
+    assert_eq!(fragility["cases"], 160);
+    assert_eq!(fragility["intensity"], "peak_g");
+    for key in ["median", "dispersion"] {
+        let error = |which: &str| fragility[&format!("{key}_{which}")].as_f64().unwrap();
+        let plain = error("standard_error");
+        let by_record = error("standard_error_by_record");
+        let value = fragility[key].as_f64().unwrap();
+        assert!(plain > 0.0 && by_record > 0.0 && plain < value && by_record < value);
+    }
+    assert!(
+        said.contains("160 cases of 8 records") && said.contains("median 0.5"),
+        "{said}"
+    );
+    let picture = read(&results.join("suite.svg"));
+    let picture = roxmltree::Document::parse(&picture).unwrap();
+    let named = |name| {
+        let marks = picture.descendants();
+        marks
+            .filter(|node| node.attribute("data-name") == Some(name))
+            .count()
+    };
+    assert_eq!((named("fraction"), named("fit"), named("band")), (20, 1, 1));
+}
+
+#[test]
+fn the_records_of_the_repository_are_what_they_are_said_to_be() {
+    for k in 1..=8_u32 {
+        let frequency_hz = 0.6 + 0.1 * f64::from(k);
+        let wave = |t: f64| {
+            let sum: f64 = (1..=25)
+                .map(f64::from)
+                .map(|j| {
+                    let phase = frequency_hz * t * j / 10.0 + j * j * f64::from(k + 1).sqrt();
+                    (-((j - 10.0) / 5.0).powi(2)).exp() * (2.0 * PI * phase).cos()
+                })
+                .sum();
+            (t / 1.5).powi(2) * (2.0 - 2.0 * t / 1.5).exp() * sum
+        };
+        let record = samples(&scenarios().join(format!("records/wave-{k}.at2")));
+        let peak = record.iter().map(|s| wave(s.0).abs()).fold(0.0, f64::max);
+        for (time_s, acceleration_g) in record {
+            // Seven digits are written.
+            assert!((acceleration_g - 0.3 / peak * wave(time_s)).abs() < 1e-7);
+        }
+    }
+}
+
+#[test]
+fn patterns_and_lists_are_the_same_suite() {
+    let folder = folder();
+    let folder = folder.path();
+    fs::write(folder.join("records/.hidden.at2"), "no record").unwrap();
+    fs::create_dir(folder.join("records/folder.at2")).unwrap();
+    let suites = [
+        "'records/*.at2'",
+        "['./records/wave-6.at2', 'records/*.at2', 'records/wave-1.at2']",
+        "['records/wave-6.at2', 'records/wave-1.at2', 'records/wave-2.at2']",
+        "['*/wave-?.at2']",
+    ];
+    for (index, records) in suites.iter().enumerate() {
+        let text = format!("{COLUMN}[suite]\nrecords = {records}\nscales = [1.0, 3.0]\n");
+        write(folder, "s.toml", &text);
+        let out = format!("o{index}");
+        // From another folder: files are relative to the scenario.
+        fs::create_dir_all(folder.join("elsewhere")).unwrap();
+        let arguments = [
+            "suite",
+            "../s.toml",
+            "--out",
+            &format!("../{out}"),
+            "--quiet",
+        ];
+        done(&folder.join("elsewhere"), &arguments);
+        for file in FILES {
+            assert_eq!(
+                read(&folder.join(&out).join(file)),
+                read(&folder.join("o0").join(file))
+            );
+        }
+    }
+    assert_eq!(rows(&folder.join("o0")).len(), 3 * 2 * 2);
+}
+
+#[test]
+fn resolved_scenarios_read_back_the_same() {
+    let folder = folder();
+    let folder = folder.path();
+    // A name that is a pattern, which would match another file.
+    fs::copy(folder.join("records/wave-1.at2"), folder.join("[x]*.at2")).unwrap();
+    fs::copy(folder.join("records/wave-1.at2"), folder.join("x1.at2")).unwrap();
+    for text in [
+        mixed("scales = [1, 2]\nboth_signs = false"),
+        mixed("peaks_g = { from = 0.1, to = 1, count = 3, spacing = 'logarithmic' }"),
+        format!("{COLUMN}[suite]\nrecords = '[x]*.at2'\nformat = 'at2'\nscales = [2]\n"),
+    ] {
+        write(folder, "s.toml", &text);
+        let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
+        write(folder, "t.toml", &scenario.to_toml());
+        assert_eq!(
+            Scenario::read(&folder.join("t.toml")),
+            Ok(scenario),
+            "{text}"
+        );
+    }
+    let text = read(&folder.join("t.toml"));
+    assert!(
+        text.contains("records = [\n    \"[x]*.at2\",\n]\nformat = \"at2\"\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn parts_make_the_same_files_where_the_records_are_not() {
+    let folder = folder();
+    let folder = folder.path();
+    write(
+        folder,
+        "s.toml",
+        &format!(
+            "title = 'parts'\n{}",
+            mixed("peaks_g = { from = 0.2, to = 2, count = 5, spacing = 'logarithmic' }")
+        ),
+    );
+    let whole = done(
+        folder,
+        &["suite", "s.toml", "--out", "whole", "--threads", "1"],
+    );
+    for shard in ["1/3", "2/3", "3/3"] {
+        done(
+            folder,
+            &[
+                "suite", "s.toml", "--out", "parts", "--shard", shard, "--quiet",
+            ],
+        );
+    }
+    // What a killed program leaves: the last line is torn.
+    let part = folder.join("parts/suite-2-of-3.part");
+    let complete = read(&part);
+    fs::write(&part, &complete[..complete.len() - 30]).unwrap();
+    let parts: Vec<String> = (1..=3)
+        .map(|i| format!("parts/suite-{i}-of-3.part"))
+        .collect();
+    let mut merge = vec!["merge", "--out", "merged"];
+    merge.extend(parts.iter().map(String::as_str));
+    let said = refused(folder, &merge);
+    assert!(
+        said.contains("finish it with --shard 2/3 --resume"),
+        "{said}"
+    );
+    done(
+        folder,
+        &[
+            "suite", "s.toml", "--out", "parts", "--shard", "2/3", "--resume", "--quiet",
+        ],
+    );
+    fs::remove_dir_all(folder.join("records")).unwrap();
+    fs::remove_file(folder.join("s.toml")).unwrap();
+    let merged = done(folder, &merge);
+    for file in FILES {
+        assert_eq!(
+            read(&folder.join("merged").join(file)),
+            read(&folder.join("whole").join(file))
+        );
+    }
+    assert_eq!(whole.replace("whole", "merged"), merged);
+    let entries = fs::read_dir(folder.join("whole")).unwrap();
+    assert_eq!(entries.count(), FILES.len());
+
+    merge.push("--no-impact");
+    assert!(refused(folder, &merge).contains("--no-impact is about maps"));
+    let damaged =
+        read(&folder.join(&parts[0])).replace("records/wave-1.at2,1,", "records/wave-1.at2,");
+    write(folder, &parts[0], &damaged);
+    merge.pop();
+    assert!(refused(folder, &merge).contains("the rows of the suite are damaged"));
+}
+
+#[test]
+fn other_records_are_not_resumed_with() {
+    let folder = folder();
+    let folder = folder.path();
+    let text = format!("{COLUMN}[suite]\nrecords = 'records/*.at2'\nscales = [1.0, 3.0]\n");
+    write(folder, "s.toml", &text);
+    let arguments = [
+        "suite", "s.toml", "--out", "o", "--shard", "1/2", "--resume", "--quiet",
+    ];
+    done(folder, &arguments);
+    // What is said of a record is no part of it.
+    let record = folder.join("records/wave-2.at2");
+    let original = read(&record);
+    fs::write(
+        &record,
+        original.replace("NO REAL EARTHQUAKE", "STILL NONE"),
+    )
+    .unwrap();
+    done(folder, &arguments);
+    let sample = original
+        .lines()
+        .nth(40)
+        .unwrap()
+        .split_whitespace()
+        .next()
+        .unwrap();
+    fs::write(&record, original.replace(sample, "1.234567E-02")).unwrap();
+    let said = refused(folder, &arguments);
+    assert!(
+        said.contains("other contents of the files that the scenario names"),
+        "{said}"
+    );
+    fs::write(&record, &original).unwrap();
+    fs::copy(&record, folder.join("records/wave-3.at2")).unwrap();
+    let said = refused(folder, &arguments);
+    assert!(said.contains("wave-3.at2"), "{said}");
+}
+
+#[test]
+fn without_a_curve_the_reason_is_said() {
+    let folder = folder();
+    let folder = folder.path();
+    for (scales, reason, never, always) in [
+        ("[1.5, 2.0]", "no case overturns below", None, None),
+        (
+            "[0.1, 0.2]",
+            "none of 2 cases overturns",
+            Some("records/wave-1.at2"),
+            None,
+        ),
+        (
+            "[4, 5.5]",
+            "all 2 cases overturn",
+            None,
+            Some("records/wave-1.at2"),
+        ),
+    ] {
+        let text = format!(
+            "{COLUMN}[suite]\nrecords = 'records/wave-1.at2'\nscales = {scales}\nboth_signs = false\n"
+        );
+        write(folder, "s.toml", &text);
+        let said = done(folder, &["suite", "s.toml", "--out", "o"]);
+        assert!(
+            said.contains(&format!("no fragility curve: {reason}")),
+            "{said}"
+        );
+        let fragility = json(&folder.join("o/fragility.json"));
+        assert!(fragility["no_fit"].as_str().unwrap().starts_with(reason));
+        for key in [
+            "median",
+            "dispersion_standard_error",
+            "median_standard_error_by_record",
+            "log_likelihood",
+        ] {
+            assert_eq!(fragility.get(key), Some(&Value::Null), "{key}");
+        }
+        let list = |name: Option<&str>| Value::from(name.into_iter().collect::<Vec<_>>());
+        assert_eq!(fragility["records_that_never_overturn"], list(never));
+        assert_eq!(fragility["records_that_always_overturn"], list(always));
+        assert_eq!(
+            said.contains("never overturn: records/wave-1.at2"),
+            never.is_some()
+        );
+        assert_eq!(
+            said.contains("always overturn: records/wave-1.at2"),
+            always.is_some()
+        );
+        let picture = read(&folder.join("o/suite.svg"));
+        assert!(
+            picture.contains(&format!("no curve: {reason}")),
+            "{picture}"
+        );
+        assert!(!picture.contains("data-name=\"fit\""));
+        let levels = read(&folder.join("o/fragility.csv"));
+        assert!(
+            levels.lines().skip(1).all(|line| line.ends_with(",,,")),
+            "{levels}"
+        );
+    }
+}
+
+/// Results of rows given by record, level and outcome.
+fn results(rows: &[(&str, f64, &str)]) -> Results {
+    let scenario = "[suite]\nscales = [1.0, 2.0]\n";
+    let rows: Rows = (0..)
+        .zip(rows)
+        .map(|(index, (record, scale, outcome))| {
+            (
+                index,
+                format!("{record},1,{scale:?},{:?},{outcome},,,,,,", 0.3 * scale),
+            )
+        })
+        .collect();
+    Results::of(scenario, &rows).unwrap()
+}
+
+#[test]
+fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
+    let results = results(&[
+        ("\"a, b.at2\"", 1.0, "failed"),
+        ("\"a, b.at2\"", 2.0, "overturned"),
+        ("c.at2", 1.0, "still_rocking"),
+        ("c.at2", 2.0, "failed"),
+        ("d.at2", 1.0, "failed"),
+        ("d.at2", 2.0, "failed"),
+        ("e.at2", 1.0, "overturned"),
+        ("e.at2", 2.0, "rest"),
+        ("e.at2", 2.0, "overturned"),
+    ]);
+    let counts: Vec<_> = results
+        .levels
+        .iter()
+        .map(|level| {
+            (
+                level.intensity,
+                level.cases,
+                level.overturned,
+                level.still_rocking,
+                level.failed,
+            )
+        })
+        .collect();
+    assert_eq!(counts, [(1.0, 2, 1, 1, 2), (2.0, 3, 2, 0, 2)]);
+    let json = results.to_json().unwrap();
+    assert_eq!(json["cases"], 5);
+    assert_eq!(json["records"], 4);
+    assert_eq!(json["failed_left_out"], 4);
+    assert_eq!(json["still_rocking_counted_as_not_overturned"], 1);
+    assert_eq!(
+        json["records_that_always_overturn"],
+        serde_json::json!(["a, b.at2"])
+    );
+    // Of d nothing is known.
+    assert_eq!(
+        json["records_that_never_overturn"],
+        serde_json::json!(["c.at2"])
+    );
+    assert_eq!(results.first_failed().unwrap(), "a, b.at2, scale 1.0");
+    // Two levels fit exactly: Phi(-ln(m)/b) = 1/2 at 1 and Phi(ln(2/m)/b) = 2/3 at 2.
+    let fit = results.fit.unwrap();
+    assert!((fit.median - 1.0).abs() < 1e-9);
+    assert!((fit.dispersion - 2.0_f64.ln() / 0.430_727_299_295_457_5).abs() < 1e-9);
+}
+
+#[test]
+fn a_level_of_which_all_failed_has_no_fraction() {
+    let results = results(&[("a.at2", 1.0, "failed"), ("a.at2", 2.0, "overturned")]);
+    let mut levels = Vec::new();
+    results.write_levels(&mut levels).unwrap();
+    let levels = String::from_utf8(levels).unwrap();
+    assert!(
+        levels.contains("\n1.0,0,0,0,1,,,,\n2.0,1,1,0,0,1.0,,,\n"),
+        "{levels}"
+    );
+    let json = results.to_json().unwrap();
+    assert!(json["no_fit"].as_str().unwrap().starts_with("all 1 cases"));
+    assert_eq!(results.draw().matches("data-name=\"fraction\"").count(), 1);
+}
+
+#[test]
+fn those_still_rocking_are_said() {
+    let folder = folder();
+    let folder = folder.path();
+    let text = format!(
+        "{}[suite]\nrecords = 'records/*.at2'\nscales = [0.9]\n",
+        COLUMN.replace("30.0", "6.0")
+    );
+    write(folder, "s.toml", &text);
+    let said = done(folder, &["suite", "s.toml", "--out", "o"]);
+    assert!(said.contains("4 overturn, 2 are still rocking"), "{said}");
+    assert!(
+        said.contains("those still rocking at duration_s of [simulation] count as not overturned")
+    );
+}
+
+/// Asserts that a suite has these faults and no other: line and column within the file, and words.
+#[track_caller]
+fn assert_faults(folder: &Path, suite: &str, expected: &[(usize, usize, &[&str])]) {
+    write(folder, "s.toml", &format!("{COLUMN}[suite]\n{suite}\n"));
+    let before = COLUMN.lines().count() + 1;
+    let errors = Scenario::read(&folder.join("s.toml")).unwrap_err();
+    assert_eq!(errors.as_slice().len(), expected.len(), "{errors}");
+    for (error, (line, column, words)) in errors.as_slice().iter().zip(expected) {
+        let place = error.place.unwrap();
+        assert_eq!(
+            (place.line - before, place.column),
+            (*line, *column),
+            "{error}"
+        );
+        for word in *words {
+            assert!(error.message.contains(word), "{word:?} is not in: {error}");
+        }
+    }
+}
+
+#[test]
+fn faults_of_the_table_have_places() {
+    let folder = folder();
+    let folder = folder.path();
+    let all = "records = 'records/*.at2'";
+    assert_faults(
+        folder,
+        "recrods = 'x'\nboth_signs = 1",
+        &[
+            (0, 1, &["[suite] lacks `records`", "a string or an array"]),
+            (
+                0,
+                1,
+                &["[suite] needs exactly one of the keys scales, peaks_g"],
+            ),
+            (1, 1, &["did you mean `records`?"]),
+            (
+                2,
+                14,
+                &["`both_signs = 1` is a whole number", "true or false"],
+            ),
+        ],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = [1]\npeaks_g = [1]"),
+        &[(3, 11, &["`peaks_g` stands beside `scales`", "exactly one"])],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = [0.0, 1.0]"),
+        &[(2, 10, &["number 1, that is out of range", "above 0.0"])],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\npeaks_g = {{ from = -1, to = 2000, count = 3 }}"),
+        &[
+            (2, 20, &["`from = -1` is out of range", "above 0.0"]),
+            (2, 29, &["`to = 2000` is out of range", "at most 1000.0"]),
+        ],
+    );
+    assert_faults(
+        folder,
+        "records = []\nscales = [1]",
+        &[(1, 11, &["`records = []` is empty"])],
+    );
+    assert_faults(
+        folder,
+        "records = ['records/*.at2', 'none/*.at2', 'none.at2', 'records', '***']\nscales = [1]",
+        &[
+            (1, 29, &["`'none/*.at2'` in `records` matches no file"]),
+            (
+                1,
+                43,
+                &[
+                    "`'none.at2'` in `records` is not there",
+                    "a file or a pattern",
+                ],
+            ),
+            (1, 55, &["is a folder", "folder/*.at2"]),
+            (1, 66, &["is no pattern of files"]),
+        ],
+    );
+    // Keys of tables go with tables, and with them only.
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = [1]\nunit = 'g'"),
+        &[(3, 8, &["goes with `format = \"csv\"` only"])],
+    );
+    assert_faults(
+        folder,
+        "records = '*.csv'\nscales = [1]",
+        &[(0, 1, &["[suite] lacks `unit`", "cm/s2"])],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = {{ from = 1, to = 2, count = 10000 }}\ntitle = 'x'"),
+        &[(
+            3,
+            1,
+            &[
+                "unknown key `title` in [suite]",
+                "records, format, scales, peaks_g",
+            ],
+        )],
+    );
+}
+
+#[test]
+fn a_suite_has_a_largest_size() {
+    let folder = folder();
+    let folder = folder.path();
+    // What is too much is not even read.
+    for index in 0..51 {
+        write(folder, &format!("{index}.at2"), "no record");
+    }
+    assert_faults(
+        folder,
+        "records = '*.at2'\nscales = { from = 1, to = 2, count = 10000 }",
+        &[(
+            0,
+            1,
+            &[
+                "[suite] has 1020000 cases, 51 records at 10000 levels",
+                "at most 1000000",
+            ],
+        )],
+    );
+}
+
+#[test]
+fn faults_of_records_name_the_file() {
+    let folder = folder();
+    let folder = folder.path();
+    let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
+    for (name, text) in [
+        ("zero.at2", format!("{head}0 0 0\n")),
+        ("short.at2", format!("{head}1 2\n")),
+        ("word.at2", format!("{head}1 2 x\n")),
+        ("tiny.at2", format!("{head}0 1e-9 0\n")),
+        ("long.at2", "A\nNPTS= 3, DT= 20 SEC\n1 2 3\n".to_owned()),
+        ("fine.dat", format!("{head}1 2 3\n")),
+    ] {
+        write(folder, name, &text);
+    }
+    // All of them at once, each at the pattern that names it.
+    assert_faults(
+        folder,
+        "records = ['records/*.at2', '*.at2']\nscales = [1]",
+        &[
+            (
+                1,
+                29,
+                &["names long.at2, which lasts 40.0 s", "`duration_s`", "30.0"],
+            ),
+            (
+                1,
+                29,
+                &[
+                    "names short.at2, which is faulty: ",
+                    "short.at2:5: ",
+                    "ends after 2 values",
+                ],
+            ),
+            (
+                1,
+                29,
+                &["names word.at2, which is faulty: ", "word.at2:5: `x`"],
+            ),
+            (1, 29, &["names zero.at2, which is zero throughout"]),
+        ],
+    );
+    let at = |levels: &str| format!("records = 'tiny.at2'\n{levels}");
+    assert_faults(
+        folder,
+        &at("peaks_g = [0.5]"),
+        &[(
+            1,
+            11,
+            &["names tiny.at2, which has a peak of 1e-9 g", "to 0.5 g"],
+        )],
+    );
+    assert_faults(
+        folder,
+        "records = 'records/wave-1.at2'\nscales = [1, 5000]",
+        &[(
+            1,
+            11,
+            &["names records/wave-1.at2, which reaches 1500.0 g as scaled"],
+        )],
+    );
+    assert_faults(
+        folder,
+        "records = 'fine.*'\nscales = [1]",
+        &[(
+            1,
+            11,
+            &["names fine.dat, which has an ending that tells no format"],
+        )],
+    );
+    write(
+        folder,
+        "s.toml",
+        &format!("{COLUMN}[suite]\nrecords = 'fine.*'\nformat = 'at2'\nscales = [1]\n"),
+    );
+    assert!(Scenario::read(&folder.join("s.toml")).is_ok());
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_would_break_lines_are_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    fs::copy(folder.join("records/wave-1.at2"), folder.join("a\nb.at2")).unwrap();
+    assert_faults(
+        folder,
+        "records = '*.at2'\nscales = [1]",
+        &[(
+            1,
+            11,
+            &["names \"a\\nb.at2\"", "without control characters"],
+        )],
+    );
+    assert_faults(
+        folder,
+        "records = \"a\\nb.at2\"\nscales = [1]",
+        &[(
+            1,
+            11,
+            &["names \"a\\nb.at2\"", "without control characters"],
+        )],
+    );
+}
+
+#[test]
+fn suites_need_a_table_and_start_from_rest() {
+    let folder = folder();
+    let folder = folder.path();
+    write(folder, "s.toml", COLUMN);
+    let said = refused(folder, &["suite", "s.toml"]);
+    assert!(
+        said.contains("the scenario has no [suite]") && said.contains("records = "),
+        "{said}"
+    );
+    let text = mixed("scales = [1]");
+    write(
+        folder,
+        "s.toml",
+        &format!("{text}[initial]\nsway = 'left'\nrotation_rad = 0.1\n"),
+    );
+    let said = refused(folder, &["suite", "s.toml"]);
+    assert!(said.contains("leave [initial] out"), "{said}");
+}
