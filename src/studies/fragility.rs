@@ -1,0 +1,651 @@
+//! Fragility: how likely ground motions of a given intensity overturn the structure.
+//!
+//! A suite of records, each at several intensities and perhaps to either side, gives cases that overturn
+//! and cases that do not. The curve through them is lognormal,
+//!
+//! `P(overturns | x) = Phi(ln(x / theta) / beta)`,
+//!
+//! with the median `theta` and the dispersion `beta` of largest likelihood (Baker, "Efficient analytical
+//! fragility function fitting using dynamic structural analysis", Earthquake Spectra 31(1), 2015): for
+//! every case the logarithm of the probability of what it did, added up. With `eta = a + b ln x`,
+//! `b = 1 / beta` and `theta = exp(-a / b)` this is probit regression. Its log-likelihood is concave in
+//! `a` and `b`, so that Newton's method finds the one maximum from anywhere, and whether there is one can
+//! be told beforehand: in one dimension there is none if and only if the cases of either kind lie on two
+//! sides of a point (Silvapulle, "On the existence of maximum likelihood estimators for the binomial
+//! response models", Journal of the Royal Statistical Society B 43, 1981).
+//!
+//! # How certain
+//!
+//! There are two sets of standard errors. The plain one is the inverse of the observed information, and
+//! takes all cases for independent. Those of one record are not: a record that is harmless for its
+//! intensity is so at every scale, and adding levels without adding records adds less than it seems. The
+//! other set allows for any dependence within a record (Liang and Zeger, "Longitudinal data analysis using
+//! generalized linear models", Biometrika 73, 1986): the scores of the likelihood are summed record by
+//! record, and their spread takes the place of the one that independence promises. The factor
+//! `G / (G - 1)` for `G` records is the usual one for few of them (Cameron and Miller, "A practitioner's
+//! guide to cluster-robust inference", Journal of Human Resources 50(2), 2015). It does not suffice for
+//! very few: with less than some thirty records these errors, too, tend to be small.
+//!
+//! Both are first-order: they are for samples large enough that the errors are small against the
+//! dispersion.
+
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+use nalgebra::{Matrix2, Vector2};
+use thiserror::Error;
+
+/// What a record did at one intensity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// Intensity of the ground motion, positive, in any unit: that of the median.
+    pub intensity: f64,
+    /// Whether the structure overturned.
+    pub overturned: bool,
+    /// Which record: cases of the same one are not independent.
+    pub record: usize,
+}
+
+/// All cases of one intensity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The intensity.
+    pub intensity: f64,
+    /// Number of cases.
+    pub cases: usize,
+    /// Number of those that overturned.
+    pub overturned: usize,
+}
+
+/// Standard errors of the parameters of a [`Fragility`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// Of the median, in its unit.
+    pub median: f64,
+    /// Of the dispersion.
+    pub dispersion: f64,
+}
+
+/// A lognormal fragility curve, and how certain it is. All numbers are finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fragility {
+    /// The intensity `theta` at which half of the cases overturn.
+    pub median: f64,
+    /// The dispersion `beta`: standard deviation of the logarithm of the intensity that overturns.
+    pub dispersion: f64,
+    /// Standard errors if all cases were independent.
+    pub independent: Errors,
+    /// Standard errors that allow for any dependence within a record. None with one record.
+    pub clustered: Option<Errors>,
+    /// The largest logarithm of the likelihood.
+    pub log_likelihood: f64,
+    line: Line,
+    /// Covariance of the line's level and slope if all cases were independent.
+    covariance: Matrix2<f64>,
+    /// The same with dependence within records.
+    clustered_covariance: Option<Matrix2<f64>>,
+}
+
+/// Why there is no fragility curve.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum NoFit {
+    /// An intensity without a finite logarithm.
+    #[error("an intensity of {intensity}: intensities are positive and finite")]
+    Intensity {
+        /// The intensity.
+        intensity: f64,
+    },
+    /// No cases at all.
+    #[error("there are no cases to fit a fragility curve to: run records at several intensities")]
+    NoObservations,
+    /// Every case survives.
+    #[error("none of {cases} cases overturns, up to an intensity of {highest}: add higher ones")]
+    NoneOverturned {
+        /// Number of cases.
+        cases: usize,
+        /// Highest intensity.
+        highest: f64,
+    },
+    /// No case survives.
+    #[error("all {cases} cases overturn, down to an intensity of {lowest}: add lower ones")]
+    AllOverturned {
+        /// Number of cases.
+        cases: usize,
+        /// Lowest intensity.
+        lowest: f64,
+    },
+    /// One intensity does not tell how the fraction grows.
+    #[error(
+        "{overturned} of {cases} cases overturn, but all at the intensity {intensity}: add lower and higher \
+         ones"
+    )]
+    OneIntensity {
+        /// The intensity.
+        intensity: f64,
+        /// Number of cases.
+        cases: usize,
+        /// Number of those that overturned.
+        overturned: usize,
+    },
+    /// The fraction that overturns jumps from none to all, between two levels or at one: any dispersion is
+    /// less likely than a smaller one.
+    #[error(
+        "no case overturns below an intensity of {overturned_from} and none survives above \
+         {survived_up_to}: the median is about there, and the dispersion is too small for these levels; add \
+         closer ones there"
+    )]
+    Separated {
+        /// Highest intensity of a case that survived.
+        survived_up_to: f64,
+        /// Lowest intensity of a case that overturned, not below the other.
+        overturned_from: f64,
+    },
+    /// The likeliest curve is level or falls.
+    #[error(
+        "the fraction that overturns does not increase with the intensity: the geometric mean intensity of \
+         cases that overturn is {overturned}, of those that survive {survived}; add intensities at which \
+         few and at which most cases overturn, or more records"
+    )]
+    NotIncreasing {
+        /// Geometric mean intensity of the cases that survived.
+        survived: f64,
+        /// Geometric mean intensity of the cases that overturned.
+        overturned: f64,
+    },
+    /// The fraction grows, but so little, or within so narrow a range, that the parameters or their errors
+    /// are beyond the range of numbers.
+    #[error(
+        "the cases hardly tell how the fraction that overturns grows with the intensity, and the likeliest \
+         curve is beyond what can be computed; add intensities at which few and at which most cases overturn"
+    )]
+    Undetermined,
+}
+
+impl Fragility {
+    /// The probability that a ground motion of intensity `x` overturns the structure. None do at zero.
+    #[must_use]
+    pub fn probability(&self, x: f64) -> f64 {
+        normal_probability(self.line.at(logarithm(x)))
+    }
+
+    /// Between which probabilities the curve lies at the intensity `x`, with 95 % confidence at each
+    /// intensity on its own: `Phi(eta -+ 1.96 s)`, with `s` the standard error of `eta`, the larger one of
+    /// those with and without dependence within records.
+    #[must_use]
+    pub fn band(&self, x: f64) -> (f64, f64) {
+        let log = logarithm(x);
+        let gradient = Vector2::new(1.0, log - self.line.pivot);
+        let independent = standard_error(&self.covariance, &gradient);
+        let error = self.clustered_covariance.map_or(independent, |covariance| {
+            independent.max(standard_error(&covariance, &gradient))
+        });
+        let (eta, margin) = (self.line.at(log), QUANTILE_95 * error);
+        (
+            normal_probability(eta - margin),
+            normal_probability(eta + margin),
+        )
+    }
+}
+
+/// Two-sided 95 % of the normal distribution.
+const QUANTILE_95: f64 = 1.959_963_984_540_054;
+
+/// `ln x`, at the ends of the positive numbers where `x` is beyond them, which keeps it finite.
+fn logarithm(x: f64) -> f64 {
+    x.clamp(f64::MIN_POSITIVE, f64::MAX).ln()
+}
+
+/// The cases by intensity, lowest first. Levels are the same only if their intensities are exactly equal.
+#[must_use]
+pub fn fractions(observations: &[Observation]) -> Vec<Level> {
+    let mut sorted = observations.to_vec();
+    sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
+    sorted
+        .chunk_by(|a, b| a.intensity == b.intensity)
+        .map(|level| Level {
+            intensity: level[0].intensity,
+            cases: level.len(),
+            overturned: level.iter().filter(|case| case.overturned).count(),
+        })
+        .collect()
+}
+
+/// The lognormal fragility curve of largest likelihood. The order of the observations does not matter.
+///
+/// # Errors
+///
+/// [`NoFit`] if the likelihood has no maximum with a positive dispersion, or an intensity is not positive
+/// and finite.
+pub fn fit(observations: &[Observation]) -> Result<Fragility, NoFit> {
+    let levels = fractions(observations);
+    demand_two_levels(&levels)?;
+    let levels: Vec<LogLevel> = levels.iter().map(LogLevel::from).collect();
+    demand_overlap_and_growth(&levels)?;
+    let best = Likelihood::largest(&levels).ok_or(NoFit::Undetermined)?;
+    Fragility::new(&best, observations).ok_or(NoFit::Undetermined)
+}
+
+/// Fails without cases of both kinds, at two intensities at least, all of them valid.
+fn demand_two_levels(levels: &[Level]) -> Result<(), NoFit> {
+    let valid = |intensity: f64| intensity > 0.0 && intensity.is_finite();
+    if let Some(level) = levels.iter().find(|level| !valid(level.intensity)) {
+        return Err(NoFit::Intensity {
+            intensity: level.intensity,
+        });
+    }
+    let (Some(lowest), Some(highest)) = (levels.first(), levels.last()) else {
+        return Err(NoFit::NoObservations);
+    };
+    let cases = levels.iter().map(|level| level.cases).sum();
+    let overturned = levels.iter().map(|level| level.overturned).sum();
+    if overturned == 0 {
+        Err(NoFit::NoneOverturned {
+            cases,
+            highest: highest.intensity,
+        })
+    } else if overturned == cases {
+        Err(NoFit::AllOverturned {
+            cases,
+            lowest: lowest.intensity,
+        })
+    } else if highest.intensity.ln() == lowest.intensity.ln() {
+        Err(NoFit::OneIntensity {
+            intensity: lowest.intensity,
+            cases,
+            overturned,
+        })
+    } else {
+        Ok(())
+    }
+}
+
+/// A level in terms of the likelihood.
+struct LogLevel {
+    intensity: f64,
+    log: f64,
+    survived: f64,
+    overturned: f64,
+}
+
+impl From<&Level> for LogLevel {
+    fn from(level: &Level) -> Self {
+        Self {
+            intensity: level.intensity,
+            log: level.intensity.ln(),
+            survived: (level.cases - level.overturned) as f64,
+            overturned: level.overturned as f64,
+        }
+    }
+}
+
+impl LogLevel {
+    /// Of what its cases did, at the linear predictor `eta`.
+    fn log_probability(&self, eta: f64) -> LogProbability {
+        let fall = LogProbability::at(eta);
+        let survival = LogProbability::at(-eta);
+        LogProbability {
+            value: self.overturned * fall.value + self.survived * survival.value,
+            slope: self.overturned * fall.slope - self.survived * survival.slope,
+            bend: self.overturned * fall.bend + self.survived * survival.bend,
+        }
+    }
+}
+
+/// Difference of two mean logarithms, in parts of the range of all, that rounding can make.
+const ROUNDING: f64 = 1e-12;
+
+/// Fails where the likelihood has no maximum with a slope above zero.
+///
+/// If no survivor lies above a case that overturned, a steeper line is always likelier. And the line's
+/// slope has the sign of the derivative of the likelihood by it where it is zero and the level the
+/// likeliest one. With `n` cases that is `n phi(a)` times how far the mean logarithm of the intensities
+/// that overturned lies above that of those that did not.
+fn demand_overlap_and_growth(levels: &[LogLevel]) -> Result<(), NoFit> {
+    let last_survival = levels.iter().rfind(|level| level.survived > 0.0);
+    let first_fall = levels.iter().find(|level| level.overturned > 0.0);
+    let (Some(survival), Some(fall)) = (last_survival, first_fall) else {
+        return Ok(());
+    };
+    if survival.log <= fall.log {
+        return Err(NoFit::Separated {
+            survived_up_to: survival.intensity,
+            overturned_from: fall.intensity,
+        });
+    }
+    let mean_log = |count: fn(&LogLevel) -> f64| {
+        let sum: f64 = levels.iter().map(|level| count(level) * level.log).sum();
+        sum / levels.iter().map(count).sum::<f64>()
+    };
+    let survived = mean_log(|level| level.survived);
+    let overturned = mean_log(|level| level.overturned);
+    let range = levels[levels.len() - 1].log - levels[0].log;
+    if overturned - survived <= ROUNDING * range {
+        return Err(NoFit::NotIncreasing {
+            survived: survived.exp(),
+            overturned: overturned.exp(),
+        });
+    }
+    Ok(())
+}
+
+/// The linear predictor `eta = level + slope (ln x - pivot)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Line {
+    pivot: f64,
+    level: f64,
+    slope: f64,
+}
+
+impl Line {
+    fn at(&self, log: f64) -> f64 {
+        self.level + self.slope * (log - self.pivot)
+    }
+
+    fn moved(&self, step: Vector2<f64>) -> Self {
+        Self {
+            level: self.level + step.x,
+            slope: self.slope + step.y,
+            ..*self
+        }
+    }
+}
+
+/// The likelihood at a line. Its pivot is the mean of the logarithms weighted by their information, which
+/// makes the information about level and slope a diagonal matrix: narrow ranges lose no digits.
+struct Likelihood {
+    line: Line,
+    logarithm: f64,
+    /// Derivatives of the logarithm by level and slope.
+    score: Vector2<f64>,
+    /// Its negative second derivatives by level and by slope.
+    information: Vector2<f64>,
+}
+
+/// Newton steps: some ten are usual. Levels that almost coincide, among others hundreds of decades away,
+/// have taken 114.
+const STEPS: usize = 1000;
+
+/// Halvings of a step that does not climb.
+const HALVINGS: usize = 60;
+
+/// The squared length of a Newton step, in standard errors of what it changes, that ends the search.
+const SHORT: f64 = 1e-20;
+
+impl Likelihood {
+    fn at(levels: &[LogLevel], line: Line) -> Self {
+        let terms: Vec<LogProbability> = levels
+            .iter()
+            .map(|level| level.log_probability(line.at(level.log)))
+            .collect();
+        let information: f64 = terms.iter().map(|term| term.bend).sum();
+        let lever: f64 = (levels.iter().zip(&terms))
+            .map(|(level, term)| term.bend * (level.log - line.pivot))
+            .sum();
+        let pivot = line.pivot + lever / information;
+        let mut likelihood = Self {
+            line: Line {
+                pivot,
+                level: line.at(pivot),
+                slope: line.slope,
+            },
+            logarithm: 0.0,
+            score: Vector2::zeros(),
+            information: Vector2::zeros(),
+        };
+        for (level, term) in levels.iter().zip(&terms) {
+            let arm = level.log - pivot;
+            likelihood.logarithm += term.value;
+            likelihood.score += Vector2::new(term.slope, term.slope * arm);
+            likelihood.information += Vector2::new(term.bend, term.bend * arm * arm);
+        }
+        likelihood
+    }
+
+    /// The largest one, by Newton's method with step halving from equal chances everywhere. None if it is
+    /// too far to be found.
+    fn largest(levels: &[LogLevel]) -> Option<Self> {
+        let equal_chances = Line {
+            pivot: levels[0].log,
+            level: 0.0,
+            slope: 0.0,
+        };
+        let mut best = Self::at(levels, equal_chances);
+        for _ in 0..STEPS {
+            let step = best.score.component_div(&best.information);
+            if best.score.dot(&step) <= SHORT {
+                return Some(best);
+            }
+            // Near the maximum the gain of a good step is less than rounding.
+            let least = best.logarithm * (1.0 + ROUNDING);
+            best = std::iter::successors(Some(step), |step| Some(step * 0.5))
+                .take(HALVINGS)
+                .map(|step| Self::at(levels, best.line.moved(step)))
+                .find(|next| next.logarithm >= least)?;
+        }
+        None
+    }
+}
+
+impl Fragility {
+    /// The curve of a line, with its errors to first order; None if a number is out of range.
+    fn new(best: &Likelihood, observations: &[Observation]) -> Option<Self> {
+        let line = best.line;
+        let covariance = Matrix2::from_diagonal(&best.information.map(f64::recip));
+        let clustered_covariance = clustered_covariance(&line, &covariance, observations);
+
+        // `theta = exp(pivot - level / slope)` and `beta = 1 / slope`.
+        let dispersion = line.slope.recip();
+        let median = (line.pivot - line.level * dispersion).exp();
+        let log_median_gradient = Vector2::new(-1.0, line.level * dispersion) * dispersion;
+        let dispersion_gradient = Vector2::new(0.0, -dispersion * dispersion);
+        let errors = |covariance: &Matrix2<f64>| Errors {
+            median: median * standard_error(covariance, &log_median_gradient),
+            dispersion: standard_error(covariance, &dispersion_gradient),
+        };
+        let independent = errors(&covariance);
+        let clustered = clustered_covariance.as_ref().map(errors);
+
+        let sound = |errors: &Errors| errors.median.is_finite() && errors.dispersion.is_finite();
+        let in_range = median.is_normal()
+            && dispersion.is_normal()
+            && sound(&independent)
+            && clustered.as_ref().is_none_or(sound);
+        in_range.then_some(Self {
+            median,
+            dispersion,
+            independent,
+            clustered,
+            log_likelihood: best.logarithm,
+            line,
+            covariance,
+            clustered_covariance,
+        })
+    }
+}
+
+/// Standard error of a quantity of the given gradient by level and slope.
+fn standard_error(covariance: &Matrix2<f64>, gradient: &Vector2<f64>) -> f64 {
+    let variance = gradient.dot(&(covariance * gradient));
+    // That of few records may be singular, and rounding takes it below zero. What overflowed stays so.
+    variance.clamp(0.0, f64::INFINITY).sqrt()
+}
+
+/// Covariance of level and slope with any dependence within records, from the one without: the sandwich
+/// `C M C G / (G - 1)`, where `M` sums the squares of the `G` records' scores. None with one record.
+fn clustered_covariance(
+    line: &Line,
+    covariance: &Matrix2<f64>,
+    observations: &[Observation],
+) -> Option<Matrix2<f64>> {
+    let mut sorted = observations.to_vec();
+    sorted.sort_by(|a, b| {
+        (a.record.cmp(&b.record))
+            .then(a.intensity.total_cmp(&b.intensity))
+            .then(a.overturned.cmp(&b.overturned))
+    });
+    let mut records = 0;
+    let mut squares = Matrix2::zeros();
+    for record in sorted.chunk_by(|a, b| a.record == b.record) {
+        let score: Vector2<f64> = record.iter().map(|case| score(line, case)).sum();
+        records += 1;
+        squares += score * score.transpose();
+    }
+    let factor = f64::from(records) / f64::from(records - 1);
+    (records > 1).then(|| covariance * squares * covariance * factor)
+}
+
+/// Derivatives by level and slope of the logarithm of the probability of what one case did.
+fn score(line: &Line, case: &Observation) -> Vector2<f64> {
+    let log = case.intensity.ln();
+    let eta = line.at(log);
+    let slope = if case.overturned {
+        LogProbability::at(eta).slope
+    } else {
+        -LogProbability::at(-eta).slope
+    };
+    Vector2::new(slope, slope * (log - line.pivot))
+}
+
+/// `Phi(eta)`.
+fn normal_probability(eta: f64) -> f64 {
+    0.5 * libm::erfc(-eta * FRAC_1_SQRT_2)
+}
+
+/// The logarithm of a probability and its derivatives by the linear predictor `eta`.
+struct LogProbability {
+    value: f64,
+    /// First derivative.
+    slope: f64,
+    /// Negative second derivative, above zero: it is concave.
+    bend: f64,
+}
+
+/// Where the tail of the normal distribution begins: below, `Phi` underflows sooner or later, and `h + eta`
+/// loses digits.
+const TAIL: f64 = -5.0;
+
+/// Terms of the continued fraction in the tail, enough for all digits where it begins.
+const TERMS: u32 = 40;
+
+impl LogProbability {
+    /// `ln Phi(eta)`, whose derivatives are `h = phi / Phi` and `-h (h + eta)`.
+    fn at(eta: f64) -> Self {
+        if eta < TAIL {
+            // Laplace's continued fraction: with t = -eta, h - t = 1/(t + 2/(t + 3/(t + ...))).
+            let excess = (1..=TERMS)
+                .rev()
+                .fold(0.0, |rest, k| f64::from(k) / (rest - eta));
+            let slope = excess - eta;
+            return Self {
+                value: -0.5 * eta * eta - (slope * (2.0 * PI).sqrt()).ln(),
+                slope,
+                bend: slope * excess,
+            };
+        }
+        let probability = normal_probability(eta);
+        let slope = (-0.5 * eta * eta).exp() / ((2.0 * PI).sqrt() * probability);
+        Self {
+            // Above zero the digits are in the complement.
+            value: if eta > 0.0 {
+                (-normal_probability(-eta)).ln_1p()
+            } else {
+                probability.ln()
+            },
+            slope,
+            bend: slope * (slope + eta),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `(eta, ln Phi, h, h (h + eta))`, computed with forty digits.
+    const REFERENCE: [(f64, f64, f64, f64); 8] = [
+        (
+            -1_000.0,
+            -500_007.826_694_812_16,
+            1_000.000_999_998,
+            0.999_999_000_006,
+        ),
+        (
+            -40.0,
+            -804.608_442_013_753_8,
+            40.024_968_847_207_26,
+            0.999_377_331_621_408_6,
+        ),
+        (
+            -8.0,
+            -35.013_437_159_914_55,
+            8.121_368_112_236_112,
+            0.985_675_116_556_659_1,
+        ),
+        (
+            -5.0,
+            -15.064_998_393_988_725,
+            5.186_503_967_125_842,
+            0.967_303_565_382_887_8,
+        ),
+        (
+            -1.0,
+            -1.841_021_645_009_263_6,
+            1.525_135_276_160_981,
+            0.800_902_334_429_651_2,
+        ),
+        (
+            0.5,
+            -0.368_946_415_288_656_4,
+            0.509_160_433_837_033_5,
+            0.513_824_564_303_632_9,
+        ),
+        (
+            3.0,
+            -0.001_350_809_964_748_193_8,
+            0.004_437_839_042_125_664,
+            0.013_333_211_541_740_806,
+        ),
+        (
+            7.5,
+            -3.190_891_672_910_947e-14,
+            2.434_320_533_029_087_4e-13,
+            1.825_740_399_771_874_7e-12,
+        ),
+    ];
+
+    fn assert_close(value: f64, reference: f64, relative: f64) {
+        assert!(
+            (value - reference).abs() <= relative * reference.abs(),
+            "{value} {reference}"
+        );
+    }
+
+    #[test]
+    fn logarithms_of_the_normal_distribution_keep_their_digits() {
+        for (eta, value, slope, bend) in REFERENCE {
+            let at = LogProbability::at(eta);
+            // At -5, h + eta = 0.19 has lost a digit and a half; exp(-x^2 / 2) loses one at 7.5.
+            assert_close(at.value, value, 1e-14);
+            assert_close(at.slope, slope, 2e-14);
+            assert_close(at.bend, bend, 1e-13);
+        }
+    }
+
+    #[test]
+    fn the_tail_continues_the_middle() {
+        let below = LogProbability::at(TAIL.next_down());
+        let above = LogProbability::at(TAIL);
+        assert_close(below.value, above.value, 1e-14);
+        assert_close(below.slope, above.slope, 1e-14);
+        assert_close(below.bend, above.bend, 1e-13);
+    }
+
+    #[test]
+    fn logarithms_are_finite_as_far_as_numbers_reach() {
+        for eta in [-1e150, -1e10, -1e3, -38.6, 0.0, 38.6, 1e3, 1e10, 1e150] {
+            let at = LogProbability::at(eta);
+            assert!(at.value.is_finite() && at.value <= 0.0, "{eta}");
+            assert!(at.slope.is_finite() && at.slope >= 0.0, "{eta}");
+            assert!((0.0..=1.0).contains(&at.bend), "{eta}");
+        }
+    }
+}
