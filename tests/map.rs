@@ -611,12 +611,12 @@ fn faults_of_a_map_are_said_with_their_place_and_remedy() {
         "10:15",
         &["lacks `to`"],
     );
-    assert_error(&both("restitution = [0.5]"), "10:15", &["prescribed"]);
     assert_error(
-        &both("voussoirs = [5, 7]"),
-        "10:1",
+        &both("amplitude_g = [1, 2]\nvoussoirs = [5, 7]"),
+        "11:1",
         &["unknown key", "thickness_ratio"],
     );
+    assert_error(&both("restitution = [0.5]"), "10:15", &["prescribed"]);
     let cells = "duration_s = { from = 1, to = 2, count = 2000 }\n\
                  amplitude_g = { from = 1, to = 2, count = 2000 }";
     assert_error(cells, "8:1", &["4000000 cells", "1000000"]);
