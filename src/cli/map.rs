@@ -109,14 +109,18 @@ fn finish(
     quiet: bool,
 ) -> Result<(), Failure> {
     let cells = cells(scenario)?;
-    let boundaries: Vec<Boundary> = if has_boundary(&cells) {
-        let along_x = 0..cells.values()[0].len();
-        let boundaries: Result<Vec<_>, _> =
-            along_x.into_par_iter().map(|x| cells.boundary(x)).collect();
-        boundaries?.into_iter().flatten().collect()
+    let along_x = if has_boundary(&cells) {
+        cells.values()[0].len()
     } else {
-        Vec::new()
+        0
     };
+    let found: Vec<_> = (0..along_x)
+        .into_par_iter()
+        .map(|x| cells.boundary(x))
+        .collect();
+    let failed = found.iter().filter_map(|found| found.as_ref().err()).next();
+    let failed = failed.map(ToString::to_string);
+    let boundaries: Vec<Boundary> = found.into_iter().filter_map(Result::ok).flatten().collect();
     let mut files = vec![PICTURE, TABLE];
     if boundary.no_impact {
         files.insert(0, BOUNDARY);
@@ -137,6 +141,9 @@ fn finish(
     folder.complete()?;
     if !quiet {
         say(&summary(&cells, rows));
+        if let Some(error) = failed {
+            say(&format!("  the boundary without impact has gaps: {error}"));
+        }
         say(&format!(
             "  results in {}: {}",
             path.display(),
