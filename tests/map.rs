@@ -570,6 +570,11 @@ fn faults_of_a_map_are_said_with_their_place_and_remedy() {
         "10:15",
         &["does not ascend", "from = "],
     );
+    assert_error(
+        "frequency_hz = [1e-9, 1]\namplitude_g = [1]",
+        "9:16",
+        &["at least 1e-6"],
+    );
     assert_error(&both("amplitude_g = []"), "10:15", &["is empty"]);
     assert_error(
         &both("amplitude_g = [1, 'x']"),

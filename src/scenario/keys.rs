@@ -34,6 +34,8 @@ pub(super) const LARGEST_G: f64 = 1e3;
 pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
 pub(super) const DURATION_S: Number = Number(Excluded(0.0), Included(1e6));
+/// Inverses of durations.
+pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
 /// At one the envelope of the velocity pulse is as long as a period; far beyond nothing is a pulse.
 const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
 const CYCLES: Number = Number(Included(1.0), Included(100.0));

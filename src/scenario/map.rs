@@ -11,7 +11,8 @@
 use std::sync::OnceLock;
 
 use super::keys::{
-    AMPLITUDE_G, DURATION_S, EMBRACE_DEG, LARGEST_G, MAGNITUDE, RESTITUTION, THICKNESS_RATIO,
+    AMPLITUDE_G, DURATION_S, EMBRACE_DEG, FREQUENCY_HZ, LARGEST_G, MAGNITUDE, RESTITUTION,
+    THICKNESS_RATIO,
 };
 use super::sequence::Sequence;
 use super::table::{Number, Reading, Table, Writer};
@@ -47,7 +48,8 @@ impl Quantity {
     /// What the scenario's own key allows.
     const fn range(self) -> &'static Number {
         match self {
-            Self::Duration | Self::Frequency => &DURATION_S,
+            Self::Duration => &DURATION_S,
+            Self::Frequency => &FREQUENCY_HZ,
             Self::MeanRadius => &MAGNITUDE,
             Self::ThicknessRatio => &THICKNESS_RATIO,
             Self::Embrace => &EMBRACE_DEG,
