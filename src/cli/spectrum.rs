@@ -69,31 +69,34 @@ fn finish(scenario: &Scenario, rows: &Rows, path: &Path, quiet: bool) -> Result<
     Ok(())
 }
 
-/// How many points came to what, and why some to less.
+/// How many points came to what, and what is not certain about them.
 fn summary(points: &Points<'_>, rows: &Rows) -> String {
-    let given = |column| {
+    let impacts = |row: &String| output::number(row, "impacts_before_overturning");
+    let count = |wanted: fn(Option<f64>) -> bool| {
         let rows = rows.values();
-        rows.filter(|row| output::number(row, column).is_some())
-            .count()
+        rows.filter(|row| wanted(impacts(row))).count()
     };
-    let after_impacts = rows
-        .values()
-        .filter(|row| output::number(row, "impacts_before_overturning") > Some(0.0))
-        .count();
     let mut text = format!(
-        "{} points: {} overturn, {after_impacts} of them after impacts with less than without, and {} without \
-         impact",
+        "{} points: the least that overturns does so without impact at {}, after impacts at {}",
         rows.len(),
-        given("least_over_incipient"),
-        given("no_impact_over_incipient"),
+        count(|impacts| impacts == Some(0.0)),
+        count(|impacts| impacts > Some(0.0)),
     );
+    let none = count(|impacts| impacts.is_none());
+    if let Some(last) = points.over_incipient().last()
+        && none > 0
+    {
+        text += &format!("; at {none} nothing up to {last} A_L overturns");
+    }
     let total = |column: &str| -> f64 {
         let numbers = rows.values().filter_map(|row| output::number(row, column));
         numbers.sum()
     };
     let rocking = total("still_rocking");
     if rocking > 0.0 {
-        text += &format!("; {rocking} histories were still rocking long after the pulse: survived");
+        text += &format!(
+            "; {rocking} histories were still rocking long after their pulse, and count as survived"
+        );
     }
     let failed = total("failed");
     if failed > 0.0 {

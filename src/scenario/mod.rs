@@ -637,7 +637,7 @@ duration_s = 1.0
         assert_eq!(
             errors.to_string(),
             "s.toml:1:1: unknown key `titel` in the scenario, did you mean `title`?; allowed are \
-             title, arch, column, simulation, ground, impact, initial\n\
+             title, arch, column, simulation, ground, impact, initial, map, spectrum\n\
              s.toml:6:13: `voussoirs = 2` is out of range; allowed is a whole number from 3 (four \
              hinges need four joints) to 200"
         );
