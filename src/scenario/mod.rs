@@ -279,6 +279,7 @@ impl PulseGround {
         let from_g = specimen.incipient_g() * (1.0 - self.vertical_amplitude_g.abs().min(0.99));
         let mut ascending_g: Vec<f64> = strides(from_g, keys::LARGEST_G)
             .chain(tried_g.iter().copied())
+            .filter(|amplitude_g| *amplitude_g <= keys::LARGEST_G)
             .collect();
         ascending_g.sort_by(f64::total_cmp);
         let least_g = least_amplitude(ascending_g, |amplitude_g| {

@@ -9,7 +9,8 @@
 //! How strong must a pulse be to overturn a structure of some size? With the frequency parameter `p` of the
 //! equivalent block at the unstable equilibrium (see [`crate::mechanics::equivalent`]) and the duration `t_p`
 //! of the pulse, size is `p t_p`: similar structures under pulses of one shape do the same at the same `p t_p`
-//! and the same peak acceleration over `g A_L`. So the structure stays as it is, and the duration varies.
+//! and the same peak acceleration over `g A_L`. So the structure stays as it is, and the duration varies; so
+//! does the horizontal amplitude, while a vertical one stays.
 //!
 //! Beside an arch stands its equivalent free-standing column, which has the same `A_L` and the same `p`, and
 //! the restitution of the scenario if that is prescribed, else Housner's: how much of the arch is told by that
@@ -277,6 +278,7 @@ impl<'a> Points<'a> {
             still_rocking: 0,
             failures: Vec::new(),
         };
+        // What a scenario may have; the sequence ascends, so that the two go side by side.
         let tried_g: Vec<f64> = self
             .over_incipient
             .iter()
