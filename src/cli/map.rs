@@ -74,7 +74,15 @@ fn cells(scenario: &Scenario) -> Result<Cells<'_>, Failure> {
 
 impl BoundaryOption {
     fn check(self, cells: &Cells<'_>) -> Result<(), Failure> {
-        if self.no_impact && !has_boundary(cells) {
+        if has_boundary(cells) {
+            return Ok(());
+        }
+        self.refuse()
+    }
+
+    /// For what has no such boundary.
+    pub fn refuse(self) -> Result<(), Failure> {
+        if self.no_impact {
             let message = "--no-impact is about maps one of whose axes is amplitude_g";
             return Err(Failure::Input(message.to_owned()));
         }

@@ -6,6 +6,7 @@ use archrock::output::part;
 
 use super::Failure;
 use super::map::{self, BoundaryOption};
+use super::spectrum;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -25,6 +26,10 @@ pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let folder = arguments.out.as_deref().unwrap_or(beside);
     match header.study.as_str() {
         map::STUDY => map::merge(&header.scenario, &rows, folder, arguments.boundary, quiet),
+        spectrum::STUDY => {
+            arguments.boundary.refuse()?;
+            spectrum::merge(&header.scenario, &rows, folder, quiet)
+        }
         study => Err(Failure::Input(format!(
             "parts of a study that this program does not know: {study:?}"
         ))),

@@ -9,6 +9,7 @@ mod impact;
 mod map;
 mod merge;
 mod run;
+mod spectrum;
 mod study;
 
 use std::io::{self, Write};
@@ -52,6 +53,9 @@ enum Command {
     Chart(chart::Arguments),
     /// Simulate the history of every cell of a map and draw what overturns: see [map] in the scenario.
     Map(map::Arguments),
+    /// Find the least pulse that overturns, over size, for an arch and its equivalent column: see [spectrum] in
+    /// the scenario.
+    Spectrum(spectrum::Arguments),
     /// Join the parts of a study that were computed with --shard.
     Merge(merge::Arguments),
     /// Check a scenario and print it with every default resolved.
@@ -116,6 +120,7 @@ pub fn main() -> ExitCode {
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => map::map(&map, arguments.quiet),
+        Command::Spectrum(spectrum) => spectrum::spectrum(&spectrum, arguments.quiet),
         Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),
     };

@@ -9,7 +9,8 @@ use std::path::Path;
 
 use super::table::{Count, Number, OneOf, Reading, Table, Text, Writer};
 use super::{
-    Arch, Column, Ground, Initial, Map, PulseGround, Record, Scenario, Simulation, Structure,
+    Arch, Column, Ground, Initial, Map, PulseGround, Record, Scenario, Simulation, Spectrum,
+    Structure,
 };
 use crate::dynamics::ground::{Pulse, WaveTrain};
 use crate::mechanics::impact::ImpactModel;
@@ -67,6 +68,10 @@ impl Scenario {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
             Map::read(table, structure, ground, impact.as_ref().ok())
         });
+        let spectrum = table.table("spectrum", |table| {
+            let structure = structure.as_ref().ok();
+            Spectrum::read(table, structure, ground.as_ref().ok(), gravity_m_s2)
+        });
         Ok(Self {
             title: title?,
             structure: structure?,
@@ -75,6 +80,7 @@ impl Scenario {
             initial: initial?,
             simulation: simulation?,
             map: map?,
+            spectrum: spectrum?,
         })
     }
 
@@ -87,6 +93,7 @@ impl Scenario {
             initial,
             simulation,
             map,
+            spectrum,
         } = self;
         if let Some(title) = title {
             out.text("title", title);
@@ -105,6 +112,9 @@ impl Scenario {
         simulation.write(out);
         if let Some(map) = map {
             map.write(out);
+        }
+        if let Some(spectrum) = spectrum {
+            spectrum.write(out);
         }
     }
 }
@@ -260,6 +270,16 @@ impl Ground {
             |table: &mut Table<'_>| Record::read(table, folder, gravity_m_s2).map(Self::Record);
         kinds.push(("record", table.table("record", read)));
         table.exactly_one("tables", kinds)
+    }
+
+    /// Refuses the table of a study that is about pulses where there is no pulse; `None`: not known.
+    pub(super) fn check_pulse(table: &mut Table<'_>, ground: Option<&Option<Self>>) -> Reading<()> {
+        match ground {
+            Some(None | Some(Self::Record(_))) => Err(table.wrong_itself(
+                "needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]",
+            )),
+            Some(Some(Self::Pulse(_))) | None => Ok(()),
+        }
     }
 
     fn write(&self, out: &mut Writer) {
