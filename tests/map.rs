@@ -76,6 +76,46 @@ fn the_frequency_is_the_inverse_of_the_duration() {
     }
 }
 
+/// A pulse to the other side does the mirror image, to the last bit; and an arch of four times the size does
+/// under a pulse twice as long what the small one does, in twice the time.
+#[test]
+fn maps_have_the_symmetries_of_the_mechanics() {
+    let text = |map: &str| {
+        format!(
+            "{SEMICIRCLE}[ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.8\n\
+             [simulation]\nduration_s = 60.0\n[map]\n{map}"
+        )
+    };
+    let mirrored = parse(&text(
+        "duration_s = [0.6, 0.8, 1.2]\namplitude_g = [-2.0, -0.5, -0.2, 0.2, 0.5, 2.0]",
+    ));
+    let cells = Cells::new(&mirrored).unwrap();
+    for (column, row) in (0..3).flat_map(|column| (0..3).map(move |row| (column, row))) {
+        let left = shaken(&cells, column * 6 + row);
+        let right = shaken(&cells, column * 6 + 5 - row);
+        let outcome = match left.outcome {
+            Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
+            other => other,
+        };
+        assert_eq!(Verdict { outcome, ..left }, right);
+    }
+    let scaled = parse(&text("mean_radius_m = [2.0, 8.0]\nduration_s = [0.4, 0.8]"));
+    let cells = Cells::new(&scaled).unwrap();
+    assert_eq!(
+        cells.axes().map(|axis| axis.quantity.name()),
+        ["duration_s", "mean_radius_m"]
+    );
+    // Cells 0 and 3: 0.4 s at 2 m, 0.8 s at 8 m.
+    let (small, large) = (shaken(&cells, 0), shaken(&cells, 3));
+    assert_eq!(
+        (small.outcome, small.impacts),
+        (large.outcome, large.impacts)
+    );
+    assert!((small.peak_over_critical - large.peak_over_critical).abs() < 1e-9);
+    assert!((2.0 * small.outcome_time_s - large.outcome_time_s).abs() < 1e-6);
+    assert!(small.impacts > 0);
+}
+
 #[test]
 fn shapes_that_are_no_four_link_arches_have_no_history() {
     let scenario = parse(&format!(
