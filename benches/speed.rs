@@ -1,4 +1,4 @@
-//! How fast it is: the right-hand side, the chain of mechanisms of an arch, whole histories.
+//! How fast it is: the right-hand side, the chain of mechanisms of an arch, whole histories, maps of them.
 //!
 //! The arch is a semicircle of mean radius 5 m and thickness ratio 0.15 whose hinges may sit anywhere.
 //! Run with `cargo bench`.
@@ -9,7 +9,7 @@ use std::sync::{Arc, LazyLock};
 
 use archrock::dynamics::engine::HybridSystem;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Request, history};
+use archrock::dynamics::history::{Outcome, Request, history};
 use archrock::dynamics::rocking::{Rocking, RockingState};
 use archrock::mechanics::arch::Arch;
 use archrock::mechanics::chain::Chain;
@@ -17,6 +17,7 @@ use archrock::mechanics::impact::ImpactModel;
 use archrock::mechanics::mechanism::{HingeSites, Sway};
 use archrock::mechanics::ring::Ring;
 use divan::Bencher;
+use divan::counter::ItemsCount;
 
 const GRAVITY_M_S2: f64 = 9.81;
 const REST_ENERGY_RATIO: f64 = 1e-8;
@@ -78,5 +79,31 @@ fn history_of_a_rectangular_pulse(bencher: Bencher, (amplitude_g, duration_s): (
     bencher.bench(|| {
         let history = history(&rocking, &request, |_| ControlFlow::Continue(()));
         history.map(|history| history.outcome)
+    });
+}
+
+/// Histories of a grid of rectangular pulses, one after another on one thread: what a study costs.
+#[divan::bench(sample_count = 20, sample_size = 1)]
+fn map_of_30_by_30_pulses(bencher: Bencher) {
+    let along = |part: u32| f64::from(part) / 29.0;
+    let grounds: Vec<_> = (0..900)
+        .map(|cell| {
+            let (row, column) = (along(cell / 30), along(cell % 30));
+            pulse(0.15 + 1.35 * row, 0.05 + 0.95 * column)
+        })
+        .collect();
+    let request = Request {
+        end_s: 10.0,
+        relative_tolerance: RELATIVE_TOLERANCE,
+        initial: None,
+        output_step_s: None,
+    };
+    bencher.counter(ItemsCount::new(grounds.len())).bench(|| {
+        let overturned = grounds.iter().filter(|ground| {
+            let rocking = Rocking::new(&*ARCH, ground, GRAVITY_M_S2, REST_ENERGY_RATIO);
+            let history = history(&rocking, &request, |_| ControlFlow::Continue(()));
+            history.is_ok_and(|history| matches!(history.outcome, Outcome::Overturned(_)))
+        });
+        overturned.count()
     });
 }

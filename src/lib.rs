@@ -18,8 +18,8 @@
 //! - [`dynamics`]: motion in time. An engine for systems that jump between modes ([`dynamics::engine`]),
 //!   the ground ([`dynamics::ground`]), rocking as such a system ([`dynamics::rocking`]) and its history
 //!   ([`dynamics::history`]).
-//! - [`studies`]: what many histories say together. How likely an intensity overturns
-//!   ([`studies::fragility`]).
+//! - [`studies`]: many histories, and what they say together. What is shaken and how it ends
+//!   ([`studies::specimen`]), how likely an intensity overturns it ([`studies::fragility`]).
 //! - [`scenario`]: what is to be simulated, as a TOML file. [`output`]: results as CSV, JSON and pictures.
 //!
 //! The arch of the paper, and the history of the README:

@@ -9,7 +9,9 @@ use archrock::mechanics::chain::Chain;
 use archrock::mechanics::impact::ImpactModel;
 use archrock::mechanics::mechanism::{HingeSites, Sway};
 use archrock::mechanics::ring::{Edge, Ring};
-use archrock::output::pictures;
+use archrock::output::part::Rows;
+use archrock::output::{map, pictures};
+use archrock::scenario::{Cells, Scenario};
 use archrock::studies::survey::shape_result;
 use nalgebra::Vector2;
 use roxmltree::{Document, Node};
@@ -415,4 +417,82 @@ fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
     let limit = chain.link(400).unwrap().link.restitution;
     assert!((result.last_restitution.unwrap() - limit).abs() < 1e-5);
     assert!(shape_result(180.0, 0.1, sites, ImpactModel::MaxRestitution).is_none());
+}
+
+/// Rectangles of a path of cells: left, right, top, bottom.
+fn rectangles(document: &Document<'_>, name: &str) -> Vec<[f64; 4]> {
+    let paths = named(document, name);
+    let paths = paths.iter().map(|node| node.attribute("d").unwrap());
+    paths
+        .flat_map(|path| path.split_terminator('Z'))
+        .map(|part| {
+            let numbers: Vec<f64> = part
+                .split(['M', ' ', 'H', 'V'])
+                .filter(|text| !text.is_empty())
+                .map(|text| text.parse().unwrap())
+                .collect();
+            [numbers[0], numbers[2], numbers[3], numbers[1]]
+        })
+        .collect()
+}
+
+/// Every cell has its colour in its place, on axes whose edges lie halfway between the values; and the boundary
+/// runs between the last cell that survives and the first that does not.
+#[test]
+fn the_map_shows_every_cell_and_the_boundaries() {
+    let text = "title = 'a < b'\n[column]\nheight_m = 4.0\nwidth_m = 0.8\n\
+                [ground.rectangular]\namplitude_g = 1\nduration_s = 1\n\
+                [simulation]\nduration_s = 60\n[map]\nduration_s = [0.2, 0.3, 0.6]\n\
+                amplitude_g = { from = 0.1, to = 1.6, count = 5, spacing = 'logarithmic' }";
+    let scenario = Scenario::parse(text, "s.toml").unwrap();
+    let cells = Cells::new(&scenario).unwrap();
+    let rows: Rows = (0..cells.count())
+        .map(|index| (index, map::row(&cells, index).unwrap()))
+        .collect();
+    let boundaries: Vec<_> = (0..3)
+        .map(|x| cells.boundary(x).unwrap().unwrap())
+        .collect();
+    let picture = map::draw("a < b", &cells, &rows, &boundaries);
+    let document = Document::parse(&picture).unwrap();
+    assert!(texts(&document).iter().any(|text| text == "a < b"));
+
+    // The frame is 790 by 550 pixels; x from 0.15 to 0.75 s, y over five octaves from 0.1 g / sqrt(2).
+    let (left, top, width, height) = (85.0, 110.0, 790.0, 550.0);
+    let x_edges = [0.15, 0.25, 0.45, 0.75].map(|x: f64| left + width * (x - 0.15) / 0.6);
+    let y_edge = |row: u32| top + height * (1.0 - f64::from(row) / 5.0);
+    let y_of = |amplitude_g: f64| top + height * (1.0 - ((amplitude_g / 0.1).log2() + 0.5) / 5.0);
+    let mut shown = 0;
+    for (name, outcome) in [
+        ("never_moved", "never_moved"),
+        ("rest", "rest"),
+        ("overturned-0", "overturned"),
+    ] {
+        for [l, r, t, b] in rectangles(&document, name) {
+            let column = x_edges.iter().position(|x| (x - l).abs() < PIXEL).unwrap();
+            assert!((x_edges[column + 1] - r).abs() < PIXEL);
+            let at = |y: f64| {
+                (0..=5)
+                    .find(|row| (y_edge(*row) - y).abs() < PIXEL)
+                    .unwrap()
+            };
+            for row in at(b)..at(t) {
+                let row = &rows[&(column * 5 + row as usize)];
+                assert_eq!(map::outcome(row), outcome);
+                shown += 1;
+            }
+        }
+    }
+    assert_eq!(shown, 15);
+    let incipient = curve_of(&document, "incipient");
+    assert!(
+        incipient
+            .iter()
+            .all(|point| (point.y - y_of(0.2)).abs() < PIXEL)
+    );
+    let free = curve_of(&document, "no-impact");
+    for (point, boundary) in free.iter().zip(&boundaries) {
+        assert!((point.y - y_of(boundary.impact_free_g.unwrap())).abs() < PIXEL);
+        assert!((point.x - (left + width * (boundary.x - 0.15) / 0.6)).abs() < PIXEL);
+    }
+    assert_eq!(free.len(), 3);
 }

@@ -73,17 +73,16 @@ fn cells(scenario: &Scenario) -> Result<Cells<'_>, Failure> {
 }
 
 impl BoundaryOption {
-    /// Says that a study is none that has boundaries.
-    pub fn refuse(self) -> Result<(), Failure> {
-        if self.no_impact {
-            let message = "--no-impact is about maps";
-            return Err(Failure::Input(message.to_owned()));
+    fn check(self, cells: &Cells<'_>) -> Result<(), Failure> {
+        if has_boundary(cells) {
+            return Ok(());
         }
-        Ok(())
+        self.refuse()
     }
 
-    fn check(self, cells: &Cells<'_>) -> Result<(), Failure> {
-        if self.no_impact && !has_boundary(cells) {
+    /// For what has no such boundary.
+    pub fn refuse(self) -> Result<(), Failure> {
+        if self.no_impact {
             let message = "--no-impact is about maps one of whose axes is amplitude_g";
             return Err(Failure::Input(message.to_owned()));
         }
@@ -118,14 +117,18 @@ fn finish(
     quiet: bool,
 ) -> Result<(), Failure> {
     let cells = cells(scenario)?;
-    let boundaries: Vec<Boundary> = if has_boundary(&cells) {
-        let along_x = 0..cells.values()[0].len();
-        let boundaries: Result<Vec<_>, _> =
-            along_x.into_par_iter().map(|x| cells.boundary(x)).collect();
-        boundaries?.into_iter().flatten().collect()
+    let along_x = if has_boundary(&cells) {
+        cells.values()[0].len()
     } else {
-        Vec::new()
+        0
     };
+    let found: Vec<_> = (0..along_x)
+        .into_par_iter()
+        .map(|x| cells.boundary(x))
+        .collect();
+    let failed = found.iter().filter_map(|found| found.as_ref().err()).next();
+    let failed = failed.map(ToString::to_string);
+    let boundaries: Vec<Boundary> = found.into_iter().filter_map(Result::ok).flatten().collect();
     let mut files = vec![PICTURE, TABLE];
     if boundary.no_impact {
         files.insert(0, BOUNDARY);
@@ -146,6 +149,9 @@ fn finish(
     folder.complete()?;
     if !quiet {
         say(&summary(&cells, rows));
+        if let Some(error) = failed {
+            say(&format!("  the boundary without impact has gaps: {error}"));
+        }
         say(&format!(
             "  results in {}: {}",
             path.display(),

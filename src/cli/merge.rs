@@ -6,6 +6,7 @@ use archrock::output::part;
 
 use super::Failure;
 use super::map::{self, BoundaryOption};
+use super::spectrum;
 use super::suite;
 
 #[derive(clap::Args)]
@@ -26,6 +27,10 @@ pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let folder = arguments.out.as_deref().unwrap_or(beside);
     match header.study.as_str() {
         map::STUDY => map::merge(&header.scenario, &rows, folder, arguments.boundary, quiet),
+        spectrum::STUDY => {
+            arguments.boundary.refuse()?;
+            spectrum::merge(&header.scenario, &rows, folder, quiet)
+        }
         suite::STUDY => {
             arguments.boundary.refuse()?;
             suite::finish(&header.scenario, &rows, folder, quiet)

@@ -9,6 +9,7 @@ mod impact;
 mod map;
 mod merge;
 mod run;
+mod spectrum;
 mod study;
 mod suite;
 
@@ -53,6 +54,9 @@ enum Command {
     Chart(chart::Arguments),
     /// Simulate the history of every cell of a map and draw what overturns: see [map] in the scenario.
     Map(map::Arguments),
+    /// Find the least pulse that overturns, over size, for an arch and its equivalent column: see [spectrum] in
+    /// the scenario.
+    Spectrum(spectrum::Arguments),
     /// Shake with every record of a suite at every level and draw the fragility: see [suite] in the scenario.
     Suite(suite::Arguments),
     /// Join the parts of a study that were computed with --shard.
@@ -119,6 +123,7 @@ pub fn main() -> ExitCode {
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => map::map(&map, arguments.quiet),
+        Command::Spectrum(spectrum) => spectrum::spectrum(&spectrum, arguments.quiet),
         Command::Suite(suite) => suite::suite(&suite, arguments.quiet),
         Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),

@@ -1,6 +1,7 @@
 //! Long work: the cases of a study on all processors, with progress, that can be interrupted and resumed.
 
 use std::cell::Cell;
+use std::fmt;
 use std::fs;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::panic::resume_unwind;
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use archrock::output::OutputError;
 use archrock::output::part::{Found, Header, Part, PartError, Rows, Shard};
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
@@ -236,9 +237,13 @@ impl Progress {
             ProgressDrawTarget::stderr()
         };
         let bar = ProgressBar::with_draw_target(Some(all as u64), target);
-        let style =
-            ProgressStyle::with_template("{bar:40} {pos}/{len} cases, {per_sec}, {eta} left")
-                .expect("the template is valid");
+        let template = "{bar:40} {pos}/{len} cases, {rate} a second, {eta} left";
+        let style = ProgressStyle::with_template(template)
+            .expect("the template is valid")
+            .with_key("rate", |state: &ProgressState, out: &mut dyn fmt::Write| {
+                // A bar that cannot be written does no harm.
+                let _ = write!(out, "{:.0}", state.per_sec());
+            });
         bar.set_style(style);
         bar.set_position(done as u64);
         bar.reset_eta();

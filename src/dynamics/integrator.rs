@@ -102,6 +102,7 @@ pub fn integrate<const N: usize>(
     let not_finite = Cell::new(false);
     let problem = Problem {
         task,
+        per_scale: task.scale.map(f64::recip),
         slope,
         watch,
         last: (task.start_s, task.start, task.start_slope),
@@ -153,6 +154,8 @@ pub fn integrate<const N: usize>(
 /// A task as `ode_solvers` wants it.
 struct Problem<'a, F, W, const N: usize> {
     task: &'a Task<N>,
+    /// One over the scale: this is multiplied by much more often than it is computed.
+    per_scale: State<N>,
     slope: F,
     watch: W,
     /// Time, state and slope at the end of the last accepted step.
@@ -172,10 +175,10 @@ where
             let state = y.component_mul(&self.task.scale);
             (self.slope)(self.task.start_s + x, &state)
         };
-        *dy = slope.component_div(&self.task.scale);
+        *dy = slope.component_mul(&self.per_scale);
         // A trial step may go too far and is then rejected and shortened, as the error estimate is not
         // a number either. If that never ends, this tells why.
-        self.not_finite.set(!dy.iter().all(|rate| rate.is_finite()));
+        self.not_finite.set(!dy.sum().is_finite());
     }
 
     fn solout(&mut self, x: f64, y: &State<N>, dy: &State<N>) -> bool {

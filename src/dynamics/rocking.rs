@@ -167,8 +167,9 @@ impl<'a, S: Structure> Rocking<'a, S> {
     ) -> f64 {
         let force = (self.gravity_m_s2 + ground_m_s2.y) * coefficients.rise
             + ground_m_s2.x * coefficients.sway;
+        let length_m = self.structure.length_m();
         let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
-        -(force / self.structure.length_m() + inertial) / coefficients.inertia
+        -(force + length_m * inertial) / (length_m * coefficients.inertia)
     }
 
     /// What the internal forces ask of the structure's sections.

@@ -74,8 +74,8 @@ struct Pose {
     left: Vector2<f64>,
     middle: Vector2<f64>,
     right: Vector2<f64>,
-    /// Cross product of the middle and the right bar.
-    cross: f64,
+    /// Inverse of the cross product of the middle and the right bar.
+    per_cross: f64,
 }
 
 fn complex_product(a: Vector2<f64>, b: Vector2<f64>) -> Vector2<f64> {
@@ -128,14 +128,15 @@ impl Linkage {
             self.middle.bar.norm_squared(),
             self.right.bar.norm_squared(),
         );
-        let along = 0.5 + 0.5 * (middle_square - right_square) / square;
-        let across = (middle_square / square - along * along).sqrt();
-        let middle = line * along + turned(line) * across;
+        // Dot and cross product of the line and the middle bar.
+        let along = 0.5 * (square + middle_square - right_square);
+        let cross = (middle_square * square - along * along).sqrt();
+        let middle = (line * along + turned(line) * cross) * square.recip();
         Pose {
             left,
             middle,
             right: middle - line,
-            cross: across * square,
+            per_cross: cross.recip(),
         }
     }
 
@@ -143,8 +144,8 @@ impl Linkage {
     /// loop's velocities closed by cross products.
     fn rates(pose: &Pose) -> (f64, f64) {
         (
-            pose.left.perp(&pose.right) / pose.cross,
-            pose.left.perp(&pose.middle) / pose.cross,
+            pose.left.perp(&pose.right) * pose.per_cross,
+            pose.left.perp(&pose.middle) * pose.per_cross,
         )
     }
 
@@ -154,8 +155,8 @@ impl Linkage {
         let inward = pose.left + pose.middle * (middle_rate * middle_rate)
             - pose.right * (right_rate * right_rate);
         (
-            inward.dot(&pose.right) / pose.cross,
-            inward.dot(&pose.middle) / pose.cross,
+            inward.dot(&pose.right) * pose.per_cross,
+            inward.dot(&pose.middle) * pose.per_cross,
         )
     }
 
@@ -201,7 +202,7 @@ impl Linkage {
         let on_right = right.resultant(&self.ring.sector(c, d));
         let force_c = (pose.right * on_middle.about(point_b)
             + pose.middle * on_right.about(point_d))
-            / pose.cross;
+            * pose.per_cross;
         let force_b = force_c - complex_product(turn_middle, on_middle.linear);
         let force_a = force_b - complex_product(turn_left, on_left.linear);
         let force_d = force_c + complex_product(turn_right, on_right.linear);
@@ -356,7 +357,7 @@ mod tests {
             prop_assert!((end - linkage.ground).norm() < 1e-14);
             prop_assert!((pose.right.norm() - linkage.right.bar.norm()).abs() < 1e-14);
             prop_assert!((pose.middle.norm() - linkage.middle.bar.norm()).abs() < 1e-14);
-            prop_assert!((pose.middle.perp(&pose.right) - pose.cross).abs() < 1e-14);
+            prop_assert!((pose.middle.perp(&pose.right) - pose.per_cross.recip()).abs() < 1e-14);
         }
     }
 

@@ -105,7 +105,7 @@ const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Ki
 
 /// In the order of the legend.
 const KINDS: [Kind; 8] = [
-    kind("never_moved", "never moves", "#f4f4f4"),
+    kind("never_moved", "never moves", "#e4e4e4"),
     kind("rest", "comes to rest", "#bcdcf0"),
     kind("still_rocking", "still rocking", "#6f8ba0"),
     kind("overturned-0", "overturns without impact", color::VERMILION),

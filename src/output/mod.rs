@@ -11,6 +11,7 @@ pub mod part;
 pub mod pictures;
 pub mod results;
 pub mod rotations;
+pub mod spectrum;
 pub mod suite;
 pub mod svg;
 pub mod timeline;

@@ -198,8 +198,8 @@ fn unusable(path: &Path, what: impl Into<String>) -> PartError {
 /// Reads a part; the header is `None` if the program was killed before it was written. Returns how many
 /// bytes of the file are complete lines as well.
 fn read_lines(path: &Path) -> Result<(Option<Header>, Rows, u64), PartError> {
-    let cannot = OutputError::io(format!("cannot read {}", path.display()));
-    let mut bytes = fs::read(path).map_err(cannot)?;
+    let mut bytes =
+        fs::read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
     // A line without end was being written when the program was killed.
     let complete = bytes
         .iter()

@@ -506,7 +506,11 @@ mod tests {
     fn logarithmic_ticks_are_digits_times_powers_of_ten() {
         assert_eq!(
             texts(Scale::logarithmic(0.05, 1.0)),
-            ["0.05", "0.1", "0.2", "0.5", "1"]
+            ["0.05", "0.07", "0.1", "0.2", "0.3", "0.5", "0.7", "1"]
+        );
+        assert_eq!(
+            texts(Scale::logarithmic(0.01, 2.0)),
+            ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"]
         );
         assert_eq!(texts(Scale::logarithmic(0.3, 0.5)), ["0.3", "0.4", "0.5"]);
         assert_eq!(

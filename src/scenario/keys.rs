@@ -9,7 +9,8 @@ use std::path::Path;
 
 use super::table::{Count, Number, OneOf, Reading, Table, Text, Writer};
 use super::{
-    Arch, Column, Ground, Initial, Map, PulseGround, Record, Scenario, Simulation, Structure, Suite,
+    Arch, Column, Ground, Initial, Map, PulseGround, Record, Scenario, Simulation, Spectrum,
+    Structure, Suite,
 };
 use crate::dynamics::ground::{Pulse, WaveTrain};
 use crate::mechanics::impact::ImpactModel;
@@ -34,6 +35,8 @@ pub(super) const LARGEST_G: f64 = 1e3;
 pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
 pub(super) const DURATION_S: Number = Number(Excluded(0.0), Included(1e6));
+/// Inverses of durations.
+pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
 /// At one the envelope of the velocity pulse is as long as a period; far beyond nothing is a pulse.
 const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
 const CYCLES: Number = Number(Included(1.0), Included(100.0));
@@ -65,6 +68,10 @@ impl Scenario {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
             Map::read(table, structure, ground, impact.as_ref().ok())
         });
+        let spectrum = table.table("spectrum", |table| {
+            let structure = structure.as_ref().ok();
+            Spectrum::read(table, structure, ground.as_ref().ok(), gravity_m_s2)
+        });
         let suite = table.table("suite", |table| {
             Suite::read(table, folder, simulation.as_ref().ok())
         });
@@ -76,6 +83,7 @@ impl Scenario {
             initial: initial?,
             simulation: simulation?,
             map: map?,
+            spectrum: spectrum?,
             suite: suite?,
         })
     }
@@ -89,6 +97,7 @@ impl Scenario {
             initial,
             simulation,
             map,
+            spectrum,
             suite,
         } = self;
         if let Some(title) = title {
@@ -108,6 +117,9 @@ impl Scenario {
         simulation.write(out);
         if let Some(map) = map {
             map.write(out);
+        }
+        if let Some(spectrum) = spectrum {
+            spectrum.write(out);
         }
         if let Some(suite) = suite {
             suite.write(out);
@@ -266,6 +278,16 @@ impl Ground {
             |table: &mut Table<'_>| Record::read(table, folder, gravity_m_s2).map(Self::Record);
         kinds.push(("record", table.table("record", read)));
         table.exactly_one("tables", kinds)
+    }
+
+    /// Refuses the table of a study that is about pulses where there is no pulse; `None`: not known.
+    pub(super) fn check_pulse(table: &mut Table<'_>, ground: Option<&Option<Self>>) -> Reading<()> {
+        match ground {
+            Some(None | Some(Self::Record(_))) => Err(table.wrong_itself(
+                "needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]",
+            )),
+            Some(Some(Self::Pulse(_))) | None => Ok(()),
+        }
     }
 
     fn write(&self, out: &mut Writer) {

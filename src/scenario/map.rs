@@ -11,16 +11,14 @@
 use std::sync::OnceLock;
 
 use super::keys::{
-    AMPLITUDE_G, DURATION_S, EMBRACE_DEG, LARGEST_G, MAGNITUDE, RESTITUTION, THICKNESS_RATIO,
+    AMPLITUDE_G, DURATION_S, EMBRACE_DEG, FREQUENCY_HZ, MAGNITUDE, RESTITUTION, THICKNESS_RATIO,
 };
 use super::sequence::Sequence;
 use super::table::{Number, Reading, Table, Writer};
-use super::{Arch, Ground, PulseGround, Scenario, Structure};
+use super::{Ground, PulseGround, Scenario, Structure};
 use crate::dynamics::engine::EngineError;
-use crate::dynamics::ground::GroundMotion;
 use crate::mechanics::impact::ImpactModel;
 use crate::mechanics::limit::LimitError;
-use crate::studies::impact_free::least_amplitude;
 use crate::studies::specimen::{Specimen, Verdict};
 
 named! {
@@ -47,7 +45,8 @@ impl Quantity {
     /// What the scenario's own key allows.
     const fn range(self) -> &'static Number {
         match self {
-            Self::Duration | Self::Frequency => &DURATION_S,
+            Self::Duration => &DURATION_S,
+            Self::Frequency => &FREQUENCY_HZ,
             Self::MeanRadius => &MAGNITUDE,
             Self::ThicknessRatio => &THICKNESS_RATIO,
             Self::Embrace => &EMBRACE_DEG,
@@ -114,11 +113,7 @@ impl Map {
                 "has {cells} cells; allowed are at most {MOST_CELLS}"
             )));
         }
-        if let Some(None | Some(Ground::Record(_))) = ground {
-            return Err(table.wrong_itself(
-                "needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]",
-            ));
-        }
+        Ground::check_pulse(table, ground)?;
         Ok(Self { x, y })
     }
 
@@ -275,32 +270,26 @@ impl<'a> Cells<'a> {
             },
             model => model,
         };
-        match &self.scenario.structure {
-            Structure::Column(column) => Ok(Specimen::Column(column.build(model))),
-            Structure::Arch(arch) => Arch {
-                thickness_ratio: value(Quantity::ThicknessRatio, arch.thickness_ratio),
-                embrace_deg: value(Quantity::Embrace, arch.embrace_deg),
-                ..arch.clone()
-            }
-            .build(model)
-            .map(Specimen::Arch),
+        let mut structure = self.scenario.structure.clone();
+        if let Structure::Arch(arch) = &mut structure {
+            arch.thickness_ratio = value(Quantity::ThicknessRatio, arch.thickness_ratio);
+            arch.embrace_deg = value(Quantity::Embrace, arch.embrace_deg);
         }
+        structure.specimen(model)
     }
 
-    /// The pulse of a cell, with another amplitude if one is given.
-    fn ground(&self, index: usize, amplitude_g: Option<f64>) -> GroundMotion {
+    /// The pulse of a cell.
+    fn pulse(&self, index: usize) -> PulseGround {
         let value = |quantity, otherwise| self.value(index, quantity).unwrap_or(otherwise);
         let duration_s = match self.value(index, Quantity::Frequency) {
             Some(frequency_hz) => 1.0 / frequency_hz,
             None => value(Quantity::Duration, self.pulse.duration_s),
         };
-        let own_g = value(Quantity::Amplitude, self.pulse.amplitude_g);
         PulseGround {
-            amplitude_g: amplitude_g.unwrap_or(own_g),
+            amplitude_g: value(Quantity::Amplitude, self.pulse.amplitude_g),
             duration_s,
             ..self.pulse.clone()
         }
-        .motion(self.scenario.simulation.gravity_m_s2)
     }
 
     /// The history of a cell.
@@ -310,8 +299,9 @@ impl<'a> Cells<'a> {
             Ok(specimen) => specimen,
             Err(error) => return Cell::NoArch(error),
         };
-        let ground = self.ground(index, None);
-        match specimen.verdict(&ground, &self.scenario.conditions()) {
+        let conditions = self.scenario.conditions();
+        let ground = self.pulse(index).motion(conditions.gravity_m_s2);
+        match specimen.verdict(&ground, &conditions) {
             Ok(verdict) => Cell::Shaken(verdict),
             Err(error) => Cell::Failed(error),
         }
@@ -327,18 +317,14 @@ impl<'a> Cells<'a> {
         let Ok(specimen) = self.specimen(index) else {
             return Ok(None);
         };
-        let incipient_g = specimen.incipient_g();
         let conditions = self.scenario.conditions();
-        // Ground that falls makes the structure lighter.
-        let from_g = incipient_g * (1.0 - self.pulse.vertical_amplitude_g.abs().min(0.99));
-        let impact_free_g = least_amplitude(from_g, LARGEST_G, |amplitude_g| {
-            let ground = self.ground(index, Some(amplitude_g));
-            specimen.overturns_without_impact(&ground, &conditions)
-        })?;
+        let without_impact = self
+            .pulse(index)
+            .without_impact(&specimen, &conditions, &[])?;
         Ok(Some(Boundary {
             x: self.values[0][x],
-            incipient_g,
-            impact_free_g,
+            incipient_g: specimen.incipient_g(),
+            impact_free_g: without_impact.map(|(amplitude_g, _)| amplitude_g),
         }))
     }
 }

@@ -30,6 +30,7 @@ mod keys;
 mod map;
 mod record;
 mod sequence;
+mod spectrum;
 mod suite;
 mod table;
 
@@ -41,6 +42,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use crate::dynamics::engine::EngineError;
 use crate::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
 use crate::dynamics::history::Request;
 use crate::mechanics::arch;
@@ -52,7 +54,8 @@ use crate::mechanics::linkage::Linkage;
 use crate::mechanics::mechanism::{HingeSites, Sway};
 use crate::mechanics::ring::Ring;
 use crate::mechanics::structure::Structure as _;
-use crate::studies::specimen::Conditions;
+use crate::studies::impact_free::{least_amplitude, strides};
+use crate::studies::specimen::{Conditions, Specimen};
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub use map::{Axis, Boundary, Cell, Cells, Map, Quantity};
@@ -60,6 +63,7 @@ pub use record::{
     Component, Format, Layout, LineFault, Record, Scaling, Series, TableColumn, Unit,
 };
 pub use sequence::{Sequence, Spacing};
+pub use spectrum::{NoSpectrum, Overturning, Point, Points, Spectrum};
 pub use suite::{Measure, Shaken, Shakes, Suite};
 use table::Writer;
 
@@ -80,6 +84,8 @@ pub struct Scenario {
     pub simulation: Simulation,
     /// What varies over an overturning map.
     pub map: Option<Map>,
+    /// What is tried for an overturning spectrum; `None`: the defaults.
+    pub spectrum: Option<Spectrum>,
     /// Which records shake the structure for its fragility.
     pub suite: Option<Suite>,
 }
@@ -175,6 +181,14 @@ impl Column {
 }
 
 impl Structure {
+    /// It, ready to rock.
+    fn specimen(&self, model: ImpactModel) -> Result<Specimen, LimitError> {
+        match self {
+            Self::Arch(arch) => arch.build(model).map(Specimen::Arch),
+            Self::Column(column) => Ok(Specimen::Column(column.build(model))),
+        }
+    }
+
     /// `q` at the limit position of the mechanism that starts, for a structure that stands.
     fn limit_rad(&self) -> f64 {
         match self {
@@ -240,6 +254,45 @@ impl PulseGround {
                 phase_rad: self.phase_deg.to_radians(),
             },
         )
+    }
+
+    /// The same pulse to the same side with another amplitude.
+    fn of_magnitude(&self, magnitude_g: f64) -> Self {
+        Self {
+            amplitude_g: magnitude_g.copysign(self.amplitude_g),
+            ..self.clone()
+        }
+    }
+
+    /// The least amplitude, as a magnitude in g, with which the pulse overturns a specimen without impact,
+    /// all else as it is, and the side to which it does; `None` if no amplitude does that a scenario may have.
+    /// It is looked for at `tried_g`, which ascend, and in strides.
+    fn without_impact(
+        &self,
+        specimen: &Specimen,
+        conditions: &Conditions,
+        tried_g: &[f64],
+    ) -> Result<Option<(f64, Sway)>, EngineError> {
+        let overturns = |magnitude_g: f64| {
+            let ground = self
+                .of_magnitude(magnitude_g)
+                .motion(conditions.gravity_m_s2);
+            specimen.overturns_without_impact(&ground, conditions)
+        };
+        // Ground that falls makes the structure lighter.
+        let from_g = specimen.incipient_g() * (1.0 - self.vertical_amplitude_g.abs().min(0.99));
+        let mut ascending_g: Vec<f64> = strides(from_g, keys::LARGEST_G)
+            .chain(tried_g.iter().copied())
+            .filter(|amplitude_g| *amplitude_g <= keys::LARGEST_G)
+            .collect();
+        ascending_g.sort_by(f64::total_cmp);
+        let least_g = least_amplitude(ascending_g, |amplitude_g| {
+            overturns(amplitude_g).map(|sway| sway.is_some())
+        })?;
+        let Some(least_g) = least_g else {
+            return Ok(None);
+        };
+        Ok(overturns(least_g)?.map(|sway| (least_g, sway)))
     }
 }
 
@@ -444,6 +497,7 @@ mod tests {
                 gravity_m_s2: 9.81,
             },
             map: None,
+            spectrum: None,
             suite: None,
         };
         assert_eq!(scenario, expected);
@@ -505,6 +559,7 @@ mod tests {
                 gravity_m_s2: 1.62,
             },
             map: None,
+            spectrum: None,
             suite: None,
         };
         assert_eq!(scenario, Ok(expected));
@@ -589,7 +644,7 @@ duration_s = 1.0
         assert_eq!(
             errors.to_string(),
             "s.toml:1:1: unknown key `titel` in the scenario, did you mean `title`?; allowed are \
-             title, arch, column, simulation, ground, impact, initial, map, suite\n\
+             title, arch, column, simulation, ground, impact, initial, map, spectrum, suite\n\
              s.toml:6:13: `voussoirs = 2` is out of range; allowed is a whole number from 3 (four \
              hinges need four joints) to 200"
         );
@@ -975,7 +1030,7 @@ duration_s = 1.0
             initial in proptest::option::of(any_initial()),
             simulation in any_simulation(),
         ) {
-            let scenario = Scenario { title, structure, ground, impact, initial, simulation, map: None, suite: None };
+            let scenario = Scenario { title, structure, ground, impact, initial, simulation, map: None, spectrum: None, suite: None };
             prop_assert_eq!(parse(&scenario.to_toml()), Ok(scenario));
         }
 

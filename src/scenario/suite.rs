@@ -22,7 +22,7 @@ use glob::MatchOptions;
 use super::record::{self, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::table::{Number, OneOrMore, Reading, Switch, Table, Text, Writer};
-use super::{Component, Scenario, Simulation, Structure};
+use super::{Component, Scenario, Simulation};
 use crate::dynamics::engine::EngineError;
 use crate::mechanics::limit::LimitError;
 use crate::studies::specimen::{Specimen, Verdict};
@@ -369,14 +369,10 @@ impl<'a> Shakes<'a> {
     /// # Errors
     /// As [`super::Arch::build`].
     pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, LimitError> {
-        let specimen = match &scenario.structure {
-            Structure::Arch(arch) => Specimen::Arch(arch.build(scenario.impact)?),
-            Structure::Column(column) => Specimen::Column(column.build(scenario.impact)),
-        };
         Ok(Self {
             scenario,
             suite,
-            specimen,
+            specimen: scenario.structure.specimen(scenario.impact)?,
             levels: suite.levels.values(),
         })
     }

@@ -9,20 +9,21 @@ use std::ops::ControlFlow;
 use crate::dynamics::engine::{EngineError, Observer, Settings, Transition, simulate};
 use crate::dynamics::integrator::Step;
 use crate::dynamics::rocking::{Guard, Mode, Rocking, RockingState};
+use crate::mechanics::mechanism::Sway;
 use crate::mechanics::structure::Structure;
 
 /// So long that the first fall is over: near the unstable equilibrium a motion dwells for some forty of its
 /// time scales before rounding decides.
 const END_S: f64 = 1e6;
 
-/// Whether a structure at rest is overturned before its first impact.
+/// The side to which a structure at rest is overturned before its first impact; `None` if it is not.
 ///
 /// # Errors
 /// When the integration fails.
 pub fn overturns<S: Structure>(
     rocking: &Rocking<'_, S>,
     relative_tolerance: f64,
-) -> Result<bool, EngineError> {
+) -> Result<Option<Sway>, EngineError> {
     let settings = Settings {
         end_s: END_S,
         relative_tolerance,
@@ -31,7 +32,10 @@ pub fn overturns<S: Structure>(
     };
     let state = RockingState::zeros();
     let finish = simulate(rocking, Mode::Rest, state, &settings, &mut FirstFall)?;
-    Ok(matches!(finish.mode, Mode::Overturned { .. }))
+    Ok(match finish.mode {
+        Mode::Overturned { sway, .. } => Some(sway),
+        Mode::Rest | Mode::Rocking { .. } => None,
+    })
 }
 
 /// Breaks when the hinges close.
@@ -68,30 +72,37 @@ const STRIDE: f64 = 1.05;
 /// Relative width to which the edge is bisected: the integration at the default tolerance knows no more.
 const RESOLUTION: f64 = 1e-9;
 
-/// The least amplitude from `from` to `to` that overturns without impact, from a function that tells
-/// whether one does: the first found in strides of 5 %, bisected to `1e-9` of it. `None` if none does.
+/// Amplitudes from `from` to `to`, in strides of 5 %.
+pub fn strides(from: f64, to: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(from), move |last| {
+        (*last < to).then(|| (last * STRIDE).min(to))
+    })
+}
+
+/// The least amplitude that overturns without impact, from a function that tells whether one does: the first
+/// of ascending ones, bisected to `1e-9` of it against the one before. `None` if none does.
 ///
 /// # Errors
 /// Those of the function.
 pub fn least_amplitude<E>(
-    from: f64,
-    to: f64,
+    ascending: impl IntoIterator<Item = f64>,
     overturns: impl Fn(f64) -> Result<bool, E>,
 ) -> Result<Option<f64>, E> {
-    let (mut low, mut high) = (from, from);
-    while !overturns(high)? {
-        if high >= to {
-            return Ok(None);
+    let mut below = None;
+    for amplitude in ascending {
+        if overturns(amplitude)? {
+            let (mut low, mut high) = (below.unwrap_or(amplitude), amplitude);
+            while high - low > RESOLUTION * high {
+                let middle = 0.5 * (low + high);
+                if overturns(middle)? {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            return Ok(Some(high));
         }
-        (low, high) = (high, (high * STRIDE).min(to));
+        below = Some(amplitude);
     }
-    while high - low > RESOLUTION * high {
-        let middle = 0.5 * (low + high);
-        if overturns(middle)? {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Ok(Some(high))
+    Ok(None)
 }

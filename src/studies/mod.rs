@@ -1,4 +1,4 @@
-//! Studies: many histories, and what they say together.
+//! Studies: many histories, and what they say together. Pure functions, no files.
 //!
 //! A study is a list of cases, and each case depends on nothing but what defines it; so cases may be computed
 //! in any order, by any number of threads, on several machines, and today or tomorrow.

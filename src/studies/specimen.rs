@@ -9,6 +9,7 @@ use crate::dynamics::rocking::Rocking;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::column::Column;
 use crate::mechanics::equivalent::{Equivalent, equivalent};
+use crate::mechanics::mechanism::Sway;
 use crate::mechanics::structure::Structure;
 
 use super::impact_free;
@@ -122,7 +123,7 @@ impl Specimen {
         })
     }
 
-    /// Whether moving ground overturns it from rest before its first impact.
+    /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
     ///
     /// # Errors
     /// When the integration fails.
@@ -130,7 +131,7 @@ impl Specimen {
         &self,
         ground: &GroundMotion,
         conditions: &Conditions,
-    ) -> Result<bool, EngineError> {
+    ) -> Result<Option<Sway>, EngineError> {
         each!(self, structure => {
             let rocking = conditions.rocking(structure, ground);
             impact_free::overturns(&rocking, conditions.relative_tolerance)

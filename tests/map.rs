@@ -1,0 +1,717 @@
+//! The overturning map: its cells, its boundaries, and the work on it in pieces.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{Outcome, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::scenario::{Boundary, Cell, Cells, Scenario};
+use archrock::studies::specimen::Verdict;
+use common::{GRAVITY, REST_ENERGY_RATIO, request, seven_voussoirs};
+
+const SEMICIRCLE: &str =
+    "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+
+fn parse(text: &str) -> Scenario {
+    Scenario::parse(text, "s.toml").unwrap()
+}
+
+fn shaken(cells: &Cells<'_>, index: usize) -> Verdict {
+    match cells.cell(index) {
+        Cell::Shaken(verdict) => verdict,
+        other => panic!("cell {index}: {other:?}"),
+    }
+}
+
+fn boundaries(cells: &Cells<'_>) -> Vec<Boundary> {
+    let along_x = 0..cells.values()[0].len();
+    along_x
+        .map(|x| cells.boundary(x).unwrap().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_cell_is_the_history_of_its_scenario() {
+    let scenario = parse(
+        "[arch]\nmean_radius_m = 1.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n\
+         [ground.one_cosine]\namplitude_g = 0.3\nduration_s = 0.4\n\
+         [map]\nmean_radius_m = [2.0, 10.0]\namplitude_g = [-0.8, 0.2, 1.5]",
+    );
+    let cells = Cells::new(&scenario).unwrap();
+    assert_eq!(cells.count(), 6);
+    for index in 0..6 {
+        let [mean_radius_m, amplitude_g] = cells.coordinates(index);
+        let mut arch = seven_voussoirs();
+        arch.mean_radius_m = mean_radius_m;
+        let ground = GroundMotion::pulse(Pulse::OneCosine, amplitude_g * GRAVITY, 0.4, 0.0);
+        let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
+        let history = history(&rocking, &request(10.0), |_| ControlFlow::Continue(())).unwrap();
+        assert_eq!(shaken(&cells, index), Verdict::from(&history));
+    }
+}
+
+#[test]
+fn the_frequency_is_the_inverse_of_the_duration() {
+    let text = |map: &str| {
+        format!("{SEMICIRCLE}[ground.half_sine]\namplitude_g = 0.4\nduration_s = 0.5\n[map]\n{map}")
+    };
+    let by_duration = parse(&text("duration_s = [0.25, 0.5]\namplitude_g = [0.4, 0.9]"));
+    let by_frequency = parse(&text("frequency_hz = [2.0, 4.0]\namplitude_g = [0.4, 0.9]"));
+    let (by_duration, by_frequency) = (
+        Cells::new(&by_duration).unwrap(),
+        Cells::new(&by_frequency).unwrap(),
+    );
+    for (index, other) in [(0, 2), (1, 3), (2, 0), (3, 1)] {
+        assert_eq!(shaken(&by_duration, index), shaken(&by_frequency, other));
+    }
+}
+
+/// A pulse to the other side does the mirror image, to the last bit; and an arch of four times the size does
+/// under a pulse twice as long what the small one does, in twice the time.
+#[test]
+fn maps_have_the_symmetries_of_the_mechanics() {
+    let text = |map: &str| {
+        format!(
+            "{SEMICIRCLE}[ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.8\n\
+             [simulation]\nduration_s = 60.0\n[map]\n{map}"
+        )
+    };
+    let mirrored = parse(&text(
+        "duration_s = [0.6, 0.8, 1.2]\namplitude_g = [-2.0, -0.5, -0.2, 0.2, 0.5, 2.0]",
+    ));
+    let cells = Cells::new(&mirrored).unwrap();
+    for (column, row) in (0..3).flat_map(|column| (0..3).map(move |row| (column, row))) {
+        let left = shaken(&cells, column * 6 + row);
+        let right = shaken(&cells, column * 6 + 5 - row);
+        let outcome = match left.outcome {
+            Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
+            other => other,
+        };
+        assert_eq!(Verdict { outcome, ..left }, right);
+    }
+    let scaled = parse(&text("mean_radius_m = [2.0, 8.0]\nduration_s = [0.4, 0.8]"));
+    let cells = Cells::new(&scaled).unwrap();
+    assert_eq!(
+        cells.axes().map(|axis| axis.quantity.name()),
+        ["duration_s", "mean_radius_m"]
+    );
+    // Cells 0 and 3: 0.4 s at 2 m, 0.8 s at 8 m.
+    let (small, large) = (shaken(&cells, 0), shaken(&cells, 3));
+    assert_eq!(
+        (small.outcome, small.impacts),
+        (large.outcome, large.impacts)
+    );
+    assert!((small.peak_over_critical - large.peak_over_critical).abs() < 1e-9);
+    assert!((2.0 * small.outcome_time_s - large.outcome_time_s).abs() < 1e-6);
+    assert!(small.impacts > 0);
+}
+
+#[test]
+fn shapes_that_are_no_four_link_arches_have_no_history() {
+    let scenario = parse(&format!(
+        "{SEMICIRCLE}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.2\n\
+         [map]\nthickness_ratio = [0.1, 0.15, 0.4]\nembrace_deg = [90.0, 180.0]"
+    ));
+    let cells = Cells::new(&scenario).unwrap();
+    let found: Vec<_> = (0..6).map(|index| cells.cell(index)).collect();
+    assert!(
+        matches!(found[1], Cell::NoArch(_)),
+        "0.10 at 180 degrees is too thin"
+    );
+    assert!(
+        matches!(found[3], Cell::Shaken(_)),
+        "0.15 at 180 degrees stands"
+    );
+    assert!(
+        matches!(found[4], Cell::NoArch(_)),
+        "0.40 at 90 degrees has no four links"
+    );
+}
+
+/// Slender columns under a rectangular pulse overturn without impact from `x = a / A_L` on with
+/// `cosh(p t) = 1 + 1 / (2 x (x - 1))`. What is left out is of the order of `alpha^2`, here 1e-4.
+#[test]
+fn the_impact_free_boundary_of_a_slender_column_is_the_closed_form() {
+    let (height_m, width_m) = (10.0_f64, 0.1_f64);
+    let scenario = parse(&format!(
+        "[column]\nheight_m = {height_m}\nwidth_m = {width_m}\n\
+         [ground.rectangular]\namplitude_g = 0.1\nduration_s = 1.0\n\
+         [simulation]\nduration_s = 100\n\
+         [map]\nduration_s = {{ from = 0.05, to = 5.0, count = 9, spacing = \"logarithmic\" }}\n\
+         amplitude_g = {{ from = 0.0105, to = 0.3, count = 12, spacing = \"logarithmic\" }}"
+    ));
+    let cells = Cells::new(&scenario).unwrap();
+    let p = (0.75 * GRAVITY / (0.5 * height_m.hypot(width_m))).sqrt();
+    for (column, boundary) in boundaries(&cells).into_iter().enumerate() {
+        // x (x - 1) = 1 / (2 (cosh(p t) - 1))
+        let product = 0.5 / ((p * boundary.x).cosh() - 1.0);
+        let expected = 0.5 + (0.25 + product).sqrt();
+        let found_g = boundary.impact_free_g.unwrap();
+        let found = found_g / boundary.incipient_g;
+        assert!(
+            (found / expected - 1.0).abs() < 2e-4,
+            "{}: {found} {expected}",
+            boundary.x
+        );
+        // The sampled cells agree with the boundary.
+        for row in 0..12 {
+            let index = column * 12 + row;
+            let verdict = shaken(&cells, index);
+            let at_once = matches!(verdict.outcome, Outcome::Overturned(_)) && verdict.impacts == 0;
+            assert_eq!(
+                at_once,
+                cells.coordinates(index)[1] >= found_g,
+                "cell {index}"
+            );
+        }
+    }
+}
+
+/// Published values of an independent computation (relative tolerance 1e-10), given to three or four digits.
+#[test]
+fn the_impact_free_boundary_of_seven_voussoirs_under_a_step_pair() {
+    let scenario = parse(
+        "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n\
+         [ground.step_pair]\namplitude_g = 1.0\nduration_s = 0.5\n\
+         [map]\nduration_s = [0.2, 0.5, 1.0]\namplitude_g = [0.4, 4.0]",
+    );
+    let cells = Cells::new(&scenario).unwrap();
+    for (boundary, expected_g) in boundaries(&cells).into_iter().zip([3.066, 0.820, 0.465]) {
+        let found_g = boundary.impact_free_g.unwrap();
+        assert!(
+            (found_g / expected_g - 1.0).abs() < 1e-3,
+            "{found_g} {expected_g}"
+        );
+    }
+}
+
+/// Above amplitudes that overturn there are some that do not: bisection would never see them. At a tolerance
+/// a thousand times finer they are the same.
+#[test]
+fn safe_islands_above_the_first_overturning_amplitude_survive() {
+    let outcomes = |tolerance: f64| {
+        let scenario = parse(&format!(
+            "{SEMICIRCLE}[ground.one_cosine]\namplitude_g = 1.0\nduration_s = 0.8\n\
+             [simulation]\nduration_s = 30.0\nrelative_tolerance = {tolerance:e}\n\
+             [map]\nduration_s = [0.8]\n\
+             amplitude_g = {{ from = 0.2, to = 2.0, count = 37 }}"
+        ));
+        let cells = Cells::new(&scenario).unwrap();
+        let free_g = boundaries(&cells)[0].impact_free_g.unwrap();
+        let found: Vec<_> = (0..cells.count())
+            .map(|index| {
+                let verdict = shaken(&cells, index);
+                let overturns = matches!(verdict.outcome, Outcome::Overturned(_));
+                (cells.coordinates(index)[1], overturns, verdict.impacts)
+            })
+            .collect();
+        (found, free_g)
+    };
+    let (found, free_g) = outcomes(1e-9);
+    let first = found
+        .iter()
+        .position(|(_, overturns, _)| *overturns)
+        .unwrap();
+    let island: Vec<_> = found[first..]
+        .iter()
+        .filter(|(_, overturns, _)| !overturns)
+        .map(|(amplitude_g, ..)| *amplitude_g)
+        .collect();
+    assert!(island.len() >= 3, "{found:?}");
+    assert!(island.iter().all(|amplitude_g| *amplitude_g < free_g));
+    // Below the island it takes impacts to overturn, above it none.
+    assert!(found[first].2 > 0 && found.last().unwrap().2 == 0);
+    let verdicts = |found: Vec<(f64, bool, usize)>| -> Vec<_> {
+        found
+            .into_iter()
+            .map(|(a, overturns, n)| (a.to_bits(), overturns, overturns.then_some(n)))
+            .collect()
+    };
+    assert_eq!(verdicts(found), verdicts(outcomes(1e-12).0));
+}
+
+// The program, in pieces.
+
+fn archrock(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_archrock"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    archrock(folder, arguments).output().unwrap()
+}
+
+#[track_caller]
+fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    stderr
+}
+
+#[track_caller]
+fn refuse(folder: &Path, arguments: &[&str], words: &[&str]) {
+    let output = run(folder, arguments);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "{word:?} is not in: {stderr}");
+    }
+}
+
+/// All files of a folder with their contents.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| {
+            let entry = entry.unwrap();
+            let name = entry.file_name().into_string().unwrap();
+            (name, fs::read(entry.path()).unwrap())
+        })
+        .collect()
+}
+
+/// A folder with `s.toml`: a map of so many cells each way.
+fn folder_with_map(count: usize) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "title = \"a, \\\"b\\\"\"\n{SEMICIRCLE}[ground.one_sine]\namplitude_g = 0.4\nduration_s = 0.5\n\
+         [map]\nduration_s = {{ from = 0.1, to = 1.5, count = {count} }}\n\
+         amplitude_g = {{ from = 0.1, to = 2.0, count = {count}, spacing = \"logarithmic\" }}\n"
+    );
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    folder
+}
+
+#[test]
+fn threads_and_parts_do_not_change_a_bit() {
+    let folder = folder_with_map(13);
+    let path = folder.path();
+    let said = succeed(path, &["map", "s.toml", "--threads", "1", "--no-impact"]);
+    assert!(said.contains("169 cells: "), "{said}");
+    let whole = files(&path.join("results/s"));
+    assert_eq!(
+        whole.keys().collect::<Vec<_>>(),
+        ["map.csv", "map.svg", "no_impact.csv"]
+    );
+    let table = String::from_utf8(whole["map.csv"].clone()).unwrap();
+    assert_eq!(table.lines().count(), 170);
+    assert!(table.starts_with(
+        "duration_s,amplitude_g,outcome,overturning_sway,impacts,impacts_before_overturning,\
+         outcome_time_s,peak_rotation_over_critical,energy_defect_ratio\n0.1,0.1,never_moved,,0,,"
+    ));
+
+    succeed(
+        path,
+        &[
+            "--quiet",
+            "map",
+            "s.toml",
+            "--threads",
+            "3",
+            "--no-impact",
+            "--out",
+            "three",
+        ],
+    );
+    assert_eq!(files(&path.join("three")), whole);
+
+    for shard in ["1/3", "2/3", "3/3"] {
+        let said = succeed(path, &["map", "s.toml", "--shard", shard, "--out", "parts"]);
+        assert!(said.contains("archrock merge"), "{said}");
+    }
+    let parts = [
+        "parts/map-2-of-3.part",
+        "parts/map-1-of-3.part",
+        "parts/map-3-of-3.part",
+    ];
+    succeed(
+        path,
+        &[&["merge", "--no-impact", "--out", "merged"], &parts[..]].concat(),
+    );
+    assert_eq!(files(&path.join("merged")), whole);
+    // Without the option there is no boundary, not even an old one; the parts stay where they are.
+    succeed(path, &[&["merge"], &parts[..]].concat());
+    assert_eq!(
+        fs::read(path.join("parts/map.csv")).unwrap(),
+        whole["map.csv"]
+    );
+    assert_eq!(files(&path.join("parts")).len(), 5);
+}
+
+#[test]
+fn parts_that_do_not_belong_together_are_refused() {
+    let folder = folder_with_map(4);
+    let path = folder.path();
+    for shard in ["1/2", "2/2"] {
+        succeed(path, &["map", "s.toml", "--shard", shard, "--out", "a"]);
+    }
+    succeed(path, &["map", "s.toml", "--shard", "1/4", "--out", "a"]);
+    let (one, two) = ("a/map-1-of-2.part", "a/map-2-of-2.part");
+    refuse(path, &["merge", one], &["missing: 2/2"]);
+    refuse(
+        path,
+        &["merge", one, two, one],
+        &["part 1/2, and so is a/map-1-of-2.part"],
+    );
+    refuse(
+        path,
+        &["merge", two, "a/map-1-of-4.part"],
+        &["4 parts instead of 2"],
+    );
+    refuse(path, &["merge", one, "s.toml"], &["s.toml: ", "not a part"]);
+    refuse(
+        path,
+        &["merge", one, "nowhere"],
+        &["nowhere: cannot be read"],
+    );
+
+    let text = fs::read_to_string(path.join("s.toml")).unwrap();
+    fs::write(
+        path.join("s.toml"),
+        text.replace("amplitude_g = 0.4", "amplitude_g = 0.5"),
+    )
+    .unwrap();
+    succeed(path, &["map", "s.toml", "--shard", "2/2", "--out", "b"]);
+    refuse(
+        path,
+        &["merge", one, "b/map-2-of-2.part"],
+        &["\"amplitude_g = 0.5\" instead of \"amplitude_g = 0.4\""],
+    );
+
+    let part = fs::read_to_string(path.join(two)).unwrap();
+    let older = part.replacen(env!("CARGO_PKG_VERSION"), "0.0.9", 1);
+    fs::write(path.join("older.part"), older).unwrap();
+    refuse(path, &["merge", one, "older.part"], &["version \"0.0.9\""]);
+    let lines: Vec<_> = part.lines().collect();
+    fs::write(
+        path.join("short.part"),
+        lines[..lines.len() - 1].join("\n") + "\n",
+    )
+    .unwrap();
+    refuse(
+        path,
+        &["merge", one, "short.part"],
+        &["7 of its 8 cases", "--shard 2/2 --resume"],
+    );
+    fs::write(path.join("twice.part"), format!("{part}{}\n", lines[3])).unwrap();
+    refuse(
+        path,
+        &["merge", one, "twice.part"],
+        &["line 10", "second time"],
+    );
+    fs::write(path.join("alien.part"), format!("{part}2,x\n")).unwrap();
+    refuse(
+        path,
+        &["merge", one, "alien.part"],
+        &["line 10", "does not belong"],
+    );
+}
+
+/// Whatever is left of a part, going on with it ends in the same results.
+#[test]
+fn a_torn_part_is_resumed_to_the_same_results() {
+    let folder = folder_with_map(7);
+    let path = folder.path();
+    succeed(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);
+    let whole = files(&path.join("whole"));
+    // One part of one is the whole.
+    succeed(
+        path,
+        &[
+            "map",
+            "s.toml",
+            "--out",
+            "one",
+            "--shard",
+            "1/1",
+            "--no-impact",
+        ],
+    );
+    assert_eq!(files(&path.join("one")), whole);
+    succeed(path, &["map", "s.toml", "--out", "parts", "--shard", "1/2"]);
+    succeed(path, &["map", "s.toml", "--out", "parts", "--shard", "2/2"]);
+    let part = fs::read(path.join("parts/map-1-of-2.part")).unwrap();
+    let header = part.iter().position(|byte| *byte == b'\n').unwrap();
+    for cut in [
+        0,
+        1,
+        header,
+        header + 1,
+        header + 2,
+        header + 200,
+        part.len() - 1,
+        part.len(),
+    ] {
+        fs::write(path.join("parts/map-1-of-2.part"), &part[..cut]).unwrap();
+        succeed(
+            path,
+            &[
+                "map", "s.toml", "--out", "parts", "--shard", "1/2", "--resume",
+            ],
+        );
+        let parts = ["parts/map-1-of-2.part", "parts/map-2-of-2.part"];
+        succeed(
+            path,
+            &[&["merge", "--no-impact", "--out", "merged"], &parts[..]].concat(),
+        );
+        assert_eq!(files(&path.join("merged")), whole, "cut at {cut}");
+    }
+}
+
+#[test]
+fn interrupted_work_is_neither_lost_nor_mixed() {
+    let folder = folder_with_map(5);
+    let path = folder.path();
+    succeed(path, &["map", "s.toml", "--out", "r", "--shard", "1/2"]);
+    let part = fs::read_to_string(path.join("r/map-1-of-2.part")).unwrap();
+    let some = part
+        .lines()
+        .take(4)
+        .map(|line| format!("{line}\n"))
+        .collect::<String>();
+    fs::write(path.join("r/map-1-of-2.part"), &some).unwrap();
+    let again = ["map", "s.toml", "--out", "r", "--shard", "1/2"];
+    refuse(path, &again, &["3 cases", "--resume", "remove it"]);
+    // A changed scenario has other cases.
+    let text = fs::read_to_string(path.join("s.toml")).unwrap();
+    fs::write(path.join("s.toml"), text.replace("5.0", "6.0")).unwrap();
+    let resume = [&again[..], &["--resume"]].concat();
+    refuse(
+        path,
+        &resume,
+        &["\"mean_radius_m = 5.0\" instead of \"mean_radius_m = 6.0\""],
+    );
+    succeed(path, &again);
+    succeed(path, &resume);
+}
+
+/// A map that takes some seconds on one thread.
+fn start_long_work(folder: &Path) -> Child {
+    archrock(
+        folder,
+        &["map", "s.toml", "--out", "r", "--resume", "--threads", "2"],
+    )
+    .spawn()
+    .unwrap()
+}
+
+#[test]
+fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
+    let folder = folder_with_map(60);
+    let path = folder.path();
+    let begun = Instant::now();
+    succeed(path, &["map", "s.toml", "--out", "whole"]);
+    let whole_s = begun.elapsed().as_secs_f64();
+    let mut kills = 0;
+    let mut random = common::Random(7);
+    for _ in 0..40 {
+        let mut child = start_long_work(path);
+        sleep(Duration::from_secs_f64(0.4 * whole_s * random.next()));
+        if child.try_wait().unwrap().is_none() {
+            child.kill().unwrap();
+            kills += 1;
+        }
+        child.wait().unwrap();
+        // Results are complete or not there.
+        let results = files(&path.join("r"));
+        assert_eq!(
+            results.contains_key("map.csv"),
+            !results.contains_key("map.part")
+        );
+        if results.contains_key("map.csv") {
+            break;
+        }
+    }
+    assert!(kills >= 2, "{kills} kills");
+    succeed(path, &["map", "s.toml", "--out", "r", "--resume"]);
+    assert_eq!(files(&path.join("r")), files(&path.join("whole")));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_work_within_a_second_and_says_how_to_go_on() {
+    let folder = folder_with_map(200);
+    let path = folder.path();
+    let child = start_long_work(path);
+    let part = path.join("r/map.part");
+    let begun = Instant::now();
+    while fs::metadata(&part).map_or(0, |file| file.len()) < 10_000 {
+        assert!(begun.elapsed() < Duration::from_secs(30), "no rows");
+        sleep(Duration::from_millis(5));
+    }
+    let interrupt = |signal: &str| {
+        Command::new("kill")
+            .args([signal, &child.id().to_string()])
+            .status()
+    };
+    assert!(interrupt("-INT").unwrap().success());
+    let begun = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    assert!(
+        begun.elapsed() < Duration::from_secs(1),
+        "{:?}",
+        begun.elapsed()
+    );
+    assert_eq!(output.status.code(), Some(130));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("interrupted: ") && said.contains("--resume"),
+        "{said}"
+    );
+    let done = fs::read_to_string(&part).unwrap().lines().count() - 1;
+    assert!(done > 50 && done < 40_000, "{done}");
+}
+
+#[track_caller]
+fn assert_error(map: &str, place: &str, words: &[&str]) {
+    let text =
+        format!("{SEMICIRCLE}[ground.ricker]\namplitude_g = 1\nduration_s = 1\n[map]\n{map}");
+    let errors = Scenario::parse(&text, "s.toml").unwrap_err().to_string();
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+    assert!(errors.starts_with(&format!("s.toml:{place}: ")), "{errors}");
+    for word in words {
+        assert!(errors.contains(word), "{word:?} is not in: {errors}");
+    }
+}
+
+#[test]
+fn faults_of_a_map_are_said_with_their_place_and_remedy() {
+    let both = |second: &str| format!("duration_s = [0.1, 0.2]\n{second}");
+    assert_error(
+        "duration_s = [0.1]",
+        "8:1",
+        &["exactly two of the keys", "amplitude_g"],
+    );
+    assert_error(
+        &both("embrace_deg = [90]\namplitude_g = [1]"),
+        "8:1",
+        &["exactly two"],
+    );
+    assert_error(&both("frequency_hz = [1]"), "10:16", &["inverse"]);
+    assert_error(
+        &both("amplitude_g = [2, 1]"),
+        "10:15",
+        &["does not ascend", "from = "],
+    );
+    assert_error(
+        "frequency_hz = [1e-9, 1]\namplitude_g = [1]",
+        "9:16",
+        &["at least 1e-6"],
+    );
+    assert_error(&both("amplitude_g = []"), "10:15", &["is empty"]);
+    assert_error(
+        &both("amplitude_g = [1, 'x']"),
+        "10:15",
+        &["element, number 2", "is a string"],
+    );
+    assert_error(
+        &both("amplitude_g = [1, 2000]"),
+        "10:15",
+        &["number 2", "out of range", "at most 1000"],
+    );
+    assert_error(
+        &both("amplitude_g = 3"),
+        "10:15",
+        &["whole number", "an array of ascending numbers"],
+    );
+    assert_error(
+        &both("amplitude_g = { from = 1, to = 2, count = 1 }"),
+        "10:43",
+        &["`count = 1`", "2 (the ends)"],
+    );
+    assert_error(
+        &both("amplitude_g = { from = 2, to = 1, count = 3 }"),
+        "10:32",
+        &["`to = 1`", "above 2.0"],
+    );
+    assert_error(
+        &both("amplitude_g = { from = -1, to = 1, count = 3, spacing = 'logarithmic' }"),
+        "10:57",
+        &["one sign"],
+    );
+    assert_error(
+        &both("amplitude_g = { from = 1, to = 1.0000000000000002, count = 3 }"),
+        "10:60",
+        &["`count = 3`", "fewer"],
+    );
+    assert_error(
+        &both("amplitude_g = { from = 1, count = 3 }"),
+        "10:15",
+        &["lacks `to`"],
+    );
+    assert_error(
+        &both("amplitude_g = [1, 2]\nvoussoirs = [5, 7]"),
+        "11:1",
+        &["unknown key", "thickness_ratio"],
+    );
+    assert_error(&both("restitution = [0.5]"), "10:15", &["prescribed"]);
+    let cells = "duration_s = { from = 1, to = 2, count = 2000 }\n\
+                 amplitude_g = { from = 1, to = 2, count = 2000 }";
+    assert_error(cells, "8:1", &["4000000 cells", "1000000"]);
+}
+
+#[test]
+fn a_map_needs_a_pulse_and_a_column_has_no_radius() {
+    let map = "[map]\nmean_radius_m = [1, 2]\namplitude_g = [1, 2]\n";
+    let column =
+        "[column]\nheight_m = 4\nwidth_m = 1\n[ground.ricker]\namplitude_g = 1\nduration_s = 1\n";
+    let errors = Scenario::parse(&format!("{column}{map}"), "s.toml").unwrap_err();
+    assert!(errors.to_string().contains("this is a column"), "{errors}");
+    let errors = Scenario::parse(&format!("{SEMICIRCLE}{map}"), "s.toml").unwrap_err();
+    assert!(
+        errors.to_string().contains("[map] needs a pulse"),
+        "{errors}"
+    );
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("s.toml"), SEMICIRCLE).unwrap();
+    refuse(path, &["map", "s.toml"], &["no [map]", "amplitude_g = {"]);
+    refuse(path, &["map", "s.toml", "--shard", "3/2"], &["1 <= i <= n"]);
+    let shapes = "[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
+                  [map]\nthickness_ratio = [0.15]\nembrace_deg = [180]\n";
+    fs::write(path.join("s.toml"), format!("{SEMICIRCLE}{shapes}")).unwrap();
+    refuse(path, &["map", "s.toml", "--no-impact"], &["amplitude_g"]);
+    let initial = "[initial]\nsway = \"left\"\nrotation_rad = 0.01\n";
+    fs::write(
+        path.join("s.toml"),
+        format!("{SEMICIRCLE}{initial}{shapes}"),
+    )
+    .unwrap();
+    refuse(path, &["map", "s.toml"], &["leave [initial] out"]);
+}
+
+#[test]
+fn a_map_reads_back_as_it_is_written() {
+    for map in [
+        "restitution = [0.2, 0.5]\namplitude_g = { from = -3, to = -0.1, count = 5, spacing = 'logarithmic' }",
+        "thickness_ratio = { from = 0.12, to = 0.2, count = 4 }\nembrace_deg = [160, 180]",
+        "frequency_hz = [1e-3]\nmean_radius_m = { from = 1, to = 100, count = 3, spacing = 'logarithmic' }",
+    ] {
+        let scenario = parse(&format!(
+            "{SEMICIRCLE}[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
+             [impact]\nmodel = 'prescribed'\nrestitution = 0.5\n[map]\n{map}"
+        ));
+        assert_eq!(parse(&scenario.to_toml()), scenario);
+        for axis in Cells::new(&scenario).unwrap().values() {
+            assert!(axis.is_sorted_by(|earlier, later| earlier < later));
+        }
+    }
+}

@@ -1,0 +1,578 @@
+//! Overturning spectra against closed forms, similarity, and histories of their own; and the command.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::f64::consts::PI;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{History, Outcome, Request, history};
+use archrock::dynamics::rocking::Rocking;
+use archrock::mechanics::mechanism::Sway;
+use archrock::mechanics::structure::Structure;
+use archrock::output::spectrum::{draw, row};
+use archrock::scenario::{NoSpectrum, Point, Points, Scenario};
+use archrock::studies::specimen::Specimen;
+
+const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+
+fn pulse(kind: &str) -> String {
+    format!("[ground.{kind}]\namplitude_g = -1.0\nduration_s = 1.0\n")
+}
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::parse(text, "s.toml").unwrap()
+}
+
+/// All points of a scenario.
+fn spectrum(text: &str) -> Vec<Point> {
+    let scenario = scenario(text);
+    let points = Points::new(&scenario).unwrap();
+    (0..points.count())
+        .map(|index| points.point(index))
+        .collect()
+}
+
+/// Least accelerations without impact of a column of slenderness `atan(alpha)` under a pulse; one acceleration
+/// at which nothing moves is tried.
+fn without_impact(kind: &str, alpha: f64, p_t: &[f64]) -> Vec<f64> {
+    let text = format!(
+        "[column]\nheight_m = 2.0\nwidth_m = {}\n{}[spectrum]\np_t = {p_t:?}\n\
+         acceleration_over_incipient = [0.5]\n",
+        2.0 * alpha,
+        pulse(kind)
+    );
+    let points = spectrum(&text);
+    assert_eq!(points.len(), p_t.len());
+    let given = points.iter().zip(p_t);
+    given
+        .map(|(point, p_t)| {
+            assert!(point.structure == "column" && point.p_t == *p_t);
+            // It is beyond what was tried.
+            assert_eq!(point.least, None);
+            point.no_impact_over_incipient.unwrap()
+        })
+        .collect()
+}
+
+/// Slender: `cosh(p t) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. A finite slenderness changes that by
+/// a small multiple of its square.
+#[test]
+fn rectangular_pulses_and_slender_columns_are_housners() {
+    let p_t = [0.05, 0.3, 1.0, 2.5, 6.0];
+    let miss = |alpha: f64| -> Vec<f64> {
+        let simulated = without_impact("rectangular", alpha, &p_t);
+        let pairs = simulated.iter().zip(p_t);
+        pairs
+            .map(|(simulated, p_t)| {
+                let x = 0.5 + (0.25 + 0.5 / (p_t.cosh() - 1.0)).sqrt();
+                simulated / x - 1.0
+            })
+            .collect()
+    };
+    let (coarse, fine) = (miss(0.02), miss(0.01));
+    for (index, p_t) in p_t.into_iter().enumerate() {
+        assert!(fine[index].abs() < 1e-4, "{p_t}: {}", fine[index]);
+        // The longest pulse needs hardly more than what starts the column, and the miss is that of rounding.
+        if p_t < 6.0 {
+            let ratio = coarse[index] / fine[index];
+            assert!((3.9..4.1).contains(&ratio), "{p_t}: {ratio}");
+        }
+    }
+}
+
+/// The impulse alone counts: `x p t -> 1`. The closed form goes on `1 + p t / 2 - (p t)^2 (1/12 - 1/8)...`.
+#[test]
+fn short_pulses_overturn_by_their_impulse() {
+    let p_t = [1e-3, 3e-3, 0.01, 0.03];
+    for (x, p_t) in without_impact("rectangular", 1e-3, &p_t).iter().zip(p_t) {
+        let miss = x * p_t - 1.0 - 0.5 * p_t;
+        // The last term is what a slenderness of a thousandth does.
+        assert!(miss.abs() < 0.1 * p_t * p_t + 1e-6, "{p_t}: {miss}");
+    }
+}
+
+/// Half sine of the frequency `w = b p`, as derived in `tests/column.rs`:
+/// `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) = b`.
+#[test]
+fn half_sines_and_slender_columns_are_the_linear_solution() {
+    let b = [0.8, 1.5, 3.0, 6.0];
+    let p_t = b.map(|b| PI / b);
+    let ascending: Vec<f64> = p_t.iter().rev().copied().collect();
+    let simulated = without_impact("half_sine", 0.01, &ascending);
+    for (simulated, b) in simulated.iter().rev().zip(b) {
+        let excess = |x: f64| (x * x - 1.0).sqrt() + x * (-(PI - (1.0 / x).asin()) / b).exp() - b;
+        // Small misses of x follow from the residual by Newton's rule.
+        let slope = (excess(simulated + 1e-6) - excess(simulated - 1e-6)) / 2e-6;
+        let miss = excess(*simulated) / slope / simulated;
+        assert!(miss.abs() < 1e-4, "{b}: {miss}");
+    }
+}
+
+/// A spectrum with few points in which impacts matter.
+fn small(structure: &str, kind: &str, more: &str) -> String {
+    format!(
+        "{structure}{}{more}[spectrum]\np_t = [1.2, 2.5, 5.0]\n\
+         acceleration_over_incipient = {{ from = 1.0, to = 12.0, count = 60, spacing = \"logarithmic\" }}\n",
+        pulse(kind)
+    )
+}
+
+/// An arch four times as large, and one on the moon. What is bisected agrees to the integration's tolerance,
+/// what is sampled is the same.
+#[test]
+fn similar_structures_have_the_same_spectrum() {
+    let moon = "[simulation]\ngravity_m_s2 = 1.62\n";
+    for kind in ["one_cosine", "half_sine"] {
+        let here = spectrum(&small(ARCH, kind, ""));
+        let larger = spectrum(&small(&ARCH.replace("5.0", "20.0"), kind, ""));
+        let lighter = spectrum(&small(ARCH, kind, moon));
+        assert!(here.iter().any(|point| point.least.is_some()));
+        for (other, slower) in [(larger, 2.0), (lighter, (9.81_f64 / 1.62).sqrt())] {
+            assert_eq!(other.len(), 6);
+            for (here, other) in here.iter().zip(&other) {
+                assert!(here.structure == other.structure && here.p_t == other.p_t);
+                assert!((other.duration_s / here.duration_s / slower - 1.0).abs() < 1e-12);
+                let edges = [here, other].map(|point| point.no_impact_over_incipient.unwrap());
+                assert!((edges[0] / edges[1] - 1.0).abs() < 1e-7, "{edges:?}");
+                match (here.least, other.least) {
+                    (Some(a), Some(b)) => {
+                        assert_eq!((a.impacts, a.sway), (b.impacts, b.sway), "{here:?}");
+                        let tolerance = if a.impacts > 0 { 0.0 } else { 1e-7 };
+                        let miss = a.over_incipient / b.over_incipient - 1.0;
+                        assert!(miss.abs() <= tolerance, "{here:?}");
+                    }
+                    (a, b) => assert_eq!(a, b),
+                }
+            }
+        }
+    }
+}
+
+/// `A_L` by construction to rounding, `p` to what the differences of second order of the equivalent block know.
+#[test]
+fn the_equivalent_column_has_the_a_l_and_the_p_of_the_arch() {
+    let thin =
+        "[arch]\nmean_radius_m = 10.0\nthickness_m = 1.5\nembrace_deg = 157.5\nvoussoirs = 7\n";
+    let restitution = |specimen: &Specimen| match specimen {
+        Specimen::Column(column) => column.link(1).unwrap().restitution,
+        Specimen::Arch(_) => panic!("the second is a column"),
+    };
+    for arch in [ARCH, thin] {
+        for (impact, prescribed) in [
+            ("", None),
+            ("[impact]\nmodel = 'mirrored'\n", None),
+            (
+                "[impact]\nmodel = 'prescribed'\nrestitution = 0.7\n",
+                Some(0.7),
+            ),
+        ] {
+            let scenario = scenario(&format!("{arch}{}{impact}", pulse("ricker")));
+            let points = Points::new(&scenario).unwrap();
+            // The defaults.
+            assert_eq!(points.count(), 100);
+            let [("arch", arch), ("column", column)] = points.structures() else {
+                panic!("an arch and a column");
+            };
+            assert!((arch.incipient_g() / column.incipient_g() - 1.0).abs() < 1e-14);
+            let blocks = [arch, column].map(|one| one.equivalent(9.81).unwrap());
+            let [p_arch, p_column] =
+                blocks.map(|blocks| blocks.at_critical.unwrap().frequency_rad_s);
+            assert!((p_arch / p_column - 1.0).abs() < 1e-10);
+            let duration_s = points.point(60).duration_s;
+            assert!((duration_s * p_arch / points.point(60).p_t - 1.0).abs() < 1e-14);
+            let sin = blocks[0].slenderness_rad.sin();
+            let expected = prescribed.unwrap_or((1.0 - 1.5 * sin * sin).powi(2));
+            assert!((restitution(column) - expected).abs() < 1e-14);
+        }
+    }
+}
+
+fn shaken<'a, S: Structure>(structure: &'a S, ground: &'a GroundMotion) -> History<'a, S> {
+    let rocking = Rocking::new(structure, ground, 9.81, 1e-8);
+    let request = Request {
+        // Longer than any of these goes on.
+        end_s: 1e3,
+        relative_tolerance: 1e-9,
+        initial: None,
+        output_step_s: None,
+    };
+    history(&rocking, &request, |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// How a pulse to the left ends, in a history of its own.
+fn outcome(
+    specimen: &Specimen,
+    kind: Pulse,
+    over_incipient: f64,
+    duration_s: f64,
+) -> (Outcome, usize) {
+    let amplitude_m_s2 = -9.81 * over_incipient * specimen.incipient_g();
+    let ground = GroundMotion::pulse(kind, amplitude_m_s2, duration_s, 0.0);
+    match specimen {
+        Specimen::Arch(arch) => {
+            let history = shaken(arch, &ground);
+            (history.outcome, history.impacts.len())
+        }
+        Specimen::Column(column) => {
+            let history = shaken(column, &ground);
+            (history.outcome, history.impacts.len())
+        }
+    }
+}
+
+/// Every amplitude tried again, to the end of its history: nothing below the least overturns, and the least does
+/// as it says. Impacts help somewhere, and above their least there are islands that are safe.
+#[test]
+fn the_least_is_the_least_of_what_overturns() {
+    let (mut after_impacts, mut islands, mut still_rocking) = (0, 0, 0);
+    for (name, kind) in [("one_cosine", Pulse::OneCosine), ("ricker", Pulse::Ricker)] {
+        let scenario = scenario(&small(ARCH, name, ""));
+        let points = Points::new(&scenario).unwrap();
+        let tried = points.over_incipient().to_vec();
+        let mut below = 0;
+        for index in 0..points.count() {
+            let point = points.point(index);
+            let (_, specimen) = &points.structures()[index / 3];
+            let edge = point.no_impact_over_incipient.unwrap_or(f64::INFINITY);
+            let least = point.least.map_or(f64::INFINITY, |one| one.over_incipient);
+            assert!(least <= edge || edge > 12.0, "{point:?}");
+            assert!(point.least.is_some() || edge > 12.0, "{point:?}");
+            below += usize::from(least < edge);
+            still_rocking += point.still_rocking;
+            for x in &tried {
+                let (outcome, impacts) = outcome(specimen, kind, *x, point.duration_s);
+                match outcome {
+                    Outcome::Overturned(sway) => {
+                        assert!(*x >= least, "{x}: {point:?}");
+                        assert!(impacts > 0 || *x >= edge, "{x}: {point:?}");
+                        if let Some(one) = point.least.filter(|_| *x == least) {
+                            assert_eq!((sway, impacts), (one.sway, one.impacts));
+                            after_impacts += 1;
+                        }
+                    }
+                    _ if *x > least && *x < edge => islands += 1,
+                    _ => assert!(*x != least, "{point:?}"),
+                }
+            }
+        }
+        assert!(below >= 2, "{name}: {below}");
+    }
+    assert!(
+        after_impacts >= 4 && islands > 0,
+        "{after_impacts} {islands}"
+    );
+    // The column rocks on for long, and what was cut off is among what is seen to the end here.
+    assert!(still_rocking > 0);
+}
+
+/// Just above the edge the first fall overturns, just below it does not: in histories of their own.
+#[test]
+fn the_edge_without_impact_is_an_edge() {
+    let scenario = scenario(&small(ARCH, "one_sine", ""));
+    let points = Points::new(&scenario).unwrap();
+    for index in 0..points.count() {
+        let point = points.point(index);
+        let (_, specimen) = &points.structures()[index / 3];
+        let edge = point.no_impact_over_incipient.unwrap();
+        let at = |x: f64| outcome(specimen, Pulse::OneSine, x, point.duration_s);
+        assert_eq!(
+            at(edge * (1.0 + 1e-6)),
+            (Outcome::Overturned(Sway::Right), 0)
+        );
+        let (below, impacts) = at(edge * (1.0 - 1e-6));
+        assert!(impacts > 0 || !matches!(below, Outcome::Overturned(_)));
+    }
+}
+
+/// Step pairs that overturn an arch of seven voussoirs without impact: amplitudes in g by an independent
+/// integration, printed to three digits.
+#[test]
+fn step_pairs_overturn_an_arch_as_computed_elsewhere() {
+    let printed = [(0.2, 3.066), (0.5, 0.820), (1.0, 0.465)];
+    let arch = "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n";
+    let text = format!("{arch}{}", pulse("step_pair"));
+    let of_arch = scenario(&text);
+    let of_arch = Points::new(&of_arch).unwrap();
+    let (_, specimen) = &of_arch.structures()[0];
+    let block = specimen.equivalent(9.81).unwrap().at_critical.unwrap();
+    let p_t = printed.map(|(duration_s, _)| duration_s * block.frequency_rad_s);
+    let points = spectrum(&format!(
+        "{text}[spectrum]\np_t = {p_t:?}\nacceleration_over_incipient = [1.0]\n"
+    ));
+    for (point, (duration_s, amplitude_g)) in points.iter().zip(printed) {
+        assert!((point.duration_s / duration_s - 1.0).abs() < 1e-12);
+        let least_g = point.no_impact_over_incipient.unwrap() * specimen.incipient_g();
+        assert!(
+            (least_g - amplitude_g).abs() < 5.1e-4,
+            "{duration_s}: {least_g}"
+        );
+    }
+}
+
+/// A pulse to the other side is its mirror image.
+#[test]
+fn the_sign_of_the_amplitude_is_the_side() {
+    let text = small(ARCH, "one_cosine", "");
+    let left = spectrum(&text.replace("amplitude_g = -1.0", "amplitude_g = 0.01"));
+    for (right, mut left) in spectrum(&text).into_iter().zip(left) {
+        if let Some(least) = &mut left.least {
+            least.sway = least.sway.opposite();
+        }
+        assert_eq!(right, left);
+    }
+}
+
+/// When the pulse begins, and the time of `[simulation]`, do not matter.
+#[test]
+fn start_and_duration_do_not_count() {
+    let text = small(ARCH, "one_cosine", "");
+    let late = text.replace("duration_s = 1.0\n", "duration_s = 7.0\nstart_s = 1e6\n");
+    let short = small(ARCH, "one_cosine", "[simulation]\nduration_s = 0.01\n");
+    let expected = spectrum(&text);
+    assert_eq!(spectrum(&late), expected);
+    assert_eq!(spectrum(&short), expected);
+}
+
+/// What a scenario cannot have is not tried.
+#[test]
+fn accelerations_beyond_the_largest_of_a_scenario() {
+    let wide = "[spectrum]\np_t = [1e-3, 1e3]\nacceleration_over_incipient = [1.0, 1e6]\n";
+    let flat = "[column]\nheight_m = 0.001\nwidth_m = 1e6\n";
+    for point in spectrum(&format!("{flat}{}{wide}", pulse("half_sine"))) {
+        assert_eq!((point.no_impact_over_incipient, point.least), (None, None));
+        assert_eq!((point.still_rocking, point.failures.len()), (0, 0));
+    }
+    let points = spectrum(&format!("{ARCH}{}{wide}", pulse("half_sine")));
+    assert_eq!(points.len(), 4);
+    // A thousandth takes pi/2 times a thousand A_L, which is 227 g.
+    assert!(points[0].no_impact_over_incipient.unwrap() > 1e3);
+    assert_eq!(points[0].least, None);
+    // The longest takes hardly more than A_L, yet more than the only one that can be tried.
+    assert_eq!(points[1].least, None);
+    assert!((points[1].no_impact_over_incipient.unwrap() - 1.0).abs() < 1e-2);
+}
+
+#[test]
+fn what_has_no_spectrum_says_so() {
+    let of = |text: &str| Points::new(&scenario(text)).err();
+    assert_eq!(of(ARCH), Some(NoSpectrum::NoPulse));
+    let initial = "[initial]\nsway = 'right'\nrotation_rad = 0.01\n";
+    let text = format!("{ARCH}{}{initial}", pulse("ricker"));
+    assert_eq!(of(&text), Some(NoSpectrum::Initial));
+}
+
+#[test]
+fn errors_have_a_place_and_a_remedy() {
+    let begin = format!("{ARCH}{}[spectrum]\n", pulse("ricker"));
+    let first = begin.lines().count();
+    for (lines, place, words) in [
+        ("p_t = [0.0]", (1, 7), "at least 0.001 and at most 1000.0"),
+        ("p_t = 1", (1, 7), "an array of ascending numbers"),
+        (
+            "p_t = { from = 1, to = 0.5, count = 3 }",
+            (1, 24),
+            "above 1.0",
+        ),
+        (
+            "\nacceleration_over_incipient = [2, 1]",
+            (2, 31),
+            "does not ascend",
+        ),
+        (
+            "acceleration_over_incipient = [-1]",
+            (1, 31),
+            "above 0.0 and at most 1000000.0",
+        ),
+        ("pt = [1]", (1, 1), "did you mean `p_t`?"),
+    ] {
+        let errors = Scenario::parse(&format!("{begin}{lines}\n"), "s.toml").unwrap_err();
+        let [error] = errors.as_slice() else {
+            panic!("{errors}");
+        };
+        let found = error.place.unwrap();
+        assert_eq!((found.line - first, found.column), place, "{error}");
+        assert!(error.message.contains(words), "{error}");
+    }
+    let still = Scenario::parse(&format!("{ARCH}[spectrum]\n"), "s.toml").unwrap_err();
+    let words = "s.toml:5:1: [spectrum] needs a pulse: give a table [ground.<kind>]";
+    assert!(still.to_string().starts_with(words), "{still}");
+    let huge = "[column]\nheight_m = 1e6\nwidth_m = 1e3\n[simulation]\ngravity_m_s2 = 0.001\n";
+    let long = format!("{huge}{}[spectrum]\np_t = [1000]\n", pulse("ricker"));
+    let long = Scenario::parse(&long, "s.toml").unwrap_err();
+    let words = "s.toml:10:7: `p_t = [1000]` makes a pulse of";
+    assert!(long.to_string().starts_with(words), "{long}");
+    assert!(
+        long.to_string()
+            .ends_with("above 0.0 and at most 1000000.0"),
+        "{long}"
+    );
+}
+
+/// Values that are missing leave gaps, a single size gets room, and nothing is not a number.
+#[test]
+fn pictures_of_much_and_of_little() {
+    let picture = |text: &str| {
+        let scenario = scenario(text);
+        let points = Points::new(&scenario).unwrap();
+        let rows = (0..points.count())
+            .map(|index| (index, row(&points, index).unwrap()))
+            .collect();
+        let picture = draw("a title", &points, &rows);
+        assert!(
+            !picture.contains("NaN") && !picture.contains("inf"),
+            "{picture}"
+        );
+        let document = roxmltree::Document::parse(&picture).unwrap();
+        let names = document.descendants();
+        let names: Vec<String> = names
+            .filter_map(|node| node.attribute("data-name"))
+            .filter(|name| !name.is_empty())
+            .map(str::to_owned)
+            .collect();
+        names
+    };
+    let count = |names: &[String], name: &str| names.iter().filter(|n| *n == name).count();
+    let much = picture(&small(ARCH, "one_cosine", ""));
+    assert_eq!(count(&much, "arch no-impact"), 1);
+    assert_eq!(count(&much, "column no-impact"), 1);
+    assert!(count(&much, "arch least") > 0 && count(&much, "column least") > 0);
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+    let single = small(column, "one_cosine", "").replace("[1.2, 2.5, 5.0]", "[2.5]");
+    assert_eq!(picture(&single), ["column least"]);
+    let none = single.replace("[2.5]", "[0.001]");
+    assert!(picture(&none).is_empty());
+}
+
+fn archrock(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_archrock"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[track_caller]
+fn succeeds(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(arguments[0] == "check" || output.stdout.is_empty());
+    stderr(&output)
+}
+
+fn results(folder: &Path) -> [Vec<u8>; 2] {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| !name.contains("-of-"))
+        .collect();
+    names.sort();
+    assert_eq!(names, ["spectrum.csv", "spectrum.svg"]);
+    ["spectrum.csv", "spectrum.svg"].map(|name| fs::read(folder.join(name)).unwrap())
+}
+
+#[test]
+fn parts_threads_and_interruptions_change_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path();
+    fs::write(folder.join("s.toml"), small(ARCH, "one_cosine", "")).unwrap();
+    let said = succeeds(folder, &["spectrum", "s.toml", "--threads", "1"]);
+    assert!(said.starts_with("6 points: "), "{said}");
+    assert!(
+        said.ends_with("results in results/s: spectrum.svg, spectrum.csv\n"),
+        "{said}"
+    );
+    let whole = results(&folder.join("results/s"));
+    let table = String::from_utf8(whole[0].clone()).unwrap();
+    assert_eq!(table.lines().count(), 7);
+    assert!(table.starts_with(
+        "structure,p_t,duration_s,no_impact_over_incipient,least_over_incipient,\
+         impacts_before_overturning,overturning_sway,still_rocking,failed\narch,1.2,"
+    ));
+
+    for part in ["1/4", "3/4", "2/4", "4/4"] {
+        succeeds(
+            folder,
+            &["spectrum", "s.toml", "--out", "parts", "--shard", part],
+        );
+    }
+    let parts = [4, 2, 3, 1].map(|part| format!("parts/spectrum-{part}-of-4.part"));
+    let merge = || {
+        ["merge"]
+            .into_iter()
+            .chain(parts.iter().map(String::as_str))
+    };
+    let said = succeeds(folder, &merge().collect::<Vec<_>>());
+    assert!(said.starts_with("6 points: "), "{said}");
+    assert_eq!(results(&folder.join("parts")), whole);
+    let refused = archrock(folder, &merge().chain(["--no-impact"]).collect::<Vec<_>>());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("--no-impact is about maps"));
+
+    // As if it had been killed within its third row.
+    fs::create_dir(folder.join("killed")).unwrap();
+    let mut text = String::new();
+    for part in [1, 2] {
+        let path = folder.join(format!("parts/spectrum-{part}-of-4.part"));
+        let part = fs::read_to_string(path).unwrap();
+        let (header, rows) = part.split_once('\n').unwrap();
+        if text.is_empty() {
+            text = header.replace("\"1/4\"", "\"1/1\"") + "\n";
+        }
+        text += rows;
+    }
+    let cut = text.trim_end().len() - 5;
+    fs::write(folder.join("killed/spectrum.part"), &text[..cut]).unwrap();
+    let again = ["spectrum", "s.toml", "--out", "killed"];
+    let refused = archrock(folder, &again);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        stderr(&refused).contains("3 cases of this very study"),
+        "{}",
+        stderr(&refused)
+    );
+    succeeds(folder, &[&again[..], &["--resume"]].concat());
+    assert_eq!(results(&folder.join("killed")), whole);
+}
+
+#[test]
+fn check_prints_the_table_resolved_where_it_is_given() {
+    let root = tempfile::tempdir().unwrap();
+    let check = |text: &str| {
+        fs::write(root.path().join("s.toml"), text).unwrap();
+        let output = archrock(root.path(), &["check", "s.toml"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = format!("{ARCH}{}", pulse("ricker"));
+    assert!(!check(&text).contains("[spectrum]"));
+    let resolved = "[spectrum]\n\
+        p_t = { from = 0.2, to = 10.0, count = 50, spacing = \"logarithmic\" }\n\
+        acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = \"logarithmic\" }\n";
+    let printed = check(&format!("{text}[spectrum]\n"));
+    assert!(printed.ends_with(resolved), "{printed}");
+    assert_eq!(check(&printed), printed);
+    let own = check(&format!("{text}[spectrum]\np_t = [1, 2]\n"));
+    assert!(
+        own.contains("p_t = [1.0, 2.0]\nacceleration_over_incipient = { from = 1.0,"),
+        "{own}"
+    );
+}
+
+#[test]
+fn the_command_refuses_what_has_no_spectrum() {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("s.toml"), ARCH).unwrap();
+    let output = archrock(root.path(), &["spectrum", "s.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    let words = "error: a spectrum needs a pulse: give a table [ground.<kind>]";
+    assert!(stderr(&output).starts_with(words), "{}", stderr(&output));
+    assert!(!root.path().join("results").exists());
+}
