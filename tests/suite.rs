@@ -186,13 +186,9 @@ fn a_mirrored_record_does_the_same_to_the_other_side() {
         for record in both.chunks(8) {
             for (row, mirrored) in record[..4].iter().zip(&record[4..]) {
                 assert_eq!((&row[1], &mirrored[1]), ("1", "-1"));
-                for column in [0, 2, 3, 4, 6, 7] {
+                // To the last bit: no step knows left from right.
+                for column in [0, 2, 3, 4, 6, 7, 8, 9, 10] {
                     assert_eq!(row[column], mirrored[column]);
-                }
-                for column in [8, 9] {
-                    let (one, other) = (number(&row[column]), number(&mirrored[column]));
-                    // Rounding may differ, since the mechanisms are searched on either side.
-                    assert!((one - other).abs() < 1e-6, "{row:?} {mirrored:?}");
                 }
                 if &row[4] == "overturned" {
                     overturned += 1;
