@@ -1,6 +1,6 @@
 //! The ways to spread a study over machines, as the README shows them.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 use std::env;
 use std::fs;

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::part::Rows;
+use super::part::{self, Rows};
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite, verdict};
 use crate::mechanics::limit::LimitError;
@@ -44,20 +44,9 @@ pub fn count(rows: &Rows, wanted: &str) -> usize {
 ///
 /// # Errors
 /// When the system refuses.
-pub fn write_table(
-    mut writer: impl Write,
-    cells: &Cells<'_>,
-    rows: &Rows,
-) -> Result<(), OutputError> {
-    let [x, y] = cells.axes().map(|axis| axis.quantity.name());
-    let mut text = format!("{x},{y},{}\n", verdict::COLUMNS.join(","));
-    for row in rows.values() {
-        text += row;
-        text.push('\n');
-    }
-    writer
-        .write_all(text.as_bytes())
-        .map_err(OutputError::io("cannot write the map"))
+pub fn write_table(writer: impl Write, cells: &Cells<'_>, rows: &Rows) -> Result<(), OutputError> {
+    let axes = cells.axes().map(|axis| axis.quantity.name());
+    part::write_table(writer, &[&axes[..], &verdict::COLUMNS].concat(), rows)
 }
 
 /// Writes the boundaries, a row per value of x.

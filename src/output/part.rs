@@ -172,6 +172,25 @@ impl Header {
 /// Rows by the index of their case.
 pub type Rows = BTreeMap<usize, String>;
 
+/// Writes rows as a table with these columns.
+///
+/// # Errors
+/// When the system refuses.
+pub fn write_table(
+    mut writer: impl io::Write,
+    columns: &[&str],
+    rows: &Rows,
+) -> Result<(), OutputError> {
+    let mut text = columns.join(",") + "\n";
+    for row in rows.values() {
+        text += row;
+        text.push('\n');
+    }
+    writer
+        .write_all(text.as_bytes())
+        .map_err(OutputError::io("cannot write the table"))
+}
+
 /// Why the file of a part cannot be used.
 #[derive(Debug, Error)]
 pub enum PartError {

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::part::Rows;
+use super::part::{self, Rows};
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite};
 use crate::scenario::{Point, Points};
@@ -66,15 +66,8 @@ pub fn number(row: &str, column: &str) -> Option<f64> {
 ///
 /// # Errors
 /// When the system refuses.
-pub fn write_table(mut writer: impl Write, rows: &Rows) -> Result<(), OutputError> {
-    let mut text = COLUMNS.join(",") + "\n";
-    for row in rows.values() {
-        text += row;
-        text.push('\n');
-    }
-    writer
-        .write_all(text.as_bytes())
-        .map_err(OutputError::io("cannot write the spectrum"))
+pub fn write_table(writer: impl Write, rows: &Rows) -> Result<(), OutputError> {
+    part::write_table(writer, &COLUMNS, rows)
 }
 
 /// How a structure is drawn.

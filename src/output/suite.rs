@@ -9,7 +9,7 @@ use std::io::Write;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
-use super::part::Rows;
+use super::part::{self, Rows};
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite, verdict};
 use crate::scenario::{Measure, Shakes, Spacing};
@@ -51,16 +51,8 @@ fn line<'a>(fields: impl Iterator<Item = &'a str>) -> Result<String, OutputError
 ///
 /// # Errors
 /// When the system refuses.
-pub fn write_table(mut writer: impl Write, rows: &Rows) -> Result<(), OutputError> {
-    let mut text = [&COLUMNS[..], &verdict::COLUMNS].concat().join(",");
-    text.push('\n');
-    for row in rows.values() {
-        text += row;
-        text.push('\n');
-    }
-    writer
-        .write_all(text.as_bytes())
-        .map_err(OutputError::io("cannot write the suite"))
+pub fn write_table(writer: impl Write, rows: &Rows) -> Result<(), OutputError> {
+    part::write_table(writer, &[&COLUMNS[..], &verdict::COLUMNS].concat(), rows)
 }
 
 /// What a row says.
@@ -123,7 +115,8 @@ impl Level {
 }
 
 /// What all cases say together. Those that are still rocking have not overturned; those that failed do not
-/// count.
+/// count. Nor do mirrored records: the structures are symmetric, so that they do the same to the other side, and
+/// are no further evidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
     scenario: Value,
@@ -158,8 +151,9 @@ impl Results {
             .values()
             .map(|row| Case::read(row, measure))
             .collect::<Option<_>>()?;
+        let evidence: Vec<&Case> = cases.iter().filter(|case| !case.mirrored).collect();
         let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
-        let observations: Vec<Observation> = cases
+        let observations: Vec<Observation> = evidence
             .iter()
             .filter(|case| !case.failed())
             .map(|case| Observation {
@@ -169,7 +163,7 @@ impl Results {
             })
             .collect();
         Some(Self {
-            levels: levels_of(&cases),
+            levels: levels_of(evidence),
             fit: fit(&observations),
             scenario,
             measure,
@@ -303,7 +297,7 @@ impl Results {
         ] {
             finite("of fragility.json", value.as_slice())?;
         }
-        let failed = self.outcome_count(verdict::FAILED);
+        let total = |count: fn(&Level) -> usize| -> usize { self.levels.iter().map(count).sum() };
         Ok(json!({
             "program": env!("CARGO_PKG_NAME"),
             "version": env!("CARGO_PKG_VERSION"),
@@ -318,10 +312,10 @@ impl Results {
             "log_likelihood": log_likelihood,
             "no_fit": self.no_fit(),
             "records": self.record_count(),
-            "cases": self.count() - failed,
-            "overturned": self.cases.iter().filter(|case| case.overturned()).count(),
-            "still_rocking_counted_as_not_overturned": self.outcome_count("still_rocking"),
-            "failed_left_out": failed,
+            "cases": total(|level| level.cases),
+            "overturned": total(|level| level.overturned),
+            "still_rocking_counted_as_not_overturned": total(|level| level.still_rocking),
+            "failed_left_out": total(|level| level.failed),
             "records_that_never_overturn": self.always(false),
             "records_that_always_overturn": self.always(true),
         }))
@@ -411,7 +405,7 @@ impl Results {
             x += advance;
             x - advance
         };
-        let cases = self.count() - self.outcome_count(verdict::FAILED);
+        let cases: usize = self.levels.iter().map(|level| level.cases).sum();
         let text = format!("fraction of {}, {cases} cases", self.records_in_words());
         let left = entry(drawing, &text, 300.0);
         drawing.circle("", Vector2::new(left + 15.0, 54.0), 4.5, POINT);
@@ -480,10 +474,9 @@ fn names(cases: &[Case]) -> BTreeSet<&str> {
     cases.iter().map(|case| case.record.as_str()).collect()
 }
 
-fn levels_of(cases: &[Case]) -> Vec<Level> {
-    let mut sorted: Vec<&Case> = cases.iter().collect();
-    sorted.sort_by(|a, b| a.level.total_cmp(&b.level));
-    sorted
+fn levels_of(mut cases: Vec<&Case>) -> Vec<Level> {
+    cases.sort_by(|a, b| a.level.total_cmp(&b.level));
+    cases
         .chunk_by(|a, b| a.level.total_cmp(&b.level).is_eq())
         .map(|level| {
             let count = |which: fn(&Case) -> bool| level.iter().filter(|c| which(c)).count();

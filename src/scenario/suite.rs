@@ -76,9 +76,7 @@ pub struct Suite {
     pub measure: Measure,
     /// How strong each record is made, above 0.
     pub levels: Sequence,
-    /// Whether every record comes mirrored as well. That does the same to the other side of a symmetric
-    /// structure: there it adds nothing but cases, and standard errors that take these for independent are
-    /// too small by the square root of two.
+    /// Whether every record comes mirrored as well, which does the same to the other side.
     pub both_signs: bool,
 }
 
