@@ -6,7 +6,7 @@ use std::path::Path;
 use archrock::output::part::{Header, Rows};
 use archrock::output::{Folder, map as output, verdict};
 use archrock::scenario::{Boundary, Cell, Cells, Quantity, Scenario};
-use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
+use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
 
 use super::Failure;
 use super::study::{Options, say};
@@ -124,6 +124,7 @@ fn finish(
     };
     let found: Vec<_> = (0..along_x)
         .into_par_iter()
+        .with_max_len(1)
         .map(|x| cells.boundary(x))
         .collect();
     let failed = found.iter().filter_map(|found| found.as_ref().err()).next();

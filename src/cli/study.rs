@@ -7,7 +7,7 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process;
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::mpsc::{self, TryRecvError};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -16,7 +16,9 @@ use archrock::output::OutputError;
 use archrock::output::part::{Found, Header, Part, PartError, Rows, Shard};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use rayon::ThreadPoolBuilder;
-use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
+};
 
 use super::Failure;
 
@@ -136,25 +138,34 @@ impl Options {
     ) -> Result<Rows, Failure> {
         let (sender, receiver) = mpsc::channel();
         let compute = || {
-            todo.par_iter().try_for_each_with(sender, |sender, index| {
+            // Cases cost from microseconds to seconds: each is dealt out on its own.
+            let todo = todo.par_iter().with_max_len(1);
+            todo.try_for_each_with(sender, |sender, index| {
                 let row = row(*index).map_err(Some)?;
                 // When rows cannot be written any more, nobody listens.
                 sender.send((*index, row)).map_err(|_| None::<OutputError>)
             })
         };
-        let on_threads = || self.on_threads(compute);
+        let writer = thread::current();
+        let on_threads = || {
+            let done = self.on_threads(compute);
+            writer.unpark();
+            done
+        };
         thread::scope(move |scope| {
             let working = scope.spawn(on_threads);
             let mut rows = Rows::new();
-            loop {
-                let first = match receiver.recv_timeout(TICK) {
-                    Ok(first) => Some(first),
-                    Err(RecvTimeoutError::Timeout) => None,
-                    Err(RecvTimeoutError::Disconnected) => break,
+            let mut over = false;
+            while !over {
+                // What comes meanwhile is written in one go; nobody loses time in waking this thread.
+                thread::park_timeout(TICK);
+                let mut new: Vec<(usize, String)> = Vec::new();
+                over = loop {
+                    match receiver.try_recv() {
+                        Ok(row) => new.push(row),
+                        Err(error) => break error == TryRecvError::Disconnected,
+                    }
                 };
-                // What has come meanwhile is written in one go.
-                let new: Vec<(usize, String)> =
-                    first.into_iter().chain(receiver.try_iter()).collect();
                 lock(part).append(new.iter().map(|(index, row)| (*index, row.as_str())))?;
                 progress.advance(new.len());
                 rows.extend(new);
@@ -171,7 +182,7 @@ impl Options {
     }
 }
 
-/// How often progress is shown at least.
+/// How often rows are written and progress is shown.
 const TICK: Duration = Duration::from_millis(100);
 
 /// The part, which is only held to write lines, and that does not panic.
