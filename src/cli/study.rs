@@ -13,7 +13,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use archrock::output::OutputError;
-use archrock::output::part::{Found, Header, Part, PartError, Rows, Shard};
+use archrock::output::part::{Header, Part, PartError, Rows, Shard};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{
@@ -116,15 +116,15 @@ impl Options {
             return Ok(());
         }
         // What is no part of this study is about to be replaced, as results are.
-        match Part::find(path, header)? {
-            Found::Unfinished(done) if done > 0 => {
+        match Part::unfinished(path, header)? {
+            Some(done) => {
                 let path = path.display();
                 Err(Failure::Input(format!(
                     "{path} has {done} cases of this very study, interrupted: go on with --resume, or \
                      remove it to start over"
                 )))
             }
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 

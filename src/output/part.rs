@@ -275,38 +275,19 @@ pub struct Part {
     file: File,
 }
 
-/// What a program that is about to compute a part finds where it would write it.
-#[derive(Debug)]
-pub enum Found {
-    /// Nothing that matters.
-    Nothing,
-    /// This many rows of the very same part, unfinished.
-    Unfinished(usize),
-    /// All rows of the very same part.
-    Finished,
-    /// A part of something else, told by how that differs.
-    Other(String),
-}
-
 impl Part {
-    /// Looks for a part with this header.
+    /// How many rows there are of the very same part, begun and not finished; `None` where there is no such.
     ///
     /// # Errors
     /// When there is a file that cannot be read or is not a part.
-    pub fn find(path: &Path, header: &Header) -> Result<Found, PartError> {
+    pub fn unfinished(path: &Path, header: &Header) -> Result<Option<usize>, PartError> {
         if !path.exists() {
-            return Ok(Found::Nothing);
+            return Ok(None);
         }
         let (found, rows, _) = read_lines(path)?;
-        let expected = header.shard.cases(header.cases).count();
-        Ok(match found {
-            None => Found::Nothing,
-            Some(found) => match header.difference(&found) {
-                Some(difference) => Found::Other(difference),
-                None if rows.len() == expected => Found::Finished,
-                None => Found::Unfinished(rows.len()),
-            },
-        })
+        let same = found.is_some_and(|found| header.difference(&found).is_none());
+        let all = header.shard.cases(header.cases).count();
+        Ok((same && (1..all).contains(&rows.len())).then_some(rows.len()))
     }
 
     /// Begins a part, or goes on with it; returns the rows that it has. The folder must be there.
@@ -321,7 +302,7 @@ impl Part {
             .write(true)
             .truncate(false)
             .open(path)
-            .map_err(cannot("write"))?;
+            .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
         // Where files cannot be locked, two programs are not kept apart.
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
