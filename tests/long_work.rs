@@ -87,7 +87,6 @@ fn the_slurm_array_computes_the_whole_study() {
         let task: i32 = task;
         let variables = [
             ("SLURM_ARRAY_TASK_ID", &*task.to_string()),
-            ("SLURM_ARRAY_TASK_COUNT", tasks),
             ("SLURM_CPUS_PER_TASK", "2"),
         ];
         bash(folder.path(), &script, &variables);

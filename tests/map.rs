@@ -195,6 +195,60 @@ fn the_impact_free_boundary_of_seven_voussoirs_under_a_step_pair() {
     }
 }
 
+/// Pulses with side lobes overturn without impact within narrow windows far below the amplitudes that surely do: a
+/// lobe carries the column just over, and the next does not catch it. The windows were found by an integration
+/// that shares nothing with this one (of order eight, relative tolerance 1e-11), and by maps of 300 amplitudes.
+#[test]
+fn the_impact_free_boundary_sees_narrow_windows() {
+    for (pulse, duration_s, low_g, high_g) in [
+        ("ricker", 1.7494, 0.4422, 0.4426),
+        ("antisymmetric_ricker", 1.2228, 0.70, 0.735),
+        ("gabor]\ngamma = 3\nphase_deg = 40 #", 0.9595, 0.70, 0.741),
+        (
+            "mavroeidis_papageorgiou]\ngamma = 3\nphase_deg = 60 #",
+            2.375,
+            0.43,
+            0.4425,
+        ),
+        (
+            "windowed_sine]\ncycles = 4\nphase_deg = 30 #",
+            1.881,
+            0.70,
+            0.7165,
+        ),
+    ] {
+        let scenario = parse(&format!(
+            "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.{pulse}]\namplitude_g = 1\nduration_s = 1\n\
+             [simulation]\nduration_s = 60\n[map]\nduration_s = [{duration_s}]\namplitude_g = [20]"
+        ));
+        let cells = Cells::new(&scenario).unwrap();
+        let found_g = boundaries(&cells)[0].impact_free_g.unwrap();
+        assert!(low_g < found_g && found_g < high_g, "{pulse}: {found_g}");
+    }
+}
+
+#[test]
+fn a_map_does_not_cut_pulses_off() {
+    let text = |axis: &str| {
+        format!(
+            "{SEMICIRCLE}[ground.ricker]\namplitude_g = 1\nduration_s = 1\nstart_s = 1.0\n\
+             [map]\n{axis}\namplitude_g = [1, 2]"
+        )
+    };
+    // Ricker wavelets last four durations.
+    for axis in ["duration_s = [1, 2.25]", "frequency_hz = [0.44, 1]"] {
+        let whole = Scenario::parse(&text(axis), "s.toml");
+        assert_eq!(whole.is_ok(), axis.contains("2.25"), "{axis}");
+    }
+    let errors = Scenario::parse(&text("duration_s = [1, 2.5]"), "s.toml").unwrap_err();
+    assert!(
+        errors
+            .to_string()
+            .contains("s.toml:9:1: [map] has pulses that last until 11.0 s"),
+        "{errors}"
+    );
+}
+
 /// Above amplitudes that overturn there are some that do not: bisection would never see them. At a tolerance
 /// a thousand times finer they are the same.
 #[test]
@@ -364,7 +418,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     }
     succeed(path, &["map", "s.toml", "--shard", "1/4", "--out", "a"]);
     let (one, two) = ("a/map-1-of-2.part", "a/map-2-of-2.part");
-    refuse(path, &["merge", one], &["missing: 2/2"]);
+    refuse(path, &["merge", one], &["1 are missing: the first is 2/2"]);
     refuse(
         path,
         &["merge", one, two, one],
@@ -416,12 +470,31 @@ fn parts_that_do_not_belong_together_are_refused() {
         &["merge", one, "twice.part"],
         &["line 10", "second time"],
     );
-    fs::write(path.join("alien.part"), format!("{part}2,x\n")).unwrap();
+    let other = fs::read_to_string(path.join(one)).unwrap();
+    let alien = other.lines().last().unwrap();
+    fs::write(path.join("alien.part"), format!("{part}{alien}\n")).unwrap();
     refuse(
         path,
         &["merge", one, "alien.part"],
         &["line 10", "does not belong"],
     );
+    // Whatever is edited in a row.
+    let row = lines[4];
+    for edited in [
+        row.replacen(',', ",1", 2),
+        row.replacen(".", ".0", 1),
+        format!("{row},0"),
+        row[..row.len() - 1].to_owned(),
+        row[9..].to_owned(),
+    ] {
+        assert!(edited != row);
+        fs::write(path.join("edited.part"), part.replace(row, &edited)).unwrap();
+        refuse(
+            path,
+            &["merge", one, "edited.part"],
+            &["edited.part: line 5: not as", "compute this part again"],
+        );
+    }
 }
 
 /// Whatever is left of a part, going on with it ends in the same results.
@@ -489,17 +562,61 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
     fs::write(path.join("r/map-1-of-2.part"), &some).unwrap();
     let again = ["map", "s.toml", "--out", "r", "--shard", "1/2"];
     refuse(path, &again, &["3 cases", "--resume", "remove it"]);
+    // A part under the name of another.
+    let renamed = ["map", "s.toml", "--out", "r", "--shard", "2/2", "--resume"];
+    fs::copy(
+        path.join("r/map-1-of-2.part"),
+        path.join("r/map-2-of-2.part"),
+    )
+    .unwrap();
+    refuse(
+        path,
+        &renamed,
+        &["map-2-of-2.part", "part 1/2 instead of 2/2"],
+    );
+    assert_eq!(
+        fs::read_to_string(path.join("r/map-2-of-2.part")).unwrap(),
+        some
+    );
     // A changed scenario has other cases.
     let text = fs::read_to_string(path.join("s.toml")).unwrap();
     fs::write(path.join("s.toml"), text.replace("5.0", "6.0")).unwrap();
     let resume = [&again[..], &["--resume"]].concat();
-    refuse(
-        path,
-        &resume,
-        &["\"mean_radius_m = 5.0\" instead of \"mean_radius_m = 6.0\""],
+    let difference = "\"mean_radius_m = 5.0\" instead of \"mean_radius_m = 6.0\"";
+    refuse(path, &resume, &[difference, "another folder"]);
+    refuse(path, &again, &[difference, "another folder"]);
+    assert_eq!(
+        fs::read_to_string(path.join("r/map-1-of-2.part")).unwrap(),
+        some
     );
+    // What is complete is not computed again.
+    fs::write(path.join("s.toml"), text).unwrap();
+    fs::write(path.join("r/map-1-of-2.part"), &part).unwrap();
     succeed(path, &again);
     succeed(path, &resume);
+    assert_eq!(
+        fs::read_to_string(path.join("r/map-1-of-2.part")).unwrap(),
+        part
+    );
+}
+
+#[test]
+fn two_programs_do_not_work_on_one_part() {
+    let folder = folder_with_map(300);
+    let path = folder.path();
+    let mut child = start_long_work(path);
+    let part = path.join("r/map.part");
+    let begun = Instant::now();
+    while fs::metadata(&part).map_or(0, |file| file.len()) < 10_000 {
+        assert!(begun.elapsed() < Duration::from_secs(30), "no rows");
+        sleep(Duration::from_millis(5));
+    }
+    for more in [&[][..], &["--resume"]] {
+        let again = [&["map", "s.toml", "--out", "r"], more].concat();
+        refuse(path, &again, &["another program is at work on it"]);
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
 }
 
 /// A map that takes some seconds on one thread.
@@ -629,7 +746,7 @@ fn faults_of_a_map_are_said_with_their_place_and_remedy() {
     assert_error(
         &both("amplitude_g = 3"),
         "10:15",
-        &["whole number", "an array of ascending numbers"],
+        &["is a single number", "an array of ascending numbers"],
     );
     assert_error(
         &both("amplitude_g = { from = 1, to = 2, count = 1 }"),
@@ -703,7 +820,7 @@ fn a_map_reads_back_as_it_is_written() {
     for map in [
         "restitution = [0.2, 0.5]\namplitude_g = { from = -3, to = -0.1, count = 5, spacing = 'logarithmic' }",
         "thickness_ratio = { from = 0.12, to = 0.2, count = 4 }\nembrace_deg = [160, 180]",
-        "frequency_hz = [1e-3]\nmean_radius_m = { from = 1, to = 100, count = 3, spacing = 'logarithmic' }",
+        "frequency_hz = [0.5]\nmean_radius_m = { from = 1, to = 100, count = 3, spacing = 'logarithmic' }",
     ] {
         let scenario = parse(&format!(
             "{SEMICIRCLE}[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\

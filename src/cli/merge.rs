@@ -23,7 +23,9 @@ pub struct Arguments {
 
 pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let (header, rows) = part::merge(&arguments.parts)?;
-    let beside = arguments.parts[0].parent().unwrap_or(Path::new(""));
+    let beside = arguments.parts[0].parent();
+    let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
+    let beside = beside.unwrap_or(Path::new("."));
     let folder = arguments.out.as_deref().unwrap_or(beside);
     match header.study.as_str() {
         map::STUDY => map::merge(&header.scenario, &rows, folder, arguments.boundary, quiet),

@@ -5,7 +5,7 @@ use std::fmt;
 use std::fs;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::panic::resume_unwind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process;
 use std::sync::mpsc::{self, TryRecvError};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -85,7 +85,6 @@ impl Options {
             ))
         })?;
         let path = folder.join(shard.file_name(&header.study));
-        self.refuse_to_lose(&path, &header)?;
         let (part, mut rows) = Part::open(&path, &header, self.resume)?;
         let todo: Vec<usize> = shard
             .cases(header.cases)
@@ -108,24 +107,6 @@ impl Options {
             ));
         }
         Ok(None)
-    }
-
-    /// Work that was interrupted is not thrown away unasked.
-    fn refuse_to_lose(&self, path: &Path, header: &Header) -> Result<(), Failure> {
-        if self.resume {
-            return Ok(());
-        }
-        // What is no part of this study is about to be replaced, as results are.
-        match Part::unfinished(path, header)? {
-            Some(done) => {
-                let path = path.display();
-                Err(Failure::Input(format!(
-                    "{path} has {done} cases of this very study, interrupted: go on with --resume, or \
-                     remove it to start over"
-                )))
-            }
-            None => Ok(()),
-        }
     }
 
     /// Computes the cases, and writes their rows as they come.

@@ -54,7 +54,8 @@ pub struct Chain {
     sites: HingeSites,
     model: ImpactModel,
     incipient: Incipient,
-    links: Box<[OnceLock<Option<ArchLink>>]>,
+    /// Boxed, because a chain has room for many links and mostly needs few.
+    links: Box<[OnceLock<Option<Box<ArchLink>>>]>,
     /// First link of the pair that repeats for ever; the second has the mechanism of the link before it.
     pair: OnceLock<usize>,
 }
@@ -104,9 +105,9 @@ impl Chain {
                 _ => index,
             };
             if let Some(link) = self.links.get(wanted).and_then(OnceLock::get) {
-                return link.as_ref();
+                return link.as_deref();
             }
-            self.links[known].get_or_init(|| self.compute(known));
+            self.links[known].get_or_init(|| self.compute(known).map(Box::new));
         }
         self.link(index)
     }

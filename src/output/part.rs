@@ -1,13 +1,13 @@
 //! The file of a study at work: what it computes, and the rows that it has so far.
 //!
-//! The first line is JSON and says to what the rows belong; every other line is the index of a case, a comma,
-//! and its row. Lines are only ever appended, so what a killed program leaves is good up to its last
-//! complete line. A study that is computed in parts, on several machines, is joined from such files.
+//! The first line is JSON and says to what the rows belong; every other line is a checksum, the index of a case
+//! and its row, with commas between. Lines are only ever appended, so what a killed program leaves is good up to
+//! its last complete line, and the checksums tell if anything else happened to them. A study that is computed in
+//! parts, on several machines, is joined from such files.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Seek as _, SeekFrom, Write as _};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -15,6 +15,9 @@ use serde_json::{Value, json};
 use thiserror::Error;
 
 use super::OutputError;
+
+/// Parts of a study: more than any cluster has nodes.
+const MOST_PARTS: usize = 100_000;
 
 /// Which part of the cases: those whose index, counted from 1, is `index` and every `count`-th after.
 ///
@@ -62,12 +65,14 @@ impl FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
-            format!("{text:?} is no part of a whole; allowed is i/n with 1 <= i <= n, such as 2/4")
+            format!(
+                "{text:?} is no part of a whole; allowed is i/n with 1 <= i <= n <= {MOST_PARTS}, such as 2/4"
+            )
         };
         let (index, count) = text.split_once('/').ok_or_else(wrong)?;
         let number = |text: &str| text.parse::<usize>().map_err(|_| wrong());
         let (index, count) = (number(index)?, number(count)?);
-        if (1..=count).contains(&index) {
+        if (1..=count).contains(&index) && count <= MOST_PARTS {
             Ok(Self { index, count })
         } else {
             Err(wrong())
@@ -143,6 +148,14 @@ impl Header {
         })
     }
 
+    /// What another header has that makes it one of other rows; `None` if both are of the very same part.
+    fn other(&self, other: &Self) -> Option<String> {
+        self.difference(other).or_else(|| {
+            let (here, there) = (self.shard, other.shard);
+            (here != there).then(|| format!("part {there} instead of {here}"))
+        })
+    }
+
     /// What parts the study of another header from this one's; `None` if they belong together.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
@@ -152,6 +165,16 @@ impl Header {
         differ("the study", &self.study, &other.study)
             .or_else(|| differ("the program version", &self.version, &other.version))
             .or_else(|| {
+                let only = |here: &Self, there: &Self| {
+                    let mut inputs = here.inputs.iter();
+                    inputs.find(|input| !there.inputs.contains(input)).cloned()
+                };
+                // The checksum is no news to anybody.
+                let input = only(self, other).or_else(|| only(other, self))?;
+                let name = input.rsplit_once(' ').map_or(&*input, |(name, _)| name);
+                Some(format!("other contents of {name}, or not that file"))
+            })
+            .or_else(|| {
                 let mut lines = self.scenario.lines().zip(other.scenario.lines());
                 let (here, there) = lines
                     .find(|(here, there)| here != there)
@@ -159,14 +182,25 @@ impl Header {
                 differ("in the scenario", here, there)
             })
             .or_else(|| {
-                let changed = self.inputs != other.inputs;
-                changed.then(|| "other contents of the files that the scenario names".to_owned())
-            })
-            .or_else(|| {
                 let (here, there) = (self.cases, other.cases);
                 (here != there).then(|| format!("{there} cases instead of {here}"))
             })
     }
+}
+
+/// A line for a row.
+fn to_line(index: usize, row: &str) -> String {
+    let content = format!("{index},{row}");
+    format!("{:08x},{content}\n", crc32fast::hash(content.as_bytes()))
+}
+
+/// The index and the row of a line, if it is as it was written.
+fn from_line(line: &str) -> Option<(usize, &str)> {
+    let (checksum, content) = line.split_once(',')?;
+    let checksum = u32::from_str_radix(checksum, 16).ok()?;
+    let (index, row) = content.split_once(',')?;
+    let intact = crc32fast::hash(content.as_bytes()) == checksum;
+    Some((index.parse().ok()?, row)).filter(|_| intact)
 }
 
 /// Rows by the index of their case.
@@ -238,10 +272,8 @@ fn read_lines(path: &Path) -> Result<(Option<Header>, Rows, u64), PartError> {
             let what = format!("line {}: {what}; compute this part again", number + 2);
             unusable(path, what)
         };
-        let (index, row) = line
-            .split_once(',')
-            .and_then(|(index, row)| Some((index.parse().ok()?, row)))
-            .ok_or_else(|| damaged("no row of a case"))?;
+        let (index, row) =
+            from_line(line).ok_or_else(|| damaged("not as this program wrote it"))?;
         if header
             .shard
             .cases(header.cases)
@@ -276,50 +308,45 @@ pub struct Part {
 }
 
 impl Part {
-    /// How many rows there are of the very same part, begun and not finished; `None` where there is no such.
+    /// Begins a part, or goes on with it; returns the rows that it has. A part that is complete is as good as
+    /// computed again. The folder must be there.
     ///
     /// # Errors
-    /// When there is a file that cannot be read or is not a part.
-    pub fn unfinished(path: &Path, header: &Header) -> Result<Option<usize>, PartError> {
-        if !path.exists() {
-            return Ok(None);
-        }
-        let (found, rows, _) = read_lines(path)?;
-        let same = found.is_some_and(|found| header.difference(&found).is_none());
-        let all = header.shard.cases(header.cases).count();
-        Ok((same && (1..all).contains(&rows.len())).then_some(rows.len()))
-    }
-
-    /// Begins a part, or goes on with it; returns the rows that it has. The folder must be there.
-    ///
-    /// # Errors
-    /// When the system refuses, another program is at work on it, or a part to `resume` is of another study.
+    /// When the system refuses, another program is at work on it, a part to `resume` is of something else, or
+    /// one that was interrupted would be lost.
     pub fn open(path: &Path, header: &Header, resume: bool) -> Result<(Self, Rows), PartError> {
         let cannot = |what: &str| OutputError::io(format!("cannot {what} {}", path.display()));
         let mut file = OpenOptions::new()
             .create(true)
             .read(true)
-            .write(true)
-            .truncate(false)
+            .append(true)
             .open(path)
             .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
         // Where files cannot be locked, two programs are not kept apart.
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
         }
-        let mut rows = Rows::new();
-        let mut length = 0;
-        if resume && let (Some(found), done, complete) = read_lines(path)? {
-            if let Some(difference) = header.difference(&found) {
+        let (found, rows, length) = read_lines(path)?;
+        // Work is not thrown away unasked.
+        if let Some(found) = found
+            && (resume || !rows.is_empty())
+        {
+            if let Some(other) = header.other(&found) {
                 let what = format!(
-                    "cannot be resumed: it has {difference}; leave --resume out to start over"
+                    "belongs to something else, with {other}: remove it, or choose another folder with --out"
                 );
                 return Err(unusable(path, what));
             }
-            (rows, length) = (done, complete);
+            let (done, all) = (rows.len(), header.shard.cases(header.cases).count());
+            if !resume && done < all {
+                let what = format!(
+                    "has {done} cases of this very study, interrupted: go on with --resume, or remove it to \
+                     start over"
+                );
+                return Err(unusable(path, what));
+            }
         }
         file.set_len(length).map_err(cannot("shorten"))?;
-        file.seek(SeekFrom::End(0)).map_err(cannot("write"))?;
         if length == 0 {
             file.write_all(header.to_line().as_bytes())
                 .map_err(cannot("write"))?;
@@ -336,21 +363,15 @@ impl Part {
         &mut self,
         rows: impl IntoIterator<Item = (usize, &'r str)>,
     ) -> Result<(), OutputError> {
-        let mut lines = String::new();
-        for (index, row) in rows {
-            let _ = writeln!(lines, "{index},{row}");
-        }
+        let lines: String = rows
+            .into_iter()
+            .map(|(index, row)| to_line(index, row))
+            .collect();
         self.file.write_all(lines.as_bytes()).map_err(self.failed())
     }
 
     fn failed(&self) -> impl FnOnce(io::Error) -> OutputError {
         OutputError::io(format!("cannot write {}", self.path.display()))
-    }
-
-    /// Where it is.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Takes it away, when its rows have found their place.
@@ -380,11 +401,8 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Header, Rows), PartError> {
             );
             return Err(unusable(path, what));
         }
-        if let Some(earlier) = places.insert(shard.index, path) {
-            let what = format!("is part {shard}, and so is {}", earlier.display());
-            return Err(unusable(path, what));
-        }
         let Some((first, all)) = &mut whole else {
+            places.insert(shard.index, path);
             whole = Some((header, rows));
             continue;
         };
@@ -396,17 +414,20 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Header, Rows), PartError> {
             let what = format!("does not belong to {}: {difference}", paths[0].display());
             return Err(unusable(path, what));
         }
+        if let Some(earlier) = places.insert(shard.index, path) {
+            let what = format!("is part {shard}, and so is {}", earlier.display());
+            return Err(unusable(path, what));
+        }
         all.extend(rows);
     }
     let Some((mut header, rows)) = whole else {
         return Err(unusable(Path::new("merge"), "no parts"));
     };
-    let missing: Vec<_> = (1..=header.shard.count)
-        .filter(|index| !places.contains_key(index))
-        .map(|index| format!("{index}/{}", header.shard.count))
-        .collect();
-    if !missing.is_empty() {
-        let what = format!("goes with parts that are missing: {}", missing.join(", "));
+    let count = header.shard.count;
+    if let Some(first) = (1..=count).find(|index| !places.contains_key(index)) {
+        let missing = count - places.len();
+        let what =
+            format!("goes with parts of which {missing} are missing: the first is {first}/{count}");
         return Err(unusable(&paths[0], what));
     }
     header.shard = Shard::WHOLE;

@@ -312,11 +312,11 @@ impl Scale {
         }
     }
 
-    /// The logarithmic scale from `low > 0` to `high` exactly.
+    /// The logarithmic scale from `low` to `high` exactly; from the least positive number if that is more.
     #[must_use]
     pub const fn logarithmic(low: f64, high: f64) -> Self {
         Self {
-            low,
+            low: low.max(f64::MIN_POSITIVE),
             high,
             steps: Steps::Logarithmic,
         }

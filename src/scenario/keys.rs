@@ -66,7 +66,8 @@ impl Scenario {
         });
         let map = table.table("map", |table| {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
-            Map::read(table, structure, ground, impact.as_ref().ok())
+            let (impact, simulation) = (impact.as_ref().ok(), simulation.as_ref().ok());
+            Map::read(table, structure, ground, impact, simulation)
         });
         let spectrum = table.table("spectrum", |table| {
             let structure = structure.as_ref().ok();

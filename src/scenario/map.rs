@@ -15,7 +15,7 @@ use super::keys::{
 };
 use super::sequence::Sequence;
 use super::table::{Number, Reading, Table, Writer};
-use super::{Ground, PulseGround, Scenario, Structure};
+use super::{Ground, PulseGround, Scenario, Simulation, Structure};
 use crate::dynamics::engine::EngineError;
 use crate::mechanics::impact::ImpactModel;
 use crate::mechanics::limit::LimitError;
@@ -84,6 +84,7 @@ impl Map {
         structure: Option<&Structure>,
         ground: Option<&Option<Ground>>,
         impact: Option<&ImpactModel>,
+        simulation: Option<&Simulation>,
     ) -> Reading<Self> {
         let read: Vec<_> = Quantity::ALL
             .iter()
@@ -114,7 +115,41 @@ impl Map {
             )));
         }
         Ground::check_pulse(table, ground)?;
-        Ok(Self { x, y })
+        let map = Self { x, y };
+        if let (Some(Some(Ground::Pulse(pulse))), Some(simulation)) = (ground, simulation) {
+            map.check_end(table, pulse, simulation)?;
+        }
+        Ok(map)
+    }
+
+    /// Checks that no pulse is cut off.
+    fn check_end(
+        &self,
+        table: &mut Table<'_>,
+        pulse: &PulseGround,
+        simulation: &Simulation,
+    ) -> Reading<()> {
+        let longest_s = [&self.x, &self.y].into_iter().find_map(|axis| {
+            let values = axis.sequence.values();
+            match axis.quantity {
+                Quantity::Duration => values.last().copied(),
+                Quantity::Frequency => values.first().map(|frequency_hz| 1.0 / frequency_hz),
+                _ => None,
+            }
+        });
+        let longest = PulseGround {
+            duration_s: longest_s.unwrap_or(pulse.duration_s),
+            ..pulse.clone()
+        };
+        let end_s = longest.motion(1.0).end_s();
+        if end_s <= simulation.duration_s {
+            return Ok(());
+        }
+        Err(table.wrong_itself(format!(
+            "has pulses that last until {end_s:?} s and would be cut off; allowed is a `duration_s` in [simulation] \
+             of at least that, and here it is {:?}",
+            simulation.duration_s
+        )))
     }
 
     pub(super) fn write(&self, out: &mut Writer) {
@@ -167,8 +202,8 @@ pub struct Cells<'a> {
     pulse: &'a PulseGround,
     axes: [&'a Axis; 2],
     values: [Vec<f64>; 2],
-    /// The structures, of which only the size may yet vary, in the order of the values on which they depend;
-    /// each is made when first asked for.
+    /// The structures that serve more than one cell, of which only the size may yet vary, in the order of the
+    /// values on which they depend; each is made when first asked for.
     structures: Vec<OnceLock<Result<Specimen, LimitError>>>,
 }
 
@@ -188,11 +223,14 @@ impl<'a> Cells<'a> {
             values,
             structures: Vec::new(),
         };
-        let count = (0..2)
-            .filter(|axis| cells.shapes(*axis))
-            .map(|axis| cells.values[axis].len())
-            .product();
-        cells.structures = (0..count).map(|_| OnceLock::new()).collect();
+        let kept = match (cells.shapes(0), cells.shapes(1)) {
+            (false, false) => 1,
+            (true, false) => cells.values[0].len(),
+            (false, true) => cells.values[1].len(),
+            // Each serves a single cell.
+            (true, true) => 0,
+        };
+        cells.structures = (0..kept).map(|_| OnceLock::new()).collect();
         Some(cells)
     }
 
@@ -252,8 +290,10 @@ impl<'a> Cells<'a> {
             .fold(0, |which, axis| {
                 which * self.values[axis].len() + place[axis]
             });
-        let made = self.structures[which].get_or_init(|| self.make(index));
-        let mut specimen = made.clone()?;
+        let mut specimen = match self.structures.get(which) {
+            Some(kept) => kept.get_or_init(|| self.make(index)).clone()?,
+            None => self.make(index)?,
+        };
         if let (Specimen::Arch(arch), Some(mean_radius_m)) =
             (&mut specimen, self.value(index, Quantity::MeanRadius))
         {
@@ -318,9 +358,11 @@ impl<'a> Cells<'a> {
             return Ok(None);
         };
         let conditions = self.scenario.conditions();
-        let without_impact = self
-            .pulse(index)
-            .without_impact(&specimen, &conditions, &[])?;
+        // The cells are looked at as well, so that none contradicts the boundary.
+        let sampled_g: Vec<f64> = self.values[1].iter().map(|value| value.abs()).collect();
+        let without_impact =
+            self.pulse(index)
+                .without_impact(&specimen, &conditions, &sampled_g)?;
         Ok(Some(Boundary {
             x: self.values[0][x],
             incipient_g: specimen.incipient_g(),

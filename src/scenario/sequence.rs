@@ -46,6 +46,9 @@ impl Rule for Ascending<'_> {
     }
 
     fn read(&self, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
+        if let DeValue::Integer(_) | DeValue::Float(_) = value {
+            return Err("is a single number".to_owned());
+        }
         let values = List(self.0).read(value)?;
         if values.is_empty() {
             Err("is empty".to_owned())
@@ -119,7 +122,7 @@ impl Sequence {
             );
             return Err(table.wrong("to", wrong));
         }
-        if spacing == Spacing::Logarithmic && from * to <= 0.0 {
+        if spacing == Spacing::Logarithmic && from <= 0.0 && to >= 0.0 {
             let wrong = "goes with numbers of one sign; allowed is \"linear\" between these";
             return Err(table.wrong("spacing", wrong));
         }
@@ -161,7 +164,7 @@ impl Sequence {
     }
 }
 
-/// The ends are exact, and so is what is symmetric about zero.
+/// The ends are exact.
 fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "at most ten thousand")]
     let part = index as f64 / last as f64;
