@@ -362,7 +362,7 @@ fn threads_and_parts_do_not_change_a_bit() {
     let whole = files(&path.join("results/s"));
     assert_eq!(
         whole.keys().collect::<Vec<_>>(),
-        ["map.csv", "map.svg", "no_impact.csv"]
+        ["map.csv", "map.json", "map.svg", "no_impact.csv"]
     );
     let table = String::from_utf8(whole["map.csv"].clone()).unwrap();
     assert_eq!(table.lines().count(), 170);
@@ -406,7 +406,7 @@ fn threads_and_parts_do_not_change_a_bit() {
         fs::read(path.join("parts/map.csv")).unwrap(),
         whole["map.csv"]
     );
-    assert_eq!(files(&path.join("parts")).len(), 5);
+    assert_eq!(files(&path.join("parts")).len(), 6);
 }
 
 #[test]

@@ -456,8 +456,8 @@ fn the_map_shows_every_cell_and_the_boundaries() {
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));
 
-    // The frame is 790 by 550 pixels; x from 0.15 to 0.75 s, y over five octaves from 0.1 g / sqrt(2).
-    let (left, top, width, height) = (85.0, 110.0, 790.0, 550.0);
+    // The frame is 790 by 560 pixels; x from 0.15 to 0.75 s, y over five octaves from 0.1 g / sqrt(2).
+    let (left, top, width, height) = (85.0, 100.0, 790.0, 560.0);
     let x_edges = [0.15, 0.25, 0.45, 0.75].map(|x: f64| left + width * (x - 0.15) / 0.6);
     let y_edge = |row: u32| top + height * (1.0 - f64::from(row) / 5.0);
     let y_of = |amplitude_g: f64| top + height * (1.0 - ((amplitude_g / 0.1).log2() + 0.5) / 5.0);

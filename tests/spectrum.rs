@@ -441,7 +441,7 @@ fn pictures_of_much_and_of_little() {
     assert!(count(&much, "arch least") > 0 && count(&much, "column least") > 0);
     let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
     let single = small(column, "one_cosine", "").replace("[1.2, 2.5, 5.0]", "[2.5]");
-    assert_eq!(picture(&single), ["column least"]);
+    assert_eq!(picture(&single), ["column no-impact", "column least"]);
     let none = single.replace("[2.5]", "[0.001]");
     assert!(picture(&none).is_empty());
 }
@@ -474,8 +474,9 @@ fn results(folder: &Path) -> [Vec<u8>; 2] {
         .filter(|name| !name.contains("-of-"))
         .collect();
     names.sort();
-    assert_eq!(names, ["spectrum.csv", "spectrum.svg"]);
-    ["spectrum.csv", "spectrum.svg"].map(|name| fs::read(folder.join(name)).unwrap())
+    assert_eq!(names, ["spectrum.csv", "spectrum.json", "spectrum.svg"]);
+    ["spectrum.csv", "spectrum.json", "spectrum.svg"]
+        .map(|name| fs::read(folder.join(name)).unwrap())
 }
 
 #[test]
@@ -486,7 +487,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     let said = succeeds(folder, &["spectrum", "s.toml", "--threads", "1"]);
     assert!(said.starts_with("6 points: "), "{said}");
     assert!(
-        said.ends_with("results in results/s: spectrum.svg, spectrum.csv\n"),
+        said.ends_with("results in results/s: spectrum.svg, spectrum.json, spectrum.csv\n"),
         "{said}"
     );
     let whole = results(&folder.join("results/s"));
@@ -572,7 +573,7 @@ fn the_command_refuses_what_has_no_spectrum() {
     fs::write(root.path().join("s.toml"), ARCH).unwrap();
     let output = archrock(root.path(), &["spectrum", "s.toml"]);
     assert_eq!(output.status.code(), Some(2));
-    let words = "error: a spectrum needs a pulse: give a table [ground.<kind>]";
+    let words = "error: s.toml: a spectrum needs a pulse: give a table [ground.<kind>]";
     assert!(stderr(&output).starts_with(words), "{}", stderr(&output));
     assert!(!root.path().join("results").exists());
 }

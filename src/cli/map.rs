@@ -9,7 +9,7 @@ use archrock::scenario::{Boundary, Cell, Cells, Quantity, Scenario};
 use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
 
 use super::Failure;
-use super::study::{Options, say};
+use super::study::{Options, say, write_summary};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -31,6 +31,7 @@ pub struct BoundaryOption {
 pub const STUDY: &str = "map";
 
 const PICTURE: &str = "map.svg";
+const SUMMARY: &str = "map.json";
 const BOUNDARY: &str = "no_impact.csv";
 /// Written last: a folder that has it is complete.
 const TABLE: &str = "map.csv";
@@ -38,7 +39,7 @@ const TABLE: &str = "map.csv";
 pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let scenario = Scenario::read(&options.scenario)?;
-    let cells = cells(&scenario)?;
+    let cells = cells(&scenario).map_err(|failure| options.about_scenario(failure))?;
     arguments.boundary.check(&cells)?;
     let header = Header::new(STUDY, scenario.to_toml(), Vec::new(), cells.count());
     let row = |index| output::row(&cells, index);
@@ -130,7 +131,7 @@ fn finish(
     let failed = found.iter().filter_map(|found| found.as_ref().err()).next();
     let failed = failed.map(ToString::to_string);
     let boundaries: Vec<Boundary> = found.into_iter().filter_map(Result::ok).flatten().collect();
-    let mut files = vec![PICTURE, TABLE];
+    let mut files = vec![PICTURE, SUMMARY, TABLE];
     if boundary.no_impact {
         files.insert(0, BOUNDARY);
     }
@@ -146,6 +147,7 @@ fn finish(
         .file(PICTURE)
         .write_all(picture.as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
+    write_summary(folder.file(SUMMARY), scenario, rows)?;
     output::write_table(folder.file(TABLE), &cells, rows)?;
     folder.complete()?;
     if !quiet {

@@ -8,7 +8,7 @@ use archrock::output::{Folder, spectrum as output};
 use archrock::scenario::{NoSpectrum, Points, Scenario};
 
 use super::Failure;
-use super::study::{Options, say};
+use super::study::{Options, say, write_summary};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -20,6 +20,7 @@ pub struct Arguments {
 pub const STUDY: &str = "spectrum";
 
 const PICTURE: &str = "spectrum.svg";
+const SUMMARY: &str = "spectrum.json";
 /// Written last: a folder that has it is complete.
 const TABLE: &str = "spectrum.csv";
 
@@ -32,7 +33,7 @@ impl From<NoSpectrum> for Failure {
 pub fn spectrum(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let scenario = Scenario::read(&options.scenario)?;
-    let points = Points::new(&scenario)?;
+    let points = Points::new(&scenario).map_err(|error| options.about_scenario(error.into()))?;
     let header = Header::new(STUDY, scenario.to_toml(), Vec::new(), points.count());
     let row = |index| output::row(&points, index);
     let Some(computed) = options.compute(header, quiet, row)? else {
@@ -51,18 +52,19 @@ pub fn merge(scenario: &str, rows: &Rows, folder: &Path, quiet: bool) -> Result<
 /// Writes the results.
 fn finish(scenario: &Scenario, rows: &Rows, path: &Path, quiet: bool) -> Result<(), Failure> {
     let points = Points::new(scenario)?;
-    let mut folder = Folder::open(path, &[PICTURE, TABLE])?;
+    let mut folder = Folder::open(path, &[PICTURE, SUMMARY, TABLE])?;
     let title = scenario.title.as_deref().unwrap_or("Overturning spectrum");
     folder
         .file(PICTURE)
         .write_all(output::draw(title, &points, rows).as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
+    write_summary(folder.file(SUMMARY), scenario, rows)?;
     output::write_table(folder.file(TABLE), rows)?;
     folder.complete()?;
     if !quiet {
         say(&summary(&points, rows));
         say(&format!(
-            "  results in {}: {PICTURE}, {TABLE}",
+            "  results in {}: {PICTURE}, {SUMMARY}, {TABLE}",
             path.display()
         ));
     }

@@ -12,8 +12,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use archrock::output::OutputError;
 use archrock::output::part::{Header, Part, PartError, Rows, Shard};
+use archrock::output::{OutputError, results};
+use archrock::scenario::Scenario;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{
@@ -54,6 +55,16 @@ impl Options {
     /// The folder for the results.
     pub fn folder(&self) -> PathBuf {
         super::results_folder(self.out.as_deref(), &self.scenario)
+    }
+
+    /// The failure with the name of the scenario file.
+    pub fn about_scenario(&self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Input(message) => {
+                Failure::Input(format!("{}: {message}", self.scenario.display()))
+            }
+            other => other,
+        }
     }
 
     /// Runs `work` on as many threads as were asked for.
@@ -203,6 +214,17 @@ fn stop_on_interrupt(part: &Arc<Mutex<Part>>, progress: &Progress) {
 
 /// As shells tell of a program that Ctrl-C ended.
 const INTERRUPTED: i32 = 130;
+
+/// Writes what a study was of.
+pub fn write_summary(
+    mut file: impl io::Write,
+    scenario: &Scenario,
+    rows: &Rows,
+) -> Result<(), Failure> {
+    let summary = results::study_summary(scenario, rows.len());
+    writeln!(file, "{summary:#}")
+        .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))
+}
 
 /// Says something to a person.
 pub fn say(text: &str) {

@@ -30,7 +30,7 @@ const TABLE: &str = "suite.csv";
 pub fn suite(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let scenario = Scenario::read(&options.scenario)?;
-    let shakes = shakes(&scenario)?;
+    let shakes = shakes(&scenario).map_err(|failure| options.about_scenario(failure))?;
     let text = scenario.to_toml();
     let header = Header::new(STUDY, text.clone(), shakes.inputs(), shakes.count());
     let row = |index| output::row(&shakes, index);

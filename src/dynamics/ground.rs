@@ -58,6 +58,12 @@ named! {
 }
 
 impl Pulse {
+    /// Whether it pushes to one side only.
+    #[must_use]
+    pub const fn is_one_sided(self) -> bool {
+        matches!(self, Self::Rectangular | Self::HalfSine | Self::Triangular)
+    }
+
     /// Whether the shape depends on a [`WaveTrain`].
     #[must_use]
     pub const fn is_wave_train(self) -> bool {

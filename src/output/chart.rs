@@ -4,7 +4,7 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::svg::{Anchor, Axes, CURVES, Drawing, Frame, Scale};
+use super::svg::{Axes, CURVES, Drawing, Frame, Scale};
 use super::{OutputError, finite};
 use crate::studies::survey::ShapeResult;
 
@@ -48,7 +48,7 @@ type Quantity = fn(&ShapeResult) -> Option<f64>;
 pub fn draw(results: &[ShapeResult]) -> String {
     let mut drawing = Drawing::new(900.0, 940.0);
     let title = "Circular arches of several embrace angles";
-    drawing.label(Vector2::new(450.0, 26.0), Anchor::Middle, 0.0, title);
+    drawing.title(title);
     let groups: Vec<&[ShapeResult]> = results
         .chunk_by(|a, b| a.embrace_deg.to_bits() == b.embrace_deg.to_bits())
         .collect();

@@ -11,6 +11,11 @@ use super::{OutputError, finite, verdict};
 use crate::mechanics::limit::LimitError;
 use crate::scenario::{Axis, Boundary, Cell, Cells, Quantity, Spacing};
 
+/// Outcome of a cell whose arch cannot carry its own weight.
+const CANNOT_STAND: &str = "cannot_stand";
+/// Outcome of a cell whose arch is too thick for four links.
+const NOT_FOUR_LINKS: &str = "not_four_links";
+
 /// The row of a cell.
 ///
 /// # Errors
@@ -18,9 +23,9 @@ use crate::scenario::{Axis, Boundary, Cell, Cells, Quantity, Spacing};
 pub fn row(cells: &Cells<'_>, index: usize) -> Result<String, OutputError> {
     let fields = match cells.cell(index) {
         Cell::Shaken(ended) => verdict::fields(&ended)?,
-        Cell::NoArch(LimitError::CannotStand) => verdict::none("cannot_stand"),
+        Cell::NoArch(LimitError::CannotStand) => verdict::none(CANNOT_STAND),
         Cell::NoArch(LimitError::OtherMechanism { .. } | LimitError::NoPush) => {
-            verdict::none("not_four_links")
+            verdict::none(NOT_FOUR_LINKS)
         }
         Cell::Failed(_) => verdict::none(verdict::FAILED),
     };
@@ -93,15 +98,17 @@ const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Ki
 }
 
 /// In the order of the legend.
-const KINDS: [Kind; 8] = [
+const KINDS: [Kind; 10] = [
     kind("never_moved", "never moves", "#e4e4e4"),
     kind("rest", "comes to rest", "#bcdcf0"),
     kind("still_rocking", "still rocking", "#6f8ba0"),
     kind("overturned-0", "overturns without impact", color::VERMILION),
-    kind("overturned-1", "after 1 impact", color::ORANGE),
-    kind("overturned-2", "after 2 impacts", "#f0e442"),
-    kind("overturned-more", "after more", color::PURPLE),
-    kind("none", "no result", "#ffffff"),
+    kind("overturned-1", "overturns after 1 impact", color::ORANGE),
+    kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
+    kind("overturned-more", "overturns after more", color::PURPLE),
+    kind(CANNOT_STAND, "cannot stand", "#ffffff"),
+    kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
+    kind(verdict::FAILED, "failed", color::BLACK),
 ];
 
 impl Kind {
@@ -157,6 +164,17 @@ fn scale(axis: &Axis) -> (Scale, Vec<f64>) {
         .map(from)
         .collect();
     let (low, high) = (edges[0], edges[edges.len() - 1]);
+    // Half a cell beyond the ends there may be nothing that could be.
+    let low = if values[0] >= 0.0 { low.max(0.0) } else { low };
+    let high = match axis.quantity {
+        Quantity::Embrace => high.min(180.0),
+        Quantity::Restitution => high.min(1.0),
+        _ => high,
+    };
+    let edges: Vec<_> = edges
+        .into_iter()
+        .map(|edge| edge.clamp(low, high))
+        .collect();
     let scale = if logarithmic {
         Scale::logarithmic(low, high)
     } else {
@@ -169,19 +187,20 @@ fn scale(axis: &Axis) -> (Scale, Vec<f64>) {
 #[must_use]
 pub fn draw(title: &str, cells: &Cells<'_>, rows: &Rows, boundaries: &[Boundary]) -> String {
     let mut drawing = Drawing::new(900.0, 720.0);
-    drawing.label(Vector2::new(450.0, 26.0), Anchor::Middle, 0.0, title);
+    drawing.title(title);
+    let kinds: Vec<_> = rows.values().map(|row| Kind::of(row)).collect();
+    let top = legend(&mut drawing, cells, &kinds, !boundaries.is_empty());
     let [(x, x_edges), (y, y_edges)] = cells.axes().map(scale);
     let axes = Axes {
         frame: Frame {
-            left: 85.0,
-            top: 110.0,
-            width: 790.0,
-            height: 550.0,
+            left: LEFT,
+            top,
+            width: WIDTH,
+            height: 660.0 - top,
         },
         x,
         y,
     };
-    let kinds: Vec<_> = rows.values().map(|row| Kind::of(row)).collect();
     let high = cells.values()[1].len();
     for kind in KINDS {
         let mut path = String::new();
@@ -225,30 +244,45 @@ pub fn draw(title: &str, cells: &Cells<'_>, rows: &Rows, boundaries: &[Boundary]
             curve("no-impact", IMPACT_FREE, |b| b.impact_free_g);
         }
     });
-    legend(&mut drawing, &kinds, !boundaries.is_empty());
     drawing.finish()
 }
 
 const INCIPIENT: Stroke = Stroke::new(color::BLUE, 2.0, "7 4");
 const IMPACT_FREE: Stroke = Stroke::new(color::BLACK, 2.2, "");
 
-/// What the colours and lines mean, in two rows.
-fn legend(drawing: &mut Drawing, kinds: &[Kind], boundaries: bool) {
-    let mut x = 85.0;
+const LEFT: f64 = 85.0;
+const WIDTH: f64 = 790.0;
+
+/// What the colours and lines mean, in as many rows as it takes; returns where these end.
+fn legend(drawing: &mut Drawing, cells: &Cells<'_>, kinds: &[Kind], boundaries: bool) -> f64 {
+    const ROW: f64 = 24.0;
+    let (mut x, mut y) = (LEFT, 46.0);
     for kind in KINDS.into_iter().filter(|kind| kinds.contains(kind)) {
-        let swatch = format!("M{x} 46h22v14h-22z");
+        #[expect(clippy::cast_precision_loss, reason = "the length of a label")]
+        let advance = 46.0 + 6.6 * kind.label.len() as f64;
+        if x + advance > LEFT + WIDTH {
+            (x, y) = (LEFT, y + ROW);
+        }
+        let swatch = format!("M{x} {y}h22v14h-22z");
         let outline = Stroke::new(color::GREY, 0.8, "");
         drawing.path("", &swatch, kind.fill, outline);
-        drawing.label(Vector2::new(x + 28.0, 58.0), Anchor::Start, 0.0, kind.label);
-        #[expect(clippy::cast_precision_loss, reason = "the length of a label")]
-        let width = kind.label.len() as f64;
-        x += 46.0 + 6.6 * width;
+        let at = Vector2::new(x + 28.0, y + 12.0);
+        drawing.label(at, Anchor::Start, 0.0, kind.label);
+        x += advance;
     }
+    y += ROW;
     if boundaries {
+        let incipient = if cells.moves_vertically() {
+            "incipient acceleration, were there no vertical motion"
+        } else {
+            "incipient acceleration"
+        };
         let entries = [
-            ("incipient acceleration", INCIPIENT),
+            (incipient, INCIPIENT),
             ("least amplitude that overturns without impact", IMPACT_FREE),
         ];
-        drawing.legend(Vector2::new(85.0, 84.0), 230.0, entries);
+        drawing.legend(Vector2::new(LEFT, y + 10.0), 395.0, entries);
+        y += ROW;
     }
+    y + 6.0
 }

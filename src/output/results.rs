@@ -159,6 +159,17 @@ fn joules_per_unit<S: Structure>(structure: &S) -> f64 {
     structure.mass_unit_kg() * structure.length_m() * structure.length_m()
 }
 
+/// What a study was of: program, version, scenario as resolved, number of cases.
+#[must_use]
+pub fn study_summary(scenario: &Scenario, cases: usize) -> Value {
+    json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenario": scenario.to_json(),
+        "cases": cases,
+    })
+}
+
 /// The summary of a run as JSON.
 ///
 /// `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (times the duration of the pulse) and

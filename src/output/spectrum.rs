@@ -95,7 +95,7 @@ const RADIUS_PX: f64 = 3.0;
 #[must_use]
 pub fn draw(title: &str, points: &Points<'_>, rows: &Rows) -> String {
     let mut drawing = Drawing::new(900.0, 660.0);
-    drawing.label(Vector2::new(450.0, 26.0), Anchor::Middle, 0.0, title);
+    drawing.title(title);
     let axes = Axes {
         frame: Frame {
             left: 85.0,
@@ -150,14 +150,18 @@ fn less(row: &str) -> Option<f64> {
     number(row, "least_over_incipient").filter(|least| edge(row).is_none_or(|edge| *least < edge))
 }
 
-/// Peak accelerations to be drawn, ascending: from the least tried to the largest result, if that was tried.
+/// Peak accelerations to be drawn, ascending: from the least tried to the largest result, unless that is beyond all
+/// that were tried and beyond the half as much again of the least result.
 fn heights(points: &Points<'_>, rows: &Rows) -> Vec<f64> {
     let tried = points.over_incipient();
     let last = tried[tried.len() - 1];
     let results = rows.values().flat_map(|row| [edge(row), less(row)]);
+    let results: Vec<f64> = results.flatten().collect();
+    let least = results.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest = last.max(1.5 * least);
     let mut heights: Vec<f64> = results
-        .flatten()
-        .map(|height| height.min(last))
+        .into_iter()
+        .map(|height| height.min(highest))
         .chain([tried[0]])
         .collect();
     heights.sort_by(f64::total_cmp);
@@ -167,10 +171,18 @@ fn heights(points: &Points<'_>, rows: &Rows) -> Vec<f64> {
 fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[&str]) {
     // Where there is no value the curve breaks.
     for run in rows.chunk_by(|a, b| edge(a).is_some() == edge(b).is_some()) {
-        let places = run
+        let places: Vec<_> = run
             .iter()
-            .filter_map(|row| Some(axes.place(number(row, "p_t")?, edge(row)?)));
-        drawing.curve(&format!("{} no-impact", look.name), places, look.line);
+            .filter_map(|row| Some(axes.place(number(row, "p_t")?, edge(row)?)))
+            .collect();
+        // A single point is no curve.
+        let name = format!("{} no-impact", look.name);
+        if let [only] = places[..] {
+            let reach = Vector2::new(6.0, 0.0);
+            drawing.curve(&name, [only - reach, only + reach], look.line);
+        } else {
+            drawing.curve(&name, places, look.line);
+        }
     }
     for row in rows {
         if let (Some(p_t), Some(least)) = (number(row, "p_t"), less(row)) {

@@ -357,7 +357,7 @@ impl Results {
         let mut drawing = Drawing::new(900.0, 600.0);
         let title = self.scenario.get("title").and_then(Value::as_str);
         let title = title.unwrap_or("Fragility under a suite of records");
-        drawing.label(Vector2::new(450.0, 26.0), Anchor::Middle, 0.0, title);
+        drawing.title(title);
         let axes = Axes {
             frame: FRAME,
             x: self.scale(),

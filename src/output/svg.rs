@@ -83,11 +83,15 @@ pub struct Frame {
 /// A drawing.
 #[derive(Clone, Debug)]
 pub struct Drawing {
+    width: f64,
     text: String,
 }
 
 /// Size of text in pixels.
 const TEXT_PX: f64 = 13.0;
+
+/// Characters of a title that fit even if they are wide.
+const MOST_TITLE: usize = 90;
 
 impl Drawing {
     /// A white sheet, in pixels.
@@ -102,7 +106,17 @@ impl Drawing {
             text,
             "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"
         );
-        Self { text }
+        Self { width, text }
+    }
+
+    /// A title in the middle above all else; a long one is cut.
+    pub fn title(&mut self, title: &str) {
+        let mut shown: String = title.chars().take(MOST_TITLE).collect();
+        if title.chars().nth(MOST_TITLE).is_some() {
+            shown.push_str("...");
+        }
+        let at = Vector2::new(0.5 * self.width, 26.0);
+        self.label(at, Anchor::Middle, 0.0, &shown);
     }
 
     /// The file.

@@ -141,7 +141,7 @@ impl Timeline {
     pub fn draw(&self, title: &str, impacts_s: impl Iterator<Item = f64>) -> String {
         let (left, width) = (85.0, 790.0);
         let mut drawing = Drawing::new(900.0, 860.0);
-        drawing.label(Vector2::new(450.0, 24.0), Anchor::Middle, 0.0, title);
+        drawing.title(title);
         let time = Scale::exactly(0.0, self.end_s.max(f64::MIN_POSITIVE), 10);
         let named = |bodies: &[&'static str]| -> Vec<&'static str> {
             bodies

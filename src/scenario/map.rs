@@ -254,6 +254,12 @@ impl<'a> Cells<'a> {
         self.axes
     }
 
+    /// Whether the ground moves vertically too.
+    #[must_use]
+    pub fn moves_vertically(&self) -> bool {
+        self.pulse.vertical_amplitude_g != 0.0
+    }
+
     /// Number of cells.
     #[must_use]
     pub fn count(&self) -> usize {

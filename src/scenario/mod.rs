@@ -281,7 +281,7 @@ impl PulseGround {
         };
         // Ground that falls makes the structure lighter.
         let from_g = specimen.incipient_g() * (1.0 - self.vertical_amplitude_g.abs().min(0.99));
-        let mut ascending_g: Vec<f64> = strides(from_g, keys::LARGEST_G)
+        let mut ascending_g: Vec<f64> = strides(self.kind, from_g, keys::LARGEST_G)
             .chain(tried_g.iter().copied())
             .filter(|amplitude_g| *amplitude_g <= keys::LARGEST_G)
             .collect();

@@ -8,6 +8,7 @@
 use std::ops::ControlFlow;
 
 use crate::dynamics::engine::{EngineError, Observer, Settings, Transition, simulate};
+use crate::dynamics::ground::Pulse;
 use crate::dynamics::integrator::Step;
 use crate::dynamics::rocking::{Guard, Mode, Rocking, RockingState};
 use crate::mechanics::mechanism::Sway;
@@ -66,17 +67,27 @@ impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for FirstFall {
     }
 }
 
-/// Ratio of the amplitudes at which the edge is looked for: a window that is narrower may go unseen. The narrowest
-/// found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
+/// Ratio of the amplitudes at which the edge of a pulse with lobes to both sides is looked for: a window that is
+/// narrower may go unseen. The narrowest found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
 const STRIDE: f64 = 1.005;
+
+/// The same for pulses to one side. More of these pushes harder at every instant, so there is one edge, however far
+/// the strides.
+const ONE_SIDED_STRIDE: f64 = 1.5;
 
 /// Relative width to which the edge is bisected: the integration at the default tolerance knows no more.
 const RESOLUTION: f64 = 1e-9;
 
-/// Amplitudes from `from` to `to`, in strides of 0.5 %.
-pub fn strides(from: f64, to: f64) -> impl Iterator<Item = f64> {
+/// Amplitudes of a pulse from `from` to `to`, in strides that do not miss an edge: of 0.5 % where there can be
+/// windows.
+pub fn strides(pulse: Pulse, from: f64, to: f64) -> impl Iterator<Item = f64> {
+    let stride = if pulse.is_one_sided() {
+        ONE_SIDED_STRIDE
+    } else {
+        STRIDE
+    };
     std::iter::successors(Some(from), move |last| {
-        (*last < to).then(|| (last * STRIDE).min(to))
+        (*last < to).then(|| (last * stride).min(to))
     })
 }
 
