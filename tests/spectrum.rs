@@ -467,7 +467,7 @@ fn succeeds(folder: &Path, arguments: &[&str]) -> String {
     stderr(&output)
 }
 
-fn results(folder: &Path) -> [Vec<u8>; 2] {
+fn results(folder: &Path) -> [Vec<u8>; 3] {
     let mut names: Vec<_> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())

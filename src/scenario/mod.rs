@@ -266,7 +266,7 @@ impl PulseGround {
 
     /// The least amplitude, as a magnitude in g, with which the pulse overturns a specimen without impact,
     /// all else as it is, and the side to which it does; `None` if no amplitude does that a scenario may have.
-    /// It is looked for at `tried_g`, which ascend, and in strides.
+    /// It is looked for in strides and, where there can be windows between these, at `tried_g` as well.
     fn without_impact(
         &self,
         specimen: &Specimen,
@@ -282,7 +282,12 @@ impl PulseGround {
         // Ground that falls makes the structure lighter.
         let from_g = specimen.incipient_g() * (1.0 - self.vertical_amplitude_g.abs().min(0.99));
         let mut ascending_g: Vec<f64> = strides(self.kind, from_g, keys::LARGEST_G)
-            .chain(tried_g.iter().copied())
+            .chain(
+                tried_g
+                    .iter()
+                    .copied()
+                    .filter(|_| !self.kind.is_one_sided()),
+            )
             .filter(|amplitude_g| *amplitude_g <= keys::LARGEST_G)
             .collect();
         ascending_g.sort_by(f64::total_cmp);
