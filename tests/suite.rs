@@ -333,6 +333,13 @@ fn patterns_and_lists_are_the_same_suite() {
         }
     }
     assert_eq!(rows(&folder.join("o0")).len(), 3 * 2 * 2);
+
+    // The same files under other names count once.
+    let records = "['records/*.at2', 'records/../records/*.at2']";
+    let text = format!("{COLUMN}[suite]\nrecords = {records}\nscales = [1.0, 3.0]\n");
+    write(folder, "s.toml", &text);
+    done(folder, &["suite", "s.toml", "--out", "again", "--quiet"]);
+    assert_eq!(rows(&folder.join("again")), rows(&folder.join("o0")));
 }
 
 #[test]

@@ -13,7 +13,7 @@
 //! Every record shakes the structure at every level: multiplied by every factor of `scales`, or scaled to
 //! every peak of `peaks_g`. `[ground]` has no part in it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound::{Excluded, Included};
 use std::path::{Component as PathPart, Path, PathBuf};
 
@@ -240,12 +240,17 @@ fn list(
     format: Option<Format>,
 ) -> Reading<Vec<Listed>> {
     let mut found = BTreeMap::new();
+    // The same file under another name is no further evidence.
+    let mut seen = BTreeSet::new();
     let mut all_well = Ok(());
     for (element, pattern) in patterns.iter().enumerate() {
         match find(folder, pattern) {
             Ok(files) => {
                 for file in files {
-                    found.entry(file).or_insert(element);
+                    let path = folder.join(&file);
+                    if seen.insert(path.canonicalize().unwrap_or(path)) {
+                        found.insert(file, element);
+                    }
                 }
             }
             Err(wrong) => all_well = Err(table.wrong_element(RECORDS, element, wrong)),
