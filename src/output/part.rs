@@ -156,6 +156,23 @@ impl Header {
         })
     }
 
+    /// The first input that another header has and this one has not, or the other way round.
+    fn other_input(&self, other: &Self) -> Option<String> {
+        fn only<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
+            let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
+            // The checksum is no news to anybody.
+            Some(input.rsplit_once(' ').map_or(input, |(name, _)| name))
+        }
+        match (only(self, other), only(other, self)) {
+            (Some(here), Some(there)) if here == there => {
+                Some(format!("other contents of {there}"))
+            }
+            (_, Some(there)) => Some(format!("{there} as well")),
+            (Some(here), None) => Some(format!("no {here}")),
+            (None, None) => None,
+        }
+    }
+
     /// What parts the study of another header from this one's; `None` if they belong together.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
@@ -164,16 +181,7 @@ impl Header {
         };
         differ("the study", &self.study, &other.study)
             .or_else(|| differ("the program version", &self.version, &other.version))
-            .or_else(|| {
-                let only = |here: &Self, there: &Self| {
-                    let mut inputs = here.inputs.iter();
-                    inputs.find(|input| !there.inputs.contains(input)).cloned()
-                };
-                // The checksum is no news to anybody.
-                let input = only(self, other).or_else(|| only(other, self))?;
-                let name = input.rsplit_once(' ').map_or(&*input, |(name, _)| name);
-                Some(format!("other contents of {name}, or not that file"))
-            })
+            .or_else(|| self.other_input(other))
             .or_else(|| {
                 let mut lines = self.scenario.lines().zip(other.scenario.lines());
                 let (here, there) = lines
