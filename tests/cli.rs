@@ -2,29 +2,19 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+mod program;
 
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use program::{archrock, scenarios, stderr};
 use serde_json::Value;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
-fn archrock(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap()
-}
-
 fn scenario(folder: &Path, text: &str) {
     fs::write(folder.join("s.toml"), text).unwrap();
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 fn entries(folder: &Path) -> Vec<String> {
@@ -38,10 +28,6 @@ fn entries(folder: &Path) -> Vec<String> {
 
 fn summary(folder: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
-}
-
-fn scenarios() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
 }
 
 /// Runs a scenario of the repository in a fresh folder, and returns its summary and its rows.

@@ -3,12 +3,13 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+mod program;
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Output};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -18,6 +19,7 @@ use archrock::dynamics::rocking::Rocking;
 use archrock::scenario::{Boundary, Cell, Cells, Scenario};
 use archrock::studies::specimen::Verdict;
 use common::{GRAVITY, REST_ENERGY_RATIO, request, seven_voussoirs};
+use program::command;
 
 const SEMICIRCLE: &str =
     "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
@@ -296,19 +298,8 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
 
 // The program, in pieces.
 
-fn archrock(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_archrock"));
-    command
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    command
-}
-
 fn run(folder: &Path, arguments: &[&str]) -> Output {
-    archrock(folder, arguments).output().unwrap()
+    program::archrock(folder, arguments)
 }
 
 #[track_caller]
@@ -621,7 +612,7 @@ fn two_programs_do_not_work_on_one_part() {
 
 /// A map that takes some seconds on one thread.
 fn start_long_work(folder: &Path) -> Child {
-    archrock(
+    command(
         folder,
         &["map", "s.toml", "--out", "r", "--resume", "--threads", "2"],
     )

@@ -1,11 +1,12 @@
 //! Overturning spectra against closed forms, similarity, and histories of their own; and the command.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+mod program;
+
 use std::f64::consts::PI;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{History, Outcome, Request, history};
@@ -15,6 +16,7 @@ use archrock::mechanics::structure::Structure;
 use archrock::output::spectrum::{draw, row};
 use archrock::scenario::{NoSpectrum, Point, Points, Scenario};
 use archrock::studies::specimen::Specimen;
+use program::{archrock, stderr};
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
@@ -444,19 +446,6 @@ fn pictures_of_much_and_of_little() {
     assert_eq!(picture(&single), ["column no-impact", "column least"]);
     let none = single.replace("[2.5]", "[0.001]");
     assert!(picture(&none).is_empty());
-}
-
-fn archrock(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 #[track_caller]

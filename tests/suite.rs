@@ -3,33 +3,22 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod program;
+
 use std::f64::consts::PI;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
 
 use archrock::output::part::Rows;
 use archrock::output::suite::Results;
 use archrock::scenario::{Layout, Scenario};
+use program::{archrock, scenarios, stderr};
 use serde_json::Value;
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n";
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
                     [simulation]\nduration_s = 30.0\n";
 const FILES: [&str; 4] = ["suite.svg", "fragility.csv", "fragility.json", "suite.csv"];
-
-fn archrock(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap()
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
 
 /// Runs a command that is to succeed; returns what it says.
 #[track_caller]
@@ -46,10 +35,6 @@ fn refused(folder: &Path, arguments: &[&str]) -> String {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(output.stdout.is_empty());
     stderr(&output)
-}
-
-fn scenarios() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
 }
 
 /// A folder with the first records of the repository, one of them as a table in cm/s2 as well.
