@@ -4,12 +4,11 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use archrock::dynamics::engine::{EngineError, Observer, Settings, Transition, simulate};
+use archrock::dynamics::engine::{EngineError, Observer, Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{EventKind, History, Outcome, Request, Sample, history};
-use archrock::dynamics::integrator::Step;
-use archrock::dynamics::rocking::{Guard, Mode, Rocking, RockingState};
-use archrock::mechanics::column::{Column, Tilting};
+use archrock::dynamics::rocking::{Rocking, RockingState};
+use archrock::mechanics::column::Column;
 use archrock::mechanics::impact::ImpactModel;
 use archrock::mechanics::mechanism::Sway;
 use archrock::mechanics::structure::Structure as _;
@@ -369,25 +368,7 @@ fn chattering_on_a_pushing_ground_ends_in_rest() {
 
 struct Nobody;
 
-impl<'a> Observer<Rocking<'a, Column>, 3> for Nobody {
-    fn step(
-        &mut self,
-        _: &Rocking<'a, Column>,
-        _: Mode<'a, Tilting>,
-        _: usize,
-        _: &Step<3>,
-    ) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-    fn transition(
-        &mut self,
-        _: &Rocking<'a, Column>,
-        _: usize,
-        _: &Transition<Mode<'a, Tilting>, Guard, 3>,
-    ) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
+impl Observer<Rocking<'_, Column>, 3> for Nobody {}
 
 #[test]
 fn too_many_events_are_an_error_that_says_what_to_change() {

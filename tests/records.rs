@@ -1,6 +1,7 @@
 //! Records of ground motion: files, straight lines between samples, and whole histories.
 #![allow(clippy::unwrap_used)]
 
+mod common;
 mod motions;
 
 use std::f64::consts::PI;

@@ -1,6 +1,7 @@
 //! Vertical ground acceleration along with the horizontal one.
 #![allow(clippy::unwrap_used)]
 
+mod common;
 mod motions;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
@@ -241,7 +242,7 @@ proptest! {
     ) {
         let mut random = Random(seed);
         let mut rough = |peak: f64| -> Vec<_> {
-            let value = |i| (f64::from(i) * step_s, peak * G * (2.0 * random.unit() - 1.0));
+            let value = |i| (f64::from(i) * step_s, peak * G * (2.0 * random.next() - 1.0));
             (0..100).map(value).collect()
         };
         let ground = GroundMotion::record(&rough(push), &rough(lift), 0.0);

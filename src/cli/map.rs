@@ -166,8 +166,8 @@ fn finish(
 
 /// How many cells came to what, and why some to nothing.
 fn summary(cells: &Cells<'_>, rows: &Rows) -> String {
-    let mut text = format!("{} cells", rows.len());
-    for (index, (outcome, label)) in [
+    let counts = output::counts(rows);
+    let outcomes = [
         ("never_moved", "never move"),
         ("rest", "come to rest"),
         ("overturned", "overturn"),
@@ -178,15 +178,12 @@ fn summary(cells: &Cells<'_>, rows: &Rows) -> String {
         ("cannot_stand", "cannot stand"),
         ("not_four_links", "are too thick for four links"),
         (verdict::FAILED, "failed"),
-    ]
-    .into_iter()
-    .filter(|(outcome, _)| output::count(rows, outcome) > 0)
-    .enumerate()
-    {
-        let separator = if index == 0 { ": " } else { ", " };
-        let count = output::count(rows, outcome);
-        text += &format!("{separator}{count} {label}");
-    }
+    ];
+    let parts: Vec<_> = outcomes
+        .into_iter()
+        .filter_map(|(outcome, label)| Some(format!("{} {label}", counts.get(outcome)?)))
+        .collect();
+    let mut text = format!("{} cells: {}", rows.len(), parts.join(", "));
     let reason = rows.iter().find_map(|(index, row)| {
         (output::outcome(row) == verdict::FAILED).then(|| cells.cell(*index))
     });

@@ -109,14 +109,25 @@ pub struct Transition<M, G, const N: usize> {
 /// Listener to a simulation. Steps and transitions come in the order of time; to break ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
     /// A stretch of motion without event.
-    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>) -> ControlFlow<()>;
+    fn step(
+        &mut self,
+        _system: &S,
+        _mode: S::Mode,
+        _piece: usize,
+        _step: &Step<N>,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
     /// An event.
     fn transition(
         &mut self,
-        system: &S,
-        piece: usize,
-        transition: &Transition<S::Mode, S::Guard, N>,
-    ) -> ControlFlow<()>;
+        _system: &S,
+        _piece: usize,
+        _transition: &Transition<S::Mode, S::Guard, N>,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 impl<S: HybridSystem<N>, A: Observer<S, N>, B: Observer<S, N>, const N: usize> Observer<S, N>

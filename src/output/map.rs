@@ -1,5 +1,6 @@
 //! The overturning map: its table, its boundaries, its picture.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write;
 
@@ -39,10 +40,14 @@ pub fn outcome(row: &str) -> &str {
     row.split(',').nth(2).unwrap_or_default()
 }
 
-/// How many rows have this outcome.
+/// How many rows have each outcome.
 #[must_use]
-pub fn count(rows: &Rows, wanted: &str) -> usize {
-    rows.values().filter(|row| outcome(row) == wanted).count()
+pub fn counts(rows: &Rows) -> BTreeMap<&str, usize> {
+    let mut counts = BTreeMap::new();
+    for row in rows.values() {
+        *counts.entry(outcome(row)).or_default() += 1;
+    }
+    counts
 }
 
 /// Writes the table, a row per cell: x varies slowly, y fast.

@@ -147,11 +147,7 @@ impl Drawing {
 
     /// A path in SVG's own notation.
     pub fn path(&mut self, name: &str, path: &str, fill: &str, stroke: Stroke) {
-        let name = if name.is_empty() {
-            String::new()
-        } else {
-            format!(" data-name=\"{}\"", escaped(name))
-        };
+        let name = name_attribute(name);
         let dash = if stroke.dash.is_empty() {
             String::new()
         } else {
@@ -174,9 +170,9 @@ impl Drawing {
     pub fn circle(&mut self, name: &str, center: Vector2<f64>, radius: f64, stroke: Stroke) {
         let _ = writeln!(
             self.text,
-            "<circle data-name=\"{}\" cx=\"{:.3}\" cy=\"{:.3}\" r=\"{radius}\" fill=\"#ffffff\" \
+            "<circle{} cx=\"{:.3}\" cy=\"{:.3}\" r=\"{radius}\" fill=\"#ffffff\" \
              stroke=\"{}\" stroke-width=\"{}\"/>",
-            escaped(name),
+            name_attribute(name),
             center.x,
             center.y,
             stroke.color,
@@ -188,9 +184,9 @@ impl Drawing {
     pub fn band(&mut self, name: &str, frame: &Frame, fill: &str, opacity: f64) {
         let _ = writeln!(
             self.text,
-            "<rect data-name=\"{}\" x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" \
+            "<rect{} x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" \
              fill=\"{fill}\" fill-opacity=\"{opacity}\"/>",
-            escaped(name),
+            name_attribute(name),
             frame.left,
             frame.top,
             frame.width,
@@ -253,6 +249,15 @@ impl Drawing {
             self.label(start + Vector2::new(36.0, 4.5), Anchor::Start, 0.0, text);
             x += advance_px;
         }
+    }
+}
+
+/// The name of a mark that stands for a result; nothing for others.
+fn name_attribute(name: &str) -> String {
+    if name.is_empty() {
+        String::new()
+    } else {
+        format!(" data-name=\"{}\"", escaped(name))
     }
 }
 

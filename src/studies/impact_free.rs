@@ -9,7 +9,6 @@ use std::ops::ControlFlow;
 
 use crate::dynamics::engine::{EngineError, Observer, Settings, Transition, simulate};
 use crate::dynamics::ground::Pulse;
-use crate::dynamics::integrator::Step;
 use crate::dynamics::rocking::{Guard, Mode, Rocking, RockingState};
 use crate::mechanics::mechanism::Sway;
 use crate::mechanics::structure::Structure;
@@ -44,16 +43,6 @@ pub fn overturns<S: Structure>(
 struct FirstFall;
 
 impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for FirstFall {
-    fn step(
-        &mut self,
-        _: &Rocking<'a, S>,
-        _: Mode<'a, S::Mechanism>,
-        _: usize,
-        _: &Step<3>,
-    ) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
     fn transition(
         &mut self,
         _: &Rocking<'a, S>,

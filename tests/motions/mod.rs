@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
+pub use crate::common::Random;
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Request, Sample, history};
 use archrock::dynamics::rocking::Rocking;
@@ -57,28 +58,14 @@ pub fn run<'a>(
     (history, samples)
 }
 
-/// SplitMix64 of Steele, Lea and Flood (2014): the same numbers everywhere.
-pub struct Random(pub u64);
-
-impl Random {
-    /// A number in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// An earthquake from a seed: forty waves of 0.3 to 8 Hz with random phases, weaker the faster, which swell
 /// over the first tenth of the duration and fade over the second half, with a peak of 1.
 pub fn synthetic(seed: u64, duration_s: f64, step_s: f64) -> Vec<(f64, f64)> {
     let mut random = Random(seed);
     let waves: Vec<_> = (0..40)
         .map(|_| {
-            let frequency = 0.3 * (8.0_f64 / 0.3).powf(random.unit());
-            (frequency, 2.0 * PI * random.unit())
+            let frequency = 0.3 * (8.0_f64 / 0.3).powf(random.next());
+            (frequency, 2.0 * PI * random.next())
         })
         .collect();
     let count = (duration_s / step_s).round() as i32;
