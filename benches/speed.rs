@@ -7,15 +7,15 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::{Arc, LazyLock};
 
-use archrock::dynamics::engine::HybridSystem;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Request, history};
-use archrock::dynamics::rocking::{Rocking, RockingState};
+use archrock::dynamics::hybrid::engine::HybridSystem;
+use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::Chain;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::mechanism::{HingeSites, Sway};
-use archrock::mechanics::ring::Ring;
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
+use archrock::mechanics::geometry::ring::Ring;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 

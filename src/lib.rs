@@ -7,16 +7,16 @@
 //!
 //! From the bottom up:
 //!
-//! - [`mechanics`]: pure functions. The ring and its sectors in closed form ([`mechanics::ring`]), rigid
-//!   motions of its parts ([`mechanics::field`]), four-link mechanisms ([`mechanics::mechanism`]), the
-//!   onset of rocking by limit analysis ([`mechanics::limit`]), the mechanism at finite rotations
-//!   ([`mechanics::linkage`]), the impact ([`mechanics::impact`]), its impulses
-//!   ([`mechanics::impulse_line`]) and what certifies it ([`mechanics::certificate`]), and the chain of
-//!   mechanisms that impacts lead through ([`mechanics::chain`]). The thrust line in motion
-//!   ([`mechanics::thrust`]) tells how far four links suffice. An arch ([`mechanics::arch`]) and
+//! - [`mechanics`]: pure functions. The ring and its sectors in closed form ([`mechanics::geometry::ring`]), rigid
+//!   motions of its parts ([`mechanics::geometry::field`]), four-link mechanisms ([`mechanics::four_link::mechanism`]), the
+//!   onset of rocking by limit analysis ([`mechanics::four_link::limit`]), the mechanism at finite rotations
+//!   ([`mechanics::four_link::linkage`]), the impact ([`mechanics::four_link::impact`]), its impulses
+//!   ([`mechanics::four_link::impulse_line`]) and what certifies it ([`mechanics::four_link::certificate`]), and the chain of
+//!   mechanisms that impacts lead through ([`mechanics::four_link::chain`]). The thrust line in motion
+//!   ([`mechanics::four_link::thrust`]) tells how far four links suffice. An arch ([`mechanics::arch`]) and
 //!   Housner's column ([`mechanics::column`]) are structures of one kind ([`mechanics::structure`]).
-//! - [`dynamics`]: motion in time. An engine for systems that jump between modes ([`dynamics::engine`]),
-//!   the ground ([`dynamics::ground`]), rocking as such a system ([`dynamics::rocking`]) and its history
+//! - [`dynamics`]: motion in time. An engine for systems that jump between modes ([`dynamics::hybrid::engine`]),
+//!   the ground ([`dynamics::ground`]), rocking as such a system ([`dynamics::hybrid::rocking`]) and its history
 //!   ([`dynamics::history`]).
 //! - [`studies`]: many histories, and what they say together. What is shaken and how it ends
 //!   ([`studies::specimen`]), how likely an intensity overturns it ([`studies::fragility`]).
@@ -29,12 +29,12 @@
 //!
 //! use archrock::dynamics::ground::{GroundMotion, Pulse};
 //! use archrock::dynamics::history::{Outcome, Request, history};
-//! use archrock::dynamics::rocking::Rocking;
+//! use archrock::dynamics::hybrid::rocking::Rocking;
 //! use archrock::mechanics::arch::Arch;
-//! use archrock::mechanics::chain::Chain;
-//! use archrock::mechanics::impact::ImpactModel;
-//! use archrock::mechanics::mechanism::HingeSites;
-//! use archrock::mechanics::ring::Ring;
+//! use archrock::mechanics::four_link::chain::Chain;
+//! use archrock::mechanics::four_link::impact::ImpactModel;
+//! use archrock::mechanics::four_link::mechanism::HingeSites;
+//! use archrock::mechanics::geometry::ring::Ring;
 //!
 //! let ring = Ring::new(0.15, std::f64::consts::PI)?;
 //! let chain = Chain::new(ring, HingeSites::Anywhere, ImpactModel::MaxRestitution)?;

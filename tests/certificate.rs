@@ -2,12 +2,14 @@
 //! conditions, and the four-link restitution coefficient below it.
 #![allow(clippy::unwrap_used)]
 
-use archrock::mechanics::certificate::{DEFAULT_JOINTS, Projection, joints_rad, project};
-use archrock::mechanics::field::{Field, Momentum, Twist};
-use archrock::mechanics::impact::{Impact, ImpactModel, closing_field, impact};
-use archrock::mechanics::limit::incipient;
-use archrock::mechanics::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::ring::{Edge, Ring};
+use archrock::mechanics::four_link::certificate::{
+    DEFAULT_JOINTS, Projection, joints_rad, project,
+};
+use archrock::mechanics::four_link::impact::{Impact, ImpactModel, closing_field, impact};
+use archrock::mechanics::four_link::limit::incipient;
+use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use archrock::mechanics::geometry::field::{Field, Momentum, Twist};
+use archrock::mechanics::geometry::ring::{Edge, Ring};
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
 
@@ -131,7 +133,7 @@ fn the_field_opens_joints_and_keeps_the_energy_that_is_told() {
         // Both springings stand: the rotations close. The tolerances are those of the solver, 1e-10,
         // summed over joints.
         let end = projection.joints.last().unwrap().angle_rad;
-        let right = field.at(end, archrock::mechanics::field::Side::After);
+        let right = field.at(end, archrock::mechanics::geometry::field::Side::After);
         assert!(
             right.rate.abs() < 1e-8 && right.at_center.norm() < 1e-8,
             "{right:?}"
@@ -154,7 +156,7 @@ fn the_impulses_are_compressive_inside_the_ring_and_complementary() {
     ] {
         let projection = case.project(360);
         let change = case.before.minus(&case.field(&projection));
-        let vector = |joint: &archrock::mechanics::certificate::Joint| {
+        let vector = |joint: &archrock::mechanics::four_link::certificate::Joint| {
             let (tangent, radial) = (
                 case.ring.tangent(joint.angle_rad),
                 case.ring.radial(joint.angle_rad),

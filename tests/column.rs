@@ -4,13 +4,13 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use archrock::dynamics::engine::{EngineError, Observer, Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{EventKind, History, Outcome, Request, Sample, history};
-use archrock::dynamics::rocking::{Rocking, RockingState};
+use archrock::dynamics::hybrid::engine::{EngineError, Observer, Settings, simulate};
+use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
 use archrock::mechanics::column::Column;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::mechanism::Sway;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::mechanism::Sway;
 use archrock::mechanics::structure::Structure as _;
 
 const GRAVITY_M_S2: f64 = 9.81;

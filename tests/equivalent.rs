@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Request, Sample, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::Chain;
 use archrock::mechanics::column::Column;
 use archrock::mechanics::equivalent::equivalent;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::mechanism::{HingeSites, Sway};
-use archrock::mechanics::ring::Ring;
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
+use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::structure::{Mechanism as _, Structure};
 use archrock::output::rotations::Scales;
 

@@ -5,9 +5,9 @@ mod common;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{History, Outcome, Request, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::mechanism::{HingeSites, Sway};
+use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
 use archrock::mechanics::structure::Structure;
 use common::{
     GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,

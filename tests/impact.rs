@@ -3,14 +3,14 @@
 
 mod common;
 
-use archrock::mechanics::field::{Field, Side};
-use archrock::mechanics::impact::{
+use archrock::mechanics::four_link::impact::{
     ImpactModel, MomentumTheorems, closing_field, impact, projection,
 };
-use archrock::mechanics::limit::incipient;
-use archrock::mechanics::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::resultant::ResultantLine;
-use archrock::mechanics::ring::{Edge, Ring};
+use archrock::mechanics::four_link::limit::incipient;
+use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use archrock::mechanics::four_link::resultant::ResultantLine;
+use archrock::mechanics::geometry::field::{Field, Side};
+use archrock::mechanics::geometry::ring::{Edge, Ring};
 use common::{Random, assert_hinges, chain_of, climb, degrees, ring};
 use proptest::prelude::*;
 
@@ -407,7 +407,7 @@ fn best_of_joints(
     count: usize,
     section: impl Fn(usize) -> f64,
 ) -> f64 {
-    use archrock::mechanics::field::Twist;
+    use archrock::mechanics::geometry::field::Twist;
     let unit = |i: usize, edge: Edge| {
         let twist = Twist::rotation(ring.point(section(i), edge), 1.0);
         Field::from_jumps(&[(section(i), twist)])

@@ -6,11 +6,13 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::Chain;
-use archrock::mechanics::field::Side;
-use archrock::mechanics::impact::{ImpactModel, MomentumTheorems, closing_field, impact};
-use archrock::mechanics::mechanism::{EDGES, HingeSites, Sway};
-use archrock::mechanics::ring::{Edge, Ring};
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::impact::{
+    ImpactModel, MomentumTheorems, closing_field, impact,
+};
+use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites, Sway};
+use archrock::mechanics::geometry::field::Side;
+use archrock::mechanics::geometry::ring::{Edge, Ring};
 use nalgebra::Vector2;
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
@@ -82,7 +84,7 @@ fn impulses_change_the_momentum_of_each_body() {
             let on_bodies = [[a, -b], [b, c], [-c, d]];
             let (angles, points) = (link.mechanism.hinges_rad(), link.mechanism.points());
             for (body, impulses) in on_bodies.into_iter().enumerate() {
-                let part = |of: &archrock::mechanics::field::Field| {
+                let part = |of: &archrock::mechanics::geometry::field::Field| {
                     of.momentum_to(ring, angles[body + 1]) - of.momentum_to(ring, angles[body])
                 };
                 let gain = part(&moved) - part(&closing);
@@ -485,7 +487,7 @@ fn impulses_of_a_run_are_in_newton_seconds() {
             value("rate_right_before_rad_s"),
             value("rate_middle_before_rad_s"),
         );
-        let about = |pole, rate| archrock::mechanics::field::Twist::rotation(pole, rate);
+        let about = |pole, rate| archrock::mechanics::geometry::field::Twist::rotation(pole, rate);
         let right = about(hinge(180.0, Edge::Extrados), right_before);
         let at_c = hinge(closing_c, Edge::Intrados);
         let middle = right + about(at_c, middle_before - right_before);

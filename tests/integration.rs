@@ -3,10 +3,10 @@
 
 use std::ops::ControlFlow;
 
-use archrock::dynamics::engine::{
+use archrock::dynamics::hybrid::engine::{
     EngineError, Finish, HybridSystem, Level, Observer, Settings, Transition, simulate,
 };
-use archrock::dynamics::integrator::{self, Cost, IntegratorError, State, Step, Task};
+use archrock::dynamics::hybrid::integrator::{self, Cost, IntegratorError, State, Step, Task};
 
 fn task<const N: usize>(start_s: f64, end_s: f64, start: State<N>, tolerance: f64) -> Task<N> {
     Task {

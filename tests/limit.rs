@@ -6,10 +6,12 @@
 
 mod common;
 
-use archrock::mechanics::limit::{LimitError, acceleration_g, incipient, least_thickness_ratio};
-use archrock::mechanics::linkage::Linkage;
-use archrock::mechanics::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::ring::Ring;
+use archrock::mechanics::four_link::limit::{
+    LimitError, acceleration_g, incipient, least_thickness_ratio,
+};
+use archrock::mechanics::four_link::linkage::Linkage;
+use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::structure::{Mechanism, critical_rad};
 use common::{Random, assert_hinges, climb, ring};
 use proptest::prelude::*;

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::scenario::{Boundary, Cell, Cells, Scenario};
 use archrock::studies::specimen::Verdict;
 use common::{GRAVITY, REST_ENERGY_RATIO, request, seven_voussoirs};

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Request, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use common::{GRAVITY, REST_ENERGY_RATIO, request, semicircle};
 
 /// Cells along each side.

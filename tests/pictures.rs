@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use archrock::mechanics::chain::Chain;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::mechanism::{HingeSites, Sway};
-use archrock::mechanics::ring::{Edge, Ring};
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
+use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::output::part::Rows;
 use archrock::output::{map, pictures};
 use archrock::scenario::{Cells, Scenario};

@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Request, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::Chain;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::mechanism::{HingeSites, Sway};
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
 use archrock::mechanics::structure::{Mechanism, Structure};
 use common::ring;
 use proptest::prelude::*;

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use archrock::dynamics::history::{Outcome, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::structure::Structure;
 use archrock::scenario::{self, Scenario};
 

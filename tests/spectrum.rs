@@ -10,8 +10,8 @@ use std::path::Path;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{History, Outcome, Request, history};
-use archrock::dynamics::rocking::Rocking;
-use archrock::mechanics::mechanism::Sway;
+use archrock::dynamics::hybrid::rocking::Rocking;
+use archrock::mechanics::four_link::mechanism::Sway;
 use archrock::mechanics::structure::Structure;
 use archrock::output::spectrum::{draw, row};
 use archrock::scenario::{NoSpectrum, Point, Points, Scenario};

@@ -3,16 +3,16 @@
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{History, Request, Sample, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::Chain;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::linkage::Linkage;
-use archrock::mechanics::mechanism::HingeSites;
-use archrock::mechanics::resultant::SectionResultant;
-use archrock::mechanics::ring::Ring;
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::linkage::Linkage;
+use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::four_link::resultant::SectionResultant;
+use archrock::mechanics::four_link::thrust::ThrustLine;
+use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::structure::{Demand, Mechanism as _, Motion, Structure as _};
-use archrock::mechanics::thrust::ThrustLine;
 use nalgebra::{SMatrix, SVector, Vector2};
 use std::ops::ControlFlow;
 

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use archrock::mechanics::limit::least_thickness_ratio;
+use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::output::{Folder, chart};
 use archrock::scenario::{Scenario, Structure};
 use archrock::studies::survey::shape_result;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use archrock::mechanics::arch;
 use archrock::mechanics::equivalent::{Block, equivalent};
-use archrock::mechanics::mechanism::Sway;
+use archrock::mechanics::four_link::mechanism::Sway;
 use archrock::mechanics::structure::{Hinge, Mechanism, Structure as Rocks};
 use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Arch, Scenario, Structure};

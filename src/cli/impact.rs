@@ -5,12 +5,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::certificate::{DEFAULT_JOINTS, Projection, joints_rad, project};
-use archrock::mechanics::chain::ArchLink;
-use archrock::mechanics::impact::{Impact, ImpactModel, closing_field, impact as impact_by};
-use archrock::mechanics::mechanism::{FourLink, HingeSites, Sway};
-use archrock::mechanics::resultant::{Extremes, Extremum};
-use archrock::mechanics::ring::Edge;
+use archrock::mechanics::four_link::certificate::{
+    DEFAULT_JOINTS, Projection, joints_rad, project,
+};
+use archrock::mechanics::four_link::chain::ArchLink;
+use archrock::mechanics::four_link::impact::{
+    Impact, ImpactModel, closing_field, impact as impact_by,
+};
+use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
+use archrock::mechanics::four_link::resultant::{Extremes, Extremum};
+use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::structure::{Hinge, Structure as Rocks};
 use archrock::output::{Folder, impact as output, pictures};
 use archrock::scenario::{Scenario, Structure};

@@ -17,7 +17,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use archrock::dynamics::engine::EngineError;
+use archrock::dynamics::hybrid::engine::EngineError;
 use archrock::output::OutputError;
 use archrock::scenario::ScenarioErrors;
 use clap::{Parser, Subcommand, ValueEnum};

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Outcome, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::structure::Structure as Rocks;
 use archrock::output::rotations::{RotationsWriter, Scales};

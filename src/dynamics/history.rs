@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use super::engine::{
+use super::hybrid::engine::{
     EngineError, HybridSystem, Level, Observer, Settings, Transition, falling_root, simulate,
 };
-use super::integrator::{Cost, Step};
-use super::rocking::{Guard, Mode, Rocking, RockingState};
+use super::hybrid::integrator::{Cost, Step};
+use super::hybrid::rocking::{Guard, Mode, Rocking, RockingState};
 use super::thrust::ThrustRecord;
-use crate::mechanics::mechanism::Sway;
+use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::structure::{Demand, Link, Mechanism, Structure};
 
 /// Rotations of the bodies of a structure, from left to right, anticlockwise, in radians; or their rates.

@@ -1,7 +1,5 @@
-//! Motion in time: the engine, the ground, and the rocking structure that the engine runs.
-pub mod engine;
+//! Motion in time: the ground, the rocking structure, its history.
 pub mod ground;
 pub mod history;
-pub mod integrator;
-pub mod rocking;
+pub mod hybrid;
 pub mod thrust;

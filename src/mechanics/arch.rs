@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::chain::Chain;
-use super::linkage::Linkage;
-use super::mechanism::Sway;
 use super::structure::{Demand, Hinge, Link, Motion, Structure};
-use super::thrust::ThrustLine;
+use crate::mechanics::four_link::chain::Chain;
+use crate::mechanics::four_link::linkage::Linkage;
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::four_link::thrust::ThrustLine;
 
 /// An arch. Its chain of mechanisms does not depend on size or material, and may be shared.
 #[derive(Clone, Debug)]

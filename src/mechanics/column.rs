@@ -18,12 +18,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector2;
 
-use super::field::Twist;
-use super::impact::ImpactModel;
-use super::mechanism::Sway;
-use super::resultant::SectionResultant;
-use super::ring::MassMoments;
 use super::structure::{Coefficients, Demand, Hinge, Link, Mechanism, Motion, Structure};
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::four_link::resultant::SectionResultant;
+use crate::mechanics::geometry::field::Twist;
+use crate::mechanics::geometry::ring::MassMoments;
 
 /// The column turning about its right toe; lengths in half diagonals, unit density and depth.
 #[derive(Clone, Copy, Debug)]

@@ -75,7 +75,7 @@ fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::mechanics::column::Column;
-    use crate::mechanics::impact::ImpactModel;
+    use crate::mechanics::four_link::impact::ImpactModel;
 
     /// Slender and fat; `step^4 = 1e-12` and rounding by `1e-16 / 1e-3` are the errors.
     #[test]

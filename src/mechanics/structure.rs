@@ -6,8 +6,8 @@
 
 use nalgebra::Vector2;
 
-use super::mechanism::Sway;
-use super::ring::Edge;
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::ring::Edge;
 
 /// Coefficients of the equation of motion of a system with one degree of freedom,
 /// `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`, at some `q`.
@@ -36,7 +36,7 @@ pub struct Motion {
     pub body_force_g: Vector2<f64>,
 }
 
-/// What the motion asks of the sections of a structure: see [`super::thrust`].
+/// What the motion asks of the sections of a structure: see [`crate::mechanics::four_link::thrust`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demand {
     /// How far the line of thrust leaves the structure, in parts of the thickness; zero inside. The

@@ -9,11 +9,11 @@ use serde_json::{Value, json};
 use super::OutputError;
 use super::mechanisms::hinges;
 use crate::mechanics::arch::Arch;
-use crate::mechanics::certificate::Projection;
-use crate::mechanics::chain::ArchLink;
-use crate::mechanics::impact::{Impact, ImpactModel};
-use crate::mechanics::impulse_line::ImpulseLine;
-use crate::mechanics::mechanism::{FourLink, HingeSites, Sway};
+use crate::mechanics::four_link::certificate::Projection;
+use crate::mechanics::four_link::chain::ArchLink;
+use crate::mechanics::four_link::impact::{Impact, ImpactModel};
+use crate::mechanics::four_link::impulse_line::ImpulseLine;
+use crate::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
 use crate::mechanics::structure::{Hinge, Structure};
 
 /// The sway of a link of the chain that begins with a sway to the right.

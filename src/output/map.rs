@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 use super::part::{self, Rows};
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite, verdict};
-use crate::mechanics::limit::LimitError;
+use crate::mechanics::four_link::limit::LimitError;
 use crate::scenario::{Axis, Boundary, Cell, Cells, Quantity, Spacing};
 
 /// Outcome of a cell whose arch cannot carry its own weight.

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::mechanics::equivalent::{Block, equivalent};
-use crate::mechanics::mechanism::Sway;
+use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::structure::{Hinge, Structure};
 
 /// Hinges from left to right: `{angle_deg, edge}`, the angle from the left springing, for an arch,

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::rotations::{Scales, columns};
 use super::{OutputError, finite};
 use crate::dynamics::history::{Event, History, ImpactEvent, Outcome, Rotations};
-use crate::mechanics::mechanism::Sway;
+use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::structure::{Hinge, Structure};
 use crate::scenario::{Ground, Scenario};
 
@@ -154,7 +154,7 @@ fn sections_deg<S: Structure>(structure: &S, impacts: usize, sway: Sway) -> Vec<
         .collect()
 }
 
-/// The structure's unit of energy (see [`crate::dynamics::rocking::Rocking::barrier`]) in J.
+/// The structure's unit of energy (see [`crate::dynamics::hybrid::rocking::Rocking::barrier`]) in J.
 fn joules_per_unit<S: Structure>(structure: &S) -> f64 {
     structure.mass_unit_kg() * structure.length_m() * structure.length_m()
 }

@@ -13,9 +13,9 @@ use super::{
     Structure, Suite,
 };
 use crate::dynamics::ground::{Pulse, WaveTrain};
-use crate::mechanics::impact::ImpactModel;
-use crate::mechanics::limit::{LimitError, least_thickness_ratio};
-use crate::mechanics::mechanism::Sway;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
+use crate::mechanics::four_link::mechanism::Sway;
 
 /// Lengths and densities: so wide that only slips of the pen are outside, and so that
 /// no product of them leaves the range of an `f64`.

@@ -16,9 +16,9 @@ use super::keys::{
 use super::sequence::Sequence;
 use super::table::{Number, Reading, Table, Writer};
 use super::{Ground, PulseGround, Scenario, Simulation, Structure};
-use crate::dynamics::engine::EngineError;
-use crate::mechanics::impact::ImpactModel;
-use crate::mechanics::limit::LimitError;
+use crate::dynamics::hybrid::engine::EngineError;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::limit::LimitError;
 use crate::studies::specimen::{Specimen, Verdict};
 
 named! {

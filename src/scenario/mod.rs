@@ -42,17 +42,17 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use crate::dynamics::engine::EngineError;
 use crate::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
 use crate::dynamics::history::Request;
+use crate::dynamics::hybrid::engine::EngineError;
 use crate::mechanics::arch;
-use crate::mechanics::chain::Chain;
 use crate::mechanics::column;
-use crate::mechanics::impact::ImpactModel;
-use crate::mechanics::limit::{Incipient, LimitError, incipient};
-use crate::mechanics::linkage::Linkage;
-use crate::mechanics::mechanism::{HingeSites, Sway};
-use crate::mechanics::ring::Ring;
+use crate::mechanics::four_link::chain::Chain;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
+use crate::mechanics::four_link::linkage::Linkage;
+use crate::mechanics::four_link::mechanism::{HingeSites, Sway};
+use crate::mechanics::geometry::ring::Ring;
 use crate::mechanics::structure::Structure as _;
 use crate::studies::impact_free::{least_amplitude, strides};
 use crate::studies::specimen::{Conditions, Specimen};

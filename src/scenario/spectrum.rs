@@ -24,13 +24,13 @@ use super::keys::{DURATION_S, LARGEST_G};
 use super::sequence::{Sequence, Spacing};
 use super::table::{Number, Reading, Rule as _, Table, Writer};
 use super::{Ground, PulseGround, Scenario, Structure};
-use crate::dynamics::engine::EngineError;
 use crate::dynamics::history::Outcome;
+use crate::dynamics::hybrid::engine::EngineError;
 use crate::mechanics::column::Column;
 use crate::mechanics::equivalent::{Block, Equivalent};
-use crate::mechanics::impact::ImpactModel;
-use crate::mechanics::limit::LimitError;
-use crate::mechanics::mechanism::Sway;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::limit::LimitError;
+use crate::mechanics::four_link::mechanism::Sway;
 use crate::studies::specimen::{Conditions, Specimen};
 
 /// What is tried for a spectrum.

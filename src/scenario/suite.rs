@@ -23,8 +23,8 @@ use super::record::{self, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::table::{Number, OneOrMore, Reading, Switch, Table, Text, Writer};
 use super::{Component, Scenario, Simulation};
-use crate::dynamics::engine::EngineError;
-use crate::mechanics::limit::LimitError;
+use crate::dynamics::hybrid::engine::EngineError;
+use crate::mechanics::four_link::limit::LimitError;
 use crate::studies::specimen::{Specimen, Verdict};
 
 named! {

@@ -7,10 +7,10 @@
 
 use std::ops::ControlFlow;
 
-use crate::dynamics::engine::{EngineError, Observer, Settings, Transition, simulate};
 use crate::dynamics::ground::Pulse;
-use crate::dynamics::rocking::{Guard, Mode, Rocking, RockingState};
-use crate::mechanics::mechanism::Sway;
+use crate::dynamics::hybrid::engine::{EngineError, Observer, Settings, Transition, simulate};
+use crate::dynamics::hybrid::rocking::{Guard, Mode, Rocking, RockingState};
+use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::structure::Structure;
 
 /// So long after the ground fell quiet that the first fall is over: near the unstable equilibrium a motion dwells

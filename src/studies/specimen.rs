@@ -2,14 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use crate::dynamics::engine::EngineError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{History, Outcome, Request, history};
-use crate::dynamics::rocking::Rocking;
+use crate::dynamics::hybrid::engine::EngineError;
+use crate::dynamics::hybrid::rocking::Rocking;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::column::Column;
 use crate::mechanics::equivalent::{Equivalent, equivalent};
-use crate::mechanics::mechanism::Sway;
+use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::structure::Structure;
 
 use super::impact_free;

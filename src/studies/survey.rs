@@ -1,10 +1,10 @@
 //! Arches of many shapes compared: onset, first impact, and what impacts tend to.
 
-use crate::mechanics::chain::Chain;
-use crate::mechanics::impact::ImpactModel;
-use crate::mechanics::limit::LimitError;
-use crate::mechanics::mechanism::HingeSites;
-use crate::mechanics::ring::Ring;
+use crate::mechanics::four_link::chain::Chain;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::limit::LimitError;
+use crate::mechanics::four_link::mechanism::HingeSites;
+use crate::mechanics::geometry::ring::Ring;
 
 /// What a shape tells of its rocking.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Request, Sample, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::Chain;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::mechanism::{HingeSites, Sway};
-use archrock::mechanics::ring::Ring;
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
+use archrock::mechanics::geometry::ring::Ring;
 
 pub const GRAVITY: f64 = 9.81;
 

@@ -9,10 +9,10 @@ use std::sync::LazyLock;
 pub use crate::common::Random;
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{History, Request, Sample, history};
-use archrock::dynamics::rocking::Rocking;
+use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
-use archrock::mechanics::impact::ImpactModel;
-use archrock::mechanics::mechanism::Sway;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_link::mechanism::Sway;
 use archrock::scenario;
 
 pub const G: f64 = 9.81;

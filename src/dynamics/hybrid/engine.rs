@@ -494,7 +494,7 @@ fn first_crossing(
 
 /// Where a falling level that is not negative at the start but at the end is zero: Newton's method from
 /// the end, kept inside the bracket by bisection.
-pub(super) fn falling_root(start_s: f64, end_s: f64, level: impl Fn(f64) -> Level) -> f64 {
+pub(crate) fn falling_root(start_s: f64, end_s: f64, level: impl Fn(f64) -> Level) -> f64 {
     let (mut positive_s, mut negative_s) = (start_s, end_s);
     let mut guess_s = end_s;
     for _ in 0..200 {

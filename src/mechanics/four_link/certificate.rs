@@ -19,10 +19,10 @@ use clarabel::solver::{
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::field::{Field, Twist};
 use super::mechanism::{FourLink, HingeSites};
 use super::resultant::SectionResultant;
-use super::ring::{Edge, Ring};
+use crate::mechanics::geometry::field::{Field, Twist};
+use crate::mechanics::geometry::ring::{Edge, Ring};
 
 /// Number of equal parts from which the projection of a continuous ring is computed by default. The error of `r` falls
 /// with the square of the number; here it is about 1e-6, by test.

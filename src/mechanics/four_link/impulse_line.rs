@@ -7,10 +7,10 @@
 
 use nalgebra::Vector2;
 
-use super::field::Field;
 use super::mechanism::{FourLink, HingeSites, Sway};
 use super::resultant::{Extremes, ResultantLine, SectionResultant};
-use super::ring::Ring;
+use crate::mechanics::geometry::field::Field;
+use crate::mechanics::geometry::ring::Ring;
 
 /// The impulses of an impact over the ring.
 ///

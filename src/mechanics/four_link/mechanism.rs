@@ -7,8 +7,8 @@
 
 use nalgebra::Vector2;
 
-use super::field::{Field, Twist};
-use super::ring::{Edge, Ring};
+use crate::mechanics::geometry::field::{Field, Twist};
+use crate::mechanics::geometry::ring::{Edge, Ring};
 
 named! {
     /// Direction in which a mechanism carries the structure.
@@ -183,7 +183,7 @@ impl HingeSites {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::field::Side;
+    use crate::mechanics::geometry::field::Side;
 
     fn semicircle() -> (Ring, FourLink) {
         let ring = Ring::new(0.15, std::f64::consts::PI).unwrap();

@@ -3,11 +3,11 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::field::{Field, Side, Twist};
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
-use super::ring::{Edge, Ring};
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
+use crate::mechanics::geometry::field::{Field, Side, Twist};
+use crate::mechanics::geometry::ring::{Edge, Ring};
 
 /// Onset of rocking under a push to the right.
 #[derive(Clone, Debug)]

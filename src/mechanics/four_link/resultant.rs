@@ -7,9 +7,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::field::{Field, Momentum, Twist};
 use super::mechanism::{EDGES, FourLink, HingeSites};
-use super::ring::{Edge, Ring};
+use crate::mechanics::geometry::field::{Field, Momentum, Twist};
+use crate::mechanics::geometry::ring::{Edge, Ring};
 
 /// A line may leave the ring by this much of the thickness, on account of rounding: hinges are placed to
 /// about 1e-8 rad, and the line touches the edges there.

@@ -9,11 +9,11 @@
 
 use nalgebra::Vector2;
 
-use super::field::{Momentum, turned};
 use super::mechanism::FourLink;
-use super::ring::{MassMoments, Ring};
-use super::structure::{Coefficients, Mechanism, Motion};
 use super::thrust::{Load, Part, ThrustLine};
+use crate::mechanics::geometry::field::{Momentum, turned};
+use crate::mechanics::geometry::ring::{MassMoments, Ring};
+use crate::mechanics::structure::{Coefficients, Mechanism, Motion};
 
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
@@ -304,8 +304,8 @@ impl Mechanism for Linkage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::limit::incipient;
-    use crate::mechanics::mechanism::HingeSites;
+    use crate::mechanics::four_link::limit::incipient;
+    use crate::mechanics::four_link::mechanism::HingeSites;
     use proptest::prelude::*;
 
     fn linkage(
@@ -368,7 +368,10 @@ mod tests {
         let coefficients = linkage.coefficients(0.0);
         assert!((coefficients.inertia - field.product(&field, &ring)).abs() < 1e-14);
         let ratio = coefficients.rise / coefficients.sway;
-        assert!((ratio - crate::mechanics::limit::acceleration_g(&mechanism, &ring)).abs() < 1e-12);
+        assert!(
+            (ratio - crate::mechanics::four_link::limit::acceleration_g(&mechanism, &ring)).abs()
+                < 1e-12
+        );
         assert!(linkage.displacement(0.0).norm() < 1e-15);
         assert!(
             linkage

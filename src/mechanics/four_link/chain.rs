@@ -11,8 +11,8 @@ use super::impulse_line::ImpulseLine;
 use super::limit::{Incipient, LimitError, incipient};
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
-use super::ring::Ring;
-use super::structure::Link;
+use crate::mechanics::geometry::ring::Ring;
+use crate::mechanics::structure::Link;
 
 /// A link whose hinges are as close as this to those of the link two before it closes the chain into a
 /// repeating pair. Far below what the search resolves in `r` (which is flat at a maximum).

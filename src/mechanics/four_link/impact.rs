@@ -5,11 +5,11 @@
 
 use nalgebra::{Matrix5, Vector2, Vector5};
 
-use super::field::{Field, Momentum, Side, Twist};
 use super::impulse_line::ImpulseLine;
 use super::mechanism::{EDGES, FourLink, HingeSites};
-use super::ring::Ring;
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
+use crate::mechanics::geometry::field::{Field, Momentum, Side, Twist};
+use crate::mechanics::geometry::ring::Ring;
 
 /// How the mechanism after an impact is found.
 ///

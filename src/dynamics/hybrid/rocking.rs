@@ -11,9 +11,9 @@
 use nalgebra::Vector2;
 
 use super::engine::{HybridSystem, Level};
-use super::ground::{GroundMotion, Piece};
 use super::integrator::{State, Step};
-use crate::mechanics::mechanism::Sway;
+use crate::dynamics::ground::{GroundMotion, Piece};
+use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::structure::{Coefficients, Demand, Link, Mechanism, Motion, Structure};
 
 /// Discrete state of a rocking structure.

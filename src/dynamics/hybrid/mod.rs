@@ -1,0 +1,4 @@
+//! One degree of freedom at a time: smooth motion in modes, and jumps between them.
+pub mod engine;
+pub mod integrator;
+pub mod rocking;

@@ -1,0 +1,11 @@
+//! The arch as a four-link mechanism: how it starts, moves, closes, and goes on.
+pub mod certificate;
+pub mod chain;
+pub mod impact;
+pub mod impulse_line;
+pub mod limit;
+pub mod linkage;
+pub mod mechanism;
+pub mod resultant;
+mod search;
+pub mod thrust;

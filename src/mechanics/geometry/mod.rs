@@ -1,0 +1,3 @@
+//! Shapes, and the rigid motions of their parts.
+pub mod field;
+pub mod ring;
