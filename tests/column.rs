@@ -8,10 +8,10 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{EventKind, History, Outcome, Request, Sample, history};
 use archrock::dynamics::hybrid::engine::{EngineError, Observer, Settings, simulate};
 use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
+use archrock::mechanics::chain::Structure as _;
 use archrock::mechanics::column::Column;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::mechanics::four_link::mechanism::Sway;
-use archrock::mechanics::structure::Structure as _;
 
 const GRAVITY_M_S2: f64 = 9.81;
 

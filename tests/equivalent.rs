@@ -8,13 +8,13 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Request, Sample, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::{Mechanism as _, Structure};
 use archrock::mechanics::column::Column;
 use archrock::mechanics::equivalent::equivalent;
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
 use archrock::mechanics::geometry::ring::Ring;
-use archrock::mechanics::structure::{Mechanism as _, Structure};
 use archrock::output::rotations::Scales;
 
 const GRAVITY_M_S2: f64 = 9.81;

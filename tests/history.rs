@@ -7,8 +7,8 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{History, Outcome, Request, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::Structure;
 use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
-use archrock::mechanics::structure::Structure;
 use common::{
     GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,
     seven_voussoirs,
@@ -281,8 +281,7 @@ fn it_starts_where_the_push_passes_the_incipient_acceleration() {
     }
     // From there q'' grows in proportion to the time since: q = j s^3 / 6 to first order.
     let link = arch.link(0).unwrap();
-    let coefficients =
-        archrock::mechanics::structure::Mechanism::coefficients(&link.mechanism, 0.0);
+    let coefficients = archrock::mechanics::chain::Mechanism::coefficients(&link.mechanism, 0.0);
     let jerk = 2.0 * arch.incipient_g() * GRAVITY / 0.4;
     let growth = jerk * coefficients.sway / (arch.mean_radius_m * coefficients.inertia);
     let near = samples.iter().find(|s| s.time_s > 0.2095).unwrap();
@@ -414,7 +413,7 @@ fn a_very_short_blow_gives_its_momentum() {
     let arch = semicircle();
     let link = arch.link(0).unwrap();
     let mechanism = &link.mechanism;
-    let at_zero = archrock::mechanics::structure::Mechanism::coefficients(mechanism, 0.0);
+    let at_zero = archrock::mechanics::chain::Mechanism::coefficients(mechanism, 0.0);
     for start_s in [0.0, 3.7] {
         for duration_s in [1e-6, 1e-4] {
             let velocity_m_s = 0.5;

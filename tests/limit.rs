@@ -6,13 +6,13 @@
 
 mod common;
 
+use archrock::mechanics::chain::{Mechanism, critical_rad};
 use archrock::mechanics::four_link::limit::{
     LimitError, acceleration_g, incipient, least_thickness_ratio,
 };
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::ring::Ring;
-use archrock::mechanics::structure::{Mechanism, critical_rad};
 use common::{Random, assert_hinges, climb, ring};
 use proptest::prelude::*;
 

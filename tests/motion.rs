@@ -7,9 +7,9 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Request, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::{Link, Mechanism, Structure};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
-use archrock::mechanics::structure::{Link, Mechanism, Structure};
 use common::{
     GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,
     seven_voussoirs,

@@ -10,10 +10,10 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Request, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::{Mechanism, Structure};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
-use archrock::mechanics::structure::{Mechanism, Structure};
 use common::ring;
 use proptest::prelude::*;
 

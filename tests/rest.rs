@@ -6,7 +6,7 @@ use std::path::Path;
 
 use archrock::dynamics::history::{Outcome, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::structure::Structure;
+use archrock::mechanics::chain::Structure;
 use archrock::scenario::{self, Scenario};
 
 fn outcome_and_peaks<S: Structure>(

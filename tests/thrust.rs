@@ -5,6 +5,7 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{History, Request, Sample, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::arch::Arch;
+use archrock::mechanics::chain::{Demand, Mechanism as _, Motion, Structure as _};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::mechanics::four_link::linkage::Linkage;
@@ -12,7 +13,6 @@ use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
 use archrock::mechanics::four_link::thrust::ThrustLine;
 use archrock::mechanics::geometry::ring::Ring;
-use archrock::mechanics::structure::{Demand, Mechanism as _, Motion, Structure as _};
 use nalgebra::{SMatrix, SVector, Vector2};
 use std::ops::ControlFlow;
 

@@ -6,9 +6,9 @@ mod motions;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
 use archrock::dynamics::history::Outcome;
+use archrock::mechanics::chain::{Mechanism as _, Structure as _};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::Sway;
-use archrock::mechanics::structure::{Mechanism as _, Structure as _};
 use archrock::output::rotations::RotationsWriter;
 use archrock::scenario::Scenario;
 use motions::{G, Random, run, scaled, semicircle, synthetic};

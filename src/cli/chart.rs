@@ -41,7 +41,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         return Err(Failure::Input(message.to_owned()));
     };
     // Refuses, with its reasons, an arch that has no results of its own.
-    commands::build(arch, &scenario)?;
+    commands::model(&scenario)?;
     let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
     let mut folder = Folder::open(&path, &[PICTURE, TABLE])?;
     let mut embraces_deg = EMBRACES_DEG.to_vec();

@@ -3,19 +3,20 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use archrock::mechanics::arch;
-use archrock::mechanics::equivalent::{Block, equivalent};
+use archrock::dynamics::model::MechanismModel;
+use archrock::mechanics::chain::Hinge;
+use archrock::mechanics::equivalent::Block;
+use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::four_link::mechanism::Sway;
-use archrock::mechanics::structure::{Hinge, Mechanism, Structure as Rocks};
 use archrock::output::{mechanisms, pictures};
-use archrock::scenario::{Arch, Scenario, Structure};
+use archrock::scenario::{Scenario, Structure};
 
 use super::{Failure, Format, print};
 
-/// The arch of a scenario.
-pub fn build(arch: &Arch, scenario: &Scenario) -> Result<arch::Arch, Failure> {
-    arch.build(scenario.impact)
-        .map_err(|error| Failure::Input(error.to_string()))
+/// The model of a scenario.
+pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
+    let model = scenario.structure.model(scenario.impact);
+    model.map_err(|error| Failure::Input(error.to_string()))
 }
 
 pub fn check(path: &Path) -> Result<(), Failure> {
@@ -24,48 +25,27 @@ pub fn check(path: &Path) -> Result<(), Failure> {
 
 pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Failure> {
     let scenario = Scenario::read(path)?;
-    match &scenario.structure {
-        Structure::Arch(arch) => {
-            let arch = build(arch, &scenario)?;
-            if let Some(plot) = plot {
-                write_picture(plot, &pictures::limit(&arch.chain))?;
-            }
-            print_limit(&scenario, &arch, format)
-        }
-        Structure::Column(column) => {
-            refuse_picture(plot)?;
-            print_limit(&scenario, &column.build(scenario.impact), format)
-        }
+    if let Some(plot) = plot {
+        let arch = arch(&scenario, "--plot draws")?;
+        write_picture(plot, &pictures::limit(arch.chain()))?;
+    }
+    let model = model(&scenario)?;
+    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+    match format {
+        Format::Json => print(&pretty(&mechanisms::limit(&*model, gravity_m_s2))),
+        Format::Text => print(&limit_text(&*model, gravity_m_s2)),
     }
 }
 
 /// The arch of a scenario, for what `does` with arches only.
-pub fn arch(scenario: &Scenario, does: &str) -> Result<arch::Arch, Failure> {
+pub fn arch(scenario: &Scenario, does: &str) -> Result<FourLinkArch, Failure> {
     match &scenario.structure {
-        Structure::Arch(arch) => build(arch, scenario),
+        Structure::Arch(arch) => arch
+            .build(scenario.impact)
+            .map_err(|error| Failure::Input(error.to_string())),
         Structure::Column(_) => Err(Failure::Input(format!(
-            "{does} arches only, and this is a column"
+            "{does} arches only, and this is a column: leave it out"
         ))),
-    }
-}
-
-/// Pictures of mechanisms are of arches.
-fn refuse_picture(plot: Option<&Path>) -> Result<(), Failure> {
-    plot.map_or(Ok(()), |_| {
-        let message = "--plot draws arches only, and this is a column: leave it out";
-        Err(Failure::Input(message.to_owned()))
-    })
-}
-
-fn print_limit<S: Rocks>(
-    scenario: &Scenario,
-    structure: &S,
-    format: Format,
-) -> Result<(), Failure> {
-    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-    match format {
-        Format::Json => print(&pretty(&mechanisms::limit(structure, gravity_m_s2))),
-        Format::Text => print(&limit_text(structure, gravity_m_s2)),
     }
 }
 
@@ -81,22 +61,24 @@ pub fn pretty(value: &serde_json::Value) -> String {
 }
 
 /// Values of the bodies with their names, from left to right.
-pub fn by_body<M: Mechanism>(values: &M::Rotations) -> String {
-    let named = M::BODIES.iter().zip(values.as_ref());
+pub fn by_body(bodies: &[String], values: &[f64]) -> String {
+    let named = bodies.iter().zip(values);
     let texts: Vec<_> = named
         .map(|(body, value)| format!("{body} {value:.6}").trim_start().to_owned())
         .collect();
     texts.join(", ")
 }
 
-fn limit_text<S: Rocks>(structure: &S, gravity_m_s2: f64) -> String {
-    let incipient_g = structure.incipient_g();
+fn limit_text(model: &dyn MechanismModel, gravity_m_s2: f64) -> String {
+    let incipient_g = model
+        .incipient_acceleration_g(Sway::Right)
+        .unwrap_or(f64::INFINITY);
     let mut text = format!(
         "incipient rocking acceleration A_L, either side: {incipient_g:.8} g = {:.6} m/s2\n",
         incipient_g * gravity_m_s2,
     );
     for sway in [Sway::Right, Sway::Left] {
-        let hinges = structure.hinges(0, sway);
+        let hinges = model.hinges_after(0, sway);
         let _ = write!(
             text,
             "\na push to the {} starts the mechanism with {} at\n",
@@ -109,16 +91,13 @@ fn limit_text<S: Rocks>(structure: &S, gravity_m_s2: f64) -> String {
         );
         text += &hinge_list(&hinges);
     }
-    if let Some(first) = structure.link(0) {
-        let rotations = first.mechanism.rotations(first.critical_rad);
-        let _ = write!(
-            text,
-            "\nswaying right it is past saving, under gravity alone, beyond a rotation of\n  \
-             {} rad (anticlockwise)\n",
-            by_body::<S::Mechanism>(&rotations),
-        );
-    }
-    if let Some(blocks) = equivalent(structure, gravity_m_s2) {
+    let _ = write!(
+        text,
+        "\nunstable equilibrium of this first mechanism under gravity alone, swaying right, at a rotation of\n  \
+         {} rad (anticlockwise);\nmechanisms that follow after impacts have their own\n",
+        by_body(&model.bodies(), &model.critical_rotations_rad()),
+    );
+    if let Some(blocks) = model.equivalent(gravity_m_s2) {
         let _ = writeln!(
             text,
             "\nthe free-standing block of the same A_L, slenderness alpha {:.6} rad, that moves alike",
@@ -126,7 +105,7 @@ fn limit_text<S: Rocks>(structure: &S, gravity_m_s2: f64) -> String {
         );
         for (where_to, block) in [
             ("from rest", blocks.at_rest),
-            ("past saving", blocks.at_critical),
+            ("at the unstable equilibrium", blocks.at_critical),
         ] {
             if let Some(Block {
                 frequency_rad_s,
@@ -135,7 +114,7 @@ fn limit_text<S: Rocks>(structure: &S, gravity_m_s2: f64) -> String {
             {
                 let _ = writeln!(
                     text,
-                    "  {where_to:11}  p {frequency_rad_s:.6} rad/s, half diagonal {half_diagonal_m:.6} m",
+                    "  {where_to:27}  p {frequency_rad_s:.6} rad/s, half diagonal {half_diagonal_m:.6} m",
                 );
             }
         }

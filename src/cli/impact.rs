@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use archrock::mechanics::arch::Arch;
+use archrock::dynamics::model::MechanismModel;
+use archrock::mechanics::chain::Hinge;
+use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, joints_rad, project,
 };
@@ -15,7 +17,6 @@ use archrock::mechanics::four_link::impact::{
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
 use archrock::mechanics::four_link::resultant::{Extremes, Extremum};
 use archrock::mechanics::geometry::ring::Edge;
-use archrock::mechanics::structure::{Hinge, Structure as Rocks};
 use archrock::output::{Folder, impact as output, pictures};
 use archrock::scenario::{Scenario, Structure};
 use serde_json::json;
@@ -71,14 +72,14 @@ struct Chosen<'a> {
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
     let arch = match &scenario.structure {
-        Structure::Column(column) if !arguments.of_arches_only() => {
-            let column = column.build(scenario.impact);
+        Structure::Column(_) if !arguments.of_arches_only() => {
+            let model = commands::model(&scenario)?;
             let count = arguments.count.into();
             return match arguments.format {
                 Format::Json => print(&pretty(
-                    &json!({ "impacts": output::chain(&column, count) }),
+                    &json!({ "impacts": output::chain(&*model, count) }),
                 )),
-                Format::Text => print(&chain_text(&scenario, &column, count)),
+                Format::Text => print(&chain_text(&scenario, &*model, count)),
             };
         }
         _ => commands::arch(
@@ -103,7 +104,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(plot) = &arguments.plot {
         let stops = || Failure::Work("the first impact stops the arch: nothing to draw".to_owned());
-        let picture = pictures::first_impact(&arch.chain).ok_or_else(stops)?;
+        let picture = pictures::first_impact(arch.chain()).ok_or_else(stops)?;
         commands::write_picture(plot, &picture)?;
     }
     let models = arguments
@@ -141,8 +142,8 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn choose(arch: &Arch, index: usize) -> Result<Chosen<'_>, Failure> {
-    let before = arch.chain.link(index - 1).ok_or_else(|| {
+fn choose(arch: &FourLinkArch, index: usize) -> Result<Chosen<'_>, Failure> {
+    let before = arch.chain().link(index - 1).ok_or_else(|| {
         Failure::Input(format!(
             "--link {index}: the arch stops at an impact before that; ask for an earlier one"
         ))
@@ -150,11 +151,11 @@ fn choose(arch: &Arch, index: usize) -> Result<Chosen<'_>, Failure> {
     Ok(Chosen {
         index,
         before,
-        after: arch.chain.link(index),
+        after: arch.chain().link(index),
     })
 }
 
-fn write_line(path: &Path, arch: &Arch, chosen: &Chosen<'_>) -> Result<(), Failure> {
+fn write_line(path: &Path, arch: &FourLinkArch, chosen: &Chosen<'_>) -> Result<(), Failure> {
     let after = chosen.after.ok_or_else(|| {
         Failure::Input(format!(
             "--line: no mechanism can follow impact {}, so that it has no impulse line",
@@ -193,7 +194,7 @@ fn write_line(path: &Path, arch: &Arch, chosen: &Chosen<'_>) -> Result<(), Failu
 /// The models that the momentum theorems govern, and a prescribed one if the scenario has it.
 fn models(
     scenario: &Scenario,
-    arch: &Arch,
+    arch: &FourLinkArch,
     chosen: &Chosen<'_>,
 ) -> Vec<(ImpactModel, Option<Impact>)> {
     let mut models = vec![
@@ -204,7 +205,7 @@ fn models(
     if !models.contains(&scenario.impact) {
         models.push(scenario.impact);
     }
-    let (mechanism, chain) = (&chosen.before.mechanism, &arch.chain);
+    let (mechanism, chain) = (&chosen.before.mechanism, arch.chain());
     models
         .into_iter()
         .map(|model| {
@@ -216,8 +217,12 @@ fn models(
         .collect()
 }
 
-fn certify(arch: &Arch, chosen: &Chosen<'_>, joints: Option<u16>) -> Result<Projection, Failure> {
-    let (ring, sites) = (arch.chain.ring(), arch.chain.sites());
+fn certify(
+    arch: &FourLinkArch,
+    chosen: &Chosen<'_>,
+    joints: Option<u16>,
+) -> Result<Projection, Failure> {
+    let (ring, sites) = (arch.chain().ring(), arch.chain().sites());
     if let (HingeSites::Voussoirs(count), Some(_)) = (sites, joints) {
         return Err(Failure::Input(format!(
             "--joints: the arch has {count} voussoirs, and the joints are theirs; leave it out"
@@ -231,13 +236,13 @@ fn certify(arch: &Arch, chosen: &Chosen<'_>, joints: Option<u16>) -> Result<Proj
 }
 
 /// The chain of mechanisms of any structure.
-fn chain_text<S: Rocks>(scenario: &Scenario, structure: &S, count: usize) -> String {
+fn chain_text(scenario: &Scenario, model: &dyn MechanismModel, count: usize) -> String {
     let mut text = format!(
         "impacts after a first sway to the right, model {} (r = kinetic energy after / before",
         scenario.impact.name(),
     );
     let of_arch = matches!(
-        structure.hinges(0, Sway::Right).first(),
+        model.hinges_after(0, Sway::Right).first(),
         Some(Hinge::Section { .. })
     );
     if of_arch {
@@ -254,17 +259,17 @@ fn chain_text<S: Rocks>(scenario: &Scenario, structure: &S, count: usize) -> Str
     }
     text.push('\n');
     for index in 0..=count {
-        let Some(link) = structure.link(index) else {
+        let Some(restitution) = model.restitution_after(index) else {
             let _ = writeln!(text, "{index:>6}  no mechanism can follow: it stops");
             break;
         };
         let restitution = match index {
             0 => String::new(),
-            _ => format!("{:.6}", link.restitution),
+            _ => format!("{restitution:.6}"),
         };
         let sway = output::sway(index);
         let _ = write!(text, "{index:>6}  {restitution:>8}  {:5}  ", sway.name());
-        for hinge in structure.hinges(index, sway) {
+        for hinge in model.hinges_after(index, sway) {
             let _ = match hinge {
                 Hinge::Section { angle_rad, edge } => {
                     write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge))
@@ -277,9 +282,9 @@ fn chain_text<S: Rocks>(scenario: &Scenario, structure: &S, count: usize) -> Str
     text
 }
 
-fn hinges(arch: &Arch, mechanism: &FourLink, sway: Sway) -> String {
+fn hinges(arch: &FourLinkArch, mechanism: &FourLink, sway: Sway) -> String {
     let mut text = String::new();
-    for (angle_rad, edge) in mechanism.hinges_from_left(arch.chain.ring(), sway) {
+    for (angle_rad, edge) in mechanism.hinges_from_left(arch.chain().ring(), sway) {
         let _ = write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge));
     }
     text
@@ -292,11 +297,11 @@ fn initial(edge: Edge) -> &'static str {
     }
 }
 
-fn impulses_text(arch: &Arch, count: usize) -> String {
+fn impulses_text(arch: &FourLinkArch, count: usize) -> String {
     let unit = arch.impulse_unit_n_s_per_m();
     let lines = || {
         (1..=count).map_while(|index| {
-            let line = arch.chain.link(index)?.impulse_line.as_ref()?;
+            let line = arch.chain().link(index)?.impulse_line.as_ref()?;
             Some((index, line))
         })
     };
@@ -329,7 +334,7 @@ fn impulses_text(arch: &Arch, count: usize) -> String {
              largest ratio of tangential impulse T to N, each with its section in degrees\n\n\
              impact      |e|/t   section      least N   section      |T|/N   section\n";
     for (index, line) in lines() {
-        let extremes = line.extremes_from_left(arch.chain.sites(), output::sway(index));
+        let extremes = line.extremes_from_left(arch.chain().sites(), output::sway(index));
         // Both are infinite where there is tension.
         let ratio = |extremum: Extremum| match extremum.value {
             value if value.is_finite() => format!("{value:>9.5}"),
@@ -360,7 +365,11 @@ fn verdict(extremes: &Extremes) -> &'static str {
     }
 }
 
-fn models_text(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>)]) -> String {
+fn models_text(
+    arch: &FourLinkArch,
+    index: usize,
+    models: &[(ImpactModel, Option<Impact>)],
+) -> String {
     let mut text = format!(
         "\nimpact models side by side, impact {index}\n\n\
          model                    r   {:>12}{:>12}{:>12}{:>12}   impulse line\n",
@@ -374,7 +383,7 @@ fn models_text(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>
             continue;
         };
         let line = impact.impulse_line.as_ref().map_or("none", |line| {
-            verdict(&line.extremes_from_left(arch.chain.sites(), sway))
+            verdict(&line.extremes_from_left(arch.chain().sites(), sway))
         });
         let _ = writeln!(
             text,
@@ -388,7 +397,7 @@ fn models_text(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>
 
 fn certificate_text(
     scenario: &Scenario,
-    arch: &Arch,
+    arch: &FourLinkArch,
     chosen: &Chosen<'_>,
     projection: &Projection,
 ) -> String {
@@ -407,7 +416,7 @@ fn certificate_text(
         projection.restitution,
     );
     if let Some(line) = chosen.after.and_then(|link| link.impulse_line.as_ref()) {
-        let extremes = line.extremes_from_left(arch.chain.sites(), sway);
+        let extremes = line.extremes_from_left(arch.chain().sites(), sway);
         let eccentricity = extremes.eccentricity_ratio;
         let _ = if extremes.is_admissible() {
             writeln!(
@@ -476,13 +485,13 @@ struct Zone {
 }
 
 /// The zones that open, from the left springing.
-fn zones(arch: &Arch, sway: Sway, projection: &Projection) -> Vec<Zone> {
+fn zones(arch: &FourLinkArch, sway: Sway, projection: &Projection) -> Vec<Zone> {
     let mut zones: Vec<Zone> = Vec::new();
     for (joint, edge, rate) in projection.opened() {
         let angle_rad = projection.joints[joint].angle_rad;
-        let angle_deg = degrees(sway.from_left_rad(arch.chain.ring(), angle_rad));
+        let angle_deg = degrees(sway.from_left_rad(arch.chain().ring(), angle_rad));
         let continues = |zone: &&mut Zone| {
-            arch.chain.sites() == HingeSites::Anywhere
+            arch.chain().sites() == HingeSites::Anywhere
                 && zone.edge == edge
                 && zone.joint + 1 == joint
         };

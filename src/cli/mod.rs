@@ -17,7 +17,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use archrock::dynamics::hybrid::engine::EngineError;
+use archrock::dynamics::model::SimulationError;
 use archrock::output::OutputError;
 use archrock::scenario::ScenarioErrors;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -94,9 +94,14 @@ impl From<ScenarioErrors> for Failure {
     }
 }
 
-impl From<EngineError> for Failure {
-    fn from(error: EngineError) -> Self {
-        Self::Work(error.to_string())
+impl From<SimulationError> for Failure {
+    fn from(error: SimulationError) -> Self {
+        match error {
+            SimulationError::Argument(_) | SimulationError::FreeFall { .. } => {
+                Self::Input(error.to_string())
+            }
+            SimulationError::Engine(_) => Self::Work(error.to_string()),
+        }
     }
 }
 

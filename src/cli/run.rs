@@ -6,10 +6,10 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::GroundMotion;
-use archrock::dynamics::history::{History, Outcome, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
+use archrock::dynamics::history::{Event, Outcome, Sample, Summary};
+use archrock::dynamics::model::{MechanismModel, Recorder};
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
-use archrock::mechanics::structure::Structure as Rocks;
+use archrock::mechanics::four_link::mechanism::Sway;
 use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError, results};
@@ -43,34 +43,13 @@ const SUMMARY: &str = "summary.json";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
-    match &scenario.structure {
-        Structure::Arch(arch) => {
-            let arch = commands::build(arch, &scenario)?;
-            run_structure(arguments, quiet, &scenario, &arch)
-        }
-        Structure::Column(column) => {
-            run_structure(arguments, quiet, &scenario, &column.build(scenario.impact))
-        }
-    }
-}
-
-fn run_structure<S: Rocks>(
-    arguments: &Arguments,
-    quiet: bool,
-    scenario: &Scenario,
-    structure: &S,
-) -> Result<(), Failure> {
+    let model = commands::model(&scenario)?;
     let ground = scenario.ground_motion();
-    let rocking = Rocking::new(
-        structure,
-        &ground,
-        scenario.simulation.gravity_m_s2,
-        scenario.simulation.rest_energy_ratio,
-    );
+    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
     let scales = arguments
         .dimensionless
         .then(|| {
-            Scales::new(structure, scenario.simulation.gravity_m_s2).ok_or_else(|| {
+            Scales::new(&*model, gravity_m_s2).ok_or_else(|| {
                 Failure::Input(
                     "the mechanism has no unstable equilibrium to measure by: leave --dimensionless out"
                         .to_owned(),
@@ -86,29 +65,34 @@ fn run_structure<S: Rocks>(
         .map(|path| open(&path, to_stdout))
         .transpose()
         .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))?;
-    let mut timeline = Timeline::new::<S::Mechanism>(scenario.simulation.gravity_m_s2);
-    let simulated = match &mut folder {
-        Some(folder) if !to_stdout => {
-            let file = folder.file(ROTATIONS);
-            simulate(scenario, &rocking, file, scales, &mut timeline)
-        }
-        _ => {
-            let stdout = BufWriter::new(io::stdout().lock());
-            simulate(scenario, &rocking, stdout, scales, &mut timeline)
-        }
+    let bodies = model.bodies();
+    let mut timeline = Timeline::new(&bodies, gravity_m_s2);
+    let mut events = Vec::new();
+    let (summary, rows) = {
+        let writer: Box<dyn io::Write + '_> = match &mut folder {
+            Some(folder) if !to_stdout => Box::new(folder.file(ROTATIONS)),
+            _ => Box::new(BufWriter::new(io::stdout().lock())),
+        };
+        let mut results = Results {
+            table: RotationsWriter::new(writer, &bodies, ground.has_vertical(), scales)?,
+            timeline: &mut timeline,
+            events: &mut events,
+            written: Ok(()),
+        };
+        let summary = model.simulate(&ground, &scenario.request(), Some(&mut results))?;
+        results.written?;
+        (summary, results.table.finish()?)
     };
-    let (history, rows) = simulated?;
-    let mut text = human_summary(scenario, structure, &ground, &history);
+    let mut text = human_summary(&scenario, &*model, &ground, &summary, &events);
     if let Some(mut folder) = folder {
-        results::write_events(folder.file(EVENTS), structure, &history.events)?;
-        results::write_impacts(folder.file(IMPACTS), structure, &history.impacts)?;
+        results::write_events(folder.file(EVENTS), &bodies, &events)?;
+        results::write_impacts(folder.file(IMPACTS), &*model, &events)?;
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
-        let impacts_s = history.impacts.iter().map(|impact| impact.time_s);
         folder
             .file(PICTURE)
-            .write_all(timeline.draw(title, impacts_s).as_bytes())
+            .write_all(timeline.draw(title, &events).as_bytes())
             .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-        let summary = results::summary(scenario, structure, &history)?;
+        let summary = results::summary(&scenario, &*model, &ground, &summary)?;
         writeln!(folder.file(SUMMARY), "{summary:#}")
             .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
         let path = folder.path().to_owned();
@@ -131,6 +115,31 @@ fn run_structure<S: Rocks>(
     Ok(())
 }
 
+/// Where samples and events go.
+struct Results<'a, W: io::Write> {
+    table: RotationsWriter<W>,
+    timeline: &'a mut Timeline,
+    events: &'a mut Vec<Event>,
+    /// Why the table could not be written, which ends the history.
+    written: Result<(), OutputError>,
+}
+
+impl<W: io::Write> Recorder for Results<'_, W> {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.timeline.push(sample);
+        self.written = self.table.write(sample);
+        match self.written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.events.push(event.clone());
+        ControlFlow::Continue(())
+    }
+}
+
 /// Opens the folder for the results.
 fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
     if without_rotations {
@@ -142,42 +151,20 @@ fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
     }
 }
 
-/// Simulates and writes the rotations; returns the number of rows as well.
-fn simulate<'a, S: Rocks>(
-    scenario: &Scenario,
-    rocking: &Rocking<'a, S>,
-    writer: impl io::Write,
-    scales: Option<Scales>,
-    timeline: &mut Timeline,
-) -> Result<(History<'a, S>, u64), Failure> {
-    let vertical = rocking.ground().has_vertical();
-    let mut table = RotationsWriter::new::<S::Mechanism>(writer, vertical, scales)?;
-    let mut written = Ok(());
-    let history = history(rocking, &scenario.request(), |sample| {
-        timeline.push(sample);
-        written = table.write(sample);
-        match written {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
-    })?;
-    written?;
-    Ok((history, table.finish()?))
-}
-
 /// What happened, when, and what it compares with.
-fn human_summary<S: Rocks>(
+fn human_summary(
     scenario: &Scenario,
-    structure: &S,
+    model: &dyn MechanismModel,
     ground: &GroundMotion,
-    history: &History<'_, S>,
+    history: &Summary,
+    events: &[Event],
 ) -> String {
     let mut text = String::new();
     if let Some(title) = &scenario.title {
         let _ = writeln!(text, "{title}");
     }
     let time_s = history.outcome_time_s;
-    let impacts = match history.impacts.len() {
+    let impacts = match history.impacts {
         0 => "without impact".to_owned(),
         1 => "after 1 impact".to_owned(),
         count => format!("after {count} impacts"),
@@ -194,25 +181,31 @@ fn human_summary<S: Rocks>(
         }
         Outcome::StillRocking => writeln!(text, "  still rocking at {time_s:.4} s {impacts}"),
     };
-    if let Some(impact) = history.impacts.first() {
+    let first = events
+        .iter()
+        .find_map(|event| Some((event.time_s, event.impact.as_ref()?)));
+    if let Some((time_s, impact)) = first {
         let _ = writeln!(
             text,
-            "  first impact at {:.4} s, restitution (energy after/before) {:.4}",
-            impact.time_s,
-            impact.after.map_or(0.0, |link| link.restitution),
+            "  first impact at {time_s:.4} s, restitution (energy after/before) {:.4}",
+            impact.restitution,
         );
     }
     if history.outcome != Outcome::NeverMoved {
         let _ = writeln!(
             text,
-            "  peak rotation in rad: {}\n  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
-            commands::by_body::<S::Mechanism>(&history.peak_rotations_rad),
+            "  peak rotation in rad: {}\n  largest rotation {:.4} of that at the unstable equilibrium of the \
+             mechanism that moved\n  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
+            commands::by_body(&model.bodies(), &history.peak_rotations_rad),
+            history.peak_over_critical,
             history.energy_defect_ratio,
             history.cost.steps,
             history.cost.evaluations
         );
     }
-    let incipient_g = structure.incipient_g();
+    let incipient_g = model
+        .incipient_acceleration_g(Sway::Right)
+        .unwrap_or(f64::INFINITY);
     let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.simulation.gravity_m_s2;
     let mut reaches = if peaks_g.x > 0.0 {
         format!(
@@ -267,9 +260,7 @@ fn trust(thrust: &ThrustRecord, of_arch: bool) -> String {
             String::new()
         }
     } else if value <= least {
-        format!(
-            "  four links suffice to {value:.4} t, by which the thrust line leaves the arch at most\n"
-        )
+        format!("  four links suffice: the thrust line leaves the arch by {value:.4} t at most\n")
     } else {
         format!(
             "  four links do not suffice: the thrust line leaves the arch by up to {value:.3} t (at \
@@ -279,7 +270,7 @@ fn trust(thrust: &ThrustRecord, of_arch: bool) -> String {
     };
     let _ = writeln!(
         text,
-        "  no sliding takes a friction coefficient of {:.3} for granted (at {:.4} s)",
+        "  friction coefficient needed to prevent sliding: {:.3} (at {:.4} s)",
         thrust.largest_friction.value, thrust.largest_friction.time_s
     );
     text

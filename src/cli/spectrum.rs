@@ -106,7 +106,7 @@ fn summary(points: &Points<'_>, rows: &Rows) -> String {
         let first = rows
             .iter()
             .find(|(_, row)| output::number(row, "failed") > Some(0.0))
-            .and_then(|(index, _)| points.point(*index).failures.first().copied());
+            .and_then(|(index, _)| points.point(*index).failures.first().cloned());
         if let Some(error) = first {
             text += &format!("; the first that failed: {error}");
         }

@@ -2,4 +2,5 @@
 pub mod ground;
 pub mod history;
 pub mod hybrid;
+pub mod model;
 pub mod thrust;

@@ -1,6 +1,6 @@
 //! How far a run can be trusted: the line of thrust along a history.
 
-use crate::mechanics::structure::Demand;
+use crate::mechanics::chain::Demand;
 
 /// Largest demands of a history, and how much of its rocking keeps the line of thrust (almost) inside.
 ///

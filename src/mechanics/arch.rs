@@ -1,80 +1,270 @@
-//! A masonry arch: a ring with its size and material.
+//! The circular masonry arch: its shape, its size and its material.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use nalgebra::Vector2;
+use crate::argument::{ArgumentError, above, within};
+use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
+use crate::mechanics::four_link::mechanism::HingeSites;
+use crate::mechanics::geometry::ring::{Ring, RingError};
 
-use super::structure::{Demand, Hinge, Link, Motion, Structure};
-use crate::mechanics::four_link::chain::Chain;
-use crate::mechanics::four_link::linkage::Linkage;
-use crate::mechanics::four_link::mechanism::Sway;
-use crate::mechanics::four_link::thrust::ThrustLine;
+/// Lengths in metres, and densities in kg/m3: so wide that only slips of the pen are outside, and so that no
+/// product of them leaves the range of an `f64`.
+const MAGNITUDE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
-/// An arch. Its chain of mechanisms does not depend on size or material, and may be shared.
+/// Voussoirs: a mechanism has four hinges, and three voussoirs have four joints.
+const VOUSSOIRS: std::ops::RangeInclusive<usize> = 3..=200;
+
+/// A circular arch of constant thickness.
+///
+/// ```
+/// use archrock::Arch;
+///
+/// // Mean radius, thickness over mean radius, embrace angle in degrees.
+/// let arch = Arch::new(10.0, 0.15, 157.5)?.with_voussoirs(7)?;
+/// assert!((arch.incipient()?.acceleration_g - 0.370009738).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Arch {
-    /// Mean radius in metres.
-    pub mean_radius_m: f64,
-    /// Depth out of plane in metres.
-    pub depth_m: f64,
-    /// Density in kg/m3.
-    pub density_kg_m3: f64,
-    /// Shape, and what follows from it.
-    pub chain: Arc<Chain>,
+    mean_radius_m: f64,
+    thickness_ratio: f64,
+    embrace_deg: f64,
+    depth_m: f64,
+    density_kg_m3: f64,
+    voussoirs: Option<usize>,
+    /// Onset of rocking, found when first asked for. It depends on the shape alone, and arches of one shape
+    /// share it.
+    incipient: Arc<OnceLock<Result<Incipient, LimitError>>>,
+}
+
+/// Arches are equal if all that was said of them is.
+impl PartialEq for Arch {
+    fn eq(&self, other: &Self) -> bool {
+        let said = |arch: &Self| {
+            (
+                arch.mean_radius_m,
+                arch.thickness_ratio,
+                arch.embrace_deg,
+                arch.depth_m,
+                arch.density_kg_m3,
+                arch.voussoirs,
+            )
+        };
+        said(self) == said(other)
+    }
 }
 
 impl Arch {
-    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
-    #[must_use]
-    pub fn impulse_unit_n_s_per_m(&self) -> f64 {
-        self.density_kg_m3 * self.mean_radius_m.powi(3)
+    /// An arch whose hinges may open at any section, 1 m deep, of 2000 kg/m3.
+    ///
+    /// `mean_radius_m` is the radius of its middle line (0.001 to 1e6 m), `thickness_ratio` its thickness over
+    /// that (above 0, below 2) and `embrace_deg` the angle from springing to springing (above 0, at most 180).
+    /// Whether it stands is told by [`Arch::incipient`].
+    ///
+    /// # Errors
+    /// When an argument is outside its range.
+    pub fn new(
+        mean_radius_m: f64,
+        thickness_ratio: f64,
+        embrace_deg: f64,
+    ) -> Result<Self, ArgumentError> {
+        let arch = Self {
+            mean_radius_m: within("mean_radius_m", mean_radius_m, MAGNITUDE)?,
+            thickness_ratio,
+            embrace_deg: above("embrace_deg", embrace_deg, 0.0, 180.0)?,
+            depth_m: 1.0,
+            density_kg_m3: 2000.0,
+            voussoirs: None,
+            incipient: Arc::default(),
+        };
+        arch.reshaped()
     }
-}
 
-impl Structure for Arch {
-    type Mechanism = Linkage;
+    /// With a shape of its own; says why it is none.
+    fn reshaped(self) -> Result<Self, ArgumentError> {
+        match Ring::new(self.thickness_ratio, self.embrace_deg.to_radians()) {
+            Ok(_) => Ok(Self {
+                incipient: Arc::default(),
+                ..self
+            }),
+            Err(RingError::Thickness(value)) => Err(ArgumentError {
+                argument: "thickness_ratio",
+                value,
+                allowed: "a number above 0.0 and below 2.0".to_owned(),
+            }),
+            Err(RingError::Embrace(_)) => Err(ArgumentError {
+                argument: "embrace_deg",
+                value: self.embrace_deg,
+                allowed: "a number above 0.0 and at most 180.0".to_owned(),
+            }),
+        }
+    }
 
-    fn length_m(&self) -> f64 {
+    /// The same arch with another mean radius, in metres: its thickness grows with it.
+    ///
+    /// # Errors
+    /// When it is outside 0.001 to 1e6.
+    pub fn with_mean_radius_m(self, mean_radius_m: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            mean_radius_m: within("mean_radius_m", mean_radius_m, MAGNITUDE)?,
+            ..self
+        })
+    }
+
+    /// The same arch with another thickness, in mean radii.
+    ///
+    /// # Errors
+    /// When it is not above 0 and below 2.
+    pub fn with_thickness_ratio(self, thickness_ratio: f64) -> Result<Self, ArgumentError> {
+        Self {
+            thickness_ratio,
+            ..self
+        }
+        .reshaped()
+    }
+
+    /// The same arch with another embrace angle, in degrees.
+    ///
+    /// # Errors
+    /// When it is not above 0 and at most 180.
+    pub fn with_embrace_deg(self, embrace_deg: f64) -> Result<Self, ArgumentError> {
+        Self {
+            embrace_deg,
+            ..self
+        }
+        .reshaped()
+    }
+
+    /// The same arch cut into equal voussoirs, so that hinges open at their joints only.
+    ///
+    /// # Errors
+    /// When there are fewer than 3, as four hinges need four joints, or more than 200.
+    pub fn with_voussoirs(self, voussoirs: usize) -> Result<Self, ArgumentError> {
+        if !VOUSSOIRS.contains(&voussoirs) {
+            #[expect(clippy::cast_precision_loss, reason = "to be shown only")]
+            return Err(ArgumentError {
+                argument: "voussoirs",
+                value: voussoirs as f64,
+                allowed: format!("from {} to {}", VOUSSOIRS.start(), VOUSSOIRS.end()),
+            });
+        }
+        Self {
+            voussoirs: Some(voussoirs),
+            ..self
+        }
+        .reshaped()
+    }
+
+    /// The same arch with another depth out of plane, in metres.
+    ///
+    /// # Errors
+    /// When it is outside 0.001 to 1e6.
+    pub fn with_depth_m(self, depth_m: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            depth_m: within("depth_m", depth_m, MAGNITUDE)?,
+            ..self
+        })
+    }
+
+    /// The same arch with another density, in kg/m3.
+    ///
+    /// # Errors
+    /// When it is outside 0.001 to 1e6.
+    pub fn with_density_kg_m3(self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            density_kg_m3: within("density_kg_m3", density_kg_m3, MAGNITUDE)?,
+            ..self
+        })
+    }
+
+    /// Radius of the middle line, in metres.
+    #[must_use]
+    pub const fn mean_radius_m(&self) -> f64 {
         self.mean_radius_m
     }
 
-    fn mass_unit_kg(&self) -> f64 {
-        self.density_kg_m3 * self.depth_m * self.mean_radius_m * self.mean_radius_m
+    /// Thickness over mean radius.
+    #[must_use]
+    pub const fn thickness_ratio(&self) -> f64 {
+        self.thickness_ratio
     }
 
-    fn incipient_g(&self) -> f64 {
-        self.chain.incipient().acceleration_g
+    /// Angle from springing to springing, in degrees.
+    #[must_use]
+    pub const fn embrace_deg(&self) -> f64 {
+        self.embrace_deg
     }
 
-    fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
-        mechanism.thrust_line(motion).demand(self.chain.sites())
+    /// Length out of plane, in metres.
+    #[must_use]
+    pub const fn depth_m(&self) -> f64 {
+        self.depth_m
     }
 
-    fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
-        ThrustLine::at_rest(self.chain.incipient(), self.chain.ring(), body_force_g)
-            .demand(self.chain.sites())
+    /// Density, in kg/m3.
+    #[must_use]
+    pub const fn density_kg_m3(&self) -> f64 {
+        self.density_kg_m3
     }
 
-    fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {
-        self.chain.link(impacts).map(|link| &link.link)
+    /// Number of equal voussoirs; `None` where hinges may open at any section.
+    #[must_use]
+    pub const fn voussoirs(&self) -> Option<usize> {
+        self.voussoirs
     }
 
-    fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        self.chain.link(impacts).map_or(Vec::new(), |link| {
-            let hinges = link.mechanism.hinges_from_left(self.chain.ring(), sway);
-            hinges
-                .map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
-                .to_vec()
-        })
+    /// Where hinges may open.
+    #[must_use]
+    pub fn sites(&self) -> HingeSites {
+        self.voussoirs
+            .map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }
 
-    fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
-        let line = self
-            .chain
-            .link(impacts)
-            .and_then(|link| link.impulse_line.as_ref());
-        line.map_or(Vec::new(), |line| {
-            line.hinge_impulses_from_left(sway).to_vec()
-        })
+    /// The shape: the ring of unit mean radius.
+    #[must_use]
+    pub fn ring(&self) -> Ring {
+        Ring::new(self.thickness_ratio, self.embrace_deg.to_radians())
+            .expect("the constructors check what makes a ring")
+    }
+
+    /// Onset of rocking by limit analysis; see [`incipient`].
+    ///
+    /// # Errors
+    /// When the arch cannot stand, or does not start as a four-link mechanism.
+    pub fn incipient(&self) -> Result<&Incipient, LimitError> {
+        self.incipient
+            .get_or_init(|| incipient(&self.ring(), self.sites()))
+            .as_ref()
+            .map_err(|error| *error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_out_of_range_are_named_with_what_is_allowed() {
+        let message = |result: Result<Arch, ArgumentError>| result.unwrap_err().to_string();
+        let arch = || Arch::new(5.0, 0.15, 180.0).unwrap();
+        assert_eq!(
+            message(Arch::new(f64::NAN, 0.15, 180.0)),
+            "`mean_radius_m = NaN` is not allowed: it must be a number from 0.001 to 1000000.0"
+        );
+        assert!(message(Arch::new(5.0, 2.0, 180.0)).starts_with("`thickness_ratio = 2.0`"));
+        assert!(message(arch().with_embrace_deg(180.1)).contains("at most 180.0"));
+        assert!(message(arch().with_voussoirs(2)).contains("from 3 to 200"));
+        assert!(arch().with_depth_m(f64::INFINITY).is_err());
+        assert!(arch().with_density_kg_m3(0.0).is_err());
+    }
+
+    #[test]
+    fn arches_of_one_shape_share_their_limit_analysis() {
+        let arch = Arch::new(5.0, 0.15, 180.0).unwrap();
+        let first = arch.incipient().unwrap() as *const Incipient;
+        let larger = arch.clone().with_mean_radius_m(10.0).unwrap();
+        assert_eq!(larger.incipient().unwrap() as *const Incipient, first);
+        let thinner = arch.with_thickness_ratio(0.12).unwrap();
+        assert!(thinner.incipient().unwrap().acceleration_g < 0.1);
     }
 }

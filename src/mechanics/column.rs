@@ -18,11 +18,13 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector2;
 
-use super::structure::{Coefficients, Demand, Hinge, Link, Mechanism, Motion, Structure};
+use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
+use crate::argument::{ArgumentError, within};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::geometry::field::Twist;
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::MassMoments;
 
 /// The column turning about its right toe; lengths in half diagonals, unit density and depth.
@@ -75,13 +77,104 @@ impl Mechanism for Tilting {
     fn rotation_rates(&self, _: f64) -> [f64; 1] {
         [-1.0]
     }
+
+    /// From the middle of the base, which is the origin.
+    fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
+        let toe = Vector2::new(self.sin, 0.0);
+        poses.clear();
+        hinges.clear();
+        poses.push(Pose::about(toe, toe, -q_rad));
+        hinges.push(toe);
+    }
 }
 
-/// A free-standing column.
-#[derive(Clone, Debug)]
+/// Sizes in metres, and densities in kg/m3: positive, and so that no product of them leaves the range of an
+/// `f64`.
+const MAGNITUDE: std::ops::RangeInclusive<f64> = 1e-9..=1e12;
+
+/// A free-standing column: a rectangular block on rigid ground, which does not slide.
+///
+/// It may have any proportions. A column wider than `sqrt(2)` times its height stops at its first impact;
+/// and one that starts to rock from rest needs a friction coefficient of its width over its height.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Column {
+    height_m: f64,
+    width_m: f64,
+    depth_m: f64,
+    density_kg_m3: f64,
+}
+
+impl Column {
+    /// A column of the given height and width (in the plane of the motion), 1 m deep, of 2000 kg/m3.
+    ///
+    /// # Errors
+    /// When a size is outside 1e-9 to 1e12 m.
+    pub fn new(height_m: f64, width_m: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            height_m: within("height_m", height_m, MAGNITUDE)?,
+            width_m: within("width_m", width_m, MAGNITUDE)?,
+            depth_m: 1.0,
+            density_kg_m3: 2000.0,
+        })
+    }
+
+    /// The same column with another depth out of plane, in metres.
+    ///
+    /// # Errors
+    /// When it is outside 1e-9 to 1e12.
+    pub fn with_depth_m(self, depth_m: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            depth_m: within("depth_m", depth_m, MAGNITUDE)?,
+            ..self
+        })
+    }
+
+    /// The same column with another density, in kg/m3.
+    ///
+    /// # Errors
+    /// When it is outside 1e-9 to 1e12.
+    pub fn with_density_kg_m3(self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            density_kg_m3: within("density_kg_m3", density_kg_m3, MAGNITUDE)?,
+            ..self
+        })
+    }
+
+    /// Height, in metres.
+    #[must_use]
+    pub const fn height_m(&self) -> f64 {
+        self.height_m
+    }
+
+    /// Width in the plane of the motion, in metres.
+    #[must_use]
+    pub const fn width_m(&self) -> f64 {
+        self.width_m
+    }
+
+    /// Length out of plane, in metres.
+    #[must_use]
+    pub const fn depth_m(&self) -> f64 {
+        self.depth_m
+    }
+
+    /// Density, in kg/m3.
+    #[must_use]
+    pub const fn density_kg_m3(&self) -> f64 {
+        self.density_kg_m3
+    }
+
+    /// Slenderness `alpha`: angle of the diagonal with the vertical, in radians.
+    #[must_use]
+    pub fn slenderness_rad(&self) -> f64 {
+        self.width_m.atan2(self.height_m)
+    }
+}
+
+/// A free-standing column that rocks under an impact model.
+#[derive(Clone, Debug)]
+pub struct RockingColumn {
     half_diagonal_m: f64,
-    slenderness_rad: f64,
     mass_unit_kg: f64,
     incipient_g: f64,
     first: Link<Tilting>,
@@ -89,29 +182,24 @@ pub struct Column {
     next: Option<Link<Tilting>>,
 }
 
-impl Column {
-    /// A column of the given height and width, depth out of plane and density, under an impact model. All
-    /// are positive and finite.
-    #[must_use]
-    pub fn new(
-        height_m: f64,
-        width_m: f64,
-        depth_m: f64,
-        density_kg_m3: f64,
-        model: ImpactModel,
-    ) -> Self {
-        let diagonal_m = height_m.hypot(width_m);
+impl RockingColumn {
+    /// The column under an impact model.
+    ///
+    /// # Errors
+    /// When a prescribed restitution coefficient is not in 0 to 1.
+    pub fn new(column: &Column, model: ImpactModel) -> Result<Self, ArgumentError> {
+        model.check()?;
+        let diagonal_m = column.height_m.hypot(column.width_m);
         let half_diagonal_m = 0.5 * diagonal_m;
-        let slenderness_rad = width_m.atan2(height_m);
-        let (sin, cos) = (width_m / diagonal_m, height_m / diagonal_m);
+        let (sin, cos) = (column.width_m / diagonal_m, column.height_m / diagonal_m);
         let tilting = Tilting {
             sin,
             cos,
             mass: 4.0 * sin * cos,
         };
-        let link = |rate_ratio, restitution| Link {
-            critical_rad: slenderness_rad,
-            ..Link::new(tilting, FRAC_PI_2, rate_ratio, restitution)
+        let slenderness_rad = column.slenderness_rad();
+        let link = |rate_ratio, restitution| {
+            Link::with_critical_rad(tilting, slenderness_rad, FRAC_PI_2, rate_ratio, restitution)
         };
         let rate_ratio = match model {
             ImpactModel::Prescribed { restitution } => restitution.sqrt(),
@@ -123,20 +211,13 @@ impl Column {
             ImpactModel::Prescribed { restitution } => restitution,
             _ => rate_ratio * rate_ratio,
         };
-        Self {
+        Ok(Self {
             half_diagonal_m,
-            slenderness_rad,
-            mass_unit_kg: density_kg_m3 * depth_m * half_diagonal_m * half_diagonal_m,
+            mass_unit_kg: column.density_kg_m3 * column.depth_m * half_diagonal_m * half_diagonal_m,
             incipient_g: sin / cos,
             first: link(1.0, 1.0),
             next: (rate_ratio > 0.0).then(|| link(rate_ratio, restitution)),
-        }
-    }
-
-    /// Slenderness `alpha`: angle of the diagonal with the vertical, in radians.
-    #[must_use]
-    pub const fn slenderness_rad(&self) -> f64 {
-        self.slenderness_rad
+        })
     }
 }
 
@@ -171,7 +252,7 @@ fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Dema
     Demand::of_sections(std::iter::once(base), width, 1.0)
 }
 
-impl Structure for Column {
+impl MechanismChain for RockingColumn {
     type Mechanism = Tilting;
 
     fn length_m(&self) -> f64 {

@@ -17,7 +17,7 @@
 //! stiffens or softens on its way. The first describes narrow escapes and overturning, the second
 //! small rocking.
 
-use super::structure::{Link, Mechanism, Structure};
+use super::chain::{Link, Mechanism, MechanismChain};
 
 /// A free-standing block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub struct Equivalent {
 
 /// The blocks equivalent to the mechanism that starts `structure` under gravity.
 #[must_use]
-pub fn equivalent<S: Structure>(structure: &S, gravity_m_s2: f64) -> Option<Equivalent> {
+pub fn equivalent<C: MechanismChain>(structure: &C, gravity_m_s2: f64) -> Option<Equivalent> {
     let link = structure.link(0)?;
     let slenderness_rad = structure.incipient_g().atan();
     let block = |squared: f64| {

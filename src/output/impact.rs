@@ -8,13 +8,14 @@ use serde_json::{Value, json};
 
 use super::OutputError;
 use super::mechanisms::hinges;
-use crate::mechanics::arch::Arch;
+use crate::dynamics::model::MechanismModel;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::chain::ArchLink;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
-use crate::mechanics::structure::{Hinge, Structure};
 
 /// The sway of a link of the chain that begins with a sway to the right.
 #[must_use]
@@ -29,17 +30,17 @@ pub const fn sway(link: usize) -> Sway {
 /// Result of `impact` for any structure: the first `count` links of the chain that begins with a sway to
 /// the right; fewer when an impact stops the structure.
 #[must_use]
-pub fn chain<S: Structure>(structure: &S, count: usize) -> Vec<Value> {
+pub fn chain(model: &dyn MechanismModel, count: usize) -> Vec<Value> {
     let side = |index: usize| {
         let sway = sway(index);
-        json!({ "sway": sway.name(), "hinges": hinges(&structure.hinges(index, sway)) })
+        json!({ "sway": sway.name(), "hinges": hinges(&model.hinges_after(index, sway)) })
     };
     (1..=count)
-        .map_while(|index| Some((index, structure.link(index)?)))
-        .map(|(index, after)| {
+        .map_while(|index| Some((index, model.restitution_after(index)?)))
+        .map(|(index, restitution)| {
             json!({
                 "index": index,
-                "restitution": after.restitution,
+                "restitution": restitution,
                 "before": side(index - 1),
                 "after": side(index),
             })
@@ -49,11 +50,11 @@ pub fn chain<S: Structure>(structure: &S, count: usize) -> Vec<Value> {
 
 /// The same for an arch, with the impulses and the extremes of the impulse line.
 #[must_use]
-pub fn impacts(arch: &Arch, count: usize) -> Value {
+pub fn impacts(arch: &FourLinkArch, count: usize) -> Value {
     let mut impacts = chain(arch, count);
     for (index, impact) in (1..).zip(&mut impacts) {
         let line = arch
-            .chain
+            .chain()
             .link(index)
             .and_then(|link| link.impulse_line.as_ref());
         impact["impulses"] = line.map(|line| impulses(arch, line, sway(index))).into();
@@ -62,7 +63,7 @@ pub fn impacts(arch: &Arch, count: usize) -> Value {
     impacts.into()
 }
 
-fn impulses(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
+fn impulses(arch: &FourLinkArch, line: &ImpulseLine, sway: Sway) -> Value {
     let unit = arch.impulse_unit_n_s_per_m();
     let names = ["a", "b", "c", "d"].into_iter();
     names
@@ -78,8 +79,8 @@ fn impulses(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
 }
 
 /// Extremes of the line; values that are infinite, because there is tension, become null.
-fn extremes(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
-    let extremes = line.extremes_from_left(arch.chain.sites(), sway);
+fn extremes(arch: &FourLinkArch, line: &ImpulseLine, sway: Sway) -> Value {
+    let extremes = line.extremes_from_left(arch.chain().sites(), sway);
     json!({
         "admissible": extremes.is_admissible(),
         "largest_eccentricity_ratio": extremes.eccentricity_ratio.value,
@@ -91,15 +92,19 @@ fn extremes(arch: &Arch, line: &ImpulseLine, sway: Sway) -> Value {
     })
 }
 
-fn sections(arch: &Arch, impact: &Impact, sway: Sway) -> [Hinge; 4] {
-    let hinges = impact.mechanism.hinges_from_left(arch.chain.ring(), sway);
+fn sections(arch: &FourLinkArch, impact: &Impact, sway: Sway) -> [Hinge; 4] {
+    let hinges = impact.mechanism.hinges_from_left(arch.chain().ring(), sway);
     hinges.map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
 }
 
 /// Impact models side by side, for the impact that leads to link `index`; null where a model finds no
 /// mechanism that could follow.
 #[must_use]
-pub fn models(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>)]) -> Value {
+pub fn models(
+    arch: &FourLinkArch,
+    index: usize,
+    models: &[(ImpactModel, Option<Impact>)],
+) -> Value {
     let after = |impact: &Impact| {
         let sway = sway(index);
         json!({
@@ -118,13 +123,13 @@ pub fn models(arch: &Arch, index: usize, models: &[(ImpactModel, Option<Impact>)
 /// The projection onto all admissible fields beside the link that the chain takes, if any mechanism can follow.
 #[must_use]
 pub fn certificate(
-    arch: &Arch,
+    arch: &FourLinkArch,
     index: usize,
     link: Option<&ArchLink>,
     projection: &Projection,
 ) -> Value {
     let sway = sway(index);
-    let ring = arch.chain.ring();
+    let ring = arch.chain().ring();
     let mut opened: Vec<Value> = projection
         .opened()
         .map(|(joint, edge, rate)| {
@@ -141,7 +146,7 @@ pub fn certificate(
     let four_link = link.map_or(0.0, |link| link.link.restitution);
     let line = link.and_then(|link| link.impulse_line.as_ref());
     let admissible = line.map(|line| {
-        line.extremes_from_left(arch.chain.sites(), sway)
+        line.extremes_from_left(arch.chain().sites(), sway)
             .is_admissible()
     });
     json!({
@@ -167,7 +172,7 @@ const LINE_PARTS: usize = 720;
 /// When the system refuses.
 pub fn write_line(
     writer: impl Write,
-    arch: &Arch,
+    arch: &FourLinkArch,
     index: usize,
     mechanism: &FourLink,
     line: &ImpulseLine,
@@ -183,10 +188,10 @@ pub fn write_line(
     .map_err(OutputError::csv(WHAT))?;
     let (unit, ring, sway) = (
         arch.impulse_unit_n_s_per_m(),
-        arch.chain.ring(),
+        arch.chain().ring(),
         sway(index),
     );
-    let mut angles_rad = ring.sections(match arch.chain.sites() {
+    let mut angles_rad = ring.sections(match arch.chain().sites() {
         HingeSites::Anywhere => LINE_PARTS,
         HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
     });

@@ -9,6 +9,7 @@ use nalgebra::Vector2;
 use super::part::{self, Rows};
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite, verdict};
+use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::four_link::limit::LimitError;
 use crate::scenario::{Axis, Boundary, Cell, Cells, Quantity, Spacing};
 
@@ -24,10 +25,8 @@ const NOT_FOUR_LINKS: &str = "not_four_links";
 pub fn row(cells: &Cells<'_>, index: usize) -> Result<String, OutputError> {
     let fields = match cells.cell(index) {
         Cell::Shaken(ended) => verdict::fields(&ended)?,
-        Cell::NoArch(LimitError::CannotStand) => verdict::none(CANNOT_STAND),
-        Cell::NoArch(LimitError::OtherMechanism { .. } | LimitError::NoPush) => {
-            verdict::none(NOT_FOUR_LINKS)
-        }
+        Cell::NoArch(FourLinkError::Limit(LimitError::CannotStand)) => verdict::none(CANNOT_STAND),
+        Cell::NoArch(_) => verdict::none(NOT_FOUR_LINKS),
         Cell::Failed(_) => verdict::none(verdict::FAILED),
     };
     let [x, y] = cells.coordinates(index);

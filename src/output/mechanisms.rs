@@ -2,9 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::mechanics::equivalent::{Block, equivalent};
+use crate::dynamics::model::MechanismModel;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::equivalent::Block;
 use crate::mechanics::four_link::mechanism::Sway;
-use crate::mechanics::structure::{Hinge, Structure};
 
 /// Hinges from left to right: `{angle_deg, edge}`, the angle from the left springing, for an arch,
 /// `{toe}` for a column.
@@ -24,11 +25,11 @@ pub fn hinges(hinges: &[Hinge]) -> Value {
 /// Result of `limit`: incipient acceleration and mechanism on both sides, and the equivalent blocks
 /// (see [`crate::mechanics::equivalent`]), the same on both.
 #[must_use]
-pub fn limit<S: Structure>(structure: &S, gravity_m_s2: f64) -> Value {
+pub fn limit(model: &dyn MechanismModel, gravity_m_s2: f64) -> Value {
     let both =
         |of: &dyn Fn(Sway) -> Value| json!({ "right": of(Sway::Right), "left": of(Sway::Left) });
     let block = |block: Block| json!({ "p_rad_s": block.frequency_rad_s, "half_diagonal_m": block.half_diagonal_m });
-    let equivalent = equivalent(structure, gravity_m_s2).map(|blocks| {
+    let equivalent = model.equivalent(gravity_m_s2).map(|blocks| {
         json!({
             "slenderness_rad": blocks.slenderness_rad,
             "at_rest": blocks.at_rest.map(block),
@@ -36,8 +37,8 @@ pub fn limit<S: Structure>(structure: &S, gravity_m_s2: f64) -> Value {
         })
     });
     json!({
-        "incipient_acceleration_g": both(&|_| structure.incipient_g().into()),
-        "mechanism": both(&|sway| hinges(&structure.hinges(0, sway))),
+        "incipient_acceleration_g": both(&|sway| model.incipient_acceleration_g(sway).into()),
+        "mechanism": both(&|sway| hinges(&model.hinges_after(0, sway))),
         "equivalent_block": equivalent,
     })
 }

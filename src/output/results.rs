@@ -6,9 +6,11 @@ use serde_json::{Value, json};
 
 use super::rotations::{Scales, columns};
 use super::{OutputError, finite};
-use crate::dynamics::history::{Event, History, ImpactEvent, Outcome, Rotations};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::{Event, Outcome, Summary, impacts};
+use crate::dynamics::model::MechanismModel;
+use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::mechanism::Sway;
-use crate::mechanics::structure::{Hinge, Structure};
 use crate::scenario::{Ground, Scenario};
 
 /// Writes one row per transition.
@@ -25,35 +27,34 @@ use crate::scenario::{Ground, Scenario};
 ///
 /// # Errors
 /// When the system refuses, or a value is not finite.
-pub fn write_events<S: Structure>(
+pub fn write_events(
     writer: impl Write,
-    structure: &S,
-    events: &[Event<Rotations<S>>],
+    bodies: &[String],
+    events: &[Event],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the events";
     let mut csv = csv::Writer::from_writer(writer);
     let mut header: Vec<String> = ["time_s", "phase", "kind", "sway", "mechanism"]
         .map(str::to_owned)
         .to_vec();
-    header.extend(columns::<S::Mechanism>("rotation", "rad"));
-    header.extend(columns::<S::Mechanism>("rate", "rad_s"));
+    header.extend(columns(bodies, "rotation", "rad"));
+    header.extend(columns(bodies, "rate", "rad_s"));
     header.push("energy_j".to_owned());
     csv.write_record(header).map_err(OutputError::csv(WHAT))?;
     for (index, event) in events.iter().enumerate() {
-        let (rotations, rates) = (event.rotations_rad.as_ref(), event.rates_rad_s.as_ref());
-        let energy_j = event.energy * joules_per_unit(structure);
-        finite("of a row of events.csv", &[event.time_s, energy_j])?;
+        let (rotations, rates) = (&event.rotations_rad[..], &event.rates_rad_s[..]);
+        finite("of a row of events.csv", &[event.time_s, event.energy_j])?;
         finite("of a row of events.csv", rotations)?;
         finite("of a row of events.csv", rates)?;
         csv.serialize((
             event.time_s,
             index + 1,
             event.kind.name(),
-            event.sway.map(Sway::name),
+            event.state.sway().map(Sway::name),
             event.mechanism,
             rotations,
             rates,
-            energy_j,
+            event.energy_j,
         ))
         .map_err(OutputError::csv(WHAT))?;
     }
@@ -71,12 +72,13 @@ pub fn write_events<S: Structure>(
 ///
 /// # Errors
 /// When the system refuses, or a value is not finite.
-pub fn write_impacts<S: Structure>(
+pub fn write_impacts(
     writer: impl Write,
-    structure: &S,
-    impacts: &[ImpactEvent<'_, S>],
+    model: &dyn MechanismModel,
+    events: &[Event],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the impacts";
+    const ROW: &str = "of a row of impacts.csv";
     let mut csv = csv::Writer::from_writer(writer);
     let mut header: Vec<String> = [
         "impact",
@@ -90,9 +92,10 @@ pub fn write_impacts<S: Structure>(
     .map(str::to_owned)
     .to_vec();
     for moment in ["before", "after"] {
-        header.extend(columns::<S::Mechanism>("rate", &format!("{moment}_rad_s")));
+        let unit = format!("{moment}_rad_s");
+        header.extend(columns(&model.bodies(), "rate", &unit));
     }
-    let sections = sections_deg(structure, 0, Sway::Right).len();
+    let sections = sections_deg(&model.hinges_after(0, Sway::Right)).len();
     let hinges = ["a", "b", "c", "d"].iter().take(sections);
     header.extend(hinges.clone().map(|hinge| format!("hinge_{hinge}_deg")));
     header.extend(
@@ -102,39 +105,28 @@ pub fn write_impacts<S: Structure>(
     );
     csv.write_record(header).map_err(OutputError::csv(WHAT))?;
 
-    let joule = joules_per_unit(structure);
-    for (index, impact) in impacts.iter().enumerate() {
-        let (before, after) = impact.energies();
-        let (rates_before, rates_after) = impact.rates_rad_s();
-        let (rates_before, rates_after) = (rates_before.as_ref(), rates_after.as_ref());
-        let sway_after = impact.sway_before.opposite();
-        let mut hinges_deg = sections_deg(structure, impact.impacts, sway_after);
+    for (index, (time_s, impact)) in impacts(events).enumerate() {
+        let mut hinges_deg = sections_deg(&impact.opened);
         hinges_deg.resize(sections, None);
-        let unit_n_s =
-            structure.mass_unit_kg() * structure.length_m() * impact.rate_before_rad_s.abs();
-        let impulses_n_s: Vec<f64> = structure
-            .hinge_impulses(impact.impacts, sway_after)
-            .iter()
-            .flat_map(|impulse| [impulse.x * unit_n_s, impulse.y * unit_n_s])
-            .collect();
-        finite("of a row of impacts.csv", &impulses_n_s)?;
+        let impulses = impact.impulses_n_s.iter();
+        let impulses_n_s: Vec<f64> = impulses.flat_map(|i| [i.x, i.y]).collect();
+        finite(ROW, &impulses_n_s)?;
         let mut impulses_n_s: Vec<Option<f64>> = impulses_n_s.into_iter().map(Some).collect();
         impulses_n_s.resize(2 * sections, None);
-        let restitution = impact.after.map_or(0.0, |link| link.restitution);
-        let energies = [before * joule, after * joule];
-        finite("of a row of impacts.csv", &[impact.time_s, restitution])?;
-        finite("of a row of impacts.csv", &energies)?;
-        finite("of a row of impacts.csv", rates_before)?;
-        finite("of a row of impacts.csv", rates_after)?;
+        let energies = [impact.energy_before_j, impact.energy_after_j];
+        finite(ROW, &[time_s, impact.restitution])?;
+        finite(ROW, &energies)?;
+        finite(ROW, &impact.rates_before_rad_s)?;
+        finite(ROW, &impact.rates_after_rad_s)?;
         csv.serialize((
             index + 1,
-            impact.time_s,
+            time_s,
             impact.sway_before.name(),
-            sway_after.name(),
-            restitution,
+            impact.sway_after().name(),
+            impact.restitution,
             energies,
-            rates_before,
-            rates_after,
+            &impact.rates_before_rad_s,
+            &impact.rates_after_rad_s,
             hinges_deg,
             impulses_n_s,
         ))
@@ -144,19 +136,12 @@ pub fn write_impacts<S: Structure>(
 }
 
 /// Angles of the hinges that are at sections of an arch, in degrees from the left springing.
-fn sections_deg<S: Structure>(structure: &S, impacts: usize, sway: Sway) -> Vec<Option<f64>> {
-    let hinges = structure.hinges(impacts, sway).into_iter();
-    hinges
-        .filter_map(|hinge| match hinge {
-            Hinge::Section { angle_rad, .. } => Some(Some(angle_rad.to_degrees())),
-            Hinge::Toe(_) => None,
-        })
-        .collect()
-}
-
-/// The structure's unit of energy (see [`crate::dynamics::hybrid::rocking::Rocking::barrier`]) in J.
-fn joules_per_unit<S: Structure>(structure: &S) -> f64 {
-    structure.mass_unit_kg() * structure.length_m() * structure.length_m()
+fn sections_deg(hinges: &[Hinge]) -> Vec<Option<f64>> {
+    let sections = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Section { angle_rad, .. } => Some(Some(angle_rad.to_degrees())),
+        Hinge::Toe(_) => None,
+    });
+    sections.collect()
 }
 
 /// What a study was of: program, version, scenario as resolved, number of cases.
@@ -172,21 +157,23 @@ pub fn study_summary(scenario: &Scenario, cases: usize) -> Value {
 
 /// The summary of a run as JSON.
 ///
-/// `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (times the duration of the pulse) and
+/// `peak_rotation_over_critical` is the largest rotation over that at the unstable equilibrium of the mechanism
+/// that moved. `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (times the duration of the pulse) and
 /// `peak_acceleration_over_incipient` (of the ground, over `g A_L`).
 ///
 /// # Errors
 /// When a value is not finite.
-pub fn summary<S: Structure>(
+pub fn summary(
     scenario: &Scenario,
-    structure: &S,
-    history: &History<'_, S>,
+    model: &dyn MechanismModel,
+    ground: &GroundMotion,
+    history: &Summary,
 ) -> Result<Value, OutputError> {
-    let peaks = history.peak_rotations_rad.as_ref();
+    let peaks = &history.peak_rotations_rad[..];
     finite("peak_rotation", peaks)?;
     finite("energy_defect_ratio", &[history.energy_defect_ratio])?;
     finite("outcome_time_s", &[history.outcome_time_s])?;
-    let incipient_g = structure.incipient_g();
+    let incipient_g = |sway| model.incipient_acceleration_g(sway);
     let mut summary = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
@@ -197,23 +184,28 @@ pub fn summary<S: Structure>(
             Outcome::Overturned(sway) => Some(sway.name()),
             _ => None,
         },
-        "impacts": history.impacts.len(),
+        "impacts": history.impacts,
     });
     let more = summary.as_object_mut().expect("the summary is an object");
-    let keys = columns::<S::Mechanism>("peak_rotation", "rad");
+    let keys = columns(&model.bodies(), "peak_rotation", "rad");
     more.extend(keys.into_iter().zip(peaks.iter().map(|peak| json!(peak))));
+    finite("peak_rotation_over_critical", &[history.peak_over_critical])?;
+    more.insert(
+        "peak_rotation_over_critical".to_owned(),
+        json!(history.peak_over_critical),
+    );
     more.insert(
         "incipient_acceleration_g".to_owned(),
-        json!({ "right": incipient_g, "left": incipient_g }),
+        json!({ "right": incipient_g(Sway::Right), "left": incipient_g(Sway::Left) }),
     );
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-    if let Some(scales) = Scales::new(structure, gravity_m_s2) {
+    if let Some(scales) = Scales::new(model, gravity_m_s2) {
         let p_rad_s = scales.frequency_rad_s;
         let p_t_p = match &scenario.ground {
             Some(Ground::Pulse(pulse)) => Some(pulse.duration_s * p_rad_s),
             Some(Ground::Record(_)) | None => None,
         };
-        let peaks_m_s2 = scenario.ground_motion().peaks_m_s2(history.end_s);
+        let peaks_m_s2 = ground.peaks_m_s2(history.end_s);
         let peak = peaks_m_s2.x / scales.incipient_m_s2;
         finite("dimensionless", &[p_rad_s, p_t_p.unwrap_or(0.0), peak])?;
         more.insert(

@@ -4,8 +4,8 @@ use std::io::Write;
 
 use super::{OutputError, finite};
 use crate::dynamics::history::Sample;
-use crate::mechanics::equivalent::equivalent;
-use crate::mechanics::structure::{Mechanism, Structure};
+use crate::dynamics::model::MechanismModel;
+use crate::mechanics::four_link::mechanism::Sway;
 
 /// Column of a quantity of a body: `rotation_left_rad`, or `rotation_rad` where there is only one body.
 fn column(quantity: &str, body: &str, unit: &str) -> String {
@@ -16,9 +16,9 @@ fn column(quantity: &str, body: &str, unit: &str) -> String {
     }
 }
 
-/// Names of the columns for each body of a mechanism.
-pub(super) fn columns<M: Mechanism>(quantity: &str, unit: &str) -> Vec<String> {
-    M::BODIES
+/// Names of the columns for each body.
+pub(super) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<String> {
+    bodies
         .iter()
         .map(|body| column(quantity, body, unit))
         .collect()
@@ -35,14 +35,12 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The scales of a structure under gravity; `None` if it has no unstable equilibrium.
+    /// The scales of a model under gravity; `None` if it has no unstable equilibrium.
     #[must_use]
-    pub fn new<S: Structure>(structure: &S, gravity_m_s2: f64) -> Option<Self> {
+    pub fn new(model: &dyn MechanismModel, gravity_m_s2: f64) -> Option<Self> {
         Some(Self {
-            frequency_rad_s: equivalent(structure, gravity_m_s2)?
-                .at_critical?
-                .frequency_rad_s,
-            incipient_m_s2: structure.incipient_g() * gravity_m_s2,
+            frequency_rad_s: model.equivalent(gravity_m_s2)?.at_critical?.frequency_rad_s,
+            incipient_m_s2: model.incipient_acceleration_g(Sway::Right)? * gravity_m_s2,
         })
     }
 }
@@ -61,13 +59,14 @@ pub struct RotationsWriter<W: Write> {
 }
 
 impl<W: Write> RotationsWriter<W> {
-    /// Starts with the header for the mechanisms of a structure. Where the ground moves vertically too,
+    /// Starts with the header for bodies of these names. Where the ground moves vertically too,
     /// its vertical acceleration is a further column after all others.
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn new<M: Mechanism>(
+    pub fn new(
         writer: W,
+        bodies: &[String],
         vertical: bool,
         scales: Option<Scales>,
     ) -> Result<Self, OutputError> {
@@ -75,8 +74,8 @@ impl<W: Write> RotationsWriter<W> {
         let mut header: Vec<String> = ["time_s", "ground_acceleration_m_s2", "phase", "state"]
             .map(str::to_owned)
             .to_vec();
-        header.extend(columns::<M>("rotation", "rad"));
-        header.extend(columns::<M>("rate", "rad_s"));
+        header.extend(columns(bodies, "rotation", "rad"));
+        header.extend(columns(bodies, "rate", "rad_s"));
         header.extend(["thrust_excess_ratio", "friction_demand"].map(str::to_owned));
         if vertical {
             header.push("vertical_acceleration_m_s2".to_owned());
@@ -102,8 +101,8 @@ impl<W: Write> RotationsWriter<W> {
     ///
     /// # Errors
     /// When the system refuses, or a value is not finite.
-    pub fn write<R: AsRef<[f64]>>(&mut self, sample: &Sample<R>) -> Result<(), OutputError> {
-        let (rotations, rates) = (sample.rotations_rad.as_ref(), sample.rates_rad_s.as_ref());
+    pub fn write(&mut self, sample: &Sample) -> Result<(), OutputError> {
+        let (rotations, rates) = (&sample.rotations_rad[..], &sample.rates_rad_s[..]);
         finite(
             "of a row of rotations.csv",
             &[sample.time_s, sample.ground_acceleration_m_s2],
@@ -129,7 +128,7 @@ impl<W: Write> RotationsWriter<W> {
                 sample.time_s,
                 sample.ground_acceleration_m_s2,
                 sample.phase,
-                sample.state,
+                sample.state.name(),
                 rotations,
                 rates,
                 demand,

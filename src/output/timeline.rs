@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::svg::{Anchor, Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
-use crate::dynamics::history::Sample;
-use crate::mechanics::structure::Mechanism;
+use crate::dynamics::history::{Event, Sample, State, impacts};
+use crate::mechanics::four_link::mechanism::Sway;
 
 /// Columns that a curve is thinned to, at most: about two to a pixel.
 const COLUMNS: usize = 1600;
@@ -92,65 +92,62 @@ fn joined(a: [(f64, f64); 2], b: [(f64, f64); 2]) -> [(f64, f64); 2] {
 #[derive(Clone, Debug)]
 pub struct Timeline {
     gravity_m_s2: f64,
-    bodies: &'static [&'static str],
+    bodies: Vec<String>,
     ground_g: Envelope,
     rotations_rad: Vec<Envelope>,
     excess_ratio: Envelope,
     energy_ratio: Envelope,
-    /// When each state began.
-    states: Vec<(f64, &'static str)>,
+    /// What the structure does at first.
+    start: State,
     end_s: f64,
 }
 
 impl Timeline {
-    /// An empty one, for the mechanisms of a structure.
+    /// An empty one, for bodies of these names.
     #[must_use]
-    pub fn new<M: Mechanism>(gravity_m_s2: f64) -> Self {
+    pub fn new(bodies: &[String], gravity_m_s2: f64) -> Self {
         Self {
             gravity_m_s2,
-            bodies: M::BODIES,
+            bodies: bodies.to_vec(),
             ground_g: Envelope::new(),
-            rotations_rad: vec![Envelope::new(); M::BODIES.len()],
+            rotations_rad: vec![Envelope::new(); bodies.len()],
             excess_ratio: Envelope::new(),
             energy_ratio: Envelope::new(),
-            states: Vec::new(),
+            start: State::Rest,
             end_s: 0.0,
         }
     }
 
     /// Takes a sample. Samples come in the order of time.
-    pub fn push<R: AsRef<[f64]>>(&mut self, sample: &Sample<R>) {
+    pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
+        if sample.phase == 0 {
+            self.start = sample.state;
+        }
         self.end_s = time_s;
         let ground_g = sample.ground_acceleration_m_s2 / self.gravity_m_s2;
         self.ground_g.push(time_s, ground_g);
-        let rotations = sample.rotations_rad.as_ref();
-        for (envelope, rotation) in self.rotations_rad.iter_mut().zip(rotations) {
+        let envelopes = self.rotations_rad.iter_mut();
+        for (envelope, rotation) in envelopes.zip(&sample.rotations_rad) {
             envelope.push(time_s, *rotation);
         }
         let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
         self.excess_ratio.push(time_s, excess_ratio);
         self.energy_ratio.push(time_s, sample.energy_ratio);
-        if self.states.last().is_none_or(|last| last.1 != sample.state) {
-            self.states.push((time_s, sample.state));
-        }
     }
 
-    /// The picture, with the instants of the impacts.
+    /// The picture, with all events of the history.
     #[must_use]
-    pub fn draw(&self, title: &str, impacts_s: impl Iterator<Item = f64>) -> String {
+    pub fn draw(&self, title: &str, events: &[Event]) -> String {
         let (left, width) = (85.0, 790.0);
         let mut drawing = Drawing::new(900.0, 860.0);
         drawing.title(title);
         let time = Scale::exactly(0.0, self.end_s.max(f64::MIN_POSITIVE), 10);
-        let named = |bodies: &[&'static str]| -> Vec<&'static str> {
-            bodies
-                .iter()
-                .map(|body| if body.is_empty() { "rotation" } else { *body })
-                .collect()
-        };
-        let rotations = named(self.bodies)
-            .into_iter()
+        let bodies = self.bodies.iter().map(|body| match body.as_str() {
+            "" => "rotation",
+            body => body,
+        });
+        let rotations = bodies
             .zip(&self.rotations_rad)
             .zip(CURVES)
             .map(|((name, envelope), stroke)| (name, envelope, stroke))
@@ -172,6 +169,7 @@ impl Timeline {
         ];
         let mut top = 70.0;
         let mut rocking_panel = None;
+        let mut drawing_hops = false;
         let last = panels.len() - 1;
         for (index, (label, height, curves)) in panels.into_iter().enumerate() {
             let frame = Frame {
@@ -189,7 +187,7 @@ impl Timeline {
                 x: time,
                 y: Scale::around(values.chain([0.0]), if height > 200.0 { 6 } else { 3 }),
             };
-            self.shade(&mut drawing, &axes);
+            drawing_hops |= self.shade(&mut drawing, &axes, events);
             let time_label = (index == last).then_some("Time (s)");
             axes.draw(&mut drawing, time_label, label);
             for (name, envelope, stroke) in curves {
@@ -202,66 +200,106 @@ impl Timeline {
             top += height + 22.0;
         }
         if let Some(axes) = rocking_panel {
-            mark_impacts(&mut drawing, &axes, impacts_s);
+            mark_impacts(
+                &mut drawing,
+                &axes,
+                impacts(events).map(|(time_s, _)| time_s),
+            );
         }
-        self.explain(&mut drawing, top + 44.0);
+        self.explain(&mut drawing, top + 44.0, drawing_hops);
         drawing.finish()
     }
 
-    /// Shades the states. What is too narrow to be seen is shaded like what follows it: hops that become
-    /// ever shorter leave no gap.
-    fn shade(&self, drawing: &mut Drawing, axes: &Axes) {
-        let place = |time_s: f64| axes.place(time_s, axes.y.low).x;
-        let ends = self.states.iter().skip(1).map(|(start_s, _)| *start_s);
-        let mut from = place(0.0);
-        for ((_, state), end_s) in self.states.iter().zip(ends.chain([self.end_s])) {
+    /// Shades what the structure does, and tells whether there are hops too short to be told apart: these get
+    /// one shade together.
+    fn shade(&self, drawing: &mut Drawing, axes: &Axes, events: &[Event]) -> bool {
+        let place = |time_s: f64| axes.place(time_s.min(self.end_s), axes.y.low).x;
+        let mut band = |(name, fill): Shade, left: f64, right: f64| {
             let frame = Frame {
-                left: from,
-                width: place(end_s) - from,
+                left,
+                width: right - left,
                 ..axes.frame
             };
-            if frame.width < NARROWEST_PX {
+            drawing.band(name, &frame, fill, OPACITY);
+        };
+        let starts = events.iter().map(|event| (event.time_s, event.state));
+        let ends_s = events.iter().map(|event| event.time_s).chain([self.end_s]);
+        // Where the last band ends that is wide enough to be seen.
+        let mut drawn = place(0.0);
+        let mut hops = false;
+        for ((start_s, state), end_s) in [(0.0, self.start)].into_iter().chain(starts).zip(ends_s) {
+            let (start, end) = (place(start_s), place(end_s));
+            if end - start < NARROWEST_PX && end_s < self.end_s {
                 continue;
             }
-            from = place(end_s);
-            if let Some(fill) = shade_of(state) {
-                drawing.band(state, &frame, fill, 0.22);
+            if start - drawn >= NARROWEST_PX {
+                band(HOPS, drawn, start);
+                hops = true;
+                drawn = start;
             }
+            if let Some(shade) = shade_of(state)
+                && end - drawn >= NARROWEST_PX
+            {
+                band(shade, drawn, end);
+            }
+            drawn = end;
         }
+        hops
     }
 
     /// The legend.
-    fn explain(&self, drawing: &mut Drawing, y: f64) {
+    fn explain(&self, drawing: &mut Drawing, y: f64, hops: bool) {
         let bodies = self.bodies.iter().zip(CURVES);
         let named = bodies.filter(|(body, _)| !body.is_empty());
         let at = Vector2::new(85.0, y);
-        drawing.legend(at, 100.0, named.map(|(body, stroke)| (*body, stroke)));
-        let mut x = 400.0;
-        for (state, text) in [("right", "sways right"), ("left", "sways left")] {
+        drawing.legend(
+            at,
+            90.0,
+            named.map(|(body, stroke)| (body.as_str(), stroke)),
+        );
+        let mut x = 365.0;
+        let keys = [
+            (SWAYS_RIGHT, "sways right"),
+            (SWAYS_LEFT, "sways left"),
+            (HOPS, "hops"),
+        ];
+        for ((_, fill), text) in keys.into_iter().take(if hops { 3 } else { 2 }) {
             let frame = Frame {
                 left: x,
                 top: y - 7.0,
                 width: 24.0,
                 height: 14.0,
             };
-            drawing.band("key", &frame, shade_of(state).unwrap_or("#ffffff"), 0.22);
+            drawing.band("key", &frame, fill, OPACITY);
             let at = Vector2::new(x + 30.0, y + 4.5);
             drawing.label(at, Anchor::Start, 0.0, text);
             x += 125.0;
         }
-        let mark = Vector2::new(660.0, y + 6.0);
+        let mark = Vector2::new(740.0, y + 6.0);
         draw_mark(drawing, "", mark);
-        let at = Vector2::new(672.0, y + 4.5);
+        let at = Vector2::new(752.0, y + 4.5);
         drawing.label(at, Anchor::Start, 0.0, "impacts");
     }
 }
 
-fn shade_of(state: &str) -> Option<&'static str> {
+/// Name and colour of a band.
+type Shade = (&'static str, &'static str);
+
+const SWAYS_RIGHT: Shade = ("right", color::SKY);
+const SWAYS_LEFT: Shade = ("left", color::ORANGE);
+const OVERTURNED: Shade = ("overturned", color::BLACK);
+/// Hops to both sides, each too short to be seen.
+const HOPS: Shade = ("hops", color::GREY);
+
+/// So strong are the colours of bands.
+const OPACITY: f64 = 0.22;
+
+const fn shade_of(state: State) -> Option<Shade> {
     match state {
-        "right" => Some(color::SKY),
-        "left" => Some(color::ORANGE),
-        "overturned" => Some(color::BLACK),
-        _ => None,
+        State::Rest => None,
+        State::Rocking(Sway::Right) => Some(SWAYS_RIGHT),
+        State::Rocking(Sway::Left) => Some(SWAYS_LEFT),
+        State::Overturned(_) => Some(OVERTURNED),
     }
 }
 

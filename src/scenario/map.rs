@@ -16,9 +16,9 @@ use super::keys::{
 use super::sequence::Sequence;
 use super::table::{Number, Reading, Table, Writer};
 use super::{Ground, PulseGround, Scenario, Simulation, Structure};
-use crate::dynamics::hybrid::engine::EngineError;
+use crate::dynamics::model::SimulationError;
+use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::limit::LimitError;
 use crate::studies::specimen::{Specimen, Verdict};
 
 named! {
@@ -184,14 +184,14 @@ fn suits(
 }
 
 /// What became of a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
     /// Its history.
     Shaken(Verdict),
     /// There is no such arch, or none that four links describe.
-    NoArch(LimitError),
+    NoArch(FourLinkError),
     /// Its history could not be computed.
-    Failed(EngineError),
+    Failed(SimulationError),
 }
 
 /// The cells of a map, each a function of its index alone: cell `i` has the `i / m`-th value of x and the
@@ -204,7 +204,7 @@ pub struct Cells<'a> {
     values: [Vec<f64>; 2],
     /// The structures that serve more than one cell, of which only the size may yet vary, in the order of the
     /// values on which they depend; each is made when first asked for.
-    structures: Vec<OnceLock<Result<Specimen, LimitError>>>,
+    structures: Vec<OnceLock<Result<Specimen, FourLinkError>>>,
 }
 
 impl<'a> Cells<'a> {
@@ -289,7 +289,7 @@ impl<'a> Cells<'a> {
     }
 
     /// What stands in a cell.
-    fn specimen(&self, index: usize) -> Result<Specimen, LimitError> {
+    fn specimen(&self, index: usize) -> Result<Specimen, FourLinkError> {
         let place = self.place(index);
         let which = (0..2)
             .filter(|axis| self.shapes(*axis))
@@ -303,12 +303,12 @@ impl<'a> Cells<'a> {
         if let (Specimen::Arch(arch), Some(mean_radius_m)) =
             (&mut specimen, self.value(index, Quantity::MeanRadius))
         {
-            arch.mean_radius_m = mean_radius_m;
+            *arch = arch.with_mean_radius_m(mean_radius_m)?;
         }
         Ok(specimen)
     }
 
-    fn make(&self, index: usize) -> Result<Specimen, LimitError> {
+    fn make(&self, index: usize) -> Result<Specimen, FourLinkError> {
         let value = |quantity, otherwise| self.value(index, quantity).unwrap_or(otherwise);
         let model = match self.scenario.impact {
             ImpactModel::Prescribed { restitution } => ImpactModel::Prescribed {
@@ -358,7 +358,7 @@ impl<'a> Cells<'a> {
     ///
     /// # Errors
     /// When the integration fails.
-    pub fn boundary(&self, x: usize) -> Result<Option<Boundary>, EngineError> {
+    pub fn boundary(&self, x: usize) -> Result<Option<Boundary>, SimulationError> {
         let index = x * self.values[1].len();
         let Ok(specimen) = self.specimen(index) else {
             return Ok(None);

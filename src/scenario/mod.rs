@@ -38,22 +38,18 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-use std::sync::Arc;
-
 use nalgebra::Vector2;
 
 use crate::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
-use crate::dynamics::history::Request;
-use crate::dynamics::hybrid::engine::EngineError;
+use crate::dynamics::model::{self, MechanismModel, Request, SimulationError};
 use crate::mechanics::arch;
-use crate::mechanics::column;
-use crate::mechanics::four_link::chain::Chain;
+use crate::mechanics::column::{self, RockingColumn};
+use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::linkage::Linkage;
 use crate::mechanics::four_link::mechanism::{HingeSites, Sway};
 use crate::mechanics::geometry::ring::Ring;
-use crate::mechanics::structure::Structure as _;
 use crate::studies::impact_free::{least_amplitude, strides};
 use crate::studies::specimen::{Conditions, Specimen};
 use error::Fault;
@@ -140,13 +136,14 @@ impl Arch {
     /// # Errors
     /// When it cannot stand or no four-link mechanism governs; never for an arch that was read from a
     /// file, where this is checked.
-    pub fn build(&self, model: ImpactModel) -> Result<arch::Arch, LimitError> {
-        Ok(arch::Arch {
-            mean_radius_m: self.mean_radius_m,
-            depth_m: self.depth_m,
-            density_kg_m3: self.density_kg_m3,
-            chain: Arc::new(Chain::new(self.ring(), self.sites(), model)?),
-        })
+    pub fn build(&self, model: ImpactModel) -> Result<FourLinkArch, FourLinkError> {
+        let mut arch = arch::Arch::new(self.mean_radius_m, self.thickness_ratio, self.embrace_deg)?
+            .with_depth_m(self.depth_m)?
+            .with_density_kg_m3(self.density_kg_m3)?;
+        if let Some(voussoirs) = self.voussoirs {
+            arch = arch.with_voussoirs(voussoirs)?;
+        }
+        FourLinkArch::new(arch, model)
     }
 }
 
@@ -168,25 +165,35 @@ pub struct Column {
 
 impl Column {
     /// The column, ready to rock.
-    #[must_use]
-    pub fn build(&self, model: ImpactModel) -> column::Column {
-        column::Column::new(
-            self.height_m,
-            self.width_m,
-            self.depth_m,
-            self.density_kg_m3,
-            model,
-        )
+    ///
+    /// # Errors
+    /// When a size is out of range; never for a column that was read from a file.
+    pub fn build(&self, model: ImpactModel) -> Result<RockingColumn, FourLinkError> {
+        let column = column::Column::new(self.height_m, self.width_m)?
+            .with_depth_m(self.depth_m)?
+            .with_density_kg_m3(self.density_kg_m3)?;
+        Ok(RockingColumn::new(&column, model)?)
     }
 }
 
 impl Structure {
     /// It, ready to rock.
-    fn specimen(&self, model: ImpactModel) -> Result<Specimen, LimitError> {
+    fn specimen(&self, model: ImpactModel) -> Result<Specimen, FourLinkError> {
         match self {
             Self::Arch(arch) => arch.build(model).map(Specimen::Arch),
-            Self::Column(column) => Ok(Specimen::Column(column.build(model))),
+            Self::Column(column) => column.build(model).map(Specimen::Column),
         }
+    }
+
+    /// The model of its motion.
+    ///
+    /// # Errors
+    /// When it does not rock as four links.
+    pub fn model(&self, model: ImpactModel) -> Result<Box<dyn MechanismModel>, FourLinkError> {
+        Ok(match self.specimen(model)? {
+            Specimen::Arch(arch) => Box::new(arch),
+            Specimen::Column(column) => Box::new(column),
+        })
     }
 
     /// `q` at the limit position of the mechanism that starts, for a structure that stands.
@@ -195,10 +202,9 @@ impl Structure {
             Self::Arch(arch) => arch.incipient().map_or(0.0, |incipient| {
                 Linkage::new(&arch.ring(), &incipient.mechanism).limit_rad()
             }),
-            Self::Column(column) => {
-                let column = column.build(ImpactModel::MaxRestitution);
-                column.link(0).map_or(0.0, |link| link.limit_rad)
-            }
+            Self::Column(_) => self
+                .model(ImpactModel::MaxRestitution)
+                .map_or(0.0, |model| model.limit_rad()),
         }
     }
 }
@@ -272,7 +278,7 @@ impl PulseGround {
         specimen: &Specimen,
         conditions: &Conditions,
         tried_g: &[f64],
-    ) -> Result<Option<(f64, Sway)>, EngineError> {
+    ) -> Result<Option<(f64, Sway)>, SimulationError> {
         let overturns = |magnitude_g: f64| {
             let ground = self
                 .of_magnitude(magnitude_g)
@@ -402,13 +408,15 @@ impl Scenario {
     #[must_use]
     pub fn request(&self) -> Request {
         Request {
+            gravity_m_s2: self.simulation.gravity_m_s2,
             end_s: self.simulation.duration_s,
+            output_step_s: self.simulation.output_step_s,
+            initial: self.initial.as_ref().map(|initial| model::Initial {
+                sway: initial.sway,
+                rotation_rad: initial.rotation_rad,
+            }),
             relative_tolerance: self.simulation.relative_tolerance,
-            initial: self
-                .initial
-                .as_ref()
-                .map(|initial| (initial.sway, initial.rotation_rad)),
-            output_step_s: Some(self.simulation.output_step_s),
+            rest_energy_ratio: self.simulation.rest_energy_ratio,
         }
     }
 

@@ -25,11 +25,11 @@ use super::sequence::{Sequence, Spacing};
 use super::table::{Number, Reading, Rule as _, Table, Writer};
 use super::{Ground, PulseGround, Scenario, Structure};
 use crate::dynamics::history::Outcome;
-use crate::dynamics::hybrid::engine::EngineError;
-use crate::mechanics::column::Column;
+use crate::dynamics::model::SimulationError;
+use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::equivalent::{Block, Equivalent};
+use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::limit::LimitError;
 use crate::mechanics::four_link::mechanism::Sway;
 use crate::studies::specimen::{Conditions, Specimen};
 
@@ -140,7 +140,7 @@ pub enum NoSpectrum {
     NoBlock,
     /// There is no such arch.
     #[error(transparent)]
-    Limit(#[from] LimitError),
+    Limit(#[from] FourLinkError),
 }
 
 /// A point of a spectrum: a structure of some size.
@@ -161,7 +161,7 @@ pub struct Point {
     /// How many of the accelerations tried left the structure rocking at the end. They count as survived.
     pub still_rocking: usize,
     /// Histories that could not be computed. They count as survived.
-    pub failures: Vec<EngineError>,
+    pub failures: Vec<SimulationError>,
 }
 
 /// How a structure overturns.
@@ -212,13 +212,11 @@ impl<'a> Points<'a> {
             Specimen::Arch(arch) => {
                 let (sin, cos) = slenderness_rad.sin_cos();
                 let diagonal_m = 2.0 * block.half_diagonal_m;
-                let column = Column::new(
-                    diagonal_m * cos,
-                    diagonal_m * sin,
-                    arch.depth_m,
-                    arch.density_kg_m3,
-                    scenario.impact,
-                );
+                let column = Column::new(diagonal_m * cos, diagonal_m * sin)
+                    .and_then(|column| column.with_depth_m(arch.arch().depth_m()))
+                    .and_then(|column| column.with_density_kg_m3(arch.arch().density_kg_m3()))
+                    .and_then(|column| RockingColumn::new(&column, scenario.impact))
+                    .map_err(FourLinkError::from)?;
                 vec![("arch", specimen), ("column", Specimen::Column(column))]
             }
         };
@@ -330,7 +328,7 @@ impl<'a> Points<'a> {
         specimen: &Specimen,
         pulse: &PulseGround,
         amplitude_g: f64,
-    ) -> Result<(Outcome, usize), EngineError> {
+    ) -> Result<(Outcome, usize), SimulationError> {
         let ground = pulse
             .of_magnitude(amplitude_g)
             .motion(self.conditions.gravity_m_s2);

@@ -23,8 +23,8 @@ use super::record::{self, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::table::{Number, OneOrMore, Reading, Switch, Table, Text, Writer};
 use super::{Component, Scenario, Simulation};
-use crate::dynamics::hybrid::engine::EngineError;
-use crate::mechanics::four_link::limit::LimitError;
+use crate::dynamics::model::SimulationError;
+use crate::mechanics::four_link::arch::FourLinkError;
 use crate::studies::specimen::{Specimen, Verdict};
 
 named! {
@@ -353,7 +353,7 @@ pub struct Shaken<'a> {
     /// Its peak as scaled, in units of gravity.
     pub peak_g: f64,
     /// Its history, or why it could not be computed.
-    pub ended: Result<Verdict, EngineError>,
+    pub ended: Result<Verdict, SimulationError>,
 }
 
 /// The cases of a suite, each a function of its index alone: the levels of a record follow one another, then
@@ -371,7 +371,7 @@ impl<'a> Shakes<'a> {
     ///
     /// # Errors
     /// As [`super::Arch::build`].
-    pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, LimitError> {
+    pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, FourLinkError> {
         Ok(Self {
             scenario,
             suite,

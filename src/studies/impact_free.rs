@@ -5,56 +5,7 @@
 //! overturn within narrow windows of the amplitude, in which a lobe carries the structure just over and the next
 //! does not catch it; so the edge is looked for in small strides, and bisected where it is found.
 
-use std::ops::ControlFlow;
-
 use crate::dynamics::ground::Pulse;
-use crate::dynamics::hybrid::engine::{EngineError, Observer, Settings, Transition, simulate};
-use crate::dynamics::hybrid::rocking::{Guard, Mode, Rocking, RockingState};
-use crate::mechanics::four_link::mechanism::Sway;
-use crate::mechanics::structure::Structure;
-
-/// So long after the ground fell quiet that the first fall is over: near the unstable equilibrium a motion dwells
-/// for some forty of its time scales before rounding decides.
-const AFTER_S: f64 = 1e6;
-
-/// The side to which a structure at rest is overturned before its first impact; `None` if it is not.
-///
-/// # Errors
-/// When the integration fails.
-pub fn overturns<S: Structure>(
-    rocking: &Rocking<'_, S>,
-    relative_tolerance: f64,
-) -> Result<Option<Sway>, EngineError> {
-    let settings = Settings {
-        end_s: rocking.ground().end_s() + AFTER_S,
-        relative_tolerance,
-        // Leaving the rest, and what ends that.
-        most_transitions: 2,
-    };
-    let state = RockingState::zeros();
-    let finish = simulate(rocking, Mode::Rest, state, &settings, &mut FirstFall)?;
-    Ok(match finish.mode {
-        Mode::Overturned { sway, .. } => Some(sway),
-        Mode::Rest | Mode::Rocking { .. } => None,
-    })
-}
-
-/// Breaks when the hinges close.
-struct FirstFall;
-
-impl<'a, S: Structure> Observer<Rocking<'a, S>, 3> for FirstFall {
-    fn transition(
-        &mut self,
-        _: &Rocking<'a, S>,
-        _: usize,
-        transition: &Transition<Mode<'a, S::Mechanism>, Guard, 3>,
-    ) -> ControlFlow<()> {
-        match transition.guard {
-            Guard::Closing => ControlFlow::Break(()),
-            Guard::Uplift(_) | Guard::Critical | Guard::Limit => ControlFlow::Continue(()),
-        }
-    }
-}
 
 /// Ratio of the amplitudes at which the edge of a pulse with lobes to both sides is looked for: a window that is
 /// narrower may go unseen. The narrowest found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.

@@ -1,18 +1,12 @@
 //! What a study shakes: an arch or a column, and how it ends.
 
-use std::ops::ControlFlow;
-
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{History, Outcome, Request, history};
-use crate::dynamics::hybrid::engine::EngineError;
-use crate::dynamics::hybrid::rocking::Rocking;
-use crate::mechanics::arch::Arch;
-use crate::mechanics::column::Column;
-use crate::mechanics::equivalent::{Equivalent, equivalent};
+use crate::dynamics::history::{Outcome, Summary};
+use crate::dynamics::model::{MechanismModel, Request, SimulationError};
+use crate::mechanics::column::RockingColumn;
+use crate::mechanics::equivalent::Equivalent;
+use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::mechanism::Sway;
-use crate::mechanics::structure::Structure;
-
-use super::impact_free;
 
 /// How all histories of a study are computed: from rest, without samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,19 +26,13 @@ impl Conditions {
     #[must_use]
     pub const fn request(&self) -> Request {
         Request {
+            gravity_m_s2: self.gravity_m_s2,
             end_s: self.end_s,
-            relative_tolerance: self.relative_tolerance,
+            output_step_s: self.end_s,
             initial: None,
-            output_step_s: None,
+            relative_tolerance: self.relative_tolerance,
+            rest_energy_ratio: self.rest_energy_ratio,
         }
-    }
-
-    fn rocking<'a, S: Structure>(
-        &self,
-        structure: &'a S,
-        ground: &'a GroundMotion,
-    ) -> Rocking<'a, S> {
-        Rocking::new(structure, ground, self.gravity_m_s2, self.rest_energy_ratio)
     }
 }
 
@@ -63,12 +51,12 @@ pub struct Verdict {
     pub energy_defect_ratio: f64,
 }
 
-impl<S: Structure> From<&History<'_, S>> for Verdict {
-    fn from(history: &History<'_, S>) -> Self {
+impl From<Summary> for Verdict {
+    fn from(history: Summary) -> Self {
         Self {
             outcome: history.outcome,
             outcome_time_s: history.outcome_time_s,
-            impacts: history.impacts.len(),
+            impacts: history.impacts,
             peak_over_critical: history.peak_over_critical,
             energy_defect_ratio: history.energy_defect_ratio,
         }
@@ -79,32 +67,34 @@ impl<S: Structure> From<&History<'_, S>> for Verdict {
 #[derive(Clone, Debug)]
 pub enum Specimen {
     /// A circular arch.
-    Arch(Arch),
+    Arch(FourLinkArch),
     /// A free-standing column.
-    Column(Column),
-}
-
-/// Does with the structure inside what can be done with any.
-macro_rules! each {
-    ($specimen:expr, $structure:ident => $do:expr) => {
-        match $specimen {
-            Specimen::Arch($structure) => $do,
-            Specimen::Column($structure) => $do,
-        }
-    };
+    Column(RockingColumn),
 }
 
 impl Specimen {
+    /// The model of its motion.
+    #[must_use]
+    pub fn model(&self) -> &dyn MechanismModel {
+        match self {
+            Self::Arch(arch) => arch,
+            Self::Column(column) => column,
+        }
+    }
+
     /// Horizontal acceleration at which it starts to rock, in units of gravity.
     #[must_use]
     pub fn incipient_g(&self) -> f64 {
-        each!(self, structure => structure.incipient_g())
+        let model = self.model();
+        model
+            .incipient_acceleration_g(Sway::Right)
+            .unwrap_or(f64::INFINITY)
     }
 
     /// The free-standing blocks that rock like it.
     #[must_use]
     pub fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent> {
-        each!(self, structure => equivalent(structure, gravity_m_s2))
+        self.model().equivalent(gravity_m_s2)
     }
 
     /// Its history on moving ground, from rest to its outcome.
@@ -115,12 +105,9 @@ impl Specimen {
         &self,
         ground: &GroundMotion,
         conditions: &Conditions,
-    ) -> Result<Verdict, EngineError> {
-        each!(self, structure => {
-            let rocking = conditions.rocking(structure, ground);
-            let history = history(&rocking, &conditions.request(), |_| ControlFlow::Continue(()))?;
-            Ok(Verdict::from(&history))
-        })
+    ) -> Result<Verdict, SimulationError> {
+        let summary = self.model().simulate(ground, &conditions.request(), None)?;
+        Ok(summary.into())
     }
 
     /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
@@ -131,10 +118,8 @@ impl Specimen {
         &self,
         ground: &GroundMotion,
         conditions: &Conditions,
-    ) -> Result<Option<Sway>, EngineError> {
-        each!(self, structure => {
-            let rocking = conditions.rocking(structure, ground);
-            impact_free::overturns(&rocking, conditions.relative_tolerance)
-        })
+    ) -> Result<Option<Sway>, SimulationError> {
+        self.model()
+            .overturns_without_impact(ground, &conditions.request())
     }
 }

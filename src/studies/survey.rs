@@ -1,10 +1,9 @@
 //! Arches of many shapes compared: onset, first impact, and what impacts tend to.
 
-use crate::mechanics::four_link::chain::Chain;
+use crate::mechanics::arch::Arch;
+use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::limit::LimitError;
 use crate::mechanics::four_link::mechanism::HingeSites;
-use crate::mechanics::geometry::ring::Ring;
 
 /// What a shape tells of its rocking.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +36,12 @@ pub fn shape_result(
     sites: HingeSites,
     model: ImpactModel,
 ) -> Option<ShapeResult> {
-    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).ok()?;
-    let chain: Result<Chain, LimitError> = Chain::new(ring, sites, model);
-    let chain = chain.ok()?;
+    let mut arch = Arch::new(1.0, thickness_ratio, embrace_deg).ok()?;
+    if let HingeSites::Voussoirs(voussoirs) = sites {
+        arch = arch.with_voussoirs(voussoirs).ok()?;
+    }
+    let arch = FourLinkArch::new(arch, model).ok()?;
+    let chain = arch.chain();
     let restitution = |index: usize| chain.link(index).map(|link| link.link.restitution);
     let mut last = restitution(1);
     for index in 2..LONGEST {

@@ -1,4 +1,6 @@
 //! One degree of freedom at a time: smooth motion in modes, and jumps between them.
 pub mod engine;
+mod first_fall;
 pub mod integrator;
 pub mod rocking;
+mod simulation;

@@ -6,15 +6,16 @@
 //! | rocking | the equation of motion of one mechanism | its hinges close, or it is lost |
 //! | overturned | - | - |
 //!
-//! Which structure rocks does not matter here: see [`Structure`].
+//! Which structure rocks does not matter here: see [`MechanismChain`].
 
 use nalgebra::Vector2;
 
 use super::engine::{HybridSystem, Level};
 use super::integrator::{State, Step};
 use crate::dynamics::ground::{GroundMotion, Piece};
+use crate::dynamics::history::State as Doing;
+use crate::mechanics::chain::{Coefficients, Demand, Link, Mechanism, MechanismChain, Motion};
 use crate::mechanics::four_link::mechanism::Sway;
-use crate::mechanics::structure::{Coefficients, Demand, Link, Mechanism, Motion, Structure};
 
 /// Discrete state of a rocking structure.
 #[derive(Debug)]
@@ -34,9 +35,23 @@ pub enum Mode<'a, M> {
     Overturned {
         /// To which side.
         sway: Sway,
+        /// Impacts since it last left the rest.
+        impacts: usize,
         /// The mechanism.
         link: &'a Link<M>,
     },
+}
+
+impl<M> Mode<'_, M> {
+    /// What the structure is doing.
+    #[must_use]
+    pub const fn state(&self) -> Doing {
+        match self {
+            Self::Rest => Doing::Rest,
+            Self::Rocking { sway, .. } => Doing::Rocking(*sway),
+            Self::Overturned { sway, .. } => Doing::Overturned(*sway),
+        }
+    }
 }
 
 // Not derived: a copy of the mode does not need a copy of the mechanism.
@@ -69,43 +84,41 @@ const LIFTING: f64 = 1.0 + 1e-12;
 
 /// A structure on moving ground.
 #[derive(Debug)]
-pub struct Rocking<'a, S: Structure> {
-    structure: &'a S,
+pub struct Rocking<'a, C: MechanismChain> {
+    chain: &'a C,
     ground: &'a GroundMotion,
     gravity_m_s2: f64,
     rest_energy_ratio: f64,
     barrier: f64,
 }
 
-impl<'a, S: Structure> Rocking<'a, S> {
+impl<'a, C: MechanismChain> Rocking<'a, C> {
     /// The structure on the given ground. It comes to rest when an impact leaves less than
     /// `rest_energy_ratio` of the energy barrier of its first mechanism.
     ///
     /// The ground must press on the structure at all times: see [`GroundMotion::free_fall_s`].
     #[must_use]
     pub fn new(
-        structure: &'a S,
+        chain: &'a C,
         ground: &'a GroundMotion,
         gravity_m_s2: f64,
         rest_energy_ratio: f64,
     ) -> Self {
         let mut rocking = Self {
-            structure,
+            chain,
             ground,
             gravity_m_s2,
             rest_energy_ratio,
             barrier: 0.0,
         };
-        rocking.barrier = structure
-            .link(0)
-            .map_or(0.0, |link| rocking.potential(link, link.critical_rad));
+        rocking.barrier = chain.link(0).map_or(0.0, |link| rocking.barrier_of(link));
         rocking
     }
 
-    /// The structure.
+    /// The mechanisms of the structure.
     #[must_use]
-    pub const fn structure(&self) -> &'a S {
-        self.structure
+    pub const fn chain(&self) -> &'a C {
+        self.chain
     }
 
     /// The ground motion.
@@ -121,29 +134,33 @@ impl<'a, S: Structure> Rocking<'a, S> {
         self.barrier
     }
 
+    /// Energy that a mechanism has to gain to overturn under gravity alone.
+    #[must_use]
+    pub fn barrier_of(&self, link: &Link<C::Mechanism>) -> f64 {
+        self.gravity_m_s2 / self.chain.length_m() * link.barrier
+    }
+
     /// Potential energy of a mechanism at `q`.
     #[must_use]
-    pub fn potential(&self, link: &Link<S::Mechanism>, q_rad: f64) -> f64 {
-        self.gravity_m_s2 / self.structure.length_m() * link.mechanism.displacement(q_rad).y
+    pub fn potential(&self, link: &Link<C::Mechanism>, q_rad: f64) -> f64 {
+        self.gravity_m_s2 / self.chain.length_m() * link.mechanism.displacement(q_rad).y
     }
 
     /// Kinetic and potential energy of a mechanism.
     #[must_use]
-    pub fn energy(&self, link: &Link<S::Mechanism>, state: &RockingState) -> f64 {
+    pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];
         kinetic + self.potential(link, state[0])
     }
 
     /// The mode of a structure released on one side.
     #[must_use]
-    pub fn released(&self, sway: Sway) -> Mode<'a, S::Mechanism> {
-        self.structure
-            .link(0)
-            .map_or(Mode::Rest, |link| Mode::Rocking {
-                sway,
-                impacts: 0,
-                link,
-            })
+    pub fn released(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
+        self.chain.link(0).map_or(Mode::Rest, |link| Mode::Rocking {
+            sway,
+            impacts: 0,
+            link,
+        })
     }
 
     fn piece(&self, piece: usize) -> &'a Piece {
@@ -167,7 +184,7 @@ impl<'a, S: Structure> Rocking<'a, S> {
     ) -> f64 {
         let force = (self.gravity_m_s2 + ground_m_s2.y) * coefficients.rise
             + ground_m_s2.x * coefficients.sway;
-        let length_m = self.structure.length_m();
+        let length_m = self.chain.length_m();
         let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
         -(force + length_m * inertial) / (length_m * coefficients.inertia)
     }
@@ -176,7 +193,7 @@ impl<'a, S: Structure> Rocking<'a, S> {
     #[must_use]
     pub fn demand(
         &self,
-        mode: Mode<'a, S::Mechanism>,
+        mode: Mode<'a, C::Mechanism>,
         piece: usize,
         time_s: f64,
         state: &RockingState,
@@ -185,35 +202,35 @@ impl<'a, S: Structure> Rocking<'a, S> {
         let body_force_g =
             |sway: Sway| -ground_m_s2(sway) / self.gravity_m_s2 - Vector2::new(0.0, 1.0);
         let (sway, link) = match mode {
-            Mode::Rest => return self.structure.demand_at_rest(body_force_g(Sway::Right)),
-            Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link } => (sway, link),
+            Mode::Rest => return self.chain.demand_at_rest(body_force_g(Sway::Right)),
+            Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } => (sway, link),
         };
         let (q_rad, rate) = (state[0], state[1]);
         let coefficients = link.mechanism.coefficients(q_rad);
         let acceleration = self.acceleration(&coefficients, rate, ground_m_s2(sway));
-        let square_s2 = self.structure.length_m() / self.gravity_m_s2;
+        let square_s2 = self.chain.length_m() / self.gravity_m_s2;
         let motion = Motion {
             q_rad,
             rate: rate * square_s2.sqrt(),
             acceleration: acceleration * square_s2,
             body_force_g: body_force_g(sway),
         };
-        self.structure.demand(&link.mechanism, &motion)
+        self.chain.demand(&link.mechanism, &motion)
     }
 
     /// Time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
-    fn fall_s(&self, link: &Link<S::Mechanism>) -> f64 {
+    fn fall_s(&self, link: &Link<C::Mechanism>) -> f64 {
         (link.at_zero.inertia * link.critical_rad / self.weight(link)).sqrt()
     }
 
     /// Slope of the potential energy at `q = 0`.
-    fn weight(&self, link: &Link<S::Mechanism>) -> f64 {
-        self.gravity_m_s2 * link.at_zero.rise / self.structure.length_m()
+    fn weight(&self, link: &Link<C::Mechanism>) -> f64 {
+        self.gravity_m_s2 * link.at_zero.rise / self.chain.length_m()
     }
 
     /// Largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the
     /// inertia of `q = 0` and the parabola of its weight for the potential energy.
-    fn reach(&self, link: &Link<S::Mechanism>, state: &RockingState) -> (f64, f64) {
+    fn reach(&self, link: &Link<C::Mechanism>, state: &RockingState) -> (f64, f64) {
         let (q, rate) = (state[0], state[1]);
         let weight = self.weight(link);
         let potential = weight * q * (1.0 - 0.5 * q / link.critical_rad);
@@ -228,8 +245,8 @@ impl<'a, S: Structure> Rocking<'a, S> {
     }
 }
 
-impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
-    type Mode = Mode<'a, S::Mechanism>;
+impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
+    type Mode = Mode<'a, C::Mechanism>;
     type Guard = Guard;
 
     fn piece_end_s(&self, piece: usize) -> f64 {
@@ -262,7 +279,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         let (q, rate) = (state[0], state[1]);
         let coefficients = link.mechanism.coefficients(q);
         let push = ground_m_s2.x * coefficients.sway + ground_m_s2.y * coefficients.rise;
-        let work = -push * rate / self.structure.length_m();
+        let work = -push * rate / self.chain.length_m();
         RockingState::new(
             rate,
             self.acceleration(&coefficients, rate, ground_m_s2),
@@ -364,7 +381,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         match (guard, mode) {
             (Guard::Uplift(sway), _) => {
                 let (acceleration, jerk) = piece.at(time_s);
-                let tilt = Vector2::new(sway.sign(), LIFTING * self.structure.incipient_g());
+                let tilt = Vector2::new(sway.sign(), LIFTING * self.chain.incipient_g());
                 Level {
                     value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
                     rate: tilt.dot(&jerk),
@@ -423,13 +440,25 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
         let still = RockingState::new(0.0, 0.0, work);
         match (guard, mode) {
             (Guard::Uplift(sway), _) => (self.released(sway), still),
-            (Guard::Critical | Guard::Limit, Mode::Rocking { sway, link, .. }) => {
-                (Mode::Overturned { sway, link }, *state)
+            (
+                Guard::Critical | Guard::Limit,
+                Mode::Rocking {
+                    sway,
+                    impacts,
+                    link,
+                },
+            ) => {
+                let lost = Mode::Overturned {
+                    sway,
+                    impacts,
+                    link,
+                };
+                (lost, *state)
             }
             (Guard::Closing, Mode::Rocking { sway, impacts, .. }) => {
                 // The closing rate is negative, but for rounding at the end of a vanishing hop.
                 let closing_rate = (-state[1]).max(0.0);
-                let Some(link) = self.structure.link(impacts + 1) else {
+                let Some(link) = self.chain.link(impacts + 1) else {
                     return (Mode::Rest, still);
                 };
                 let rate = link.rate_ratio * closing_rate;

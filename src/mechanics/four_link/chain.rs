@@ -8,11 +8,11 @@ use std::sync::OnceLock;
 
 use super::impact::{Impact, ImpactModel, impact, impact_onto};
 use super::impulse_line::ImpulseLine;
-use super::limit::{Incipient, LimitError, incipient};
+use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
+use crate::mechanics::chain::Link;
 use crate::mechanics::geometry::ring::Ring;
-use crate::mechanics::structure::Link;
 
 /// A link whose hinges are as close as this to those of the link two before it closes the chain into a
 /// repeating pair. Far below what the search resolves in `r` (which is flat at a maximum).
@@ -61,20 +61,21 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// The chain of `ring` under an impact model; computes the incipient mechanism.
-    ///
-    /// # Errors
-    /// Those of [`incipient`].
-    pub fn new(ring: Ring, sites: HingeSites, model: ImpactModel) -> Result<Self, LimitError> {
-        let incipient = incipient(&ring, sites)?;
-        Ok(Self {
+    /// The chain of `ring` under an impact model, from its onset by [`incipient`](super::limit::incipient).
+    pub(crate) fn new(
+        ring: Ring,
+        sites: HingeSites,
+        incipient: Incipient,
+        model: ImpactModel,
+    ) -> Self {
+        Self {
             ring,
             sites,
             model,
             incipient,
             links: (0..LONGEST_CHAIN).map(|_| OnceLock::new()).collect(),
             pair: OnceLock::new(),
-        })
+        }
     }
 
     /// The ring.
@@ -145,7 +146,7 @@ impl Chain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::structure::Mechanism as _;
+    use crate::mechanics::chain::Mechanism as _;
 
     fn chain(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Chain {
         let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();

@@ -3,6 +3,7 @@
 //! The restitution coefficient `r` is the kinetic energy after the impact over that before it, as in the
 //! paper and in Housner.
 
+use crate::argument::{ArgumentError, within};
 use nalgebra::{Matrix5, Vector2, Vector5};
 
 use super::impulse_line::ImpulseLine;
@@ -46,6 +47,16 @@ pub enum ImpactModel {
 }
 
 impl ImpactModel {
+    /// Refuses a restitution coefficient that is none.
+    pub(crate) fn check(self) -> Result<(), ArgumentError> {
+        match self {
+            Self::Prescribed { restitution } => {
+                within("restitution", restitution, 0.0..=1.0).map(|_| ())
+            }
+            Self::MaxRestitution | Self::SameSections | Self::Mirrored => Ok(()),
+        }
+    }
+
     /// Its name in scenarios and results.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -11,9 +11,10 @@ use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
 use super::thrust::{Load, Part, ThrustLine};
+use crate::mechanics::chain::{Coefficients, Mechanism, Motion};
 use crate::mechanics::geometry::field::{Momentum, turned};
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::{MassMoments, Ring};
-use crate::mechanics::structure::{Coefficients, Mechanism, Motion};
 
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +71,7 @@ pub struct Linkage {
 }
 
 /// The bars at some `q`.
-struct Pose {
+struct Bars {
     left: Vector2<f64>,
     middle: Vector2<f64>,
     right: Vector2<f64>,
@@ -118,7 +119,7 @@ impl Linkage {
     /// Solves the loop A-B-C-D for the pose at `q`, on the branch continuous with `q = 0`.
     ///
     /// Not a number where the bars B-C and C-D do not reach each other.
-    fn pose(&self, q_rad: f64) -> Pose {
+    fn bars(&self, q_rad: f64) -> Bars {
         let (sin, cos) = q_rad.sin_cos();
         let left = complex_product(self.left.bar, Vector2::new(cos, -sin));
         // C is where the circles about B and D meet, on the left of the line from B to D.
@@ -132,7 +133,7 @@ impl Linkage {
         let along = 0.5 * (square + middle_square - right_square);
         let cross = (middle_square * square - along * along).sqrt();
         let middle = (line * along + turned(line) * cross) * square.recip();
-        Pose {
+        Bars {
             left,
             middle,
             right: middle - line,
@@ -142,21 +143,21 @@ impl Linkage {
 
     /// Rotation rates of the middle and the right body per unit `q'` (that of the left is -1): the
     /// loop's velocities closed by cross products.
-    fn rates(pose: &Pose) -> (f64, f64) {
+    fn rates(bars: &Bars) -> (f64, f64) {
         (
-            pose.left.perp(&pose.right) * pose.per_cross,
-            pose.left.perp(&pose.middle) * pose.per_cross,
+            bars.left.perp(&bars.right) * bars.per_cross,
+            bars.left.perp(&bars.middle) * bars.per_cross,
         )
     }
 
     /// Derivatives of the rates of the middle and the right body with respect to `q`: the loop's
     /// accelerations, with those along the bars on the right.
-    fn slopes(pose: &Pose, middle_rate: f64, right_rate: f64) -> (f64, f64) {
-        let inward = pose.left + pose.middle * (middle_rate * middle_rate)
-            - pose.right * (right_rate * right_rate);
+    fn slopes(bars: &Bars, middle_rate: f64, right_rate: f64) -> (f64, f64) {
+        let inward = bars.left + bars.middle * (middle_rate * middle_rate)
+            - bars.right * (right_rate * right_rate);
         (
-            inward.dot(&pose.right) * pose.per_cross,
-            inward.dot(&pose.middle) * pose.per_cross,
+            inward.dot(&bars.right) * bars.per_cross,
+            inward.dot(&bars.middle) * bars.per_cross,
         )
     }
 
@@ -167,9 +168,9 @@ impl Linkage {
     /// line passes through B on the left body's side as well is the equation of motion.
     #[must_use]
     pub fn thrust_line(&self, motion: &Motion) -> ThrustLine {
-        let pose = self.pose(motion.q_rad);
-        let (middle_rate, right_rate) = Self::rates(&pose);
-        let (middle_slope, right_slope) = Self::slopes(&pose, middle_rate, right_rate);
+        let bars = self.bars(motion.q_rad);
+        let (middle_rate, right_rate) = Self::rates(&bars);
+        let (middle_slope, right_slope) = Self::slopes(&bars, middle_rate, right_rate);
         let square = motion.rate * motion.rate;
         let spin = |rate: f64, slope: f64| {
             (
@@ -182,11 +183,11 @@ impl Linkage {
             spin(middle_rate, middle_slope),
             spin(right_rate, right_slope),
         );
-        let turn_left = turn_between(self.left.bar, pose.left);
-        let turn_middle = turn_between(self.middle.bar, pose.middle);
-        let turn_right = turn_between(self.right.bar, pose.right);
+        let turn_left = turn_between(self.left.bar, bars.left);
+        let turn_middle = turn_between(self.middle.bar, bars.middle);
+        let turn_right = turn_between(self.right.bar, bars.right);
         let body_force = motion.body_force_g;
-        let at_b = turned(pose.left) * left_spin.0 - pose.left * left_spin.1;
+        let at_b = turned(bars.left) * left_spin.0 - bars.left * left_spin.1;
         let [point_a, point_b, _, point_d] = self.points;
         let left = Load::of_body(point_a, rotate_back(turn_left, body_force), left_spin);
         let middle = Load::of_body(
@@ -200,9 +201,9 @@ impl Linkage {
         let on_left = left.resultant(&self.ring.sector(a, b));
         let on_middle = middle.resultant(&self.ring.sector(b, c));
         let on_right = right.resultant(&self.ring.sector(c, d));
-        let force_c = (pose.right * on_middle.about(point_b)
-            + pose.middle * on_right.about(point_d))
-            * pose.per_cross;
+        let force_c = (bars.right * on_middle.about(point_b)
+            + bars.middle * on_right.about(point_d))
+            * bars.per_cross;
         let force_b = force_c - complex_product(turn_middle, on_middle.linear);
         let force_a = force_b - complex_product(turn_left, on_left.linear);
         let force_d = force_c + complex_product(turn_right, on_right.linear);
@@ -252,17 +253,17 @@ impl Mechanism for Linkage {
 
     /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
     fn coefficients(&self, q_rad: f64) -> Coefficients {
-        let pose = self.pose(q_rad);
-        let (middle_rate, right_rate) = Self::rates(&pose);
-        let (middle_slope, right_slope) = Self::slopes(&pose, middle_rate, right_rate);
-        let first = self.middle.first(pose.middle);
+        let bars = self.bars(q_rad);
+        let (middle_rate, right_rate) = Self::rates(&bars);
+        let (middle_slope, right_slope) = Self::slopes(&bars, middle_rate, right_rate);
+        let first = self.middle.first(bars.middle);
         let path = turned(
-            first * middle_rate + self.right.first(pose.right) * right_rate
-                - self.left.first(pose.left),
+            first * middle_rate + self.right.first(bars.right) * right_rate
+                - self.left.first(bars.left),
         );
         // The middle body moves with B and turns about it: this couples the left rate with its own.
-        let coupling = pose.left.dot(&first);
-        let coupling_slope = -(1.0 + middle_rate) * pose.left.perp(&first);
+        let coupling = bars.left.dot(&first);
+        let coupling_slope = -(1.0 + middle_rate) * bars.left.perp(&first);
         Coefficients {
             inertia: self.left.polar
                 + self.middle.polar * middle_rate * middle_rate
@@ -280,24 +281,41 @@ impl Mechanism for Linkage {
     /// Mass times displacement of the common centre of gravity at `q`: the integrals of `S_x` and
     /// `S_y` from zero. Times gravity the second is the potential energy.
     fn displacement(&self, q_rad: f64) -> Vector2<f64> {
-        let pose = self.pose(q_rad);
-        self.left.first(pose.left - self.left.bar)
-            + self.middle.first(pose.middle - self.middle.bar)
-            + self.right.first(pose.right - self.right.bar)
+        let bars = self.bars(q_rad);
+        self.left.first(bars.left - self.left.bar)
+            + self.middle.first(bars.middle - self.middle.bar)
+            + self.right.first(bars.right - self.right.bar)
     }
 
     /// Rotations of the three bodies at `q`.
     fn rotations(&self, q_rad: f64) -> [f64; 3] {
-        let pose = self.pose(q_rad);
-        let middle = angle_between(self.middle.bar, pose.middle);
-        let right = angle_between(self.right.bar, pose.right);
+        let bars = self.bars(q_rad);
+        let middle = angle_between(self.middle.bar, bars.middle);
+        let right = angle_between(self.right.bar, bars.right);
         [-q_rad, middle, right]
     }
 
     /// Rotation rates of the three bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> [f64; 3] {
-        let (middle, right) = Self::rates(&self.pose(q_rad));
+        let (middle, right) = Self::rates(&self.bars(q_rad));
         [-1.0, middle, right]
+    }
+
+    /// In mean radii from the centre of the ring.
+    fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
+        let bars = self.bars(q_rad);
+        let [point_a, point_b, _, point_d] = self.points;
+        let at_b = point_a + bars.left;
+        let middle_rad = angle_between(self.middle.bar, bars.middle);
+        let right_rad = angle_between(self.right.bar, bars.right);
+        poses.clear();
+        poses.extend([
+            Pose::about(point_a, point_a, -q_rad),
+            Pose::about(point_b, at_b, middle_rad),
+            Pose::about(point_d, point_d, right_rad),
+        ]);
+        hinges.clear();
+        hinges.extend([point_a, at_b, at_b + bars.middle, point_d]);
     }
 }
 
@@ -353,11 +371,11 @@ mod tests {
         fn the_loop_is_closed(part in 0.0_f64..1.2) {
             let (_, _, linkage) = semicircle();
             let pose = linkage.pose(part * linkage.limit_rad());
-            let end = pose.left + pose.middle - pose.right;
+            let end = bars.left + bars.middle - bars.right;
             prop_assert!((end - linkage.ground).norm() < 1e-14);
-            prop_assert!((pose.right.norm() - linkage.right.bar.norm()).abs() < 1e-14);
-            prop_assert!((pose.middle.norm() - linkage.middle.bar.norm()).abs() < 1e-14);
-            prop_assert!((pose.middle.perp(&pose.right) - pose.per_cross.recip()).abs() < 1e-14);
+            prop_assert!((bars.right.norm() - linkage.right.bar.norm()).abs() < 1e-14);
+            prop_assert!((bars.middle.norm() - linkage.middle.bar.norm()).abs() < 1e-14);
+            prop_assert!((bars.middle.perp(&bars.right) - bars.per_cross.recip()).abs() < 1e-14);
         }
     }
 

@@ -1,4 +1,5 @@
 //! The arch as a four-link mechanism: how it starts, moves, closes, and goes on.
+pub mod arch;
 pub mod certificate;
 pub mod chain;
 pub mod impact;

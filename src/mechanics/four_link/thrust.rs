@@ -14,9 +14,9 @@ use nalgebra::Vector2;
 use super::limit::Incipient;
 use super::mechanism::HingeSites;
 use super::resultant::SectionResultant;
+use crate::mechanics::chain::Demand;
 use crate::mechanics::geometry::field::{Momentum, Twist, turned};
 use crate::mechanics::geometry::ring::{MassMoments, Ring};
-use crate::mechanics::structure::Demand;
 
 /// Equal parts of the ring at whose ends the line is compared with the ring where hinges sit anywhere.
 /// The largest excess lies between two of them, which misses at most `1e-4` of the thickness.

@@ -1,12 +1,13 @@
-//! What a structure has to tell for its rocking to be simulated.
+//! Mechanisms with one degree of freedom each that follow one another through impacts: the four-link
+//! mechanisms of an arch, the two of a free-standing column.
 //!
-//! Anything whose mechanisms have one degree of freedom each and follow one another through impacts: the
-//! arch, the free-standing column. Lengths are in units of its size, masses in a unit of its own; every
-//! mechanism is seen in the frame in which it sways right.
+//! Lengths are in units of the size of what rocks, masses in a unit of its own; every mechanism is seen in
+//! the frame in which it sways right.
 
 use nalgebra::Vector2;
 
 use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 
 /// Coefficients of the equation of motion of a system with one degree of freedom,
@@ -62,6 +63,9 @@ pub trait Mechanism {
     fn rotations(&self, q_rad: f64) -> Self::Rotations;
     /// Rotation rates of the bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> Self::Rotations;
+    /// Puts the poses of the bodies at `q`, from left to right, and the positions of the hinges into the two
+    /// lists, which are emptied first.
+    fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>);
 }
 
 /// A mechanism in the sequence that impacts lead through.
@@ -75,6 +79,9 @@ pub struct Link<M> {
     pub critical_rad: f64,
     /// `q` at which the mechanism cannot go any further.
     pub limit_rad: f64,
+    /// Energy barrier: work against unit gravity from `q = 0` to the unstable equilibrium, in the units of
+    /// mass and length.
+    pub barrier: f64,
     /// Rate of this mechanism for a unit closing rate of the one before; 1 for the first.
     pub rate_ratio: f64,
     /// Restitution coefficient of the impact that leads here, energy after over before; 1 for the first.
@@ -99,10 +106,24 @@ impl<M: Mechanism> Link<M> {
     /// The link of a mechanism with its limit, and with the impact that leads to it.
     #[must_use]
     pub fn new(mechanism: M, limit_rad: f64, rate_ratio: f64, restitution: f64) -> Self {
+        let critical_rad = critical_rad(&mechanism, limit_rad);
+        Self::with_critical_rad(mechanism, critical_rad, limit_rad, rate_ratio, restitution)
+    }
+
+    /// The same where the unstable equilibrium is known in closed form.
+    #[must_use]
+    pub fn with_critical_rad(
+        mechanism: M,
+        critical_rad: f64,
+        limit_rad: f64,
+        rate_ratio: f64,
+        restitution: f64,
+    ) -> Self {
         Self {
             at_zero: mechanism.coefficients(0.0),
-            critical_rad: critical_rad(&mechanism, limit_rad),
+            barrier: mechanism.displacement(critical_rad).y,
             mechanism,
+            critical_rad,
             limit_rad,
             rate_ratio,
             restitution,
@@ -110,15 +131,25 @@ impl<M: Mechanism> Link<M> {
     }
 }
 
-/// A structure that rocks.
-pub trait Structure {
+/// The mechanisms that a structure rocks by under an impact model.
+///
+/// Which mechanism follows an impact depends on the one that closes, not on how fast it does: from the
+/// mechanism that starts at the incipient acceleration the sequence is fixed. Whatever implements this is a
+/// [`Model`](crate::dynamics::model::Model).
+pub trait MechanismChain: Send + Sync {
     /// Its mechanisms.
-    type Mechanism: Mechanism;
+    type Mechanism: Mechanism + Send + Sync;
 
     /// Size of the structure: the unit of length of its mechanisms, in metres.
     fn length_m(&self) -> f64;
     /// Unit of mass of its mechanisms, in kg.
     fn mass_unit_kg(&self) -> f64;
+    /// The unit of energy of its mechanisms (see
+    /// [`barrier`](crate::dynamics::hybrid::rocking::Rocking::barrier)) in J.
+    fn joules_per_unit(&self) -> f64 {
+        self.mass_unit_kg() * self.length_m() * self.length_m()
+    }
+
     /// Horizontal acceleration at which it starts to rock from rest, on either side, in units of gravity.
     fn incipient_g(&self) -> f64;
     /// What the equilibrium of one of its mechanisms in motion asks of its sections.

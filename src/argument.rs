@@ -1,0 +1,50 @@
+//! Arguments that constructors refuse.
+
+use std::ops::RangeInclusive;
+
+use thiserror::Error;
+
+/// An argument of a constructor that is not allowed.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("`{argument} = {value:?}` is not allowed: it must be {allowed}")]
+pub struct ArgumentError {
+    /// Name of the argument, with its unit.
+    pub argument: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// What is allowed instead.
+    pub allowed: String,
+}
+
+/// The value, if it lies in the range. NaN lies in none.
+pub(crate) fn within(
+    argument: &'static str,
+    value: f64,
+    range: RangeInclusive<f64>,
+) -> Result<f64, ArgumentError> {
+    if range.contains(&value) {
+        return Ok(value);
+    }
+    Err(ArgumentError {
+        argument,
+        value,
+        allowed: format!("a number from {:?} to {:?}", range.start(), range.end()),
+    })
+}
+
+/// The value, if it lies above the first bound and not above the second. NaN does not.
+pub(crate) fn above(
+    argument: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> Result<f64, ArgumentError> {
+    if value > low && value <= high {
+        return Ok(value);
+    }
+    Err(ArgumentError {
+        argument,
+        value,
+        allowed: format!("a number above {low:?} and at most {high:?}"),
+    })
+}

@@ -1,0 +1,630 @@
+//! Every chain of mechanisms is a model: its histories, by the hybrid engine.
+
+use std::ops::ControlFlow;
+
+use nalgebra::Vector2;
+
+use super::engine::{HybridSystem, Level, Observer, Settings, Transition, falling_root, simulate};
+use super::integrator::Step;
+use super::rocking::{Guard, Mode, Rocking, RockingState};
+use crate::argument::ArgumentError;
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::{
+    Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
+};
+use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError};
+use crate::dynamics::thrust::ThrustRecord;
+use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
+use crate::mechanics::equivalent::{Equivalent, equivalent};
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::pose::Pose;
+
+/// Transitions that a history may have; only a chattering that the model does not know could need more.
+const MAX_TRANSITIONS: usize = 1_000_000;
+
+impl<C: MechanismChain> Model for C {
+    fn bodies(&self) -> Vec<String> {
+        let bodies = C::Mechanism::BODIES.iter();
+        bodies.map(|body| (*body).to_owned()).collect()
+    }
+
+    fn incipient_acceleration_g(&self, _: Sway) -> Option<f64> {
+        Some(self.incipient_g())
+    }
+
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+        recorder: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError> {
+        let rocking = checked(self, ground, request)?;
+        let (mode, state) = match request.initial {
+            Some(initial) => (
+                rocking.released(initial.sway),
+                RockingState::new(initial.rotation_rad, 0.0, 0.0),
+            ),
+            None => (Mode::Rest, RockingState::zeros()),
+        };
+        let settings = Settings {
+            end_s: request.end_s,
+            relative_tolerance: request.relative_tolerance,
+            most_transitions: MAX_TRANSITIONS,
+        };
+        let mut tally = Tally::new(&rocking, mode, &state);
+        let mut sampler = recorder.map(|recorder| Sampler::new(request.output_step_s, recorder));
+        let finish = simulate(
+            &rocking,
+            mode,
+            state,
+            &settings,
+            &mut (&mut tally, &mut sampler),
+        )?;
+        if let Some(sampler) = &mut sampler
+            && !finish.stopped
+        {
+            // It ends here anyway.
+            let _ = sampler.finish(&rocking, finish.mode, finish.time_s, &finish.state);
+        }
+        tally.note_peak(finish.mode, &finish.state);
+        tally.check_energy(&rocking, finish.mode, &finish.state);
+        let (outcome, outcome_time_s) = match finish.mode {
+            Mode::Overturned { sway, .. } => (
+                Outcome::Overturned(sway),
+                tally.last_outward_s.unwrap_or(finish.time_s),
+            ),
+            Mode::Rest => tally
+                .last_rest_s
+                .map_or((Outcome::NeverMoved, finish.time_s), |time_s| {
+                    (Outcome::Rest, time_s)
+                }),
+            Mode::Rocking { .. } => (Outcome::StillRocking, finish.time_s),
+        };
+        Ok(Summary {
+            outcome,
+            outcome_time_s,
+            end_s: finish.time_s,
+            impacts: tally.impacts,
+            peak_rotations_rad: tally.peak_rotations_rad.as_ref().to_vec(),
+            peak_over_critical: tally.peak_over_critical,
+            energy_defect_ratio: tally.largest_defect / rocking.barrier(),
+            thrust: sampler.map(|sampler| match outcome {
+                Outcome::Overturned(_) => sampler.thrust_before_critical,
+                _ => sampler.thrust,
+            }),
+            cost: finish.cost,
+        })
+    }
+}
+
+impl<C: MechanismChain> MechanismModel for C {
+    fn restitution_after(&self, impacts: usize) -> Option<f64> {
+        self.link(impacts).map(|link| link.restitution)
+    }
+
+    fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
+        self.hinges(impacts, sway)
+    }
+
+    fn critical_rotations_rad(&self) -> Vec<f64> {
+        self.link(0).map_or(Vec::new(), |first| {
+            let rotations = first.mechanism.rotations(first.critical_rad);
+            rotations.as_ref().to_vec()
+        })
+    }
+
+    fn limit_rad(&self) -> f64 {
+        self.link(0).map_or(0.0, |first| first.limit_rad)
+    }
+
+    fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent> {
+        equivalent(self, gravity_m_s2)
+    }
+
+    fn overturns_without_impact(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<Option<Sway>, SimulationError> {
+        let rocking = checked(self, ground, request)?;
+        Ok(super::first_fall::overturns(
+            &rocking,
+            request.relative_tolerance,
+        )?)
+    }
+}
+
+/// The structure on its ground, if what is asked is possible.
+fn checked<'a, C: MechanismChain>(
+    chain: &'a C,
+    ground: &'a GroundMotion,
+    request: &Request,
+) -> Result<Rocking<'a, C>, SimulationError> {
+    request.check()?;
+    if let Some(initial) = request.initial {
+        let limit_rad = chain.limit_rad();
+        if initial.rotation_rad >= limit_rad {
+            return Err(SimulationError::Argument(ArgumentError {
+                argument: "rotation_rad",
+                value: initial.rotation_rad,
+                allowed: format!("below {limit_rad:?}, the limit position of the first mechanism"),
+            }));
+        }
+    }
+    if let Some(time_s) = ground.free_fall_s(request.gravity_m_s2) {
+        return Err(SimulationError::FreeFall { time_s });
+    }
+    Ok(Rocking::new(
+        chain,
+        ground,
+        request.gravity_m_s2,
+        request.rest_energy_ratio,
+    ))
+}
+
+/// Rotations of the bodies of a mechanism, or their rates.
+type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::Rotations;
+
+type RockingTransition<'a, C> = Transition<Mode<'a, <C as MechanismChain>::Mechanism>, Guard, 3>;
+
+/// Rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground: a
+/// sway to the left is seen in a mirror, which swaps the bodies and turns their rotations round.
+fn seen_from_ground<C: MechanismChain>(
+    sway: Sway,
+    mut rotations: Rotations<C>,
+    factor: f64,
+) -> Rotations<C> {
+    if sway == Sway::Left {
+        rotations.as_mut().reverse();
+    }
+    for rotation in rotations.as_mut() {
+        // Adding zero makes a negative zero positive.
+        *rotation = *rotation * (sway.sign() * factor) + 0.0;
+    }
+    rotations
+}
+
+/// Rotations of the bodies and their rates, in the frame of the ground.
+fn posture<C: MechanismChain>(
+    rocking: &Rocking<'_, C>,
+    mode: Mode<'_, C::Mechanism>,
+    state: &RockingState,
+) -> (Rotations<C>, Rotations<C>) {
+    let seen = |sway, link: &Link<C::Mechanism>, q_rad, moved, rate| {
+        (
+            seen_from_ground::<C>(sway, link.mechanism.rotations(q_rad), moved),
+            seen_from_ground::<C>(sway, link.mechanism.rotation_rates(q_rad), rate),
+        )
+    };
+    match mode {
+        Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } => {
+            seen(sway, link, state[0], 1.0, state[1])
+        }
+        Mode::Rest => {
+            let link = rocking.chain().link(0);
+            let link = link.expect("a structure has its first mechanism");
+            seen(Sway::Right, link, 0.0, 0.0, 0.0)
+        }
+    }
+}
+
+/// A mechanism that closes, and what follows.
+struct Closing<'a, C: MechanismChain> {
+    sway: Sway,
+    /// Impacts since the structure last left the rest, this one included: index of the next link.
+    impacts: usize,
+    before: &'a Link<C::Mechanism>,
+    /// `None` if the impact stops the structure because no mechanism can follow.
+    after: Option<&'a Link<C::Mechanism>>,
+    /// Rate of `q` just before, negative.
+    rate_before_rad_s: f64,
+    /// Rate of `q` just after, of the new mechanism, also where it is too small to go on.
+    rate_after_rad_s: f64,
+}
+
+impl<'a, C: MechanismChain> Closing<'a, C> {
+    /// `None` if the transition is of another kind.
+    fn of(chain: &'a C, transition: &RockingTransition<'a, C>) -> Option<Self> {
+        let Mode::Rocking {
+            sway,
+            impacts,
+            link,
+        } = transition.from
+        else {
+            return None;
+        };
+        if transition.guard != Guard::Closing {
+            return None;
+        }
+        let after = chain.link(impacts + 1);
+        let rate_before_rad_s = transition.before[1].min(0.0);
+        Some(Self {
+            sway,
+            impacts: impacts + 1,
+            before: link,
+            after,
+            rate_before_rad_s,
+            rate_after_rad_s: after.map_or(0.0, |link| -rate_before_rad_s * link.rate_ratio),
+        })
+    }
+
+    /// Kinetic energies before and after, in the unit of [`Rocking::barrier`].
+    fn energies(&self) -> (f64, f64) {
+        let kinetic =
+            |link: &Link<C::Mechanism>, rate: f64| 0.5 * link.at_zero.inertia * rate * rate;
+        let after = self
+            .after
+            .map_or(0.0, |link| kinetic(link, self.rate_after_rad_s));
+        (kinetic(self.before, self.rate_before_rad_s), after)
+    }
+
+    fn impact(&self, chain: &C) -> Impact {
+        let joule = chain.joules_per_unit();
+        let (energy_before, energy_after) = self.energies();
+        let rates = |link: &Link<C::Mechanism>, sway, rate| {
+            seen_from_ground::<C>(sway, link.mechanism.rotation_rates(0.0), rate)
+                .as_ref()
+                .to_vec()
+        };
+        let sway_after = self.sway.opposite();
+        let unit_n_s = chain.mass_unit_kg() * chain.length_m() * self.rate_before_rad_s.abs();
+        let impulses = chain.hinge_impulses(self.impacts, sway_after);
+        Impact {
+            sway_before: self.sway,
+            restitution: self.after.map_or(0.0, |link| link.restitution),
+            energy_before_j: energy_before * joule,
+            energy_after_j: energy_after * joule,
+            rates_before_rad_s: rates(self.before, self.sway, self.rate_before_rad_s),
+            rates_after_rad_s: rates(
+                self.after.unwrap_or(self.before),
+                sway_after,
+                self.rate_after_rad_s,
+            ),
+            closed: chain.hinges(self.impacts - 1, self.sway),
+            opened: chain.hinges(self.impacts, sway_after),
+            impulses_n_s: impulses.into_iter().map(|i| i * unit_n_s).collect(),
+        }
+    }
+}
+
+/// Keeps what a summary needs.
+struct Tally<C: MechanismChain> {
+    impacts: usize,
+    peak_rotations_rad: Rotations<C>,
+    peak_over_critical: f64,
+    last_outward_s: Option<f64>,
+    last_rest_s: Option<f64>,
+    /// Initial energy minus what the impacts took.
+    energy_without_work: f64,
+    largest_defect: f64,
+}
+
+impl<C: MechanismChain> Tally<C> {
+    fn new(rocking: &Rocking<'_, C>, mode: Mode<'_, C::Mechanism>, state: &RockingState) -> Self {
+        let (none, _) = posture(rocking, Mode::Rest, state);
+        let mut tally = Self {
+            impacts: 0,
+            peak_rotations_rad: none,
+            peak_over_critical: 0.0,
+            last_outward_s: None,
+            last_rest_s: None,
+            energy_without_work: match mode {
+                Mode::Rocking { link, .. } => rocking.energy(link, state),
+                Mode::Rest | Mode::Overturned { .. } => 0.0,
+            },
+            largest_defect: 0.0,
+        };
+        tally.note_peak(mode, state);
+        tally
+    }
+
+    /// All rotations grow with `q`: the largest are where it turns round, or at the start or the end.
+    fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
+        if let Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } = mode {
+            let rotations = seen_from_ground::<C>(sway, link.mechanism.rotations(state[0]), 1.0);
+            let peaks = self.peak_rotations_rad.as_mut().iter_mut();
+            for (peak, rotation) in peaks.zip(rotations.as_ref()) {
+                *peak = peak.max(rotation.abs());
+            }
+            self.peak_over_critical = self.peak_over_critical.max(state[0] / link.critical_rad);
+        }
+    }
+
+    fn check_energy(
+        &mut self,
+        rocking: &Rocking<'_, C>,
+        mode: Mode<'_, C::Mechanism>,
+        state: &RockingState,
+    ) {
+        if let Mode::Rocking { link, .. } = mode {
+            let defect = rocking.energy(link, state) - self.energy_without_work - state[2];
+            self.largest_defect = self.largest_defect.max(defect.abs());
+        }
+    }
+}
+
+impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
+    fn step(
+        &mut self,
+        rocking: &Rocking<'a, C>,
+        mode: Mode<'a, C::Mechanism>,
+        _: usize,
+        step: &Step<3>,
+    ) -> ControlFlow<()> {
+        let Mode::Rocking { link, .. } = mode else {
+            return ControlFlow::Continue(());
+        };
+        // It may turn round in the very step in which it leaves the rest, at no rate.
+        if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
+            let bend = step.end_slope[1] - step.start_slope[1];
+            let turn_s = falling_root(step.start_s, step.end_s, |time_s| Level {
+                value: rocking.between(step, time_s)[1],
+                rate: step.start_slope[1]
+                    + bend * (time_s - step.start_s) / (step.end_s - step.start_s),
+            });
+            self.note_peak(mode, &rocking.between(step, turn_s));
+            self.check_energy(rocking, mode, &step.end);
+        }
+        if step.start[0] < link.critical_rad && step.end[0] >= link.critical_rad {
+            let passage_s = falling_root(step.start_s, step.end_s, |time_s| {
+                let state = rocking.between(step, time_s);
+                Level {
+                    value: link.critical_rad - state[0],
+                    rate: -state[1],
+                }
+            });
+            self.last_outward_s = Some(passage_s);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn transition(
+        &mut self,
+        rocking: &Rocking<'a, C>,
+        _: usize,
+        transition: &RockingTransition<'a, C>,
+    ) -> ControlFlow<()> {
+        self.check_energy(rocking, transition.from, &transition.before);
+        if let Some(closing) = Closing::of(rocking.chain(), transition) {
+            let (before, after) = closing.energies();
+            let left = if matches!(transition.to, Mode::Rest) {
+                0.0
+            } else {
+                after
+            };
+            self.energy_without_work -= before - left;
+            self.impacts += 1;
+        }
+        if let Mode::Rest = transition.to {
+            self.last_rest_s = Some(transition.time_s);
+            // At rest there is no energy; what is left is the defect so far, and goes on.
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+fn event<'a, C: MechanismChain>(
+    rocking: &Rocking<'a, C>,
+    transition: &RockingTransition<'a, C>,
+) -> Event {
+    let kind = match (transition.guard, transition.to) {
+        (Guard::Uplift(_), _) => EventKind::Uplift,
+        (Guard::Closing, Mode::Rest) => EventKind::Rest,
+        (Guard::Closing, _) => EventKind::Impact,
+        (Guard::Critical | Guard::Limit, _) => EventKind::Overturned,
+    };
+    let (mechanism, energy) = match transition.to {
+        Mode::Rest => (None, 0.0),
+        Mode::Rocking { impacts, link, .. } | Mode::Overturned { impacts, link, .. } => {
+            (Some(impacts), rocking.energy(link, &transition.after))
+        }
+    };
+    let (rotations_rad, rates_rad_s) = posture(rocking, transition.to, &transition.after);
+    let chain = rocking.chain();
+    Event {
+        time_s: transition.time_s,
+        kind,
+        state: transition.to.state(),
+        mechanism,
+        rotations_rad: rotations_rad.as_ref().to_vec(),
+        rates_rad_s: rates_rad_s.as_ref().to_vec(),
+        energy_j: energy * chain.joules_per_unit(),
+        impact: Closing::of(chain, transition).map(|closing| closing.impact(chain)),
+    }
+}
+
+/// Takes samples at multiples of the output step.
+struct Sampler<'r> {
+    output_step_s: f64,
+    next: u64,
+    phase: usize,
+    /// The last sample is held back, in case the end falls on it.
+    held: Option<Sample>,
+    /// One that is used again, so that samples cost no memory.
+    spare: Option<Sample>,
+    /// Positions of the hinges, likewise.
+    positions: Vec<Vector2<f64>>,
+    thrust: ThrustRecord,
+    /// The same up to the last sample before the unstable equilibrium.
+    thrust_before_critical: ThrustRecord,
+    recorder: &'r mut dyn Recorder,
+}
+
+impl<'r> Sampler<'r> {
+    fn new(output_step_s: f64, recorder: &'r mut dyn Recorder) -> Self {
+        Self {
+            output_step_s,
+            next: 0,
+            phase: 0,
+            held: None,
+            spare: None,
+            positions: Vec::new(),
+            thrust: ThrustRecord::default(),
+            thrust_before_critical: ThrustRecord::default(),
+            recorder,
+        }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "sample counts are below 2^53")]
+    fn next_s(&self) -> f64 {
+        self.next as f64 * self.output_step_s
+    }
+
+    fn push(&mut self, sample: Sample) -> ControlFlow<()> {
+        let Some(held) = self.held.replace(sample) else {
+            return ControlFlow::Continue(());
+        };
+        let flow = self.emit(&held);
+        self.spare = Some(held);
+        flow
+    }
+
+    fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
+        let moving = sample.state != State::Rest;
+        self.thrust.note(sample.time_s, moving, &sample.demand);
+        if sample.rotation_over_critical.abs() < 1.0 {
+            self.thrust_before_critical = self.thrust;
+        }
+        self.recorder.sample(sample)
+    }
+
+    fn sample<C: MechanismChain>(
+        &mut self,
+        rocking: &Rocking<'_, C>,
+        mode: Mode<'_, C::Mechanism>,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+    ) -> Sample {
+        let (rotations, rates) = posture(rocking, mode, state);
+        let (ground, _) = rocking.ground().pieces()[piece].at(time_s);
+        let (mut rotations_rad, mut rates_rad_s, mut poses, mut hinges) =
+            self.spare.take().map_or_else(Default::default, |spare| {
+                (
+                    spare.rotations_rad,
+                    spare.rates_rad_s,
+                    spare.poses,
+                    spare.hinges,
+                )
+            });
+        rotations_rad.clear();
+        rotations_rad.extend(rotations.as_ref());
+        rates_rad_s.clear();
+        rates_rad_s.extend(rates.as_ref());
+        hinges.clear();
+        let (rotation_over_critical, energy_ratio) = match mode {
+            Mode::Rest => {
+                poses.clear();
+                poses.resize(C::Mechanism::BODIES.len(), Pose::UNDEFORMED);
+                (0.0, 0.0)
+            }
+            Mode::Rocking {
+                sway,
+                impacts,
+                link,
+            }
+            | Mode::Overturned {
+                sway,
+                impacts,
+                link,
+            } => {
+                let length_m = rocking.chain().length_m();
+                link.mechanism
+                    .place(state[0], &mut poses, &mut self.positions);
+                for pose in &mut poses {
+                    *pose = pose.scaled(length_m);
+                }
+                if sway == Sway::Left {
+                    poses.reverse();
+                    self.positions.reverse();
+                    for pose in &mut poses {
+                        *pose = pose.mirrored();
+                    }
+                }
+                let seen = rocking.chain().hinges(impacts, sway).into_iter();
+                hinges.extend(
+                    seen.zip(&self.positions)
+                        .map(|(hinge, position)| OpenHinge {
+                            hinge,
+                            position_m: Vector2::new(sway.sign() * position.x, position.y)
+                                * length_m,
+                        }),
+                );
+                (
+                    // Adding zero makes a negative zero positive.
+                    -sway.sign() * state[0] / link.critical_rad + 0.0,
+                    rocking.energy(link, state) / rocking.barrier_of(link),
+                )
+            }
+        };
+        Sample {
+            time_s,
+            ground_acceleration_m_s2: ground.x + 0.0,
+            vertical_acceleration_m_s2: ground.y + 0.0,
+            phase: self.phase,
+            state: mode.state(),
+            rotations_rad,
+            rates_rad_s,
+            poses,
+            hinges,
+            demand: rocking.demand(mode, piece, time_s, state),
+            energy_ratio,
+            rotation_over_critical,
+        }
+    }
+
+    /// The last sample, at the end of the simulation.
+    fn finish<C: MechanismChain>(
+        &mut self,
+        rocking: &Rocking<'_, C>,
+        mode: Mode<'_, C::Mechanism>,
+        time_s: f64,
+        state: &RockingState,
+    ) -> ControlFlow<()> {
+        let pieces = rocking.ground().pieces();
+        let piece = pieces.partition_point(|piece| piece.start_s <= time_s) - 1;
+        let last = self.sample(rocking, mode, piece, time_s, state);
+        // A sample that rounding alone parts from the end is replaced.
+        if let Some(held) = self.held.take()
+            && held.time_s < time_s - 1e-9 * self.output_step_s
+        {
+            self.emit(&held)?;
+        }
+        self.emit(&last)
+    }
+}
+
+impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Option<Sampler<'_>> {
+    fn step(
+        &mut self,
+        rocking: &Rocking<'a, C>,
+        mode: Mode<'a, C::Mechanism>,
+        piece: usize,
+        step: &Step<3>,
+    ) -> ControlFlow<()> {
+        let Some(sampler) = self else {
+            return ControlFlow::Continue(());
+        };
+        while sampler.next_s() < step.end_s {
+            let time_s = sampler.next_s().max(step.start_s);
+            let state = rocking.between(step, time_s);
+            let sample = sampler.sample(rocking, mode, piece, time_s, &state);
+            sampler.next += 1;
+            sampler.push(sample)?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn transition(
+        &mut self,
+        rocking: &Rocking<'a, C>,
+        _: usize,
+        transition: &RockingTransition<'a, C>,
+    ) -> ControlFlow<()> {
+        let Some(sampler) = self else {
+            return ControlFlow::Continue(());
+        };
+        sampler.phase += 1;
+        sampler.recorder.event(&event(rocking, transition))
+    }
+}

@@ -1,0 +1,191 @@
+//! What can be shaken: the seam between a model of motion and everything that uses it.
+
+use std::ops::ControlFlow;
+
+use thiserror::Error;
+
+use super::ground::GroundMotion;
+use super::history::{Event, History, Recording, Sample, Summary};
+use super::hybrid::engine::EngineError;
+use crate::argument::{ArgumentError, above, within};
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::equivalent::Equivalent;
+use crate::mechanics::four_link::mechanism::Sway;
+
+/// Whatever stands on the ground and can be shaken.
+///
+/// A model is chosen once a history; its equation of motion is its own affair, and is not called through this
+/// trait.
+pub trait Model: Send + Sync {
+    /// Names of its bodies from left to right, in the order of all lists by body; a single body has an empty
+    /// name.
+    fn bodies(&self) -> Vec<String>;
+
+    /// Horizontal acceleration at which it starts to move from rest towards that side, in units of gravity;
+    /// `None` if no push moves it.
+    fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64>;
+
+    /// Its motion on moving ground. Samples and events go to the recorder as they happen; without one, none are
+    /// made, which is what studies do.
+    ///
+    /// # Errors
+    /// When the request is not possible, or the motion cannot be computed.
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+        recorder: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError>;
+
+    /// Its motion with all samples and events.
+    ///
+    /// # Errors
+    /// Those of [`Model::simulate`].
+    fn history(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<History, SimulationError> {
+        let mut recording = Recording::default();
+        let summary = self.simulate(ground, request, Some(&mut recording))?;
+        Ok(History {
+            bodies: self.bodies(),
+            summary,
+            samples: recording.samples,
+            events: recording.events,
+        })
+    }
+}
+
+/// A model that moves as one mechanism with one degree of freedom at a time: what only such a model can tell.
+pub trait MechanismModel: Model {
+    /// Restitution coefficient of the impact that leads to the mechanism after so many impacts, 1 for the first;
+    /// `None` when an impact before it stops the structure.
+    fn restitution_after(&self, impacts: usize) -> Option<f64>;
+
+    /// Hinges of that mechanism from left to right when it sways to that side; none if there is no such
+    /// mechanism.
+    fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
+
+    /// Rotations of the bodies at the unstable equilibrium of the first mechanism, swaying right, in radians.
+    fn critical_rotations_rad(&self) -> Vec<f64>;
+
+    /// Coordinate at the limit position of the first mechanism: no release can start from there or beyond.
+    fn limit_rad(&self) -> f64;
+
+    /// The free-standing blocks that rock like the first mechanism.
+    fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent>;
+
+    /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    fn overturns_without_impact(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<Option<Sway>, SimulationError>;
+}
+
+/// What is to be simulated, and how exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// Acceleration of gravity.
+    pub gravity_m_s2: f64,
+    /// Upper bound of the time: a history ends earlier at rest on ground that is quiet for good, or overturned.
+    pub end_s: f64,
+    /// Interval of the samples.
+    pub output_step_s: f64,
+    /// Where the motion starts from; `None`: from rest.
+    pub initial: Option<Initial>,
+    /// Error that the integrator may make in a step, relative to the state.
+    pub relative_tolerance: f64,
+    /// An impact that leaves less than this part of the energy barrier of the first mechanism ends in rest.
+    pub rest_energy_ratio: f64,
+}
+
+/// A rotated position from which a structure is released at no velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Initial {
+    /// The side to which it has swayed.
+    pub sway: Sway,
+    /// Magnitude of the rotation of the body that carries the coordinate: the end body on the side from which
+    /// the structure sways (the left one of a sway to the right), or the column.
+    pub rotation_rad: f64,
+}
+
+impl Default for Request {
+    /// Ten seconds from rest under gravity of 9.81 m/s2, with the defaults of a scenario.
+    fn default() -> Self {
+        Self {
+            gravity_m_s2: 9.81,
+            end_s: 10.0,
+            output_step_s: 0.005,
+            initial: None,
+            relative_tolerance: 1e-9,
+            rest_energy_ratio: 1e-8,
+        }
+    }
+}
+
+impl Request {
+    /// Refuses numbers that no simulation can work with.
+    pub(crate) fn check(&self) -> Result<(), ArgumentError> {
+        within("gravity_m_s2", self.gravity_m_s2, 1e-3..=1e3)?;
+        above("end_s", self.end_s, 0.0, 1e9)?;
+        above("output_step_s", self.output_step_s, 0.0, 1e9)?;
+        within("relative_tolerance", self.relative_tolerance, 1e-14..=1e-2)?;
+        within("rest_energy_ratio", self.rest_energy_ratio, 1e-18..=0.5)?;
+        if let Some(initial) = self.initial {
+            above(
+                "rotation_rad",
+                initial.rotation_rad,
+                0.0,
+                std::f64::consts::PI,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Why a motion could not be computed.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SimulationError {
+    /// The request has a number that is not allowed.
+    #[error(transparent)]
+    Argument(#[from] ArgumentError),
+    /// Nothing presses the structure on the ground.
+    #[error(
+        "the ground falls as fast as a free body at {time_s:?} s, so that nothing presses the structure on it: \
+         this model needs vertical accelerations above -1 g"
+    )]
+    FreeFall {
+        /// When, in seconds.
+        time_s: f64,
+    },
+    /// The integration failed.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+}
+
+/// Takes what happens in a history. To break ends the history there.
+///
+/// Samples come in the order of time, and so do events; the last sample before an event may come after it.
+pub trait Recorder {
+    /// A sample: one at every multiple of the output step from zero on, and a last one at the end.
+    fn sample(&mut self, _sample: &Sample) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// An event.
+    fn event(&mut self, _event: &Event) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// A function records samples.
+impl<F: FnMut(&Sample) -> ControlFlow<()>> Recorder for F {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self(sample)
+    }
+}
