@@ -41,7 +41,7 @@ impl Conditions {
 pub struct Verdict {
     /// How it ended.
     pub outcome: Outcome,
-    /// When that was decided, in seconds: see [`History::outcome_time_s`].
+    /// When that was decided, in seconds: see [`Summary::outcome_time_s`].
     pub outcome_time_s: f64,
     /// Number of impacts; where the structure overturns, all are before.
     pub impacts: usize,

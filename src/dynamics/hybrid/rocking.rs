@@ -78,9 +78,14 @@ pub enum Guard {
 /// The coordinate `q`, its rate, and the work done by the ground since time zero.
 pub type RockingState = State<3>;
 
-/// A push lifts the structure when it is this many times the incipient one: by so much more than rounding
+/// A push lifts the structure off when it is this many times the incipient one: by so much more than rounding
 /// that the mechanism really opens. At the very threshold it could close again at once, for ever.
-const LIFTING: f64 = 1.0 + 1e-12;
+const UPLIFT_FACTOR: f64 = 1.0 + 1e-12;
+
+/// Likewise over the acceleration at which the equation of motion of the first mechanism changes sign. That is
+/// the incipient one but for rounding, which grows relative to it as the arch gets thinner, and drowns the
+/// first factor in arches that hardly stand.
+const OPENING_FACTOR: f64 = 1.0 + 1e-13;
 
 /// A structure on moving ground.
 #[derive(Debug)]
@@ -90,6 +95,8 @@ pub struct Rocking<'a, C: MechanismChain> {
     gravity_m_s2: f64,
     rest_energy_ratio: f64,
     barrier: f64,
+    /// Horizontal acceleration that lifts the structure off, in units of gravity.
+    uplift_g: f64,
 }
 
 impl<'a, C: MechanismChain> Rocking<'a, C> {
@@ -110,8 +117,13 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
             gravity_m_s2,
             rest_energy_ratio,
             barrier: 0.0,
+            uplift_g: UPLIFT_FACTOR * chain.incipient_g(),
         };
-        rocking.barrier = chain.link(0).map_or(0.0, |link| rocking.barrier_of(link));
+        if let Some(first) = chain.link(0) {
+            rocking.barrier = rocking.barrier_of(first);
+            let opening_g = first.at_zero.rise / first.at_zero.sway;
+            rocking.uplift_g = rocking.uplift_g.max(OPENING_FACTOR * opening_g);
+        }
         rocking
     }
 
@@ -381,7 +393,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         match (guard, mode) {
             (Guard::Uplift(sway), _) => {
                 let (acceleration, jerk) = piece.at(time_s);
-                let tilt = Vector2::new(sway.sign(), LIFTING * self.chain.incipient_g());
+                let tilt = Vector2::new(sway.sign(), self.uplift_g);
                 Level {
                     value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
                     rate: tilt.dot(&jerk),
