@@ -76,6 +76,7 @@
 
 #[macro_use]
 mod named;
+mod bisection;
 pub mod dynamics;
 pub mod mechanics;
 pub mod output;

@@ -238,7 +238,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
 
     fn is_over(&self, mode: Self::Mode, piece: usize) -> bool {
         match mode {
-            Mode::Rest => self.piece(piece).is_quiet_for_good(),
+            Mode::Rest => self.piece(piece).stays_still(),
             Mode::Rocking { .. } => false,
             Mode::Overturned { .. } => true,
         }
@@ -374,7 +374,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
                 value: state[0],
                 rate: state[1],
             },
-            (Guard::Critical, Mode::Rocking { link, .. }) if piece.is_quiet_for_good() => Level {
+            (Guard::Critical, Mode::Rocking { link, .. }) if piece.stays_still() => Level {
                 value: link.critical_rad - state[0],
                 rate: -state[1],
             },
@@ -402,7 +402,7 @@ impl<'a, S: Structure> HybridSystem<3> for Rocking<'a, S> {
                 level.value < 0.0
             }),
             Mode::Rocking { link, .. } => {
-                let lost = self.piece(piece).is_quiet_for_good()
+                let lost = self.piece(piece).stays_still()
                     && state[0] >= link.critical_rad
                     && state[1] >= 0.0;
                 lost.then_some(Guard::Critical)
