@@ -52,6 +52,7 @@
 #[macro_use]
 mod named;
 mod argument;
+mod bisection;
 pub mod dynamics;
 pub mod mechanics;
 pub mod output;

@@ -6,6 +6,7 @@
 
 use nalgebra::Vector2;
 
+use crate::bisection::{Width, bisect, middle};
 use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
@@ -177,16 +178,8 @@ pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
     let Some(first) = (1..steps).find(|step| rise(at(*step)) <= 0.0) else {
         return limit_rad;
     };
-    let (mut low, mut high) = (at(first - 1), at(first));
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return middle;
-        }
-        if rise(middle) > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let (low, high) = bisect(at(first - 1), at(first), Width::Rounding, |q| {
+        rise(q) <= 0.0
+    });
+    middle(low, high)
 }

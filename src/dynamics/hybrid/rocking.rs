@@ -267,7 +267,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
 
     fn is_over(&self, mode: Self::Mode, piece: usize) -> bool {
         match mode {
-            Mode::Rest => self.piece(piece).is_quiet_for_good(),
+            Mode::Rest => self.piece(piece).stays_still(),
             Mode::Rocking { .. } => false,
             Mode::Overturned { .. } => true,
         }
@@ -403,7 +403,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
                 value: state[0],
                 rate: state[1],
             },
-            (Guard::Critical, Mode::Rocking { link, .. }) if piece.is_quiet_for_good() => Level {
+            (Guard::Critical, Mode::Rocking { link, .. }) if piece.stays_still() => Level {
                 value: link.critical_rad - state[0],
                 rate: -state[1],
             },
@@ -431,7 +431,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
                 level.value < 0.0
             }),
             Mode::Rocking { link, .. } => {
-                let lost = self.piece(piece).is_quiet_for_good()
+                let lost = self.piece(piece).stays_still()
                     && state[0] >= link.critical_rad
                     && state[1] >= 0.0;
                 lost.then_some(Guard::Critical)

@@ -6,6 +6,7 @@ use thiserror::Error;
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
+use crate::bisection::{Width, bisect};
 use crate::mechanics::geometry::field::{Field, Side, Twist};
 use crate::mechanics::geometry::ring::{Edge, Ring};
 
@@ -75,19 +76,8 @@ pub fn least_thickness_ratio(embrace_rad: f64, sites: HingeSites) -> Option<f64>
             .ok()
             .is_some_and(|ring| !matches!(incipient(&ring, sites), Err(LimitError::CannotStand)))
     };
-    let (mut low, mut high) = (1e-9, 1.0);
-    if !stands(high) {
-        return None;
-    }
-    while high - low > 1e-6 {
-        let middle = 0.5 * (low + high);
-        if stands(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Some(high)
+    let (thinnest, thickest) = (1e-9, 1.0);
+    stands(thickest).then(|| bisect(thinnest, thickest, Width::Absolute(1e-6), stands).1)
 }
 
 /// Gravity and a push of `acceleration_g` to the right, as load per unit mass.

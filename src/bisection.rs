@@ -1,0 +1,89 @@
+//! Bisection: where along the numbers a property changes.
+
+use std::convert::Infallible;
+
+/// How narrow an interval is to become.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Width {
+    /// Until no number lies between its ends.
+    Rounding,
+    /// At most so wide.
+    Absolute(f64),
+    /// At most so wide, as a part of its upper end.
+    #[allow(dead_code, reason = "for the search of least amplitudes")]
+    Relative(f64),
+}
+
+impl Width {
+    fn is_reached(self, low: f64, high: f64) -> bool {
+        match self {
+            Self::Rounding => {
+                let middle = middle(low, high);
+                middle <= low || middle >= high
+            }
+            Self::Absolute(width) => high - low <= width,
+            Self::Relative(width) => high - low <= width * high,
+        }
+    }
+}
+
+/// The middle of an interval; of two neighbouring numbers, the even one.
+pub(crate) fn middle(low: f64, high: f64) -> f64 {
+    0.5 * (low + high)
+}
+
+/// Halves the interval from `low`, where a property does not hold yet, to `high`, where it holds, until it is
+/// narrow enough. Returns its ends.
+pub(crate) fn bisect(
+    low: f64,
+    high: f64,
+    width: Width,
+    mut holds: impl FnMut(f64) -> bool,
+) -> (f64, f64) {
+    let Ok(ends) = try_bisect(low, high, width, |at| Ok::<_, Infallible>(holds(at)));
+    ends
+}
+
+/// As [`bisect`], for a property that cannot always be told.
+///
+/// # Errors
+/// Those of the property.
+pub(crate) fn try_bisect<E>(
+    mut low: f64,
+    mut high: f64,
+    width: Width,
+    mut holds: impl FnMut(f64) -> Result<bool, E>,
+) -> Result<(f64, f64), E> {
+    while !width.is_reached(low, high) {
+        let middle = middle(low, high);
+        if holds(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok((low, high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_enclose_the_change_as_narrowly_as_asked() {
+        let change = 2.0_f64.sqrt();
+        let ends = |width| bisect(1.0, 2.0, width, |x| x >= change);
+        let (low, high) = ends(Width::Rounding);
+        assert!(low < change && high == change && low.next_up() == high);
+        let (low, high) = ends(Width::Absolute(1e-3));
+        assert!(low < change && change <= high && high - low <= 1e-3 && high - low > 4e-4);
+        let (low, high) = ends(Width::Relative(1e-6));
+        assert!(low < change && change <= high && high - low <= 1e-6 * high);
+    }
+
+    #[test]
+    fn failures_are_passed_on() {
+        let failed = try_bisect(0.0, 1.0, Width::Rounding, |_| Err::<bool, _>("no"));
+        assert_eq!(failed, Err("no"));
+    }
+}

@@ -1,0 +1,195 @@
+//! Ground motion: acceleration as smooth, monotone pieces between known corners.
+//!
+//! An integrator must not step over a corner, and a search for the instant at which the ground gets
+//! strong enough must not step over a peak. So a ground motion is cut at every jump, kink and extremum,
+//! and each piece owns its one-sided formula: at a corner two pieces give two values.
+//!
+//! The ground may also move vertically. Within a piece either both components are straight lines, or they
+//! are multiples of one monotone shape: **every linear combination of the two is monotone**, and so is the
+//! distance from the onset of rocking.
+
+mod piece;
+mod pulse;
+mod record;
+mod shape;
+
+use nalgebra::Vector2;
+
+use crate::bisection::{Width, bisect, middle};
+use piece::Formula;
+pub use piece::Piece;
+pub use pulse::{Pulse, WaveTrain};
+
+/// Ground acceleration from time zero on, zero after the last corner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundMotion {
+    pieces: Vec<Piece>,
+}
+
+impl GroundMotion {
+    /// The ground stays still.
+    #[must_use]
+    pub fn still() -> Self {
+        Self::from_pieces(0.0, Vec::new())
+    }
+
+    /// Pieces given by their ends and formulas in the time since `start_s`.
+    fn from_pieces(start_s: f64, formulas: Vec<(f64, Formula)>) -> Self {
+        let formulas = formulas.into_iter();
+        Self::join(
+            start_s,
+            formulas.map(|(end, formula)| (start_s + end, start_s, formula)),
+        )
+    }
+
+    /// Quiet until `start_s`, then the pieces given by end, origin and formula, then quiet for good.
+    fn join(start_s: f64, moving: impl Iterator<Item = (f64, f64, Formula)>) -> Self {
+        let quiet = |end_s: f64| (end_s, start_s, Formula::constant(Vector2::zeros()));
+        let all = [quiet(start_s)]
+            .into_iter()
+            .chain(moving)
+            .chain([quiet(f64::INFINITY)]);
+        let mut pieces = Vec::new();
+        let mut piece_start_s = 0.0;
+        for (end_s, origin_s, formula) in all {
+            // Nothing is left of a piece that is shorter than the spacing of times around it.
+            if end_s > piece_start_s {
+                pieces.push(Piece {
+                    start_s: piece_start_s,
+                    end_s,
+                    origin_s,
+                    formula,
+                });
+                piece_start_s = end_s;
+            }
+        }
+        Self { pieces }
+    }
+
+    /// The pieces in order, without gaps, from zero to infinity.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Largest magnitudes of the horizontal and the vertical acceleration up to a time, in m/s2: pieces are
+    /// monotone, so they are at ends of pieces, or at that time.
+    #[must_use]
+    pub fn peaks_m_s2(&self, until_s: f64) -> Vector2<f64> {
+        let pieces = self.pieces.iter().filter(|piece| piece.start_s < until_s);
+        pieces
+            .filter(|piece| !piece.stays_still())
+            .flat_map(|piece| {
+                [piece.start_s, piece.end_s.min(until_s)].map(|t| piece.at(t).0.abs())
+            })
+            .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at))
+    }
+
+    /// When the ground falls quiet for good, in seconds.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |piece| piece.start_s)
+    }
+
+    /// Whether the ground ever moves vertically.
+    #[must_use]
+    pub fn has_vertical(&self) -> bool {
+        let mut ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
+        ends.any(|end| end.y != 0.0)
+    }
+
+    /// The first time at which the ground falls as fast as a free body or faster, `g + a_v <= 0`, so that
+    /// nothing presses a structure on it any more; `None` if that never happens.
+    #[must_use]
+    pub fn free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
+        let falls = |acceleration: Vector2<f64>| gravity_m_s2 + acceleration.y <= 0.0;
+        let piece = self
+            .pieces
+            .iter()
+            .find(|piece| piece.ends_m_s2().into_iter().any(falls))?;
+        if falls(piece.ends_m_s2()[0]) {
+            return Some(piece.start_s);
+        }
+        let (before_s, after_s) = bisect(piece.start_s, piece.end_s, Width::Rounding, |time_s| {
+            falls(piece.at(time_s).0)
+        });
+        Some(middle(before_s, after_s))
+    }
+
+    /// The same motion with further corners, which change nothing: for tests of the integration.
+    #[must_use]
+    pub fn cut_at(&self, times_s: &[f64]) -> Self {
+        let mut pieces = self.pieces.clone();
+        for time in times_s {
+            if let Some(index) = pieces
+                .iter()
+                .position(|p| p.start_s < *time && *time < p.end_s)
+            {
+                let mut rest = pieces[index];
+                pieces[index].end_s = *time;
+                rest.start_s = *time;
+                pieces.insert(index + 1, rest);
+            }
+        }
+        Self { pieces }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_follow_one_another_from_zero_to_infinity() {
+        for pulse in Pulse::ALL.iter().copied() {
+            for start in [0.0, 0.7] {
+                let ground = GroundMotion::pulse(pulse, 2.0, 0.3, start);
+                let pieces = ground.pieces();
+                assert!(pieces[0].start_s == 0.0);
+                assert!(
+                    pieces
+                        .windows(2)
+                        .all(|pair| pair[0].end_s == pair[1].start_s)
+                );
+                let last = pieces.last().unwrap();
+                assert!(last.stays_still() && last.acceleration_m_s2(99.0) == 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn free_fall_is_found_at_corners_and_within_pieces() {
+        let ground = |vertical: &[(f64, f64)]| GroundMotion::record(&[], vertical, 0.0);
+        assert_eq!(ground(&[(0.0, 0.0), (1.0, -9.0)]).free_fall_s(9.81), None);
+        let sloping = ground(&[(0.0, 0.0), (1.0, -20.0), (2.0, 5.0)]);
+        assert!((sloping.free_fall_s(10.0).unwrap() - 0.5).abs() < 1e-15);
+        assert_eq!(
+            ground(&[(0.5, -12.0), (1.0, 0.0)]).free_fall_s(9.81),
+            Some(0.5)
+        );
+        let wave = |a| {
+            GroundMotion::pulse_along(
+                Pulse::OneSine,
+                Vector2::new(1.0, a),
+                1.0,
+                0.0,
+                WaveTrain::default(),
+            )
+        };
+        assert_eq!(wave(9.0).free_fall_s(9.81), None);
+        // 20 sin(2 pi s) = -10 first at 7/12.
+        assert!((wave(20.0).free_fall_s(10.0).unwrap() - 7.0 / 12.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn cuts_change_no_value() {
+        let ground = GroundMotion::pulse(Pulse::OneSine, 2.0, 0.3, 0.1);
+        let cut = ground.cut_at(&[0.05, 0.11, 0.3, 5.0]);
+        assert_eq!(cut.pieces().len(), ground.pieces().len() + 4);
+        for piece in cut.pieces() {
+            let time = piece.start_s;
+            let original = ground.pieces().iter().rfind(|p| p.start_s <= time).unwrap();
+            assert!(piece.acceleration_m_s2(time) == original.acceleration_m_s2(time));
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Pieces of ground motion.
+
+use nalgebra::Vector2;
+
+use super::shape::Shape;
+
+/// One-sided formula of a piece in the time since its origin, horizontal and vertical.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Formula {
+    Linear {
+        at_origin: Vector2<f64>,
+        slope: Vector2<f64>,
+    },
+    Shaped {
+        amplitude: Vector2<f64>,
+        shape: Shape,
+    },
+}
+
+impl Formula {
+    pub(super) fn constant(acceleration: Vector2<f64>) -> Self {
+        Self::Linear {
+            at_origin: acceleration,
+            slope: Vector2::zeros(),
+        }
+    }
+
+    /// Acceleration and its rate of change.
+    pub(super) fn at(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
+        match *self {
+            Self::Linear { at_origin, slope } => (at_origin + slope * since_s, slope),
+            Self::Shaped { amplitude, shape } => {
+                let (value, rate) = shape.at(since_s);
+                (amplitude * value, amplitude * rate)
+            }
+        }
+    }
+}
+
+/// A piece of ground motion: smooth, and every combination of its components monotone, from its start to
+/// its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Start, in seconds.
+    pub start_s: f64,
+    /// End, in seconds; infinite for the last piece.
+    pub end_s: f64,
+    /// Time that the formula counts from.
+    pub(super) origin_s: f64,
+    pub(super) formula: Formula,
+}
+
+impl Piece {
+    /// Acceleration in m/s2 and its rate of change in m/s3, both horizontal and vertical (positive to the
+    /// right and upwards), at a time in the piece, the ends included, as the limit from inside.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> (Vector2<f64>, Vector2<f64>) {
+        self.formula.at(time_s - self.origin_s)
+    }
+
+    /// Horizontal acceleration in m/s2, as [`Piece::at`].
+    #[must_use]
+    pub fn acceleration_m_s2(&self, time_s: f64) -> f64 {
+        self.at(time_s).0.x
+    }
+
+    /// Vertical acceleration in m/s2, as [`Piece::at`].
+    #[must_use]
+    pub fn vertical_m_s2(&self, time_s: f64) -> f64 {
+        self.at(time_s).0.y
+    }
+
+    /// Whether the acceleration is zero from here on for ever.
+    #[must_use]
+    pub fn stays_still(&self) -> bool {
+        self.end_s == f64::INFINITY
+    }
+
+    /// A step that cannot miss the shape of the piece.
+    #[must_use]
+    pub fn longest_step_s(&self) -> f64 {
+        match self.formula {
+            Formula::Linear { .. } => f64::INFINITY,
+            Formula::Shaped { .. } => 0.25 * (self.end_s - self.start_s),
+        }
+    }
+
+    /// The accelerations at both ends, between which all others lie.
+    pub(super) fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
+        if self.stays_still() {
+            [Vector2::zeros(); 2]
+        } else {
+            [self.start_s, self.end_s].map(|time_s| self.at(time_s).0)
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The shapes of pulses in time, and where these have their extrema.
+
+use std::f64::consts::PI;
+
+use super::WaveTrain;
+use crate::bisection::{Width, bisect, middle};
+
+/// `amplitude sin(frequency s + phase)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sine {
+    pub(super) amplitude: f64,
+    pub(super) frequency_rad_s: f64,
+    pub(super) phase_rad: f64,
+}
+
+impl Sine {
+    pub(super) fn at(&self, since_s: f64) -> (f64, f64) {
+        let (sin, cos) = (self.frequency_rad_s * since_s + self.phase_rad).sin_cos();
+        (
+            self.amplitude * sin,
+            self.amplitude * self.frequency_rad_s * cos,
+        )
+    }
+}
+
+/// A smooth function of the time since the start of a pulse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Shape {
+    Sine(Sine),
+    /// A sum of sines: an oscillation under a cosine-shaped envelope.
+    Beat([Sine; 3]),
+    Ricker {
+        period_s: f64,
+    },
+    AntisymmetricRicker {
+        period_s: f64,
+    },
+    Gabor {
+        centre_s: f64,
+        frequency_rad_s: f64,
+        train: WaveTrain,
+    },
+}
+
+impl Shape {
+    /// Value and rate of change.
+    pub(super) fn at(&self, since_s: f64) -> (f64, f64) {
+        match *self {
+            Self::Sine(sine) => sine.at(since_s),
+            Self::Beat(sines) => sines
+                .iter()
+                .map(|sine| sine.at(since_s))
+                .fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1)),
+            Self::Ricker { period_s } => {
+                let scale = PI / period_s;
+                let x = scale * (since_s - 2.0 * period_s);
+                let bell = (-x * x).exp();
+                let square = 2.0 * x * x;
+                (
+                    bell * (1.0 - square),
+                    bell * scale * 2.0 * x * (square - 3.0),
+                )
+            }
+            Self::AntisymmetricRicker { period_s } => {
+                let scale = 2.0 * PI / (3.0_f64.sqrt() * period_s);
+                let y = scale * (since_s - 2.5 * period_s);
+                let bell = (-0.5 * y * y).exp();
+                let square = y * y;
+                (
+                    bell * y * (square - 3.0),
+                    bell * scale * (square * (6.0 - square) - 3.0),
+                )
+            }
+            Self::Gabor {
+                centre_s,
+                frequency_rad_s,
+                train,
+            } => {
+                let angle = frequency_rad_s * (since_s - centre_s);
+                let (sin, cos) = (angle + train.phase_rad).sin_cos();
+                let square = train.cycles * train.cycles;
+                let bell = (-angle * angle / square).exp();
+                (
+                    bell * cos,
+                    -bell * frequency_rad_s * (2.0 * angle / square * cos + sin),
+                )
+            }
+        }
+    }
+
+    /// The times at which a wave train of the given length and period has its extrema.
+    pub(super) fn extrema_s(&self, length_s: f64, period_s: f64) -> Vec<f64> {
+        // The rate of change up to a positive factor, and a bound of the slope of that.
+        let (zero_with_rate, steepest): (Box<dyn Fn(f64) -> f64>, f64) = match *self {
+            Self::Beat(sines) => {
+                let steepest = sines
+                    .iter()
+                    .map(|sine| sine.amplitude.abs() * sine.frequency_rad_s.powi(2))
+                    .sum();
+                (Box::new(|since_s| self.at(since_s).1), steepest)
+            }
+            Self::Gabor {
+                centre_s,
+                frequency_rad_s,
+                train,
+            } => {
+                let bend = 2.0 / (train.cycles * train.cycles);
+                let rate = move |since_s: f64| {
+                    let angle = frequency_rad_s * (since_s - centre_s);
+                    let (sin, cos) = (angle + train.phase_rad).sin_cos();
+                    -(bend * angle * cos + sin)
+                };
+                let widest = frequency_rad_s * centre_s;
+                let steepest = frequency_rad_s * (bend * (1.0 + widest) + 1.0);
+                (Box::new(rate), steepest)
+            }
+            Self::Sine(_) | Self::Ricker { .. } | Self::AntisymmetricRicker { .. } => {
+                unreachable!("their extrema are known in closed form")
+            }
+        };
+        // Two extrema at a distance h differ by h^3/12 times the third derivative at most, here by about
+        // 1e-12 of the amplitude.
+        let resolution_s = 1e-5 * period_s;
+        zeros(zero_with_rate, steepest, length_s, resolution_s)
+    }
+}
+
+/// The zeros of `function` between 0 and `end` at which it changes its sign, in order, to rounding.
+/// `steepest` bounds the magnitude of its slope.
+///
+/// A part in whose middle the function is farther from zero than it can fall over the length of the part
+/// has no zero, not even at its ends to rounding; others are halved. Pairs of zeros closer than `resolution` may be missed.
+fn zeros(function: impl Fn(f64) -> f64, steepest: f64, end: f64, resolution: f64) -> Vec<f64> {
+    let mut zeros = Vec::new();
+    let mut parts = vec![(0.0, end)];
+    while let Some((low, high)) = parts.pop() {
+        let centre = middle(low, high);
+        let half = 0.5 * (high - low);
+        if function(centre).abs() > steepest * (high - low) {
+            continue;
+        }
+        if half > resolution {
+            parts.extend([(centre, high), (low, centre)]);
+        } else {
+            let starts_positive = function(low) > 0.0;
+            if (function(high) > 0.0) != starts_positive {
+                let (low, high) = bisect(low, high, Width::Rounding, |at| {
+                    (function(at) > 0.0) != starts_positive
+                });
+                zeros.push(middle(low, high));
+            }
+        }
+    }
+    zeros
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_are_found_singly_in_pairs_and_at_the_borders_of_parts() {
+        let cubic = |x: f64| (x - 0.25) * (x - 0.5) * (x - 0.50001);
+        let found = zeros(cubic, 3.0, 1.0, 1e-7);
+        assert_eq!(found.len(), 3);
+        for (x, exact) in found.into_iter().zip([0.25, 0.5, 0.50001]) {
+            assert!((x - exact).abs() < 1e-12);
+        }
+        assert!(zeros(|x| (x - 0.3).powi(2), 2.0, 1.0, 1e-7).is_empty());
+    }
+}
