@@ -7,23 +7,23 @@ use std::convert::Infallible;
 pub(crate) enum Width {
     /// Until no number lies between its ends.
     Rounding,
-    /// At most so wide.
+    /// At most so wide, or until no number lies between.
     Absolute(f64),
-    /// At most so wide, as a part of its upper end.
+    /// At most so wide as a part of its upper end, or until no number lies between.
     #[allow(dead_code, reason = "for the search of least amplitudes")]
     Relative(f64),
 }
 
 impl Width {
     fn is_reached(self, low: f64, high: f64) -> bool {
-        match self {
-            Self::Rounding => {
-                let middle = middle(low, high);
-                middle <= low || middle >= high
+        let middle = middle(low, high);
+        let neighbours = middle <= low || middle >= high;
+        neighbours
+            || match self {
+                Self::Rounding => false,
+                Self::Absolute(width) => high - low <= width,
+                Self::Relative(width) => high - low <= width * high,
             }
-            Self::Absolute(width) => high - low <= width,
-            Self::Relative(width) => high - low <= width * high,
-        }
     }
 }
 

@@ -152,7 +152,7 @@ fn joints_are_drawn_where_there_are_voussoirs() {
     let chain = Chain::new(ring, sites, ImpactModel::MaxRestitution).unwrap();
     for picture in [
         pictures::limit(&chain),
-        pictures::first_impact(&chain).unwrap(),
+        pictures::impact(&chain, 1).unwrap(),
     ] {
         let document = Document::parse(&picture).unwrap();
         assert_eq!(named(&document, "joint").len(), 8);
@@ -220,7 +220,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 #[test]
 fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     let chain = chain(0.15, 180.0);
-    let picture = pictures::first_impact(&chain).unwrap();
+    let picture = pictures::impact(&chain, 1).unwrap();
     let document = Document::parse(&picture).unwrap();
     let sheet = check_hinges(&document, &chain, 1, Sway::Left);
     assert!(texts(&document)[0].contains("r = 0.681186"));

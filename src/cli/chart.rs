@@ -4,13 +4,13 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
-use archrock::output::{Folder, chart};
+use archrock::output::chart;
 use archrock::scenario::{Scenario, Structure};
 use archrock::studies::survey::shape_result;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use super::study::say;
-use super::{Failure, commands, results_folder};
+use super::{Failure, commands, open_folder, results_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -43,7 +43,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     // Refuses, with its reasons, an arch that has no results of its own.
     commands::model(&scenario)?;
     let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
-    let mut folder = Folder::open(&path, &[PICTURE, TABLE])?;
+    let mut folder = open_folder(&path, &[PICTURE, TABLE])?;
     let mut embraces_deg = EMBRACES_DEG.to_vec();
     if !embraces_deg.contains(&arch.embrace_deg) {
         embraces_deg.push(arch.embrace_deg);
@@ -54,7 +54,8 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let shapes: Vec<(f64, f64)> = embraces_deg
         .into_iter()
         .flat_map(|embrace_deg| {
-            let least = least_thickness_ratio(embrace_deg.to_radians(), sites);
+            let least = least_thickness_ratio(embrace_deg.to_radians(), sites, 1e-6)
+                .expect("the scenario's embrace angle was checked, and the others are constants");
             thicknesses(least, largest).map(move |thickness_ratio| (embrace_deg, thickness_ratio))
         })
         .collect();
@@ -81,11 +82,8 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 }
 
 /// From just above the least thickness ratio at which an arch stands to the largest charted.
-fn thicknesses(least: Option<f64>, largest: f64) -> impl Iterator<Item = f64> {
-    let range = least.map(|least| (1.001 * least, largest));
-    let range = range.filter(|(least, largest)| least < largest);
-    range.into_iter().flat_map(|(least, largest)| {
-        let step = (largest - least) / f64::from(THICKNESSES - 1);
-        (0..THICKNESSES).map(move |i| least + f64::from(i) * step)
-    })
+fn thicknesses(least: f64, largest: f64) -> impl Iterator<Item = f64> {
+    let least = 1.001 * least;
+    let step = (largest - least) / f64::from(THICKNESSES - 1);
+    (0..THICKNESSES).map(move |i| least + f64::from(i) * step)
 }

@@ -1,6 +1,8 @@
 //! The commands `limit` and `check`, and what commands share.
 
 use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use archrock::dynamics::model::MechanismModel;
@@ -49,10 +51,17 @@ pub fn arch(scenario: &Scenario, does: &str) -> Result<FourLinkArch, Failure> {
     }
 }
 
-/// Writes a picture to a file.
+/// Writes a picture to the file named by `--plot`.
 pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
-    std::fs::write(path, picture)
-        .map_err(|error| Failure::Work(format!("cannot write {}: {error}", path.display())))
+    let cannot = |error: io::Error| format!("cannot write {}: {error}", path.display());
+    let mut file = File::create(path).map_err(|error| {
+        Failure::Input(format!(
+            "{}; choose another file with --plot",
+            cannot(error)
+        ))
+    })?;
+    file.write_all(picture.as_bytes())
+        .map_err(|error| Failure::Work(cannot(error)))
 }
 
 /// JSON for people to read as well.

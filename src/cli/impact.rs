@@ -31,7 +31,7 @@ pub struct Arguments {
     /// How many impacts to print.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     count: u16,
-    /// The impact that --models, --certificate and --line speak of, by the mechanism that it leads to.
+    /// The impact that --models, --certificate, --line and --plot speak of, by the mechanism that it leads to.
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     link: u16,
     /// Put the impact models side by side.
@@ -46,7 +46,7 @@ pub struct Arguments {
     /// Write the impulse line to this file (CSV), or instead of all else to standard output with `-`.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
-    /// Draw the first impact as well, as SVG: mechanisms, bodies, impulse line.
+    /// Draw the impact as well, as SVG: mechanisms, bodies, impulse line.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// How to print.
@@ -103,8 +103,12 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if let Some(plot) = &arguments.plot {
-        let stops = || Failure::Work("the first impact stops the arch: nothing to draw".to_owned());
-        let picture = pictures::first_impact(arch.chain()).ok_or_else(stops)?;
+        let picture = pictures::impact(arch.chain(), chosen()?.index).ok_or_else(|| {
+            Failure::Input(format!(
+                "--plot: impact {} stops the arch, so that there is no mechanism after it to draw",
+                arguments.link
+            ))
+        })?;
         commands::write_picture(plot, &picture)?;
     }
     let models = arguments
@@ -186,7 +190,8 @@ fn write_line(path: &Path, arch: &FourLinkArch, chosen: &Chosen<'_>) -> Result<(
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let mut folder = Folder::open(parent, &[name])?;
+    let mut folder = Folder::open(parent, &[name])
+        .map_err(|error| Failure::Input(format!("{error}; choose another file with --line")))?;
     write(&mut folder.file(name))?;
     Ok(folder.complete()?)
 }

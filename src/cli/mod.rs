@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use archrock::dynamics::model::SimulationError;
-use archrock::output::OutputError;
+use archrock::output::{Folder, OutputError};
 use archrock::scenario::ScenarioErrors;
 use clap::{Parser, Subcommand, ValueEnum};
 
@@ -147,6 +147,12 @@ pub fn main() -> ExitCode {
 fn results_folder(out: Option<&Path>, scenario: &Path) -> PathBuf {
     let own = || Path::new("results").join(scenario.file_stem().unwrap_or_default());
     out.map_or_else(own, Path::to_owned)
+}
+
+/// Opens the folder for results that go to the place named by `--out`.
+fn open_folder(path: &Path, names: &[&str]) -> Result<Folder, Failure> {
+    Folder::open(path, names)
+        .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))
 }
 
 /// Prints a result on standard output.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Rotation2, Vector2};
 
+use super::impact;
 use super::svg::{Anchor, Drawing, Stroke, color};
 use crate::mechanics::chain::Mechanism as _;
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
@@ -113,7 +114,7 @@ impl Place {
     /// The joints, where there are voussoirs.
     fn joints(&self, drawing: &mut Drawing, sites: HingeSites) {
         if let HingeSites::Voussoirs(count) = sites {
-            for angle_rad in sites.sections_rad(&self.ring, count) {
+            for angle_rad in self.ring.sections(count) {
                 let [inner, outer] = [Edge::Intrados, Edge::Extrados]
                     .map(|edge| self.px(self.ring.point(angle_rad, edge), Sway::Right));
                 let stroke = Stroke::new(color::GREY, 0.8, "");
@@ -275,27 +276,29 @@ pub fn limit(chain: &Chain) -> String {
     drawing.finish()
 }
 
-/// The first impact after a sway to the right, as Fig. 10 of the paper: the mechanisms before and after,
-/// the bodies that both together cut out of the ring (Eq. (3)), and the impulse line. `None` when the
-/// impact stops the arch.
+/// Impact number `index`, from 1, after a first sway to the right, as Fig. 10 of the paper: the mechanisms before
+/// and after, the bodies that both together cut out of the ring (Eq. (3)), and the impulse line. `None` when
+/// this impact or one before it stops the arch.
 #[must_use]
-pub fn first_impact(chain: &Chain) -> Option<String> {
+pub fn impact(chain: &Chain, index: usize) -> Option<String> {
     let ring = chain.ring();
-    let (before, after) = (chain.link(0)?, chain.link(1)?);
+    let (before, after) = (chain.link(index.checked_sub(1)?)?, chain.link(index)?);
+    let sway_after = impact::sway(index);
+    let sway_before = sway_after.opposite();
     let place = |middle: f64, top: f64, width: f64| Place::new(ring, middle, top, width);
     let upper_end = place(0.0, 100.0, 370.0).bottom();
     let lower_top = upper_end + 130.0;
     let height = place(0.0, lower_top, 640.0).bottom() + 60.0;
     let mut drawing = Drawing::new(900.0, height);
     let title = format!(
-        "First impact: restitution (kinetic energy after/before) r = {:.6}; {}",
+        "Impact {index}: restitution (kinetic energy after/before) r = {:.6}; {}",
         after.link.restitution,
         shape(ring)
     );
     drawing.label(Vector2::new(450.0, 28.0), Anchor::Middle, 0.0, &title);
     for (middle, link, sway, mark, text) in [
-        (225.0, before, Sway::Right, "", "u before the impact"),
-        (675.0, after, Sway::Left, "'", "u' after the impact"),
+        (225.0, before, sway_before, "", "u before the impact"),
+        (675.0, after, sway_after, "'", "u' after the impact"),
     ] {
         let place = place(middle, 100.0, 370.0);
         let rotations = place.mechanism(&mut drawing, link, sway);
@@ -309,7 +312,7 @@ pub fn first_impact(chain: &Chain) -> Option<String> {
     let place = place(450.0, lower_top, 640.0);
     let closing = closing_field(&before.mechanism, ring);
     let field = after.mechanism.field();
-    // All in the frame of the new mechanism, which sways left: drawn in a mirror.
+    // All in the frame of the new mechanism, which is drawn in a mirror if it sways left.
     let cut = closing.minus(&field);
     let mut bounds = [cut.cuts_rad(), &[0.0, ring.embrace_rad()]].concat();
     bounds.sort_by(f64::total_cmp);
@@ -321,7 +324,12 @@ pub fn first_impact(chain: &Chain) -> Option<String> {
         .map(|angle| ring.embrace_rad() - angle);
     let [a, b, c, d] = hinges_before;
     let mut number = 0;
-    for pair in bounds.windows(2).rev() {
+    // The bodies are counted from the left.
+    let mut sectors: Vec<&[f64]> = bounds.windows(2).collect();
+    if sway_after == Sway::Left {
+        sectors.reverse();
+    }
+    for pair in sectors {
         let (from, to) = (pair[0], pair[1]);
         let middle = 0.5 * (from + to);
         let moving = moves([d, c, b, a], middle) || moves(after.mechanism.hinges_rad(), middle);
@@ -340,12 +348,12 @@ pub fn first_impact(chain: &Chain) -> Option<String> {
             &mut drawing,
             &name,
             (from, to),
-            (Displacement::none(), Sway::Left),
+            (Displacement::none(), sway_after),
             (fill, Stroke::new(color::GREY, 0.9, "")),
         );
         if moving {
             let out = 1.0 + 0.5 * ring.thickness_ratio() + 30.0 / place.scale;
-            let at = place.px(ring.radial(middle) * out, Sway::Left);
+            let at = place.px(ring.radial(middle) * out, sway_after);
             let at = at + Vector2::new(0.0, 4.5);
             drawing.label(at, Anchor::Middle, 0.0, &number.to_string());
         }
@@ -354,9 +362,9 @@ pub fn first_impact(chain: &Chain) -> Option<String> {
     place.joints(&mut drawing, chain.sites());
     let change = closing.minus(&field.scaled(after.link.rate_ratio));
     let line = ResultantLine::through_hinges(ring, &after.mechanism, change);
-    place.resultants(&mut drawing, "impulse line", &line, Sway::Left);
-    place.hinges(&mut drawing, after, Sway::Left, "'");
-    for (angle, edge) in before.mechanism.hinges_from_left(ring, Sway::Right) {
+    place.resultants(&mut drawing, "impulse line", &line, sway_after);
+    place.hinges(&mut drawing, after, sway_after, "'");
+    for (angle, edge) in before.mechanism.hinges_from_left(ring, sway_before) {
         let at = place.px(ring.point(angle, edge), Sway::Right);
         drawing.circle("hinge before", at, 2.5, Stroke::new(color::GREY, 1.2, ""));
     }

@@ -22,10 +22,12 @@ use crate::mechanics::four_link::mechanism::Sway;
 pub(super) const MAGNITUDE: Number = Number(Included(1e-3), Included(1e6));
 const DEPTH_M: f64 = 1.0;
 const DENSITY_KG_M3: f64 = 2000.0;
-/// A structure as thick as its diameter has no hole.
-pub(super) const THICKNESS_RATIO: Number = Number(Excluded(0.0), Excluded(2.0));
+/// A structure as thick as its diameter has no hole. Much thinner ones than a millionth are lost in rounding.
+pub(super) const THICKNESS_RATIO: Number = Number(Included(LEAST_THICKNESS_RATIO), Excluded(2.0));
+const LEAST_THICKNESS_RATIO: f64 = 1e-6;
 const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
-pub(super) const EMBRACE_DEG: Number = Number(Excluded(0.0), Included(180.0));
+/// Below one degree every ring but the thinnest has room for a straight line, and no push moves it.
+pub(super) const EMBRACE_DEG: Number = Number(Included(1.0), Included(180.0));
 const VOUSSOIRS: Count = Count {
     range: 3..=200,
     why: "four hinges need four joints",
@@ -34,7 +36,7 @@ const VOUSSOIRS: Count = Count {
 pub(super) const LARGEST_G: f64 = 1e3;
 pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
-pub(super) const DURATION_S: Number = Number(Excluded(0.0), Included(1e6));
+pub(super) const DURATION_S: Number = Number(Included(1e-6), Included(1e6));
 /// Inverses of durations.
 pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
 /// At one the envelope of the velocity pulse is as long as a period; far beyond nothing is a pulse.
@@ -175,14 +177,12 @@ impl Arch {
         let embrace_deg = self.embrace_deg;
         match error {
             LimitError::CannotStand => {
-                let remedy = least_thickness_ratio(embrace_deg.to_radians(), self.sites()).map_or(
-                    "no thickness ratio up to 1 does".to_owned(),
-                    // Rounded up, so that the number said is one that stands.
-                    |least| format!("allowed is at least {:.4}", (least * 1e4).ceil() / 1e4),
-                );
+                let least = least_thickness_ratio(embrace_deg.to_radians(), self.sites(), 1e-12)
+                    .expect("the ranges of the keys are those of a ring");
                 format!(
                     "makes an arch that cannot carry its own weight at an embrace angle of \
-                     {embrace_deg:?} degrees; {remedy} (thickness over mean radius)"
+                     {embrace_deg:?} degrees; allowed is a thickness of at least {:?} mean radii",
+                    rounded_up(least)
                 )
             }
             LimitError::OtherMechanism { .. } | LimitError::NoPush => format!(
@@ -206,8 +206,9 @@ impl Arch {
             Ok(Some(ratio))
         } else {
             let wrong = format!(
-                "is out of range: {ratio:?} mean radii; allowed is a number above 0.0 and below \
-                 {:?}, twice the mean radius",
+                "is out of range: {ratio:?} mean radii; allowed is a number of at least {:?} and below \
+                 {:?}, a millionth of the mean radius and twice the mean radius",
+                LEAST_THICKNESS_RATIO * mean_radius_m,
                 2.0 * mean_radius_m
             );
             Err(table.wrong("thickness_m", wrong))
@@ -233,6 +234,12 @@ impl Arch {
             out.count("voussoirs", voussoirs);
         }
     }
+}
+
+/// The next larger number of four significant digits: a bound that is said is then one that holds.
+fn rounded_up(x: f64) -> f64 {
+    let unit = 10.0_f64.powf(3.0 - x.log10().floor());
+    (x * unit).ceil() / unit
 }
 
 impl Column {

@@ -100,9 +100,9 @@ pub enum Structure {
 pub struct Arch {
     /// Radius of the middle line, in 0.001 to 1e6.
     pub mean_radius_m: f64,
-    /// Thickness over mean radius, above 0 and below 2. The file may give `thickness_m` instead.
+    /// Thickness over mean radius, at least 1e-6 and below 2. The file may give `thickness_m` instead.
     pub thickness_ratio: f64,
-    /// Angle from springing to springing, above 0 and at most 180.
+    /// Angle from springing to springing, in 1 to 180.
     pub embrace_deg: f64,
     /// Length out of plane, in 0.001 to 1e6.
     pub depth_m: f64,
@@ -228,7 +228,7 @@ pub struct PulseGround {
     /// Peak of the vertical acceleration, positive upwards, with the same shape at the same time, in -1000
     /// to 1000; the ground must not fall as fast as a free body.
     pub vertical_amplitude_g: f64,
-    /// Length of the part of the pulse that its kind names, above 0 and at most 1e6.
+    /// Length of the part of the pulse that its kind names, in 1e-6 to 1e6.
     pub duration_s: f64,
     /// When the pulse starts, in 0 to 1e6.
     pub start_s: f64,
@@ -330,9 +330,9 @@ pub struct Initial {
 /// The output has at least one step and at most 1e7 of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
-    /// Longest time to simulate, above 0 and at most 1e6.
+    /// Longest time to simulate, in 1e-6 to 1e6.
     pub duration_s: f64,
-    /// Time between rows of the output, above 0 and at most `duration_s`.
+    /// Time between rows of the output, at least 1e-6 and at most `duration_s`.
     pub output_step_s: f64,
     /// Error that the integrator may make, relative to the state, in 1e-13 to 1e-3.
     pub relative_tolerance: f64,
@@ -635,7 +635,7 @@ duration_s = 1.0
                 (
                     13,
                     1,
-                    &["[ground.half_sine] lacks `duration_s`", "above 0.0"],
+                    &["[ground.half_sine] lacks `duration_s`", "at least 1e-6"],
                 ),
                 (
                     15,
@@ -754,7 +754,7 @@ duration_s = 1.0
             &[(
                 4,
                 19,
-                &["`thickness_ratio = 0.0`", "above 0.0 and below 2.0"],
+                &["`thickness_ratio = 0.0`", "at least 1e-6 and below 2.0"],
             )],
         );
     }

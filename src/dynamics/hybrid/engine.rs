@@ -183,7 +183,7 @@ pub enum EngineError {
     Integrator(#[from] IntegratorError),
     /// Too many events.
     #[error(
-        "more than {most} transitions by {time_s} s: the motion chatters; raise rest_energy_ratio, so that \
+        "more than {most} transitions by {time_s:?} s: the motion chatters; raise rest_energy_ratio, so that \
          it rests earlier, or shorten duration_s"
     )]
     TooManyTransitions {

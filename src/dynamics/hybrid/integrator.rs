@@ -68,13 +68,13 @@ pub struct Cost {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum IntegratorError {
     /// The right-hand side gave no finite number however short the step.
-    #[error("the motion has no finite acceleration at {time_s} s")]
+    #[error("the motion has no finite acceleration at {time_s:?} s")]
     NotFinite {
         /// Time in seconds.
         time_s: f64,
     },
     /// The step fell below the spacing of numbers, or too many were needed.
-    #[error("the relative tolerance cannot be met at {time_s} s: allow a larger one")]
+    #[error("the relative tolerance cannot be met at {time_s:?} s: allow a larger one")]
     ToleranceNotMet {
         /// Time in seconds.
         time_s: f64,

@@ -6,9 +6,10 @@ use thiserror::Error;
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
-use crate::bisection::{Width, bisect};
+use super::self_weight::carries_its_weight;
+use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::field::{Field, Side, Twist};
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::ring::{Edge, Ring, RingError};
 
 /// Onset of rocking under a push to the right.
 #[derive(Clone, Debug)]
@@ -27,35 +28,36 @@ pub enum LimitError {
     /// The ring cannot carry its own weight.
     #[error("the arch cannot carry its own weight")]
     CannotStand,
-    /// Statics does not confirm the best four-link mechanism: its thrust line leaves the ring, or two
-    /// of its hinges merge into one section that would part altogether.
+    /// The ring stands, but statics does not confirm the best four-link mechanism: its thrust line leaves the
+    /// ring, or two of its hinges merge into one section that would part altogether.
     #[error(
-        "the best four-link mechanism moves at {acceleration_g:.4} g, but statics does not confirm it: \
-         another mechanism governs, as in thick shallow rings"
+        "the arch stands, but does not start to rock as a four-link mechanism: the best one moves at \
+         {acceleration_g:.4} g and statics does not confirm it; another mechanism governs, as in thick shallow rings"
     )]
     OtherMechanism {
         /// Acceleration of the best four-link mechanism found, in units of gravity: not below the true
         /// one.
         acceleration_g: f64,
     },
-    /// No push moves the ring as a four-link mechanism.
-    #[error("no horizontal push moves the ring as a four-link mechanism")]
+    /// The ring stands, and no push moves it as a four-link mechanism.
+    #[error("the arch stands, and no horizontal push moves it as a four-link mechanism")]
     NoPush,
 }
 
 /// The incipient acceleration, its mechanism and the thrust line that proves it.
 ///
-/// Kinematic theorem: `A_L` is the least of `int v_y / int v_x` over the admissible mechanisms that
-/// move the ring to the right. Static theorem: it is the true one when the thrust line under that push
-/// passes inside the ring at every section (at every joint, for voussoirs).
+/// Statics decides whether the ring stands ([`carries_its_weight`]). Kinematic theorem: `A_L` is the least of
+/// `int v_y / int v_x` over the admissible mechanisms that move the ring to the right. Static theorem: it is
+/// the true one when the thrust line under that push passes inside the ring at every section (at every
+/// joint, for voussoirs).
 ///
 /// # Errors
 /// When the ring cannot stand, is too thick for a four-link mechanism to govern, or cannot be moved.
 pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError> {
-    let (acceleration_g, mechanism) = least_acceleration(ring, sites).ok_or(LimitError::NoPush)?;
-    if acceleration_g <= 0.0 {
+    if !carries_its_weight(ring, sites) {
         return Err(LimitError::CannotStand);
     }
+    let (acceleration_g, mechanism) = least_acceleration(ring, sites).ok_or(LimitError::NoPush)?;
     let thrust_line = ResultantLine::through_hinges(ring, &mechanism, push(acceleration_g));
     if !thrust_line.extremes(sites).is_admissible() {
         return Err(LimitError::OtherMechanism { acceleration_g });
@@ -67,17 +69,24 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
     })
 }
 
-/// The least thickness ratio at which a ring of this embrace angle carries its own weight, to
-/// `1e-6`; `None` when no thickness does.
-#[must_use]
-pub fn least_thickness_ratio(embrace_rad: f64, sites: HingeSites) -> Option<f64> {
+/// The least thickness ratio at which a ring of this embrace angle carries its own weight, by up to `accuracy` too
+/// large.
+///
+/// It is below 0.11: a semicircle needs 0.1075 (Milankovitch), and any other ring less. Every thicker ring stands as well.
+///
+/// # Errors
+/// When the angle is not in `(0, pi]`.
+pub fn least_thickness_ratio(
+    embrace_rad: f64,
+    sites: HingeSites,
+    accuracy: f64,
+) -> Result<f64, RingError> {
     let stands = |thickness_ratio: f64| {
-        Ring::new(thickness_ratio, embrace_rad)
-            .ok()
-            .is_some_and(|ring| !matches!(incipient(&ring, sites), Err(LimitError::CannotStand)))
+        let ring = Ring::new(thickness_ratio, embrace_rad)?;
+        Ok(carries_its_weight(&ring, sites))
     };
-    let (thinnest, thickest) = (1e-9, 1.0);
-    stands(thickest).then(|| bisect(thinnest, thickest, Width::Absolute(1e-6), stands).1)
+    let (_, least) = try_bisect(1e-9, 1.0, Width::Absolute(accuracy), stands)?;
+    Ok(least)
 }
 
 /// Gravity and a push of `acceleration_g` to the right, as load per unit mass.
@@ -85,7 +94,10 @@ fn push(acceleration_g: f64) -> Field {
     Field::uniform(Twist::translation(Vector2::new(acceleration_g, -1.0)))
 }
 
-/// Minimum of `int v_y / int v_x`, the kinematic theorem.
+/// Minimum of `int v_y / int v_x` for a ring that stands, the kinematic theorem.
+///
+/// In such a ring a mechanism that sways to the right also rises: one that does not is the rounding of a mechanism that
+/// does neither, as where hinges merge, or sways to the left.
 fn least_acceleration(ring: &Ring, sites: HingeSites) -> Option<(f64, FourLink)> {
     let lattice = Lattice::new(ring, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.
@@ -105,23 +117,24 @@ fn least_acceleration(ring: &Ring, sites: HingeSites) -> Option<(f64, FourLink)>
         for i in 0..4 {
             power -= moments[quadruple[i]][edge_index(EDGES[i])] * rotations[i];
         }
-        if power.x > 0.0 {
+        if power.x > 0.0 && power.y > 0.0 {
             -power.y / power.x
         } else {
             f64::NEG_INFINITY
         }
     };
-    let objective = Weakness { ring };
+    let objective = LeastAcceleration { ring };
     best_mechanism(ring, sites, &lattice, &score, &objective)
+        .filter(|(value, _)| value.is_finite())
         .map(|(value, mechanism)| (-value, mechanism))
 }
 
-/// Minus the acceleration at which a mechanism starts to move.
-struct Weakness<'a> {
+/// Minus the acceleration at which a mechanism starts to move, if a push to the right does that.
+struct LeastAcceleration<'a> {
     ring: &'a Ring,
 }
 
-impl Objective for Weakness<'_> {
+impl Objective for LeastAcceleration<'_> {
     fn kinks_rad(&self) -> &[f64] {
         &[]
     }
@@ -134,7 +147,12 @@ impl Objective for Weakness<'_> {
         let local = [load.at(0.0, Side::After); 4];
         let line = ResultantLine::through_hinges(self.ring, mechanism, load);
         let gradient = line.power_gradient(mechanism, local);
-        (-acceleration_g, gradient.map(|slope| slope / sway))
+        let value = if acceleration_g > 0.0 {
+            -acceleration_g
+        } else {
+            f64::NEG_INFINITY
+        };
+        (value, gradient.map(|slope| slope / sway))
     }
 }
 

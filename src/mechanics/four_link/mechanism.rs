@@ -169,17 +169,6 @@ pub enum HingeSites {
     Voussoirs(usize),
 }
 
-impl HingeSites {
-    /// Sections of `ring` at which a line of resultants has to be inside the ring, in radians from the
-    /// left springing: the joints, or else the ends of `parts` equal parts.
-    pub fn sections_rad(self, ring: &Ring, parts: usize) -> Vec<f64> {
-        ring.sections(match self {
-            Self::Anywhere => parts,
-            Self::Voussoirs(count) => count,
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,4 +9,5 @@ pub mod linkage;
 pub mod mechanism;
 pub mod resultant;
 mod search;
+pub mod self_weight;
 pub mod thrust;

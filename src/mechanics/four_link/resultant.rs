@@ -191,7 +191,10 @@ impl ResultantLine {
         };
         let refined = (1..samples.len())
             .filter(|i| is_top(i - 1) || is_top(*i))
-            .map(|i| climb(samples[i - 1].angle_rad, samples[i].angle_rad, &at));
+            .map(|i| {
+                let (from, to) = (samples[i - 1].angle_rad, samples[i].angle_rad);
+                climb(from, to, TOP_ACCURACY_RAD, &at)
+            });
         top(refined.chain(samples.iter().copied()))
     }
 
@@ -219,6 +222,9 @@ impl ResultantLine {
 /// Samples of a line over a continuous ring: fine enough to tell its tops apart.
 const SAMPLES: usize = 720;
 
+/// How closely tops between samples are found: a quantity differs from its top by about the square of this.
+const TOP_ACCURACY_RAD: f64 = 1e-9;
+
 /// The largest.
 fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
     values
@@ -226,13 +232,18 @@ fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
         .expect("a ring has sections")
 }
 
-/// The top of a smooth quantity with one top between two sections, by golden section.
-fn climb(mut from: f64, mut to: f64, at: &impl Fn(f64) -> Extremum) -> Extremum {
+/// The top of a smooth quantity with one top between two sections, to `accuracy_rad` of its section, by
+/// golden section.
+pub(super) fn climb(
+    mut from: f64,
+    mut to: f64,
+    accuracy_rad: f64,
+    at: &impl Fn(f64) -> Extremum,
+) -> Extremum {
     let part = 0.5 * (3.0 - 5.0_f64.sqrt());
     let mut low = at(from + part * (to - from));
     let mut high = at(to - part * (to - from));
-    // At 1e-9 rad from its top a quantity differs from it by about 1e-18.
-    while to - from > 1e-9 {
+    while to - from > accuracy_rad {
         if low.value > high.value {
             (to, high) = (high.angle_rad, low);
             low = at(from + part * (to - from));

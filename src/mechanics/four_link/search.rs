@@ -367,6 +367,10 @@ impl<O: Objective> Climber<'_, O> {
                 break factors.solve(&gradient);
             }
             damping = (4.0 * damping).max(1e-3 * scale);
+            if !damping.is_finite() {
+                // Second derivatives are lost in rounding, as in rings of hardly any thickness.
+                return None;
+            }
         };
         for _ in 0..40 {
             let mut moved = angles;

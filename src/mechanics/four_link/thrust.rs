@@ -9,18 +9,22 @@
 //! Where the line leaves the ring, four hinges are not enough: the joint there would open, the hinges
 //! travel, and the four-link motion is no longer that of rigid blocks without tension.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::Vector2;
 
 use super::limit::Incipient;
 use super::mechanism::HingeSites;
-use super::resultant::SectionResultant;
+use super::resultant::{Extremum, SectionResultant, climb};
 use crate::mechanics::chain::Demand;
 use crate::mechanics::geometry::field::{Momentum, Twist, turned};
 use crate::mechanics::geometry::ring::{MassMoments, Ring};
 
-/// Equal parts of the ring at whose ends the line is compared with the ring where hinges sit anywhere.
-/// The largest excess lies between two of them, which misses at most `1e-4` of the thickness.
-const SECTIONS: usize = 180;
+/// Samples of a continuous ring per right angle, between which the line has one top at most.
+const SAMPLES: f64 = 90.0;
+
+/// How closely tops between samples are found: the excess is then exact to about 1e-10 of the thickness.
+const TOP_ACCURACY_RAD: f64 = 1e-6;
 
 /// Excess below which the line is inside: it touches the edge at the hinges, to rounding.
 const ROUNDING: f64 = 1e-9;
@@ -50,18 +54,30 @@ impl Demand {
         weight: f64,
     ) -> Self {
         sections.fold(Self::NONE, |demand, section| {
-            let normal = section.normal.max(LEAST_NORMAL * weight);
-            let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
-            let excess_ratio = beyond / (normal * thickness);
-            Self {
-                excess_ratio: if excess_ratio > ROUNDING {
-                    demand.excess_ratio.max(excess_ratio)
-                } else {
-                    demand.excess_ratio
-                },
-                friction: demand.friction.max(section.tangential.abs() / normal),
-            }
+            demand.max(Self::of_section(&section, thickness, weight))
         })
+    }
+
+    /// What a resultant asks of its section; a negative excess tells how far the line is inside.
+    fn of_section(section: &SectionResultant, thickness: f64, weight: f64) -> Self {
+        let normal = section.normal.max(LEAST_NORMAL * weight);
+        let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
+        Self {
+            excess_ratio: beyond / (normal * thickness),
+            friction: section.tangential.abs() / normal,
+        }
+    }
+
+    /// The larger of both demands, an excess only where it is more than rounding.
+    fn max(self, other: Self) -> Self {
+        Self {
+            excess_ratio: if other.excess_ratio > ROUNDING {
+                self.excess_ratio.max(other.excess_ratio)
+            } else {
+                self.excess_ratio
+            },
+            friction: self.friction.max(other.friction),
+        }
     }
 }
 
@@ -198,17 +214,31 @@ impl ThrustLine {
         SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
     }
 
-    /// What the line asks of the joints, or of sections all over the ring.
+    /// What the line asks of the joints, or of all sections where hinges sit anywhere.
     #[must_use]
     pub fn demand(&self, sites: HingeSites) -> Demand {
-        Demand::of_sections(
-            sites
-                .sections_rad(&self.ring, SECTIONS)
-                .into_iter()
-                .map(|angle| self.section(angle)),
-            self.ring.thickness_ratio(),
-            self.ring.moments_to(self.ring.embrace_rad()).mass,
-        )
+        let thickness = self.ring.thickness_ratio();
+        let weight = self.ring.moments_to(self.ring.embrace_rad()).mass;
+        match sites {
+            HingeSites::Voussoirs(count) => {
+                let joints = self.ring.sections(count).into_iter();
+                Demand::of_sections(joints.map(|angle| self.section(angle)), thickness, weight)
+            }
+            HingeSites::Anywhere => {
+                let starts = std::iter::once(0.0).chain(self.parts.iter().map(|part| part.end_rad));
+                starts
+                    .zip(&self.parts)
+                    .filter(|(start, part)| *start < part.end_rad)
+                    .fold(Demand::NONE, |demand, (start, part)| {
+                        let at = |angle_rad: f64| {
+                            let resultant = part.at(&self.ring, angle_rad);
+                            let section = SectionResultant::new(&self.ring, angle_rad, &resultant);
+                            Demand::of_section(&section, thickness, weight)
+                        };
+                        largest(demand, start, part.end_rad, &at)
+                    })
+            }
+        }
     }
 
     /// The parts.
@@ -216,4 +246,69 @@ impl ThrustLine {
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
+}
+
+/// The largest of `known` and the demands `at` all sections of a rigid part of the ring, over which they are smooth
+/// but for a few kinks.
+fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Demand) -> Demand {
+    let intervals = (SAMPLES * (end_rad - start_rad) / FRAC_PI_2)
+        .ceil()
+        .max(4.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "4 to 180"
+    )]
+    let samples: Vec<(f64, Demand)> = (0..=intervals as u32)
+        .map(|i| start_rad + (end_rad - start_rad) * (f64::from(i) / intervals))
+        .map(|angle_rad| (angle_rad, at(angle_rad)))
+        .collect();
+    let mut demand = samples
+        .iter()
+        .fold(known, |demand, (_, sample)| demand.max(*sample));
+    for i in 0..samples.len() {
+        let least = demand.excess_ratio.max(ROUNDING);
+        if let Some(excess_ratio) = top_near(i, &samples, least, at, |d| d.excess_ratio) {
+            demand.excess_ratio = demand.excess_ratio.max(excess_ratio);
+        }
+        if let Some(friction) = top_near(i, &samples, demand.friction, at, |d| d.friction) {
+            demand.friction = demand.friction.max(friction);
+        }
+    }
+    demand
+}
+
+/// The top of a quantity between the neighbours of a sample, if it may be above `least`.
+fn top_near(
+    i: usize,
+    samples: &[(f64, Demand)],
+    least: f64,
+    at: &impl Fn(f64) -> Demand,
+    of: impl Fn(&Demand) -> f64,
+) -> Option<f64> {
+    let last = samples.len() - 1;
+    let value = |i: usize| of(&samples[i].1);
+    let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
+    if value(i) < value(before) || value(i) < value(after) {
+        return None;
+    }
+    // A parabola through equidistant samples rises above the largest by an eighth of the drop to the least at most.
+    let near = i.saturating_sub(2)..=(i + 2).min(last);
+    let drop = near.map(|near| value(i) - value(near)).fold(0.0, f64::max);
+    if value(i) + drop <= least {
+        return None;
+    }
+    let inwards = match i {
+        0 => TOP_ACCURACY_RAD,
+        _ if i == last => -TOP_ACCURACY_RAD,
+        _ => 0.0,
+    };
+    if inwards != 0.0 && of(&at(samples[i].0 + inwards)) <= value(i) {
+        return None;
+    }
+    let at = |angle_rad: f64| Extremum {
+        value: of(&at(angle_rad)),
+        angle_rad,
+    };
+    Some(climb(samples[before].0, samples[after].0, TOP_ACCURACY_RAD, &at).value)
 }

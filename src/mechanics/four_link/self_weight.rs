@@ -1,0 +1,153 @@
+//! Whether a ring carries its own weight, by statics alone.
+//!
+//! The static theorem: a ring without tensile strength stands if and only if some thrust line under its weight stays
+//! inside it at every section (at every joint, for voussoirs, which are rigid). Ring and weight are symmetric, and
+//! the mean of an admissible line and its mirror image is admissible: only symmetric lines need be looked at, whose
+//! resultant at the crown is horizontal. That leaves two unknowns, the thrust `h` and its moment `k` about the
+//! centre, in units of the weight per radian and of the mean radius.
+//!
+//! At the angle `phi` from the crown the resultant has the normal component `N = h cos phi + phi sin phi` and the
+//! moment `k + c (1 - cos phi)` about the centre, where `c = 1 + t^2/12` is the distance of a slice's weight from
+//! the centre. It acts inside the ring, in compression, if
+//!
+//! ```text
+//! r_i N <= k + c (1 - cos phi) <= r_e N
+//! ```
+//!
+//! with `r_i` and `r_e` the radii of intrados and extrados: a linear programme in two variables. For a given `h` the
+//! sections bound `k` from below by a convex function of `h` and from above by a concave one; the ring stands if there
+//! is room between them at the best `h`. Where hinges sit anywhere the governing sections are known in closed form or
+//! by one equation, so that the answer is exact to rounding for both kinds of ring.
+//!
+//! A thicker ring stands if a thinner one does: the line of the thinner one is inside, since by the right-hand
+//! inequality `r_e N` grows with `t` faster than `c (1 - cos phi)` up to `t = 2`.
+
+use super::mechanism::HingeSites;
+use crate::mechanics::geometry::ring::{Edge, Ring};
+
+/// Whether the ring stands under its own weight.
+#[must_use]
+pub fn carries_its_weight(ring: &Ring, sites: HingeSites) -> bool {
+    SymmetricLines::new(ring, sites)
+        .largest_margin()
+        .is_none_or(|margin| margin > 0.0)
+}
+
+/// Thrust lines of a ring under its own weight that are their own mirror images.
+struct SymmetricLines {
+    ring: Ring,
+    sites: HingeSites,
+    /// Angles from the crown, ascending: the joints of half the ring, or else its crown and springing.
+    sections_rad: Vec<f64>,
+    /// Distance of the weight of a slice from the centre, `c`.
+    slice_radius: f64,
+}
+
+/// A bound on `k`, with its slope over `h`.
+#[derive(Clone, Copy)]
+struct Bound {
+    value: f64,
+    slope: f64,
+}
+
+impl SymmetricLines {
+    fn new(ring: &Ring, sites: HingeSites) -> Self {
+        let half = 0.5 * ring.embrace_rad();
+        let sections_rad = match sites {
+            HingeSites::Anywhere => vec![0.0, half],
+            HingeSites::Voussoirs(count) => {
+                let joints = ring.sections(count).into_iter().skip(count.div_ceil(2));
+                joints.map(|angle| angle - half).collect()
+            }
+        };
+        Self {
+            ring: *ring,
+            sites,
+            sections_rad,
+            slice_radius: 1.0 + ring.thickness_ratio().powi(2) / 12.0,
+        }
+    }
+
+    /// The `k` with which the line of thrust `h` meets the edge at a section.
+    fn touching(&self, edge: Edge, h: f64, angle_rad: f64) -> Bound {
+        let (sin, cos) = angle_rad.sin_cos();
+        // 1 - cos phi without cancellation in shallow rings.
+        let drop = 2.0 * (0.5 * angle_rad).sin().powi(2);
+        let radius = self.ring.radius(edge);
+        Bound {
+            value: radius * (h * cos + angle_rad * sin) - self.slice_radius * drop,
+            slope: radius * cos,
+        }
+    }
+
+    /// The least `k` of a line of thrust `h` that is nowhere below the intrados.
+    fn least(&self, h: f64) -> Bound {
+        let inside = match self.sites {
+            HingeSites::Anywhere => Some(self.haunch_rad(h)),
+            HingeSites::Voussoirs(_) => None,
+        };
+        let sections = self.sections_rad.iter().copied().chain(inside);
+        sections
+            .map(|angle| self.touching(Edge::Intrados, h, angle))
+            .max_by(|a, b| a.value.total_cmp(&b.value))
+            .expect("a ring has a springing")
+    }
+
+    /// The largest `k` of a line of thrust `h` that is nowhere above the extrados.
+    ///
+    /// From crown to springing [`Self::touching`] first rises, if at all, and then falls (see
+    /// [`Self::haunch_rad`]): it is least at one of the two.
+    fn largest(&self, h: f64) -> Bound {
+        let sections = self.sections_rad.iter();
+        sections
+            .map(|angle| self.touching(Edge::Extrados, h, *angle))
+            .min_by(|a, b| a.value.total_cmp(&b.value))
+            .expect("a ring has a springing")
+    }
+
+    /// The section of a continuous ring at which a line of thrust `h` that stays above the intrados touches it:
+    /// where [`Self::touching`] is largest.
+    ///
+    /// Its slope vanishes where `tan phi / phi = r / (r (h - 1) + c)`. The left-hand side rises from 1 to infinity
+    /// between crown and 90 degrees: the slope changes its sign at most once, from positive to negative.
+    fn haunch_rad(&self, h: f64) -> f64 {
+        let radius = self.ring.radius(Edge::Intrados);
+        let rises = |angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            radius * angle * cos > (radius * (h - 1.0) + self.slice_radius) * sin
+        };
+        last(0.0, 0.5 * self.ring.embrace_rad(), rises)
+    }
+
+    /// The largest room for `k` at any thrust: positive if the ring stands. `None`: unbounded, since a straight line
+    /// fits into the ring.
+    fn largest_margin(&self) -> Option<f64> {
+        let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad());
+        let slope = |edge: Edge, angle: f64| self.touching(edge, 0.0, angle).slope;
+        if slope(Edge::Extrados, springing) >= slope(Edge::Intrados, first) {
+            return None;
+        }
+        // The margin is concave in h. Up to the first change of the section that bounds k from above it rises, after the
+        // last change on either side it falls. Two sections change places at
+        // h = (phi sin phi - psi sin psi) / (cos psi - cos phi) - c/r, where the quotient lies between 0 and 2 by
+        // Cauchy's mean value theorem: the best thrust is in (0, 2).
+        let rises = |h: f64| self.largest(h).slope > self.least(h).slope;
+        let h = last(0.0, 2.0, rises);
+        Some(self.largest(h).value - self.least(h).value)
+    }
+}
+
+/// The last number between two at which something holds that holds up to there, to rounding.
+fn last(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if holds(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
