@@ -23,6 +23,7 @@
 //! inequality `r_e N` grows with `t` faster than `c (1 - cos phi)` up to `t = 2`.
 
 use super::mechanism::HingeSites;
+use crate::bisection::{Width, bisect};
 use crate::mechanics::geometry::ring::{Edge, Ring};
 
 /// Whether the ring stands under its own weight.
@@ -138,16 +139,6 @@ impl SymmetricLines {
 }
 
 /// The last number between two at which something holds that holds up to there, to rounding.
-fn last(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return middle;
-        }
-        if holds(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+fn last(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    bisect(low, high, Width::Rounding, |at| !holds(at)).0
 }
