@@ -1,6 +1,6 @@
 //! Pictures of mechanisms: incipient rocking, and an impact (Fig. 10 of the paper).
 
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::Vector2;
 
 use super::impact;
 use super::svg::{Anchor, Drawing, Stroke, color};
@@ -9,6 +9,7 @@ use crate::mechanics::four_link::chain::{ArchLink, Chain};
 use crate::mechanics::four_link::impact::closing_field;
 use crate::mechanics::four_link::mechanism::{HingeSites, Sway};
 use crate::mechanics::four_link::resultant::ResultantLine;
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::{Edge, Ring};
 
 /// Part of the way to its limit position at which a mechanism is drawn, so that one sees it open.
@@ -23,35 +24,6 @@ struct Place {
     center: Vector2<f64>,
     /// Pixels per mean radius.
     scale: f64,
-}
-
-/// A rigid motion of a part of the ring.
-#[derive(Clone, Copy)]
-struct Displacement {
-    turn: Rotation2<f64>,
-    shift: Vector2<f64>,
-}
-
-impl Displacement {
-    fn none() -> Self {
-        Self {
-            turn: Rotation2::identity(),
-            shift: Vector2::zeros(),
-        }
-    }
-
-    /// Turns about `pole`, which moves to `moved`.
-    fn about(pole: Vector2<f64>, moved: Vector2<f64>, angle_rad: f64) -> Self {
-        let turn = Rotation2::new(angle_rad);
-        Self {
-            turn,
-            shift: moved - turn * pole,
-        }
-    }
-
-    fn of(&self, point: Vector2<f64>) -> Vector2<f64> {
-        self.turn * point + self.shift
-    }
 }
 
 impl Place {
@@ -84,14 +56,14 @@ impl Place {
         drawing: &mut Drawing,
         name: &str,
         (from, to): (f64, f64),
-        (displacement, sway): (Displacement, Sway),
+        (pose, sway): (Pose, Sway),
         (fill, stroke): (&str, Stroke),
     ) {
         if to - from < 1e-9 {
             return;
         }
         let corner = |angle: f64, edge: Edge| {
-            let point = self.px(displacement.of(self.ring.point(angle, edge)), sway);
+            let point = self.px(pose.of(self.ring.point(angle, edge)), sway);
             format!("{:.3} {:.3}", point.x, point.y)
         };
         let radius = |edge: Edge| self.ring.radius(edge) * self.scale;
@@ -126,7 +98,7 @@ impl Place {
     fn whole(&self, drawing: &mut Drawing, fill: &str, stroke: Stroke) {
         let (all, still) = (
             (0.0, self.ring.embrace_rad()),
-            (Displacement::none(), Sway::Right),
+            (Pose::UNDEFORMED, Sway::Right),
         );
         self.sector(drawing, "ring", all, still, (fill, stroke));
     }
@@ -134,13 +106,12 @@ impl Place {
     /// The mechanism open, over the ring at rest; returns the rotations drawn, as seen.
     fn mechanism(&self, drawing: &mut Drawing, link: &ArchLink, sway: Sway) -> [f64; 3] {
         self.whole(drawing, "none", Stroke::new(color::GREY, 0.8, "3 3"));
-        let (linkage, points) = (&link.link.mechanism, link.mechanism.points());
-        let rotations = linkage.rotations(DRAWN_PART * link.link.limit_rad);
-        let left = Displacement::about(points[0], points[0], rotations[0]);
-        let middle = Displacement::about(points[1], left.of(points[1]), rotations[1]);
-        let right = Displacement::about(points[3], points[3], rotations[2]);
+        let linkage = &link.link.mechanism;
+        let q_rad = DRAWN_PART * link.link.limit_rad;
+        let (mut poses, mut hinges) = (Vec::new(), Vec::new());
+        linkage.place(q_rad, &mut poses, &mut hinges);
         let [a, b, c, d] = link.mechanism.hinges_rad();
-        let none = Displacement::none();
+        let none = Pose::UNDEFORMED;
         let line = Stroke::new(color::BLACK, 1.2, "");
         // In the mirror of a sway to the left the first body is the one on the right.
         let mut looks = [
@@ -152,21 +123,20 @@ impl Place {
             looks.reverse();
         }
         let still = ("still", "#eeeeee");
-        for ((name, fill), bounds, displacement) in [
+        for ((name, fill), bounds, pose) in [
             (still, (0.0, a), none),
-            (looks[0], (a, b), left),
-            (looks[1], (b, c), middle),
-            (looks[2], (c, d), right),
+            (looks[0], (a, b), poses[0]),
+            (looks[1], (b, c), poses[1]),
+            (looks[2], (c, d), poses[2]),
             (still, (d, self.ring.embrace_rad()), none),
         ] {
-            self.sector(drawing, name, bounds, (displacement, sway), (fill, line));
+            self.sector(drawing, name, bounds, (pose, sway), (fill, line));
         }
-        let moved = [left, left, middle, right];
-        for (displacement, point) in moved.into_iter().zip(points) {
-            let at = self.px(displacement.of(point), sway);
+        for hinge in hinges {
             let stroke = Stroke::new(color::VERMILION, 1.6, "");
-            drawing.circle("moved hinge", at, 3.5, stroke);
+            drawing.circle("moved hinge", self.px(hinge, sway), 3.5, stroke);
         }
+        let rotations = linkage.rotations(q_rad);
         match sway {
             Sway::Right => rotations,
             Sway::Left => {
@@ -348,7 +318,7 @@ pub fn impact(chain: &Chain, index: usize) -> Option<String> {
             &mut drawing,
             &name,
             (from, to),
-            (Displacement::none(), sway_after),
+            (Pose::UNDEFORMED, sway_after),
             (fill, Stroke::new(color::GREY, 0.9, "")),
         );
         if moving {
