@@ -2,23 +2,21 @@
 #![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{EventKind, History, Outcome, Request, Sample, history};
 use archrock::dynamics::hybrid::engine::{EngineError, Observer, Settings, simulate};
 use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
-use archrock::mechanics::chain::Structure as _;
-use archrock::mechanics::column::Column;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::mechanics::chain::MechanismChain as _;
+use archrock::{
+    Column, EventKind, GroundMotion, History, ImpactModel, Initial, Model as _, Outcome, Pulse,
+    Request, RockingColumn, Sample, State, Sway,
+};
 
 const GRAVITY_M_S2: f64 = 9.81;
 
 /// A column of slenderness `alpha` and half diagonal 1.7 m.
-fn column(alpha: f64) -> Column {
-    let (width_m, height_m) = (3.4 * alpha.sin(), 3.4 * alpha.cos());
-    Column::new(height_m, width_m, 1.0, 2000.0, ImpactModel::MaxRestitution)
+fn column(alpha: f64) -> RockingColumn {
+    let column = Column::new(3.4 * alpha.cos(), 3.4 * alpha.sin()).unwrap();
+    RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap()
 }
 
 /// Housner's frequency parameter of [`column`].
@@ -31,23 +29,25 @@ fn restitution(alpha: f64) -> f64 {
     (1.0 - 1.5 * alpha.sin().powi(2)).powi(2)
 }
 
+/// With samples at the start and at the end.
 const REQUEST: Request = Request {
+    gravity_m_s2: GRAVITY_M_S2,
     end_s: 60.0,
-    relative_tolerance: 1e-12,
+    output_step_s: 60.0,
     initial: None,
-    output_step_s: None,
+    relative_tolerance: 1e-12,
+    rest_energy_ratio: 1e-8,
 };
 
 fn released(sway: Sway, rotation_rad: f64) -> Request {
     Request {
-        initial: Some((sway, rotation_rad)),
+        initial: Some(Initial { sway, rotation_rad }),
         ..REQUEST
     }
 }
 
-fn run<'a>(column: &'a Column, ground: &'a GroundMotion, request: &Request) -> History<'a, Column> {
-    let rocking = Rocking::new(column, ground, GRAVITY_M_S2, 1e-8);
-    history(&rocking, request, |_| ControlFlow::Continue(())).unwrap()
+fn run(column: &RockingColumn, ground: &GroundMotion, request: &Request) -> History {
+    column.history(ground, request).unwrap()
 }
 
 fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
@@ -69,7 +69,8 @@ fn integral(integrand: impl Fn(f64) -> f64) -> f64 {
 /// Time of the first impact after the release from `theta_0`.
 fn quarter_period_s(alpha: f64, theta_0: f64) -> f64 {
     let (column, still) = (column(alpha), GroundMotion::still());
-    run(&column, &still, &released(Sway::Right, theta_0)).impacts[0].time_s
+    let history = run(&column, &still, &released(Sway::Right, theta_0));
+    history.impacts().next().unwrap().0
 }
 
 /// Energy integral `theta'^2 = 2 p^2 (cos(alpha - theta_0) - cos(alpha - theta))`, with the singularity
@@ -117,18 +118,18 @@ fn the_period_tends_to_the_slender_one() {
 fn peaks_decay_with_the_restitution() {
     let (alpha, theta_0) = (0.25, 0.2);
     let (column, still) = (column(alpha), GroundMotion::still());
-    let rocking = Rocking::new(&column, &still, GRAVITY_M_S2, 1e-8);
     let request = Request {
         end_s: 12.0,
-        output_step_s: Some(5e-5),
+        output_step_s: 5e-5,
         ..released(Sway::Left, theta_0)
     };
     let mut peaks: Vec<f64> = Vec::new();
-    let history = history(&rocking, &request, |sample: &Sample<[f64; 1]>| {
+    let history = run(&column, &still, &request);
+    for sample in history.samples.iter() {
         peaks.resize(sample.phase + 1, 0.0);
-        let [rotation] = sample.rotations_rad;
-        if sample.state == "rest" {
-            return ControlFlow::Continue(());
+        let rotation = sample.rotations_rad[0];
+        if sample.state == State::Rest {
+            continue;
         }
         // Released to the left, it turns anticlockwise; then the sides alternate.
         let side = if sample.phase.is_multiple_of(2) {
@@ -136,12 +137,12 @@ fn peaks_decay_with_the_restitution() {
         } else {
             -1.0
         };
-        assert!(side * rotation >= 0.0 && (sample.state == "left") == (side > 0.0));
+        assert!(
+            side * rotation >= 0.0 && (sample.state == State::Rocking(Sway::Left)) == (side > 0.0)
+        );
         peaks[sample.phase] = peaks[sample.phase].max(rotation.abs());
-        ControlFlow::Continue(())
-    })
-    .unwrap();
-    assert!(history.peak_rotations_rad[0] == theta_0);
+    }
+    assert!(history.summary.peak_rotations_rad[0] == theta_0);
     assert!(peaks.len() > 8);
     let energy = |theta: f64| (alpha - theta).cos() - alpha.cos();
     // The last hop may be cut by the end of the simulation.
@@ -153,9 +154,10 @@ fn peaks_decay_with_the_restitution() {
             "{impacts}: {peak} {expected}"
         );
     }
-    for impact in &history.impacts {
-        let (before, after) = impact.energies();
-        assert!((after / before - restitution(alpha)).abs() < 1e-14);
+    for (_, impact) in history.impacts() {
+        assert!(
+            (impact.energy_after_j / impact.energy_before_j - restitution(alpha)).abs() < 1e-14
+        );
     }
 }
 
@@ -167,11 +169,11 @@ fn slender_columns_decay_as_housner_says() {
     let (column, still) = (column(alpha), GroundMotion::still());
     let history = run(&column, &still, &released(Sway::Right, phi_0 * alpha));
     // r is 1 - 3e-6, so that the loss after many impacts is what there is to see.
-    assert!(history.impacts.len() > 25);
+    assert!(history.summary.impacts > 25);
     let energy = |phi: f64| 1.0 - (1.0_f64 - phi).powi(2);
-    for (impacts, impact) in (0_i32..).zip(&history.impacts) {
+    for (impacts, (_, impact)) in (0_i32..).zip(history.impacts()) {
         // theta'^2 = p^2 alpha^2 (1 - (1 - phi)^2) at the impact.
-        let simulated = (impact.rate_before_rad_s / (p() * alpha)).powi(2);
+        let simulated = (impact.rates_before_rad_s[0] / (p() * alpha)).powi(2);
         let expected = restitution(alpha).powi(impacts) * energy(phi_0);
         assert!((simulated - expected).abs() < 1e-6, "{impacts}");
     }
@@ -188,7 +190,7 @@ fn uplift_is_at_the_slenderness() {
                 run(&column, &ground, &REQUEST)
                     .events
                     .first()
-                    .map(|event| event.sway)
+                    .map(|event| event.state.sway())
             };
             assert_eq!(outcome(alpha.tan() * (1.0 - 1e-9)), None);
             let sway = if side < 0.0 { Sway::Right } else { Sway::Left };
@@ -197,13 +199,16 @@ fn uplift_is_at_the_slenderness() {
     }
     let column = column(0.2);
     let ground = pulse(Pulse::HalfSine, 0.2_f64.tan() * (1.0 - 1e-9), 1.0);
-    assert_eq!(run(&column, &ground, &REQUEST).outcome, Outcome::NeverMoved);
+    assert_eq!(
+        run(&column, &ground, &REQUEST).summary.outcome,
+        Outcome::NeverMoved
+    );
 }
 
 /// Whether a pulse to the left overturns the column to the right without impact.
-fn overturns_at_once(column: &Column, ground: &GroundMotion) -> bool {
-    let history = run(column, ground, &REQUEST);
-    history.outcome == Outcome::Overturned(Sway::Right) && history.impacts.is_empty()
+fn overturns_at_once(column: &RockingColumn, ground: &GroundMotion) -> bool {
+    let summary = column.simulate(ground, &REQUEST, None).unwrap();
+    summary.outcome == Outcome::Overturned(Sway::Right) && summary.impacts == 0
 }
 
 /// Smallest `x = a / (g alpha)` that overturns at once, by bisection to `1e-9`.
@@ -301,18 +306,16 @@ fn mirrored_pulses_give_mirrored_motions_to_the_last_bit() {
     for kind in Pulse::ALL.iter().copied() {
         let record = |sign: f64| {
             let ground = pulse(kind, sign * 0.5, 0.3);
-            let rocking = Rocking::new(&column, &ground, GRAVITY_M_S2, 1e-8);
             let request = Request {
-                output_step_s: Some(0.01),
+                output_step_s: 0.01,
                 ..REQUEST
             };
-            let mut rows = Vec::new();
-            let history = history(&rocking, &request, |sample: &Sample<[f64; 1]>| {
+            let history = run(&column, &ground, &request);
+            let row = |sample: Sample| {
                 let values = [sample.rotations_rad[0], sample.rates_rad_s[0]];
-                rows.push((sample.time_s, values.map(|value| sign * value + 0.0)));
-                ControlFlow::Continue(())
-            })
-            .unwrap();
+                (sample.time_s, values.map(|value| sign * value + 0.0))
+            };
+            let rows: Vec<_> = history.samples.iter().map(row).collect();
             let events: Vec<_> = history
                 .events
                 .iter()
@@ -332,8 +335,7 @@ fn energy_is_kept() {
         for kind in Pulse::ALL.iter().copied() {
             for x in [1.2, 2.0, 4.0] {
                 let ground = pulse(kind, x * alpha.tan(), 0.25);
-                let history = run(&column, &ground, &REQUEST);
-                let defect = history.energy_defect_ratio;
+                let defect = run(&column, &ground, &REQUEST).summary.energy_defect_ratio;
                 assert!(defect < 1e-10, "{alpha} {kind:?} {x}: {defect}");
             }
         }
@@ -350,7 +352,7 @@ fn chattering_on_a_pushing_ground_ends_in_rest() {
     let push = 0.6;
     let ground = pulse(Pulse::Rectangular, -push * alpha.tan(), 1e3);
     let history = run(&column, &ground, &released(Sway::Left, theta_0));
-    assert_eq!(history.outcome, Outcome::Rest);
+    assert_eq!(history.summary.outcome, Outcome::Rest);
     let energy = |theta: f64| {
         let against = push * alpha.tan() * (alpha.sin() - (alpha - theta).sin());
         (alpha - theta).cos() - alpha.cos() + against
@@ -358,17 +360,17 @@ fn chattering_on_a_pushing_ground_ends_in_rest() {
     let at_impact = energy(theta_0) / (1.0 - alpha.cos());
     let impacts = ((1e-8 / at_impact).ln() / restitution(alpha).ln()).ceil();
     assert!(
-        (history.impacts.len() as f64 - impacts).abs() < 0.5,
+        (history.summary.impacts as f64 - impacts).abs() < 0.5,
         "{impacts}"
     );
-    assert!(history.outcome_time_s < 10.0);
+    assert!(history.summary.outcome_time_s < 10.0);
     let last = history.events.last().unwrap();
-    assert!(last.kind == EventKind::Rest && last.time_s == history.outcome_time_s);
+    assert!(last.kind == EventKind::Rest && last.time_s == history.summary.outcome_time_s);
 }
 
 struct Nobody;
 
-impl Observer<Rocking<'_, Column>, 3> for Nobody {}
+impl Observer<Rocking<'_, RockingColumn>, 3> for Nobody {}
 
 #[test]
 fn too_many_events_are_an_error_that_says_what_to_change() {
@@ -416,12 +418,15 @@ fn a_flat_column_falls_back_and_lies_still() {
     let column = column(alpha);
     let still = GroundMotion::still();
     let history = run(&column, &still, &released(Sway::Left, 0.3));
-    assert_eq!(history.outcome, Outcome::Rest);
-    let [impact] = history.impacts.as_slice() else {
+    assert_eq!(history.summary.outcome, Outcome::Rest);
+    let impacts: Vec<_> = history.impacts().collect();
+    let [(_, impact)] = impacts[..] else {
         panic!("one impact");
     };
-    assert!(impact.after.is_none() && impact.rate_after_rad_s == 0.0);
-    assert!(impact.rate_before_rad_s < 0.0);
+    assert!(impact.opened.is_empty() && impact.restitution == 0.0);
+    assert!(impact.rates_after_rad_s == [0.0]);
+    // From the left, where it was anticlockwise, it falls back clockwise.
+    assert!(impact.rates_before_rad_s[0] < 0.0);
 }
 
 /// The ends of the ranges of the scenario: nothing overflows or loses its digits. A column as slender as
@@ -430,27 +435,30 @@ fn a_flat_column_falls_back_and_lies_still() {
 fn columns_of_all_proportions_rock() {
     for height_m in [1e-3, 1.0, 1e6] {
         for width_m in [1e-3, 1.0, 1e6] {
-            let column = Column::new(height_m, width_m, 1e6, 1e6, ImpactModel::MaxRestitution);
+            let column = Column::new(height_m, width_m).unwrap();
+            let column = column.with_depth_m(1e6).unwrap();
+            let column = column.with_density_kg_m3(1e6).unwrap();
+            let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
             let time_s = (column.length_m() / GRAVITY_M_S2).sqrt();
             for x in [1.5, 10.0] {
                 let ground = pulse(Pulse::OneSine, x * column.incipient_g(), time_s);
-                let rocking = Rocking::new(&column, &ground, GRAVITY_M_S2, 1e-8);
                 let request = Request {
                     end_s: 30.0 * time_s,
+                    output_step_s: 30.0 * time_s,
                     relative_tolerance: 1e-9,
                     ..REQUEST
                 };
-                let history = history(&rocking, &request, |_| ControlFlow::Continue(())).unwrap();
+                let history = run(&column, &ground, &request);
                 // It lifts off when it is pushed enough, and then only.
                 let uplifts = history
                     .events
                     .iter()
                     .filter(|e| e.kind == EventKind::Uplift);
                 assert_eq!(uplifts.count(), 1);
-                assert!(history.peak_rotations_rad[0] > 0.0);
-                assert!((0.0..=0.5 * PI).contains(&history.peak_rotations_rad[0]));
+                assert!(history.summary.peak_rotations_rad[0] > 0.0);
+                assert!((0.0..=0.5 * PI).contains(&history.summary.peak_rotations_rad[0]));
                 // A flat column starts at accelerations whose work dwarfs the barrier.
-                let defect = history.energy_defect_ratio;
+                let defect = history.summary.energy_defect_ratio;
                 assert!(defect.is_finite() && (width_m > height_m || defect < 1e-7));
             }
         }

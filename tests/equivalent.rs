@@ -1,33 +1,19 @@
 //! Equivalent blocks and the dimensionless view, against the motions they stand for.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
-
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Request, Sample, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::{Mechanism as _, Structure};
-use archrock::mechanics::column::Column;
+use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::equivalent::equivalent;
-use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
-use archrock::mechanics::geometry::ring::Ring;
 use archrock::output::rotations::Scales;
+use archrock::{
+    Arch, Column, FourLinkArch, GroundMotion, ImpactModel, Initial, Model as _, Pulse, Request,
+    RockingColumn, Sway,
+};
 
 const GRAVITY_M_S2: f64 = 9.81;
 
-fn arch(thickness_ratio: f64, embrace_deg: f64, mean_radius_m: f64) -> Arch {
-    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
-    let chain = Chain::new(ring, HingeSites::Anywhere, ImpactModel::Mirrored).unwrap();
-    Arch {
-        mean_radius_m,
-        depth_m: 1.0,
-        density_kg_m3: 2000.0,
-        chain: Arc::new(chain),
-    }
+fn arch(thickness_ratio: f64, embrace_deg: f64, mean_radius_m: f64) -> FourLinkArch {
+    let arch = Arch::new(mean_radius_m, thickness_ratio, embrace_deg).unwrap();
+    FourLinkArch::new(arch, ImpactModel::Mirrored).unwrap()
 }
 
 const ARCHES: [(f64, f64); 3] = [(0.15, 180.0), (0.15, 157.5), (0.2, 140.0)];
@@ -42,21 +28,22 @@ fn an_arch_leaves_its_unstable_equilibrium_at_the_rate_of_the_block() {
         let blocks = equivalent(&arch, GRAVITY_M_S2).unwrap();
         let p_c = blocks.at_critical.unwrap().frequency_rad_s;
         let still = GroundMotion::still();
-        let rocking = Rocking::new(&arch, &still, GRAVITY_M_S2, 1e-8);
         let distance = 1e-5;
         let request = Request {
             end_s: 3.2 / p_c,
             relative_tolerance: 1e-13,
-            initial: Some((Sway::Right, critical_rad * (1.0 - distance))),
-            output_step_s: Some(0.1 / p_c),
+            initial: Some(Initial {
+                sway: Sway::Right,
+                rotation_rad: critical_rad * (1.0 - distance),
+            }),
+            output_step_s: 0.1 / p_c,
+            ..Request::default()
         };
-        history(&rocking, &request, |sample| {
+        for sample in arch.history(&still, &request).unwrap().samples.iter() {
             let left = 1.0 + sample.rotation_over_critical;
             let expected = distance * (p_c * sample.time_s).cosh();
             assert!((left / expected - 1.0).abs() < 1e-3, "{left} {expected}");
-            ControlFlow::Continue(())
-        })
-        .unwrap();
+        }
     }
 }
 
@@ -72,20 +59,23 @@ fn small_hops_last_as_long_as_those_of_the_block() {
         let blocks = equivalent(&arch, GRAVITY_M_S2).unwrap();
         let at_zero = link.mechanism.coefficients(0.0);
         let still = GroundMotion::still();
-        let rocking = Rocking::new(&arch, &still, GRAVITY_M_S2, 1e-8);
         // n^2 from half a hop: released at q, it closes with the rate v after atanh(n v / k) / n.
         let measured = |part: f64| {
             let request = Request {
                 end_s: 10.0,
                 relative_tolerance: 1e-13,
-                initial: Some((Sway::Left, part * link.critical_rad)),
-                output_step_s: None,
+                initial: Some(Initial {
+                    sway: Sway::Left,
+                    rotation_rad: part * link.critical_rad,
+                }),
+                ..Request::default()
             };
-            let history = history(&rocking, &request, |_| ControlFlow::Continue(())).unwrap();
-            let impact = &history.impacts[0];
+            let history = arch.history(&still, &request).unwrap();
+            let (time_s, impact) = history.impacts().next().unwrap();
             let deceleration = GRAVITY_M_S2 / 3.0 * at_zero.rise / at_zero.inertia.sqrt();
-            let straight_s = -impact.rate_before_rad_s * at_zero.inertia.sqrt() / deceleration;
-            (impact.time_s / straight_s - 1.0) * 3.0 / (straight_s * straight_s)
+            // The right body carries the coordinate of a sway to the left.
+            let straight_s = -impact.rates_before_rad_s[2] * at_zero.inertia.sqrt() / deceleration;
+            (time_s / straight_s - 1.0) * 3.0 / (straight_s * straight_s)
         };
         let (coarse, fine) = (measured(2e-2), measured(1e-2));
         let growth_squared = 2.0 * fine - coarse;
@@ -99,8 +89,8 @@ fn small_hops_last_as_long_as_those_of_the_block() {
 }
 
 /// Dimensionless history: time, acceleration and rotation of the samples, and instants of the impacts.
-fn dimensionless<S: Structure>(
-    structure: &S,
+fn dimensionless(
+    structure: &impl MechanismChain,
     p_t_p: f64,
     amplitude: f64,
 ) -> (Vec<[f64; 3]>, Vec<f64>) {
@@ -112,25 +102,22 @@ fn dimensionless<S: Structure>(
         p_t_p / p,
         0.0,
     );
-    let rocking = Rocking::new(structure, &ground, GRAVITY_M_S2, 1e-8);
     let request = Request {
         end_s: 12.1 / p,
         relative_tolerance: 1e-12,
-        initial: None,
-        output_step_s: Some(0.25 / p),
+        output_step_s: 0.25 / p,
+        ..Request::default()
     };
-    let mut rows = Vec::new();
-    let history = history(&rocking, &request, |sample: &Sample<_>| {
-        rows.push([
+    let history = structure.history(&ground, &request).unwrap();
+    let rows = history.samples.iter().map(|sample| {
+        [
             sample.time_s * p,
             sample.ground_acceleration_m_s2 / scales.incipient_m_s2,
             sample.rotation_over_critical,
-        ]);
-        ControlFlow::Continue(())
-    })
-    .unwrap();
-    let impacts = history.impacts.iter().map(|impact| impact.time_s * p);
-    (rows, impacts.collect())
+        ]
+    });
+    let impacts = history.impacts().map(|(time_s, _)| time_s * p);
+    (rows.collect(), impacts.collect())
 }
 
 #[track_caller]
@@ -143,24 +130,31 @@ fn assert_same(a: &(Vec<[f64; 3]>, Vec<f64>), b: &(Vec<[f64; 3]>, Vec<f64>), tol
     }
 }
 
+fn column(height_m: f64, width_m: f64, model: ImpactModel) -> RockingColumn {
+    RockingColumn::new(&Column::new(height_m, width_m).unwrap(), model).unwrap()
+}
+
 /// Size cancels out of the dimensionless view.
 #[test]
 fn large_and_small_structures_look_alike() {
     let of_arch = |radius_m| dimensionless(&arch(0.15, 157.5, radius_m), 1.0, 2.0);
     assert_same(&of_arch(1.0), &of_arch(37.0), 1e-9);
-    let column = |size: f64| {
-        let column = Column::new(4.0 * size, size, 1.0, 1.0, ImpactModel::SameSections);
-        dimensionless(&column, 1.0, 2.0)
+    let of_column = |size: f64| {
+        dimensionless(
+            &column(4.0 * size, size, ImpactModel::SameSections),
+            1.0,
+            2.0,
+        )
     };
-    assert_same(&column(0.1), &column(7.0), 1e-9);
+    assert_same(&of_column(0.1), &of_column(7.0), 1e-9);
 }
 
 /// So does the slenderness of slender columns that lose the same energy, up to its square.
 #[test]
 fn slender_columns_look_alike() {
-    let column = |width_m: f64| {
+    let of_column = |width_m: f64| {
         let model = ImpactModel::Prescribed { restitution: 0.8 };
-        dimensionless(&Column::new(4.0, width_m, 1.0, 1.0, model), 1.0, 2.0)
+        dimensionless(&column(4.0, width_m, model), 1.0, 2.0)
     };
-    assert_same(&column(0.004), &column(0.002), 1e-5);
+    assert_same(&of_column(0.004), &of_column(0.002), 1e-5);
 }

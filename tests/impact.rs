@@ -11,7 +11,7 @@ use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::four_link::resultant::ResultantLine;
 use archrock::mechanics::geometry::field::{Field, Side};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use common::{Random, assert_hinges, chain_of, climb, degrees, ring};
+use common::{Random, assert_hinges, climb, degrees, ring, semicircle};
 use proptest::prelude::*;
 
 const MAX: ImpactModel = ImpactModel::MaxRestitution;
@@ -32,7 +32,8 @@ fn seen_from_ground(mechanism: &FourLink, ring: &Ring, sways_left: bool) -> [f64
 
 #[test]
 fn published_chain_of_the_semicircle() {
-    let chain = chain_of(0.15, 180.0, HingeSites::Anywhere);
+    let arch = semicircle();
+    let chain = arch.chain();
     for (index, restitution, hinges) in [
         (1, 0.681_185_59, [0.0, 76.376_11, 133.816_20, 180.0]),
         (2, 0.737_098_52, [5.658_52, 71.715_17, 137.012_00, 180.0]),

@@ -5,40 +5,49 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::impact::{
     ImpactModel, MomentumTheorems, closing_field, impact,
 };
 use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites, Sway};
 use archrock::mechanics::geometry::field::Side;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::{Arch, FourLinkArch};
 use nalgebra::Vector2;
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
 
-fn chain(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites, model: ImpactModel) -> Chain {
-    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
-    Chain::new(ring, sites, model).unwrap()
+fn arch(
+    thickness_ratio: f64,
+    embrace_deg: f64,
+    sites: HingeSites,
+    model: ImpactModel,
+) -> FourLinkArch {
+    let arch = Arch::new(3.0, thickness_ratio, embrace_deg).unwrap();
+    let arch = match sites {
+        HingeSites::Anywhere => arch,
+        HingeSites::Voussoirs(voussoirs) => arch.with_voussoirs(voussoirs).unwrap(),
+    };
+    FourLinkArch::new(arch, model).unwrap()
 }
 
-fn chains() -> Vec<Chain> {
+fn arches() -> Vec<FourLinkArch> {
     let max = ImpactModel::MaxRestitution;
     vec![
-        chain(0.15, 180.0, ANYWHERE, max),
-        chain(0.12, 180.0, ANYWHERE, max),
-        chain(0.30, 180.0, ANYWHERE, max),
-        chain(0.15, 157.5, ANYWHERE, max),
-        chain(0.15, 157.5, HingeSites::Voussoirs(7), max),
-        chain(0.10, 120.0, ANYWHERE, max),
-        chain(0.15, 180.0, ANYWHERE, ImpactModel::SameSections),
-        chain(0.15, 180.0, ANYWHERE, ImpactModel::Mirrored),
+        arch(0.15, 180.0, ANYWHERE, max),
+        arch(0.12, 180.0, ANYWHERE, max),
+        arch(0.30, 180.0, ANYWHERE, max),
+        arch(0.15, 157.5, ANYWHERE, max),
+        arch(0.15, 157.5, HingeSites::Voussoirs(7), max),
+        arch(0.10, 120.0, ANYWHERE, max),
+        arch(0.15, 180.0, ANYWHERE, ImpactModel::SameSections),
+        arch(0.15, 180.0, ANYWHERE, ImpactModel::Mirrored),
     ]
 }
 
 #[test]
 fn the_line_passes_through_all_four_hinges() {
-    for chain in chains() {
+    for arch in arches() {
+        let chain = arch.chain();
         for index in 1..8 {
             let Some(link) = chain.link(index) else { break };
             let line = link.impulse_line.as_ref().unwrap();
@@ -57,7 +66,8 @@ fn the_line_passes_through_all_four_hinges() {
 #[test]
 fn outer_impulses_solve_the_equations_of_the_paper() {
     // The line is determined by the hinges A, B and D, Eqs. (7)-(10) by the momenta of whole bodies.
-    for chain in chains() {
+    for arch in arches() {
+        let chain = arch.chain();
         for index in 1..8 {
             let Some(link) = chain.link(index) else { break };
             let closing = closing_field(&chain.link(index - 1).unwrap().mechanism, chain.ring());
@@ -74,7 +84,8 @@ fn outer_impulses_solve_the_equations_of_the_paper() {
 fn impulses_change_the_momentum_of_each_body() {
     // Eqs. (7)-(10) name the outer hinges only. Here all three bodies, in all three components: the impulses
     // on a body and their moments against the momentum that the body gains.
-    for chain in chains() {
+    for arch in arches() {
+        let chain = arch.chain();
         let ring = chain.ring();
         for index in 1..6 {
             let Some(link) = chain.link(index) else { break };
@@ -110,12 +121,9 @@ fn extremes_of_the_semicircles() {
     for (thickness_ratio, excess, tolerance, at_deg) in
         [(0.15, 0.501_99, 0.5e-5, 74.3), (0.12, 0.861, 0.5e-3, 29.6)]
     {
-        let chain = chain(
-            thickness_ratio,
-            180.0,
-            ANYWHERE,
-            ImpactModel::MaxRestitution,
-        );
+        let max = ImpactModel::MaxRestitution;
+        let arch = arch(thickness_ratio, 180.0, ANYWHERE, max);
+        let chain = arch.chain();
         let line = chain.link(1).unwrap().impulse_line.as_ref().unwrap();
         let extremes = line.extremes_from_left(ANYWHERE, Sway::Left);
         let found = extremes.eccentricity_ratio;
@@ -131,7 +139,8 @@ fn extremes_of_the_semicircles() {
 
 #[test]
 fn refined_extremes_are_not_below_fine_samples() {
-    for chain in chains() {
+    for arch in arches() {
+        let chain = arch.chain();
         for index in 1..5 {
             let Some(link) = chain.link(index) else { break };
             let line = link.impulse_line.as_ref().unwrap().resultants();
@@ -177,7 +186,8 @@ fn refined_extremes_are_not_below_fine_samples() {
 #[test]
 fn voussoirs_are_asked_at_their_joints_only() {
     let sites = HingeSites::Voussoirs(7);
-    let chain = chain(0.15, 157.5, sites, ImpactModel::MaxRestitution);
+    let arch = arch(0.15, 157.5, sites, ImpactModel::MaxRestitution);
+    let chain = arch.chain();
     let line = chain
         .link(1)
         .unwrap()
@@ -199,7 +209,8 @@ fn voussoirs_are_asked_at_their_joints_only() {
 
 #[test]
 fn the_frame_of_the_ground_is_the_mirror_image_for_a_sway_to_the_left() {
-    let chain = chain(0.15, 157.5, ANYWHERE, ImpactModel::MaxRestitution);
+    let arch = arch(0.15, 157.5, ANYWHERE, ImpactModel::MaxRestitution);
+    let chain = arch.chain();
     let line = chain.link(1).unwrap().impulse_line.as_ref().unwrap();
     let own = line.hinge_impulses();
     assert_eq!(line.hinge_impulses_from_left(Sway::Right), own);
@@ -230,7 +241,8 @@ fn the_frame_of_the_ground_is_the_mirror_image_for_a_sway_to_the_left() {
 #[test]
 fn the_part_that_stands_is_stopped_by_its_own_impulses() {
     // Between a springing and the first hinge of the new mechanism the ring comes to a stand.
-    let chain = chain(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
+    let arch = arch(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
+    let chain = arch.chain();
     let link = chain.link(2).unwrap();
     let [first, ..] = link.mechanism.hinges_rad();
     let closing = closing_field(&chain.link(1).unwrap().mechanism, chain.ring());
@@ -244,7 +256,8 @@ fn the_part_that_stands_is_stopped_by_its_own_impulses() {
 #[test]
 fn a_prescribed_restitution_has_no_impulses() {
     let model = ImpactModel::Prescribed { restitution: 0.8 };
-    let chain = chain(0.15, 180.0, ANYWHERE, model);
+    let arch = arch(0.15, 180.0, ANYWHERE, model);
+    let chain = arch.chain();
     assert!(chain.link(3).unwrap().impulse_line.is_none());
     assert!(chain.link(0).unwrap().impulse_line.is_none());
     let first = &chain.link(0).unwrap().mechanism;
@@ -254,7 +267,8 @@ fn a_prescribed_restitution_has_no_impulses() {
 
 #[test]
 fn mirrored_hinges_put_the_ring_in_tension() {
-    let chain = chain(0.15, 180.0, ANYWHERE, ImpactModel::Mirrored);
+    let arch = arch(0.15, 180.0, ANYWHERE, ImpactModel::Mirrored);
+    let chain = arch.chain();
     let extremes = chain
         .link(1)
         .unwrap()
@@ -268,12 +282,8 @@ fn mirrored_hinges_put_the_ring_in_tension() {
 
 #[test]
 fn the_unit_of_impulses_scales_with_density_and_the_cube_of_the_radius() {
-    let arch = Arch {
-        mean_radius_m: 3.0,
-        depth_m: 7.0,
-        density_kg_m3: 2000.0,
-        chain: chain(0.15, PI.to_degrees(), ANYWHERE, ImpactModel::MaxRestitution).into(),
-    };
+    let arch = Arch::new(3.0, 0.15, 180.0).unwrap().with_depth_m(7.0);
+    let arch = FourLinkArch::new(arch.unwrap(), ImpactModel::MaxRestitution).unwrap();
     // Mass rho R^2 per metre of depth times velocity R q'.
     assert!((arch.impulse_unit_n_s_per_m() - 2000.0 * 27.0).abs() < 1e-9);
 }
@@ -315,7 +325,8 @@ fn impulses_models_and_certificate_as_json() {
     let folder = tempfile::tempdir().unwrap();
     let path = scenario(folder.path(), "");
     let result = json(&[&path, "--models", "--certificate", "--count", "2"]);
-    let chain = chain(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
+    let arch = arch(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
+    let chain = arch.chain();
     // Per metre of depth: without the depth.
     let unit = 1800.0 * 27.0;
     for (index, sway) in [(1, Sway::Left), (2, Sway::Right)] {

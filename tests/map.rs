@@ -7,18 +7,15 @@ mod program;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Child, Command, Output};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Outcome, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::scenario::{Boundary, Cell, Cells, Scenario};
+use archrock::scenario::{Boundary, Cell, Cells};
 use archrock::studies::specimen::Verdict;
-use common::{GRAVITY, REST_ENERGY_RATIO, request, seven_voussoirs};
+use archrock::{GroundMotion, Model as _, Outcome, Pulse, Scenario};
+use common::{GRAVITY, request, seven_voussoirs};
 use program::command;
 
 const SEMICIRCLE: &str =
@@ -53,12 +50,10 @@ fn a_cell_is_the_history_of_its_scenario() {
     assert_eq!(cells.count(), 6);
     for index in 0..6 {
         let [mean_radius_m, amplitude_g] = cells.coordinates(index);
-        let mut arch = seven_voussoirs();
-        arch.mean_radius_m = mean_radius_m;
+        let arch = seven_voussoirs().with_mean_radius_m(mean_radius_m).unwrap();
         let ground = GroundMotion::pulse(Pulse::OneCosine, amplitude_g * GRAVITY, 0.4, 0.0);
-        let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
-        let history = history(&rocking, &request(10.0), |_| ControlFlow::Continue(())).unwrap();
-        assert_eq!(shaken(&cells, index), Verdict::from(&history));
+        let summary = arch.simulate(&ground, &request(10.0), None).unwrap();
+        assert_eq!(shaken(&cells, index), Verdict::from(summary));
     }
 }
 

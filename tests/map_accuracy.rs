@@ -3,12 +3,8 @@
 
 mod common;
 
-use std::ops::ControlFlow;
-
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Outcome, Request, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use common::{GRAVITY, REST_ENERGY_RATIO, request, semicircle};
+use archrock::{GroundMotion, Model as _, Outcome, Pulse, Request};
+use common::{GRAVITY, request, semicircle};
 
 /// Cells along each side.
 const CELLS: u32 = 20;
@@ -31,17 +27,16 @@ fn a_map_of_rectangular_pulses_does_not_depend_on_the_tolerance() {
         let name = format!("{amplitude_g:.4} g for {duration_s:.4} s");
         let ground =
             GroundMotion::pulse(Pulse::Rectangular, amplitude_g * GRAVITY, duration_s, 0.0);
-        let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
         let [usual, exact] = [1e-9, 1e-12].map(|relative_tolerance| {
             let request = Request {
                 relative_tolerance,
                 ..request(10.0)
             };
-            history(&rocking, &request, |_| ControlFlow::Continue(())).unwrap()
+            arch.simulate(&ground, &request, None).unwrap()
         });
         // The outcome knows the sway.
         let [usual_end, exact_end] =
-            [&usual, &exact].map(|history| (history.outcome, history.impacts.len()));
+            [&usual, &exact].map(|summary| (summary.outcome, summary.impacts));
         if usual_end != exact_end {
             on_the_boundary.push(format!("{name}: {usual_end:?}, exactly {exact_end:?}"));
             continue;

@@ -3,23 +3,20 @@
 
 mod common;
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Outcome, Request, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::{Link, Mechanism, Structure};
+use archrock::mechanics::chain::{Link, Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
-use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
+use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::{FourLinkArch, GroundMotion, Outcome, Pulse, Request, Sway};
 use common::{
-    GRAVITY, REST_ENERGY_RATIO, chain_of, released, request, run, run_sampled, semicircle,
-    seven_voussoirs,
+    GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, released, request, run, run_sampled,
+    semicircle, seven_voussoirs, three,
 };
-use std::ops::ControlFlow;
 
 /// `q''` at the start, by the equation of motion written out; a ground acceleration pushes it.
-fn acceleration_at_zero(arch: &Arch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
+fn acceleration_at_zero(arch: &FourLinkArch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
     let c = link.mechanism.coefficients(0.0);
-    -(GRAVITY * c.rise + ground_m_s2 * c.sway) / (arch.mean_radius_m * c.inertia)
+    -(GRAVITY * c.rise + ground_m_s2 * c.sway) / (arch.length_m() * c.inertia)
 }
 
 #[test]
@@ -46,23 +43,24 @@ fn free_motion_keeps_the_energy_of_its_bodies() {
     let link = arch.link(0).unwrap();
     let q0 = 0.9 * link.critical_rad;
     let request = Request {
-        output_step_s: Some(0.005),
+        output_step_s: 0.005,
         ..released(0.9, Sway::Right, q0)
     };
     let (history, samples) = run_sampled(&arch, &still, &request);
-    let ring = arch.chain.ring();
-    let mechanism = arch.chain.link(0).unwrap().mechanism;
+    let ring = arch.chain().ring();
+    let mechanism = arch.chain().link(0).unwrap().mechanism;
     let [a, b, c, d] = mechanism.hinges_rad();
     let [at_a, at_b, at_c, at_d] = mechanism.points();
     let turn = |v: nalgebra::Vector2<f64>, angle: f64| nalgebra::Rotation2::new(angle) * v;
     let spin = |v: nalgebra::Vector2<f64>, rate: f64| nalgebra::Vector2::new(-v.y, v.x) * rate;
-    let end_s = history.impacts.first().map_or(0.9, |impact| impact.time_s);
-    let scale = GRAVITY / arch.mean_radius_m;
+    let end_s = history.impacts().next().map_or(0.9, |(time_s, _)| time_s);
+    let scale = GRAVITY / arch.length_m();
     let barrier = scale * link.mechanism.displacement(link.critical_rad).y;
     let mut first = None;
     for sample in samples.iter().filter(|sample| sample.time_s < end_s) {
-        let [left, middle, right] = sample.rotations_rad;
-        let [left_rate, middle_rate, right_rate] = sample.rates_rad_s;
+        let [left, middle, right] = three(&sample.rotations_rad);
+        let rates = three(&sample.rates_rad_s);
+        let [left_rate, middle_rate, right_rate] = rates;
         // Positions and velocities of the centres of gravity, from the rotations alone.
         let (bodies, bar) = (
             [ring.sector(a, b), ring.sector(b, c), ring.sector(c, d)],
@@ -84,7 +82,6 @@ fn free_motion_keeps_the_energy_of_its_bodies() {
             spin(bar, left_rate) + spin(arms[1], middle_rate),
             spin(arms[2], right_rate),
         ];
-        let rates = sample.rates_rad_s;
         let energy: f64 = (0..3)
             .map(|i| {
                 let body = &bodies[i];
@@ -117,19 +114,16 @@ fn the_energy_defect_is_small_under_every_pulse_and_falls_with_the_tolerance() {
         for kind in Pulse::ALL.iter().copied() {
             let ground = GroundMotion::pulse(kind, -1.6 * arch.incipient_g() * GRAVITY, 0.3, 0.1);
             let defect = |relative_tolerance: f64| {
-                let history = run(
-                    &arch,
-                    &ground,
-                    &Request {
-                        relative_tolerance,
-                        ..request(20.0)
-                    },
-                );
+                let request = Request {
+                    relative_tolerance,
+                    ..request(20.0)
+                };
+                let summary = run(&arch, &ground, &request).summary;
                 assert!(
-                    history.outcome == Outcome::Rest
-                        || history.outcome == Outcome::Overturned(Sway::Right)
+                    summary.outcome == Outcome::Rest
+                        || summary.outcome == Outcome::Overturned(Sway::Right)
                 );
-                history.energy_defect_ratio
+                summary.energy_defect_ratio
             };
             let defects = [1e-5, 1e-7, 1e-9, 1e-11].map(defect);
             assert!(defects[2] < 1e-7, "{kind:?} {defects:?}");
@@ -155,15 +149,12 @@ fn free_rocking_from_any_height_keeps_its_energy() {
     let still = GroundMotion::still();
     for part in [1e-4, 0.1, 0.5, 0.9, 0.9999] {
         let q0 = part * arch.link(0).unwrap().critical_rad;
-        let history = run(&arch, &still, &released(60.0, Sway::Left, q0));
-        assert_eq!(history.outcome, Outcome::Rest);
-        assert!(
-            history.energy_defect_ratio < 1e-8,
-            "{part}: {}",
-            history.energy_defect_ratio
-        );
+        let summary = run(&arch, &still, &released(60.0, Sway::Left, q0)).summary;
+        assert_eq!(summary.outcome, Outcome::Rest);
+        let defect = summary.energy_defect_ratio;
+        assert!(defect < 1e-8, "{part}: {defect}");
         // Nothing rises above where it was let go: the right body leads when it sways left.
-        assert!((history.peak_rotations_rad[2] - q0).abs() < 1e-12);
+        assert!((summary.peak_rotations_rad[2] - q0).abs() < 1e-12);
     }
 }
 
@@ -177,18 +168,23 @@ fn a_small_hop_takes_the_time_of_a_constant_acceleration() {
         for part in [1e-2, 1e-3, 1e-4, 1e-5] {
             let q0 = part * link.critical_rad;
             let history = run(&arch, &still, &released(60.0, Sway::Right, q0));
+            let impacts: Vec<_> = history.impacts().take(2).collect();
+            let [(first_s, first), (second_s, _)] = impacts[..] else {
+                panic!("two impacts")
+            };
             let closed = (2.0 * q0 / acceleration).sqrt();
-            let deviation = history.impacts[0].time_s / closed - 1.0;
+            let deviation = first_s / closed - 1.0;
             // Of first order in q0/q_c: the push back falls to zero at q_c, on the mean by a third of it.
             assert!(deviation.abs() < part, "{part} {deviation}");
             deviations.push(deviation / part);
             // Rates just before and the next hop, with its own constant acceleration.
             let rate = (2.0 * acceleration * q0).sqrt();
-            assert!((history.impacts[0].rate_before_rad_s / -rate - 1.0).abs() < part);
+            // The left body carries the coordinate, clockwise, and the right one that of the sway to the left.
+            assert!((first.rates_before_rad_s[0] / rate - 1.0).abs() < part);
             let next = arch.link(1).unwrap();
             let back = acceleration_at_zero(&arch, next, 0.0).abs();
-            let hop = 2.0 * history.impacts[0].rate_after_rad_s / back;
-            let took = history.impacts[1].time_s - history.impacts[0].time_s;
+            let hop = 2.0 * first.rates_after_rad_s[2] / back;
+            let took = second_s - first_s;
             assert!((took / hop - 1.0).abs() < part, "{took} {hop}");
         }
         // Proportional to q0 indeed: the quotient has a limit.
@@ -210,11 +206,7 @@ fn event_times_meet_those_of_the_smallest_tolerance() {
                     relative_tolerance,
                     ..released(60.0, Sway::Right, q0)
                 };
-                let impacts = run(&arch, &still, &request).impacts;
-                impacts
-                    .iter()
-                    .map(|impact| impact.time_s)
-                    .collect::<Vec<f64>>()
+                impact_times_s(&run(&arch, &still, &request))
             };
             let (usual, exact) = (times(1e-9), times(1e-13));
             assert_eq!(usual.len(), exact.len());
@@ -237,19 +229,11 @@ fn event_times_under_a_pulse_meet_those_of_the_smallest_tolerance() {
     for kind in Pulse::ALL.iter().copied() {
         let ground = GroundMotion::pulse(kind, -0.25 * GRAVITY, 0.25, 0.0);
         let times = |relative_tolerance: f64| {
-            let impacts = run(
-                &arch,
-                &ground,
-                &Request {
-                    relative_tolerance,
-                    ..request(20.0)
-                },
-            )
-            .impacts;
-            impacts
-                .iter()
-                .map(|impact| impact.time_s)
-                .collect::<Vec<f64>>()
+            let request = Request {
+                relative_tolerance,
+                ..request(20.0)
+            };
+            impact_times_s(&run(&arch, &ground, &request))
         };
         let (usual, exact) = (times(1e-9), times(1e-13));
         for (usual, exact) in usual.iter().zip(&exact).take(3) {
@@ -272,15 +256,13 @@ fn cuts_in_the_ground_motion_change_nothing() {
             let cut_ground = ground.cut_at(cuts);
             assert!(cut_ground.pieces().len() > ground.pieces().len());
             let cut = run(&arch, &cut_ground, &request(20.0));
-            assert_eq!(cut.outcome, whole.outcome, "{kind:?}");
-            for (x, y) in cut.impacts.iter().zip(&whole.impacts).take(3) {
+            let times_s = impact_times_s(&cut).into_iter().zip(impact_times_s(&whole));
+            for (x, y) in times_s.take(3) {
                 // Other steps, other errors within the tolerance.
-                assert!(
-                    (x.time_s - y.time_s).abs() < 2e-8,
-                    "{kind:?} {}",
-                    x.time_s - y.time_s
-                );
+                assert!((x - y).abs() < 2e-8, "{kind:?} {}", x - y);
             }
+            let (cut, whole) = (cut.summary, &whole.summary);
+            assert_eq!(cut.outcome, whole.outcome, "{kind:?}");
             if let Outcome::Overturned(_) = whole.outcome {
                 // It is given up at the last passage of q_c, but followed on while a cut lies ahead.
                 assert!(
@@ -289,7 +271,7 @@ fn cuts_in_the_ground_motion_change_nothing() {
                 );
                 continue;
             }
-            for (x, y) in cut.peak_rotations_rad.iter().zip(whole.peak_rotations_rad) {
+            for (x, y) in cut.peak_rotations_rad.iter().zip(&whole.peak_rotations_rad) {
                 assert!((x - y).abs() < 1e-8, "{kind:?} {x} {y}");
             }
         }
@@ -299,8 +281,7 @@ fn cuts_in_the_ground_motion_change_nothing() {
 #[test]
 fn the_critical_rotation_is_where_it_turns_over() {
     // Let go just above and just below on ground that moves a little first, so that it is not decided yet.
-    let chain = chain_of(0.15, 157.5, HingeSites::Anywhere);
-    let arch = common::arch(&chain, 8.0);
+    let arch = four_links(8.0, 0.15, 157.5, HingeSites::Anywhere);
     let link = arch.link(0).unwrap();
     let top = link.mechanism.displacement(link.critical_rad).y;
     for offset in [-1e-3, 1e-3] {
@@ -310,18 +291,18 @@ fn the_critical_rotation_is_where_it_turns_over() {
     assert!(link.limit_rad > link.critical_rad);
     // Energy decides: a blow that gives just less or just more than the barrier.
     let c = link.mechanism.coefficients(0.0);
-    let barrier = GRAVITY / arch.mean_radius_m * top;
+    let barrier = GRAVITY / arch.length_m() * top;
     let duration_s = 1e-7;
     for (factor, lost) in [(0.999, false), (1.001, true)] {
         let rate = factor * (2.0 * barrier / c.inertia).sqrt();
-        let velocity = rate * c.inertia * arch.mean_radius_m / c.sway;
+        let velocity = rate * c.inertia * arch.length_m() / c.sway;
         let ground =
             GroundMotion::pulse(Pulse::Rectangular, -velocity / duration_s, duration_s, 0.0);
         let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
         assert!((rocking.barrier() / barrier - 1.0).abs() < 1e-14);
-        let history = history(&rocking, &request(60.0), |_| ControlFlow::Continue(())).unwrap();
+        let summary = run(&arch, &ground, &request(60.0)).summary;
         assert_eq!(
-            history.outcome == Outcome::Overturned(Sway::Right),
+            summary.outcome == Outcome::Overturned(Sway::Right),
             lost,
             "{factor}"
         );

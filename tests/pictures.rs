@@ -6,22 +6,24 @@ use std::path::Path;
 use std::process::Command;
 
 use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::output::part::Rows;
 use archrock::output::{map, pictures};
-use archrock::scenario::{Cells, Scenario};
+use archrock::scenario::Cells;
 use archrock::studies::survey::shape_result;
+use archrock::{Arch, FourLinkArch, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
 use roxmltree::{Document, Node};
 
 /// Coordinates are written to thousandths of a pixel, paths of curves to hundredths.
 const PIXEL: f64 = 0.02;
 
-fn chain(thickness_ratio: f64, embrace_deg: f64) -> Chain {
-    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
-    Chain::new(ring, HingeSites::Anywhere, ImpactModel::MaxRestitution).unwrap()
+fn four_links(arch: Arch) -> FourLinkArch {
+    FourLinkArch::new(arch, ImpactModel::MaxRestitution).unwrap()
+}
+
+fn arch(thickness_ratio: f64, embrace_deg: f64) -> FourLinkArch {
+    four_links(Arch::new(5.0, thickness_ratio, embrace_deg).unwrap())
 }
 
 fn named<'a>(document: &'a Document<'a>, name: &str) -> Vec<Node<'a, 'a>> {
@@ -121,10 +123,11 @@ fn eccentricities(curve: &[Vector2<f64>], sheet: &Sheet, ring: &Ring) -> Vec<f64
 #[test]
 fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
-        let chain = chain(thickness_ratio, embrace_deg);
-        let picture = pictures::limit(&chain);
+        let arch = arch(thickness_ratio, embrace_deg);
+        let chain = arch.chain();
+        let picture = pictures::limit(chain);
         let document = Document::parse(&picture).unwrap();
-        let sheet = check_hinges(&document, &chain, 0, Sway::Right);
+        let sheet = check_hinges(&document, chain, 0, Sway::Right);
         let lines = named(&document, "thrust line");
         assert_eq!(lines.len(), 1);
         let curve = points(&lines[0]);
@@ -147,20 +150,20 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
 
 #[test]
 fn joints_are_drawn_where_there_are_voussoirs() {
-    let ring = Ring::new(0.15, 157.5_f64.to_radians()).unwrap();
-    let sites = HingeSites::Voussoirs(7);
-    let chain = Chain::new(ring, sites, ImpactModel::MaxRestitution).unwrap();
+    let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
+    let arch = four_links(arch.with_voussoirs(7).unwrap());
+    let chain = arch.chain();
     for picture in [
-        pictures::limit(&chain),
-        pictures::impact(&chain, 1).unwrap(),
+        pictures::limit(chain),
+        pictures::impact(chain, 1).unwrap(),
     ] {
         let document = Document::parse(&picture).unwrap();
         assert_eq!(named(&document, "joint").len(), 8);
     }
     // The hinges are at joints.
-    let picture = pictures::limit(&chain);
+    let picture = pictures::limit(chain);
     let document = Document::parse(&picture).unwrap();
-    check_hinges(&document, &chain, 0, Sway::Right);
+    check_hinges(&document, chain, 0, Sway::Right);
 }
 
 /// Each displaced body has its corners where the circle arcs begin and end: read from its path.
@@ -184,8 +187,9 @@ fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
 
 #[test]
 fn limit_shows_rigid_bodies_joined_at_hinges() {
-    let chain = chain(0.15, 180.0);
-    let picture = pictures::limit(&chain);
+    let arch = arch(0.15, 180.0);
+    let chain = arch.chain();
+    let picture = pictures::limit(chain);
     let document = Document::parse(&picture).unwrap();
     let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
     assert_eq!(hinges.len(), 4);
@@ -219,10 +223,11 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 /// seventh body is empty.
 #[test]
 fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
-    let chain = chain(0.15, 180.0);
-    let picture = pictures::impact(&chain, 1).unwrap();
+    let arch = arch(0.15, 180.0);
+    let chain = arch.chain();
+    let picture = pictures::impact(chain, 1).unwrap();
     let document = Document::parse(&picture).unwrap();
-    let sheet = check_hinges(&document, &chain, 1, Sway::Left);
+    let sheet = check_hinges(&document, chain, 1, Sway::Left);
     assert!(texts(&document)[0].contains("r = 0.681186"));
     let angles: [f64; 7] = [
         0.0, 24.01353, 76.37611, 81.78741, 133.81620, 139.56130, 180.0,
@@ -413,7 +418,8 @@ fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
     let sites = HingeSites::Anywhere;
     let result = shape_result(180.0, 0.15, sites, ImpactModel::MaxRestitution).unwrap();
     assert!((result.first_restitution.unwrap() - 0.681_185_59).abs() < 1e-8);
-    let chain = chain(0.15, 180.0);
+    let arch = arch(0.15, 180.0);
+    let chain = arch.chain();
     let limit = chain.link(400).unwrap().link.restitution;
     assert!((result.last_restitution.unwrap() - limit).abs() < 1e-5);
     assert!(shape_result(180.0, 0.1, sites, ImpactModel::MaxRestitution).is_none());

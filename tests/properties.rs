@@ -3,18 +3,14 @@
 
 mod common;
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
-
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Outcome, Request, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::{Mechanism, Structure};
-use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
-use common::ring;
+use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
+use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::{
+    FourLinkArch, GroundMotion, ImpactModel, Initial, Model as _, Outcome, Pulse, Request, Sample,
+    State, Sway,
+};
+use common::three;
 use proptest::prelude::*;
 
 fn model() -> impl Strategy<Value = ImpactModel> {
@@ -62,41 +58,41 @@ proptest! {
         (ground, start) in (ground(), start()),
         exponent in -10.0_f64..-6.0,
     ) {
-        let Ok(chain) = Chain::new(ring(t, embrace), sites, model) else { return Ok(()) };
-        let arch = Arch {
-            mean_radius_m: radius,
-            depth_m: 0.7,
-            density_kg_m3: 1900.0,
-            chain: Arc::new(chain),
-        };
+        let arch = common::arch(radius, t, embrace, sites).with_depth_m(0.7).unwrap();
+        let arch = arch.with_density_kg_m3(1900.0).unwrap();
+        let Ok(arch) = FourLinkArch::new(arch, model) else { return Ok(()) };
         let incipient = arch.incipient_g() * gravity;
         let ground = ground.map_or_else(GroundMotion::still, |(pulse, factor, duration_s, start_s)| {
             GroundMotion::pulse(pulse, factor * incipient, duration_s, start_s)
         });
         let link = arch.link(0).unwrap();
         let request = Request {
+            gravity_m_s2: gravity,
             end_s: 15.0,
+            output_step_s: 0.01,
+            initial: start.map(|(sway, part)| Initial {
+                sway,
+                rotation_rad: (part * link.critical_rad).min(0.9 * link.limit_rad),
+            }),
             relative_tolerance: 10_f64.powf(exponent),
-            initial: start.map(|(sway, part)| (sway, (part * link.critical_rad).min(0.9 * link.limit_rad))),
-            output_step_s: Some(0.01),
+            rest_energy_ratio: 1e-8,
         };
-        let rocking = Rocking::new(&arch, &ground, gravity, 1e-8);
-        let mut samples = Vec::new();
-        let history = history(&rocking, &request, |sample| {
-            samples.push(*sample);
-            ControlFlow::Continue(())
-        })
+        let history = arch
+            .history(&ground, &request)
             .map_err(|error| TestCaseError::fail(error.to_string()))?;
+
+        let summary = &history.summary;
+        let samples: Vec<Sample> = history.samples.iter().collect();
 
         // Time is strictly monotone from zero to the end.
         prop_assert!(samples[0].time_s == 0.0);
         prop_assert!(samples.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));
-        prop_assert!(samples.last().unwrap().time_s == history.end_s);
+        prop_assert!(samples.last().unwrap().time_s == summary.end_s);
         prop_assert!(samples.windows(2).all(|pair| pair[0].phase <= pair[1].phase));
         // A vanishing hop at the end of a sequence may be shorter than the spacing of times.
-        prop_assert!(history.impacts.windows(2).all(|pair| pair[0].time_s <= pair[1].time_s));
-        prop_assert!(history.end_s <= request.end_s);
-        prop_assert!(history.outcome_time_s.is_finite() && history.outcome_time_s <= history.end_s);
+        prop_assert!(common::impact_times_s(&history).windows(2).all(|pair| pair[0] <= pair[1]));
+        prop_assert!(summary.end_s <= request.end_s);
+        prop_assert!(summary.outcome_time_s.is_finite() && summary.outcome_time_s <= summary.end_s);
 
         // Rounding, and the interpolation within a step, in units of the critical rotation.
         let slack = link.critical_rad * (1e-12 + request.relative_tolerance);
@@ -105,37 +101,37 @@ proptest! {
             prop_assert!(all.chain([&sample.ground_acceleration_m_s2]).all(|x| x.is_finite()));
             // All hinges are open: swaying right the left body turns clockwise, and between two bodies
             // intrados hinges close clockwise, extrados hinges anticlockwise; left is the mirror image.
-            let [left, middle, right] = sample.rotations_rad;
+            let [left, middle, right] = three(&sample.rotations_rad);
             let openings = match sample.state {
-                "right" => [-left, middle - left, middle - right, -right],
-                "left" => [right, right - middle, left - middle, left],
-                _ => [0.0; 4],
+                State::Rocking(Sway::Right) => [-left, middle - left, middle - right, -right],
+                State::Rocking(Sway::Left) => [right, right - middle, left - middle, left],
+                State::Rest | State::Overturned(_) => [0.0; 4],
             };
             for opening in openings {
                 prop_assert!(opening >= -20.0 * slack, "{openings:?} at {} s", sample.time_s);
             }
-            for (rotation, peak) in sample.rotations_rad.iter().zip(history.peak_rotations_rad) {
+            for (rotation, peak) in sample.rotations_rad.iter().zip(&summary.peak_rotations_rad) {
                 prop_assert!(rotation.abs() <= peak * (1.0 + 1e-5) + 20.0 * slack, "{rotation} {peak}");
             }
         }
         // Energies never grow at an impact.
-        for impact in &history.impacts {
-            let (before, after) = impact.energies();
-            prop_assert!(after <= before * (1.0 + 1e-12));
+        for (_, impact) in history.impacts() {
+            prop_assert!(impact.energy_after_j <= impact.energy_before_j * (1.0 + 1e-12));
         }
         // The defect counts the errors of tens of steps, relative to the largest energy there was: the
         // barrier, or what a blow many times stronger put into it.
-        let rates = samples.iter().flat_map(|sample| sample.rates_rad_s);
+        let barrier = Rocking::new(&arch, &ground, gravity, 1e-8).barrier();
+        let rates = history.samples.rates_rad_s.iter();
         let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
         let inertia = link.mechanism.coefficients(0.0).inertia;
-        let energy_ratio = 1.0 + 0.5 * inertia * fastest * fastest / rocking.barrier();
+        let energy_ratio = 1.0 + 0.5 * inertia * fastest * fastest / barrier;
         let bound = (300.0 * request.relative_tolerance + 1e-12) * energy_ratio;
-        prop_assert!(history.energy_defect_ratio <= bound, "{} {bound}", history.energy_defect_ratio);
-        match history.outcome {
-            Outcome::NeverMoved => prop_assert!(history.impacts.is_empty() && request.initial.is_none()),
-            Outcome::Overturned(_) => prop_assert!(history.peak_rotations_rad.iter().any(|peak| *peak > 0.0)),
-            Outcome::StillRocking => prop_assert!(history.end_s == request.end_s),
-            Outcome::Rest => prop_assert!(!history.impacts.is_empty()),
+        prop_assert!(summary.energy_defect_ratio <= bound, "{} {bound}", summary.energy_defect_ratio);
+        match summary.outcome {
+            Outcome::NeverMoved => prop_assert!(summary.impacts == 0 && request.initial.is_none()),
+            Outcome::Overturned(_) => prop_assert!(summary.peak_rotations_rad.iter().any(|peak| *peak > 0.0)),
+            Outcome::StillRocking => prop_assert!(summary.end_s == request.end_s),
+            Outcome::Rest => prop_assert!(summary.impacts > 0),
         }
     }
 }

@@ -1,28 +1,9 @@
 //! What the rest criterion costs: nothing that is reported.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
-use archrock::dynamics::history::{Outcome, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::chain::Structure;
-use archrock::scenario::{self, Scenario};
-
-fn outcome_and_peaks<S: Structure>(
-    structure: &S,
-    scenario: &Scenario,
-    rest_energy_ratio: f64,
-) -> (Outcome, Vec<f64>) {
-    let ground = scenario.ground_motion();
-    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-    let rocking = Rocking::new(structure, &ground, gravity_m_s2, rest_energy_ratio);
-    let history = history(&rocking, &scenario.request(), |_| ControlFlow::Continue(())).unwrap();
-    (
-        history.outcome,
-        history.peak_rotations_rad.as_ref().to_vec(),
-    )
-}
+use archrock::Scenario;
 
 /// A structure that rests instead of hopping on has a hundred-millionth of the barrier less: its hops
 /// would be 1e-8 of the critical rotation high. A later push finds it at `q = 0` instead, which shifts
@@ -38,16 +19,13 @@ fn halving_the_rest_energy_changes_no_scenario() {
         }
         scenarios += 1;
         let scenario = Scenario::read(&path).unwrap();
+        let model = scenario.structure.model(scenario.impact).unwrap();
         let run = |part: f64| {
-            let ratio = scenario.simulation.rest_energy_ratio * part;
-            match &scenario.structure {
-                scenario::Structure::Arch(arch) => {
-                    outcome_and_peaks(&arch.build(scenario.impact).unwrap(), &scenario, ratio)
-                }
-                scenario::Structure::Column(column) => {
-                    outcome_and_peaks(&column.build(scenario.impact), &scenario, ratio)
-                }
-            }
+            let mut request = scenario.request();
+            request.rest_energy_ratio *= part;
+            let summary = model.simulate(&scenario.ground_motion(), &request, None);
+            let summary = summary.unwrap();
+            (summary.outcome, summary.peak_rotations_rad)
         };
         let (outcome, peaks) = run(1.0);
         let (same_outcome, same_peaks) = run(0.5);

@@ -5,17 +5,13 @@ mod program;
 
 use std::f64::consts::PI;
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::Path;
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{History, Outcome, Request, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::chain::Structure;
-use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::mechanics::chain::MechanismChain as _;
 use archrock::output::spectrum::{draw, row};
-use archrock::scenario::{NoSpectrum, Point, Points, Scenario};
+use archrock::scenario::{NoSpectrum, Point, Points};
 use archrock::studies::specimen::Specimen;
+use archrock::{GroundMotion, Outcome, Pulse, Request, Scenario, Sway};
 use program::{archrock, stderr};
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
@@ -192,18 +188,6 @@ fn the_equivalent_column_has_the_a_l_and_the_p_of_the_arch() {
     }
 }
 
-fn shaken<'a, S: Structure>(structure: &'a S, ground: &'a GroundMotion) -> History<'a, S> {
-    let rocking = Rocking::new(structure, ground, 9.81, 1e-8);
-    let request = Request {
-        // Longer than any of these goes on.
-        end_s: 1e3,
-        relative_tolerance: 1e-9,
-        initial: None,
-        output_step_s: None,
-    };
-    history(&rocking, &request, |_| ControlFlow::Continue(())).unwrap()
-}
-
 /// How a pulse to the left ends, in a history of its own.
 fn outcome(
     specimen: &Specimen,
@@ -213,16 +197,13 @@ fn outcome(
 ) -> (Outcome, usize) {
     let amplitude_m_s2 = -9.81 * over_incipient * specimen.incipient_g();
     let ground = GroundMotion::pulse(kind, amplitude_m_s2, duration_s, 0.0);
-    match specimen {
-        Specimen::Arch(arch) => {
-            let history = shaken(arch, &ground);
-            (history.outcome, history.impacts.len())
-        }
-        Specimen::Column(column) => {
-            let history = shaken(column, &ground);
-            (history.outcome, history.impacts.len())
-        }
-    }
+    let request = Request {
+        // Longer than any of these goes on.
+        end_s: 1e3,
+        ..Request::default()
+    };
+    let summary = specimen.model().simulate(&ground, &request, None).unwrap();
+    (summary.outcome, summary.impacts)
 }
 
 /// Every amplitude tried again, to the end of its history: nothing below the least overturns, and the least does

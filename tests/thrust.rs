@@ -1,41 +1,23 @@
 //! The thrust line in motion, against statics, dynamics formulated otherwise, and published numbers.
 #![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{History, Request, Sample, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::chain::{Demand, Mechanism as _, Motion, Structure as _};
-use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::four_link::impact::ImpactModel;
+mod common;
+
+use archrock::mechanics::chain::{Demand, Mechanism as _, MechanismChain as _, Motion};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
 use archrock::mechanics::four_link::thrust::ThrustLine;
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::{FourLinkArch, GroundMotion, History, Pulse, Sample, State, Sway};
+use common::{GRAVITY, four_links, run, sampled, semicircle};
 use nalgebra::{SMatrix, SVector, Vector2};
-use std::ops::ControlFlow;
 
-const G: f64 = 9.81;
-
-fn arch(embrace_deg: f64, thickness_ratio: f64, radius_m: f64, sites: HingeSites) -> Arch {
-    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
-    Arch {
-        mean_radius_m: radius_m,
-        depth_m: 1.0,
-        density_kg_m3: 2000.0,
-        chain: Chain::new(ring, sites, ImpactModel::MaxRestitution)
-            .unwrap()
-            .into(),
-    }
-}
-
-fn arches() -> [Arch; 4] {
+fn arches() -> [FourLinkArch; 4] {
     [
-        arch(180.0, 0.15, 5.0, HingeSites::Anywhere),
-        arch(157.5, 0.15, 5.0, HingeSites::Anywhere),
-        arch(157.5, 0.15, 5.0, HingeSites::Voussoirs(7)),
-        arch(140.0, 0.3, 5.0, HingeSites::Anywhere),
+        semicircle(),
+        four_links(5.0, 0.15, 157.5, HingeSites::Anywhere),
+        four_links(5.0, 0.15, 157.5, HingeSites::Voussoirs(7)),
+        four_links(5.0, 0.3, 140.0, HingeSites::Anywhere),
     ]
 }
 
@@ -69,16 +51,16 @@ fn motions(linkage: &Linkage) -> Vec<Motion> {
 #[test]
 fn at_the_onset_it_is_the_line_of_limit_analysis() {
     for arch in arches() {
-        let incipient = arch.chain.incipient();
+        let incipient = arch.chain().incipient();
         let linkage = arch.link(0).unwrap().mechanism;
         let push = incipient.acceleration_g;
         let onset = motion(&linkage, 0.0, 0.0, push);
         // A_L is exact to rounding where joints are given, and flat in hinges placed to 1e-8 elsewhere.
         assert!(onset.acceleration.abs() < 1e-12, "{}", onset.acceleration);
         let line = linkage.thrust_line(&onset);
-        let at_rest = ThrustLine::at_rest(incipient, arch.chain.ring(), onset.body_force_g);
+        let at_rest = ThrustLine::at_rest(incipient, arch.chain().ring(), onset.body_force_g);
         for i in 0..=50 {
-            let angle = arch.chain.ring().embrace_rad() * f64::from(i) / 50.0;
+            let angle = arch.chain().ring().embrace_rad() * f64::from(i) / 50.0;
             let expected = incipient.thrust_line.at(angle);
             for line in [&line, &at_rest] {
                 let difference = line.at(angle) - expected;
@@ -95,8 +77,8 @@ fn at_the_onset_it_is_the_line_of_limit_analysis() {
 #[test]
 fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
     for arch in arches() {
-        let ring = *arch.chain.ring();
-        let mechanism = arch.chain.link(0).unwrap().mechanism;
+        let ring = *arch.chain().ring();
+        let mechanism = arch.chain().link(0).unwrap().mechanism;
         let linkage = arch.link(0).unwrap().mechanism;
         let [a, b, c, d] = mechanism.hinges_rad();
         let [point_a, point_b, _, point_d] = mechanism.points();
@@ -169,10 +151,10 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
 #[test]
 fn the_line_passes_through_the_hinges_from_both_sides() {
     for arch in arches() {
-        let ring = arch.chain.ring();
+        let ring = arch.chain().ring();
         let embrace = ring.embrace_rad();
         // The thick arch stops at its first impact and has one mechanism only.
-        for link in (0..3).map_while(|index| arch.chain.link(index)) {
+        for link in (0..3).map_while(|index| arch.chain().link(index)) {
             let (mechanism, linkage) = (link.mechanism, link.link.mechanism);
             for motion in motions(&linkage) {
                 let line = linkage.thrust_line(&motion);
@@ -197,10 +179,10 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
 
 #[test]
 fn the_parts_that_stand_carry_their_weight_to_the_springings() {
-    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
-    let ring = arch.chain.ring();
+    let arch = semicircle();
+    let ring = arch.chain().ring();
     let linkage = arch.link(0).unwrap().mechanism;
-    let a = arch.chain.link(0).unwrap().mechanism.hinges_rad()[0];
+    let a = arch.chain().link(0).unwrap().mechanism.hinges_rad()[0];
     let line = linkage.thrust_line(&motion(&linkage, 0.02, 0.1, 0.0));
     // Nothing is accelerated before A: between springing and hinge the force grows by the weight.
     let weight = line.at(a).linear - line.at(0.0).linear;
@@ -211,13 +193,13 @@ fn the_parts_that_stand_carry_their_weight_to_the_springings() {
 #[test]
 fn at_rest_the_line_stays_inside_up_to_the_onset() {
     for arch in arches() {
-        let ring = arch.chain.ring();
+        let ring = arch.chain().ring();
         let limit_g = arch.incipient_g();
         for part in [-1.0, -0.7, 0.0, 0.3, 0.999] {
             let body_force = Vector2::new(part * limit_g, -1.0);
             assert_eq!(arch.demand_at_rest(body_force).excess_ratio, 0.0, "{part}");
             // Equilibrium of the whole ring: what comes in and the load go out.
-            let line = ThrustLine::at_rest(arch.chain.incipient(), ring, body_force);
+            let line = ThrustLine::at_rest(arch.chain().incipient(), ring, body_force);
             let load = line.at(ring.embrace_rad()).linear - line.at(0.0).linear;
             let mass = ring.moments_to(ring.embrace_rad()).mass;
             assert!((load - body_force * mass).norm() < 1e-14);
@@ -233,7 +215,7 @@ fn at_rest_the_line_stays_inside_up_to_the_onset() {
 
 #[test]
 fn a_push_beyond_the_onset_at_rest_would_leave_the_ring() {
-    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
+    let arch = semicircle();
     let demand = arch.demand_at_rest(Vector2::new(1.2 * arch.incipient_g(), -1.0));
     assert!(demand.excess_ratio > 0.01, "{demand:?}");
 }
@@ -264,60 +246,51 @@ fn a_section_in_tension_has_a_finite_excess_that_grows_with_it() {
     }
 }
 
-type ArchSample = Sample<[f64; 3]>;
-
-fn pulse_history(arch: &Arch, amplitude_g: f64, duration_s: f64, end_s: f64) -> Vec<ArchSample> {
-    let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude_g * G, duration_s, 0.0);
-    let rocking = Rocking::new(arch, &ground, G, 1e-8);
-    let mut samples = Vec::new();
-    run(&rocking, end_s, |sample| {
-        samples.push(*sample);
-        ControlFlow::Continue(())
-    });
-    samples
-}
-
-fn run<'a>(
-    rocking: &Rocking<'a, Arch>,
+fn pulse_history(
+    arch: &FourLinkArch,
+    amplitude_g: f64,
+    (start_s, duration_s): (f64, f64),
     end_s: f64,
-    sink: impl FnMut(&ArchSample) -> ControlFlow<()>,
-) -> History<'a, Arch> {
-    let request = Request {
-        end_s,
-        relative_tolerance: 1e-9,
-        initial: None,
-        output_step_s: Some(0.001),
-    };
-    history(rocking, &request, sink).unwrap()
+) -> History {
+    let ground = GroundMotion::pulse(
+        Pulse::Rectangular,
+        amplitude_g * GRAVITY,
+        duration_s,
+        start_s,
+    );
+    run(arch, &ground, &sampled(end_s, 0.001))
 }
 
 /// Eccentricities of the line at a sample of the first half cycle, swaying right.
-fn eccentricity(arch: &Arch, sample: &ArchSample, angle_deg: f64) -> f64 {
-    assert_eq!(sample.state, "right");
+fn eccentricity(arch: &FourLinkArch, sample: &Sample, angle_deg: f64) -> f64 {
+    assert_eq!(sample.state, State::Rocking(Sway::Right));
     let linkage = arch.link(0).unwrap().mechanism;
     let motion = motion(
         &linkage,
         -sample.rotations_rad[0],
-        -sample.rates_rad_s[0] * (arch.mean_radius_m / G).sqrt(),
-        -sample.ground_acceleration_m_s2 / G,
+        -sample.rates_rad_s[0] * (arch.length_m() / GRAVITY).sqrt(),
+        -sample.ground_acceleration_m_s2 / GRAVITY,
     );
     let line = linkage.thrust_line(&motion);
     line.section(angle_deg.to_radians()).eccentricity_ratio
 }
 
-fn at(samples: &[ArchSample], time_s: f64) -> &ArchSample {
-    let found = samples.iter().find(|sample| sample.time_s >= time_s);
+fn at(history: &History, time_s: f64) -> Sample {
+    let found = history
+        .samples
+        .iter()
+        .find(|sample| sample.time_s >= time_s);
     found.expect("a sample at that time")
 }
 
 /// Published to two digits: |e|/t about 0.55 at the joint at 22.5 degrees, after the pulse.
 #[test]
 fn seven_voussoirs_leave_the_ring_at_the_second_joint() {
-    let arch = arch(157.5, 0.15, 10.0, HingeSites::Voussoirs(7));
-    let samples = pulse_history(&arch, -0.5, 0.25, 0.5);
+    let arch = common::seven_voussoirs();
+    let history = pulse_history(&arch, -0.5, (0.0, 0.25), 0.5);
     for time_s in [0.26, 0.3, 0.4, 0.5] {
-        let sample = at(&samples, time_s);
-        let e = eccentricity(&arch, sample, 22.5);
+        let sample = at(&history, time_s);
+        let e = eccentricity(&arch, &sample, 22.5);
         assert!((e + 0.55).abs() < 5e-3, "{e}");
         // No joint is worse, so that this is the demand.
         assert!((sample.demand.excess_ratio - (e.abs() - 0.5)).abs() < 1e-9);
@@ -327,17 +300,17 @@ fn seven_voussoirs_leave_the_ring_at_the_second_joint() {
 /// Published to two digits: about 0.52 near 30 and 86 degrees after the pulse; near 78 during it.
 #[test]
 fn the_semicircle_leaves_the_ring_beside_its_hinges() {
-    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
-    let samples = pulse_history(&arch, -0.3, 0.2, 1.0);
+    let arch = semicircle();
+    let history = pulse_history(&arch, -0.3, (0.0, 0.2), 1.0);
     for (time_s, angle_deg, edge) in [(0.05, 78.0, 1.0), (0.5, 30.0, -1.0), (0.5, 86.0, 1.0)] {
-        let e = eccentricity(&arch, at(&samples, time_s), angle_deg);
+        let e = eccentricity(&arch, &at(&history, time_s), angle_deg);
         assert!((e * edge - 0.52).abs() < 6e-3, "{angle_deg}: {e}");
     }
     // Finely enough divided: a hundred times finer finds the same but for 1e-4 of the thickness.
     for time_s in [0.05, 0.15, 0.5, 0.9] {
-        let sample = at(&samples, time_s);
+        let sample = at(&history, time_s);
         let fine = (0..=18_000)
-            .map(|i| eccentricity(&arch, sample, f64::from(i) * 0.01).abs() - 0.5)
+            .map(|i| eccentricity(&arch, &sample, f64::from(i) * 0.01).abs() - 0.5)
             .fold(0.0, f64::max);
         assert!((sample.demand.excess_ratio - fine).abs() < 1e-4, "{fine}");
     }
@@ -345,21 +318,16 @@ fn the_semicircle_leaves_the_ring_beside_its_hinges() {
 
 #[test]
 fn the_record_of_a_history_is_that_of_its_samples() {
-    let arch = arch(157.5, 0.15, 10.0, HingeSites::Voussoirs(7));
-    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.4 * G, 0.1, 0.5);
-    let rocking = Rocking::new(&arch, &ground, G, 1e-8);
-    let mut samples: Vec<ArchSample> = Vec::new();
-    let record = run(&rocking, 3.0, |sample| {
-        samples.push(*sample);
-        ControlFlow::Continue(())
-    })
-    .thrust
-    .unwrap();
-    let (still, moving): (Vec<&ArchSample>, Vec<&ArchSample>) =
-        samples.iter().partition(|sample| sample.state == "rest");
+    let arch = common::seven_voussoirs();
+    let history = pulse_history(&arch, -0.4, (0.5, 0.1), 3.0);
+    let record = history.summary.thrust.unwrap();
+    let samples: Vec<Sample> = history.samples.iter().collect();
+    let (still, moving): (Vec<&Sample>, Vec<&Sample>) = samples
+        .iter()
+        .partition(|sample| sample.state == State::Rest);
     assert!(still.len() > 400 && moving.len() > 100);
     assert!(still.iter().all(|sample| sample.demand.excess_ratio == 0.0));
-    let largest = |of: &dyn Fn(&ArchSample) -> f64| {
+    let largest = |of: &dyn Fn(&Sample) -> f64| {
         let values = samples.iter().map(|sample| (of(sample), sample.time_s));
         values.fold(
             (0.0, 0.0),
@@ -391,12 +359,9 @@ fn the_record_of_a_history_is_that_of_its_samples() {
 
 #[test]
 fn where_nothing_moves_there_are_no_shares() {
-    let arch = arch(180.0, 0.15, 5.0, HingeSites::Anywhere);
-    let ground = GroundMotion::pulse(Pulse::Rectangular, 0.1 * G, 0.5, 0.0);
-    let rocking = Rocking::new(&arch, &ground, G, 1e-8);
-    let record = run(&rocking, 1.0, |_| ControlFlow::Continue(()))
-        .thrust
-        .unwrap();
+    let arch = semicircle();
+    let history = pulse_history(&arch, 0.1, (0.0, 0.5), 1.0);
+    let record = history.summary.thrust.unwrap();
     assert_eq!(record.shares_within(), None);
     assert_eq!(record.largest_excess.value, 0.0);
     assert!(record.largest_friction.value > 0.1);

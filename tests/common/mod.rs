@@ -1,85 +1,93 @@
 //! What several test files share: arches by their published names, and short ways to run them.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
-use std::f64::consts::PI;
-use std::ops::ControlFlow;
-use std::sync::Arc;
-
-use archrock::dynamics::ground::GroundMotion;
-use archrock::dynamics::history::{History, Request, Sample, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
+use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::Ring;
+use archrock::{
+    Arch, FourLinkArch, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample, Sway,
+};
 
 pub const GRAVITY: f64 = 9.81;
 
+pub const REST_ENERGY_RATIO: f64 = 1e-8;
+
 pub fn ring(thickness_ratio: f64, embrace_deg: f64) -> Ring {
-    // 180 degrees must be pi itself, the largest angle allowed.
-    Ring::new(thickness_ratio, embrace_deg / 180.0 * PI).unwrap()
+    Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap()
 }
 
-pub fn chain_of(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Arc<Chain> {
-    let ring = ring(thickness_ratio, embrace_deg);
-    Arc::new(Chain::new(ring, sites, ImpactModel::MaxRestitution).unwrap())
-}
-
-pub fn arch(chain: &Arc<Chain>, mean_radius_m: f64) -> Arch {
-    Arch {
-        mean_radius_m,
-        depth_m: 1.0,
-        density_kg_m3: 2000.0,
-        chain: chain.clone(),
+pub fn arch(mean_radius_m: f64, thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Arch {
+    let arch = Arch::new(mean_radius_m, thickness_ratio, embrace_deg).unwrap();
+    match sites {
+        HingeSites::Anywhere => arch,
+        HingeSites::Voussoirs(voussoirs) => arch.with_voussoirs(voussoirs).unwrap(),
     }
 }
 
+/// An arch under the impact model of the paper.
+pub fn four_links(
+    mean_radius_m: f64,
+    thickness_ratio: f64,
+    embrace_deg: f64,
+    sites: HingeSites,
+) -> FourLinkArch {
+    let arch = arch(mean_radius_m, thickness_ratio, embrace_deg, sites);
+    FourLinkArch::new(arch, ImpactModel::MaxRestitution).unwrap()
+}
+
 /// The arch of most published numbers: a semicircle of t/R = 0.15, R = 5 m.
-pub fn semicircle() -> Arch {
-    arch(&chain_of(0.15, 180.0, HingeSites::Anywhere), 5.0)
+pub fn semicircle() -> FourLinkArch {
+    four_links(5.0, 0.15, 180.0, HingeSites::Anywhere)
 }
 
 /// 157.5 degrees, t/R = 0.15, seven voussoirs, R = 10 m.
-pub fn seven_voussoirs() -> Arch {
-    arch(&chain_of(0.15, 157.5, HingeSites::Voussoirs(7)), 10.0)
+pub fn seven_voussoirs() -> FourLinkArch {
+    four_links(10.0, 0.15, 157.5, HingeSites::Voussoirs(7))
 }
 
+/// From rest, with samples at the start and at the end.
 pub fn request(end_s: f64) -> Request {
     Request {
+        gravity_m_s2: GRAVITY,
         end_s,
-        relative_tolerance: 1e-9,
+        output_step_s: end_s,
         initial: None,
-        output_step_s: None,
+        relative_tolerance: 1e-9,
+        rest_energy_ratio: REST_ENERGY_RATIO,
+    }
+}
+
+pub fn sampled(end_s: f64, output_step_s: f64) -> Request {
+    Request {
+        output_step_s,
+        ..request(end_s)
     }
 }
 
 pub fn released(end_s: f64, sway: Sway, rotation_rad: f64) -> Request {
     Request {
-        initial: Some((sway, rotation_rad)),
+        initial: Some(Initial { sway, rotation_rad }),
         ..request(end_s)
     }
 }
 
-pub const REST_ENERGY_RATIO: f64 = 1e-8;
-
-pub fn run<'a>(arch: &'a Arch, ground: &'a GroundMotion, request: &Request) -> History<'a, Arch> {
-    run_sampled(arch, ground, request).0
+pub fn run(model: &impl Model, ground: &GroundMotion, request: &Request) -> History {
+    model.history(ground, request).unwrap()
 }
 
-pub fn run_sampled<'a>(
-    arch: &'a Arch,
-    ground: &'a GroundMotion,
+/// A history and its samples.
+pub fn run_sampled(
+    model: &impl Model,
+    ground: &GroundMotion,
     request: &Request,
-) -> (History<'a, Arch>, Vec<Sample<[f64; 3]>>) {
-    let rocking = Rocking::new(arch, ground, GRAVITY, REST_ENERGY_RATIO);
-    let mut samples = Vec::new();
-    let history = history(&rocking, request, |sample| {
-        samples.push(*sample);
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+) -> (History, Vec<Sample>) {
+    let history = run(model, ground, request);
+    let samples = history.samples.iter().collect();
     (history, samples)
+}
+
+/// Instants of the impacts.
+pub fn impact_times_s(history: &History) -> Vec<f64> {
+    history.impacts().map(|(time_s, _)| time_s).collect()
 }
 
 /// Random numbers in [0, 1) that are the same on every machine (SplitMix64).
@@ -145,4 +153,9 @@ pub fn assert_hinges(hinges_rad: [f64; 4], printed_deg: [f64; 4], tolerance_deg:
             degrees(hinges_rad)
         );
     }
+}
+
+/// Rotations or rates of the three bodies of an arch.
+pub fn three(of_bodies: &[f64]) -> [f64; 3] {
+    of_bodies.try_into().unwrap()
 }

@@ -3,58 +3,31 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
-use std::ops::ControlFlow;
-use std::sync::LazyLock;
 
-pub use crate::common::Random;
-use archrock::dynamics::ground::GroundMotion;
-use archrock::dynamics::history::{History, Request, Sample, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::mechanism::Sway;
-use archrock::scenario;
+pub use crate::common::{Random, semicircle};
+use archrock::{FourLinkArch, GroundMotion, History, Initial, Model as _, Request, Sample};
 
 pub const G: f64 = 9.81;
 
-/// The semicircle of the paper with a mean radius of 5 m; its mechanisms are found once.
-pub fn semicircle() -> Arch {
-    static SEMICIRCLE: LazyLock<Arch> = LazyLock::new(|| {
-        let arch = scenario::Arch {
-            mean_radius_m: 5.0,
-            thickness_ratio: 0.15,
-            embrace_deg: 180.0,
-            depth_m: 1.0,
-            density_kg_m3: 2000.0,
-            voussoirs: None,
-        };
-        arch.build(ImpactModel::MaxRestitution).unwrap()
-    });
-    SEMICIRCLE.clone()
-}
-
 /// History with samples every 5 ms. It comes to rest below 1e-8 of the energy barrier under the gravity `G`,
 /// whatever gravity is.
-pub fn run<'a>(
-    arch: &'a Arch,
-    ground: &'a GroundMotion,
+pub fn run(
+    model: &FourLinkArch,
+    ground: &GroundMotion,
     gravity_m_s2: f64,
-    initial: Option<(Sway, f64)>,
+    initial: Option<Initial>,
     end_s: f64,
-) -> (History<'a, Arch>, Vec<Sample<[f64; 3]>>) {
+) -> (History, Vec<Sample>) {
     let request = Request {
+        gravity_m_s2,
         end_s,
-        relative_tolerance: 1e-10,
+        output_step_s: 0.005,
         initial,
-        output_step_s: Some(0.005),
+        relative_tolerance: 1e-10,
+        rest_energy_ratio: 1e-8 * G / gravity_m_s2,
     };
-    let rocking = Rocking::new(arch, ground, gravity_m_s2, 1e-8 * G / gravity_m_s2);
-    let mut samples = Vec::new();
-    let history = history(&rocking, &request, |sample| {
-        samples.push(*sample);
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+    let history = model.history(ground, &request).unwrap();
+    let samples = history.samples.iter().collect();
     (history, samples)
 }
 
