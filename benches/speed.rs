@@ -3,45 +3,32 @@
 //! The arch is a semicircle of mean radius 5 m and thickness ratio 0.15 whose hinges may sit anywhere.
 //! Run with `cargo bench`.
 
-use std::f64::consts::PI;
-use std::ops::ControlFlow;
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Outcome, Request, history};
 use archrock::dynamics::hybrid::engine::HybridSystem;
 use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
-use archrock::mechanics::arch::Arch;
-use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::mechanism::{HingeSites, Sway};
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::{
+    Arch, FourLinkArch, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sway,
+};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 
 const GRAVITY_M_S2: f64 = 9.81;
-const REST_ENERGY_RATIO: f64 = 1e-8;
-const RELATIVE_TOLERANCE: f64 = 1e-9;
 
 /// The arch with its first links computed, which histories share.
-static ARCH: LazyLock<Arch> = LazyLock::new(|| {
-    let chain = new_chain();
-    let _ = chain.link(30);
-    Arch {
-        mean_radius_m: 5.0,
-        depth_m: 1.0,
-        density_kg_m3: 2000.0,
-        chain: Arc::new(chain),
-    }
+static ARCH: LazyLock<FourLinkArch> = LazyLock::new(|| {
+    let arch = new_arch();
+    let _ = arch.chain().link(30);
+    arch
 });
 
 fn main() {
     divan::main();
 }
 
-fn new_chain() -> Chain {
-    let ring = Ring::new(0.15, PI).expect("a ring");
-    Chain::new(ring, HingeSites::Anywhere, ImpactModel::MaxRestitution).expect("it stands")
+fn new_arch() -> FourLinkArch {
+    let arch = Arch::new(5.0, 0.15, 180.0).expect("an arch");
+    FourLinkArch::new(arch, ImpactModel::MaxRestitution).expect("it stands")
 }
 
 fn pulse(amplitude_g: f64, duration_s: f64) -> GroundMotion {
@@ -52,14 +39,17 @@ fn pulse(amplitude_g: f64, duration_s: f64) -> GroundMotion {
 /// Limit analysis and thirty impacts of a new arch.
 #[divan::bench]
 fn chain_of_30_links(bencher: Bencher) {
-    bencher.bench(|| new_chain().link(30).map(|link| link.link.restitution));
+    bencher.bench(|| {
+        let arch = new_arch();
+        arch.chain().link(30).map(|link| link.link.restitution)
+    });
 }
 
 /// One evaluation of the equation of motion.
 #[divan::bench]
 fn right_hand_side(bencher: Bencher) {
     let ground = pulse(-0.3, 0.2);
-    let rocking = Rocking::new(&*ARCH, &ground, GRAVITY_M_S2, REST_ENERGY_RATIO);
+    let rocking = Rocking::new(&*ARCH, &ground, GRAVITY_M_S2, 1e-8);
     let mode = rocking.released(Sway::Right);
     let state = RockingState::new(0.02, 0.1, 0.0);
     bencher.bench(|| rocking.slope(mode, 0, 0.1, divan::black_box(&state)));
@@ -69,16 +59,13 @@ fn right_hand_side(bencher: Bencher) {
 #[divan::bench(args = [(-0.3, 0.2), (-0.6, 0.5)])]
 fn history_of_a_rectangular_pulse(bencher: Bencher, (amplitude_g, duration_s): (f64, f64)) {
     let ground = pulse(amplitude_g, duration_s);
-    let rocking = Rocking::new(&*ARCH, &ground, GRAVITY_M_S2, REST_ENERGY_RATIO);
     let request = Request {
         end_s: 60.0,
-        relative_tolerance: RELATIVE_TOLERANCE,
-        initial: None,
-        output_step_s: None,
+        ..Request::default()
     };
     bencher.bench(|| {
-        let history = history(&rocking, &request, |_| ControlFlow::Continue(()));
-        history.map(|history| history.outcome)
+        let summary = ARCH.simulate(&ground, &request, None);
+        summary.map(|summary| summary.outcome)
     });
 }
 
@@ -92,17 +79,11 @@ fn map_of_30_by_30_pulses(bencher: Bencher) {
             pulse(0.15 + 1.35 * row, 0.05 + 0.95 * column)
         })
         .collect();
-    let request = Request {
-        end_s: 10.0,
-        relative_tolerance: RELATIVE_TOLERANCE,
-        initial: None,
-        output_step_s: None,
-    };
+    let request = Request::default();
     bencher.counter(ItemsCount::new(grounds.len())).bench(|| {
         let overturned = grounds.iter().filter(|ground| {
-            let rocking = Rocking::new(&*ARCH, ground, GRAVITY_M_S2, REST_ENERGY_RATIO);
-            let history = history(&rocking, &request, |_| ControlFlow::Continue(()));
-            history.is_ok_and(|history| matches!(history.outcome, Outcome::Overturned(_)))
+            let summary = ARCH.simulate(ground, &request, None);
+            summary.is_ok_and(|summary| matches!(summary.outcome, Outcome::Overturned(_)))
         });
         overturned.count()
     });

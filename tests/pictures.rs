@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::output::part::Rows;
 use archrock::output::{map, pictures};
@@ -153,10 +154,7 @@ fn joints_are_drawn_where_there_are_voussoirs() {
     let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
     let arch = four_links(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();
-    for picture in [
-        pictures::limit(chain),
-        pictures::impact(chain, 1).unwrap(),
-    ] {
+    for picture in [pictures::limit(chain), pictures::impact(chain, 1).unwrap()] {
         let document = Document::parse(&picture).unwrap();
         assert_eq!(named(&document, "joint").len(), 8);
     }
