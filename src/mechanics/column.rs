@@ -308,8 +308,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn column(slenderness_rad: f64, model: ImpactModel) -> Column {
-        Column::new(2.0, 2.0 * slenderness_rad.tan(), 1.0, 1.0, model)
+    fn column(slenderness_rad: f64, model: ImpactModel) -> RockingColumn {
+        let column = Column::new(2.0, 2.0 * slenderness_rad.tan()).unwrap();
+        RockingColumn::new(&column, model).unwrap()
     }
 
     proptest! {
@@ -344,7 +345,9 @@ mod tests {
 
     #[test]
     fn mass_and_size_are_those_of_the_block() {
-        let column = Column::new(4.0, 0.8, 0.5, 2200.0, ImpactModel::MaxRestitution);
+        let column = Column::new(4.0, 0.8).unwrap().with_depth_m(0.5).unwrap();
+        let column = column.with_density_kg_m3(2200.0).unwrap();
+        let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
         let kg = column.mass_unit_kg() * column.first.mechanism.mass;
         assert!((kg - 4.0 * 0.8 * 0.5 * 2200.0).abs() < 1e-9);
         assert!((column.length_m() - 2.0 * 1.04_f64.sqrt()).abs() < 1e-15);

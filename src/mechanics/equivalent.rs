@@ -74,15 +74,16 @@ fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::column::Column;
+    use crate::mechanics::column::{Column, RockingColumn};
     use crate::mechanics::four_link::impact::ImpactModel;
 
     /// Slender and fat; `step^4 = 1e-12` and rounding by `1e-16 / 1e-3` are the errors.
     #[test]
     fn a_column_is_its_own_equivalent_block() {
         for (height_m, width_m) in [(1e3, 1e-3), (4.0, 0.8), (1.0, 1.0), (1.0, 3.0)] {
-            let column = Column::new(height_m, width_m, 1.0, 1.0, ImpactModel::MaxRestitution);
-            let blocks = equivalent(&column, 1.62).unwrap();
+            let column = Column::new(height_m, width_m).unwrap();
+            let model = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
+            let blocks = equivalent(&model, 1.62).unwrap();
             assert!((blocks.slenderness_rad - column.slenderness_rad()).abs() < 1e-15);
             let half_diagonal_m = 0.5 * (height_m * height_m + width_m * width_m).sqrt();
             for block in [blocks.at_rest.unwrap(), blocks.at_critical.unwrap()] {

@@ -147,10 +147,12 @@ impl Chain {
 mod tests {
     use super::*;
     use crate::mechanics::chain::Mechanism as _;
+    use crate::mechanics::four_link::limit::incipient;
 
     fn chain(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Chain {
         let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
-        Chain::new(ring, sites, ImpactModel::MaxRestitution).unwrap()
+        let onset = incipient(&ring, sites).unwrap();
+        Chain::new(ring, sites, onset, ImpactModel::MaxRestitution)
     }
 
     #[test]

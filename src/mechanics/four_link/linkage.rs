@@ -370,7 +370,7 @@ mod tests {
         #[test]
         fn the_loop_is_closed(part in 0.0_f64..1.2) {
             let (_, _, linkage) = semicircle();
-            let pose = linkage.pose(part * linkage.limit_rad());
+            let bars = linkage.bars(part * linkage.limit_rad());
             let end = bars.left + bars.middle - bars.right;
             prop_assert!((end - linkage.ground).norm() < 1e-14);
             prop_assert!((bars.right.norm() - linkage.right.bar.norm()).abs() < 1e-14);
