@@ -15,7 +15,8 @@ use crate::mechanics::structure::{Demand, Link, Mechanism, Structure};
 pub type Rotations<S> = <<S as Structure>::Mechanism as Mechanism>::Rotations;
 
 /// How a history ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// The structure never left the rest.
     NeverMoved,
