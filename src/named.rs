@@ -8,8 +8,8 @@ macro_rules! named {
         pub enum $enum:ident { $($(#[$variant_attribute:meta])* $variant:ident = $name:literal,)+ }
     ) => {
         $(#[$attribute])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum $enum { $($(#[$variant_attribute])* $variant,)+ }
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        pub enum $enum { $($(#[$variant_attribute])* #[serde(rename = $name)] $variant,)+ }
 
         impl $enum {
             /// All variants, in the order of their definition.

@@ -5,7 +5,9 @@ mod common;
 
 use std::f64::consts::{LN_10, TAU};
 
-use archrock::studies::fragility::{Errors, Fragility, Level, NoFit, Observation, fit, fractions};
+use archrock::studies::fragility::{
+    Errors, Fraction, Fragility, NoFit, Observation, fit, fractions,
+};
 use common::Random;
 use proptest::prelude::*;
 
@@ -663,7 +665,7 @@ fn messages_say_what_was_seen() {
 fn fractions_by_level() {
     let mut sample = counts(&[(0.4, 3, 3), (0.2, 2, 0), (0.3, 4, 1)]);
     sample.extend(counts(&[(0.2, 1, 1)]));
-    let level = |intensity, cases, overturned| Level {
+    let level = |intensity, cases, overturned| Fraction {
         intensity,
         cases,
         overturned,

@@ -3,10 +3,10 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use archrock::output::part::{Header, Rows};
-use archrock::output::{Folder, map as output, verdict};
-use archrock::scenario::{Boundary, Cell, Cells, Quantity, Scenario};
-use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
+use archrock::output::{Folder, ending, map as output};
+use archrock::scenario::Scenario;
+use archrock::studies::boundary::{BoundaryRow, MapRow, MapWithBoundary};
+use archrock::studies::map::{CellResult, CellRow, OverturningMap};
 
 use super::Failure;
 use super::study::{Options, say, write_summary};
@@ -27,9 +27,6 @@ pub struct BoundaryOption {
     no_impact: bool,
 }
 
-/// Name of the study in its parts.
-pub const STUDY: &str = "map";
-
 const PICTURE: &str = "map.svg";
 const SUMMARY: &str = "map.json";
 const BOUNDARY: &str = "no_impact.csv";
@@ -39,32 +36,22 @@ const TABLE: &str = "map.csv";
 pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let scenario = Scenario::read(&options.scenario)?;
-    let cells = cells(&scenario).map_err(|failure| options.about_scenario(failure))?;
-    arguments.boundary.check(&cells)?;
-    let header = Header::new(STUDY, scenario.to_toml(), Vec::new(), cells.count());
-    let row = |index| output::row(&cells, index);
-    let Some(computed) = options.compute(header, quiet, row)? else {
+    let map = overturning_map(&scenario).map_err(|failure| options.about_scenario(failure))?;
+    let study = MapWithBoundary::new(&map);
+    arguments.boundary.check(&study)?;
+    let Some((rows, part)) = options.compute(&study, quiet)? else {
         return Ok(());
     };
-    options.on_threads(|| {
-        let folder = options.folder();
-        finish(
-            &scenario,
-            &computed.rows,
-            &folder,
-            arguments.boundary,
-            quiet,
-        )
-    })??;
-    computed.remove_part()
+    finish(&map, rows, &options.folder(), arguments.boundary, quiet)?;
+    Ok(part.remove()?)
 }
 
-fn cells(scenario: &Scenario) -> Result<Cells<'_>, Failure> {
+fn overturning_map(scenario: &Scenario) -> Result<OverturningMap<'_>, Failure> {
     if scenario.initial.is_some() {
         let message = "the histories of a map start from rest: leave [initial] out";
         return Err(Failure::Input(message.to_owned()));
     }
-    Cells::new(scenario).ok_or_else(|| {
+    OverturningMap::new(scenario).ok_or_else(|| {
         let message = "the scenario has no [map]: give it a table with two axes, such as\n\n\
                        [map]\n\
                        duration_s = { from = 0.05, to = 1.0, count = 40 }\n\
@@ -74,8 +61,8 @@ fn cells(scenario: &Scenario) -> Result<Cells<'_>, Failure> {
 }
 
 impl BoundaryOption {
-    fn check(self, cells: &Cells<'_>) -> Result<(), Failure> {
-        if has_boundary(cells) {
+    fn check(self, study: &MapWithBoundary<'_>) -> Result<(), Failure> {
+        if study.has_boundary() {
             return Ok(());
         }
         self.refuse()
@@ -91,69 +78,53 @@ impl BoundaryOption {
     }
 }
 
-/// The amplitude, where it is one of the axes, goes upwards.
-fn has_boundary(cells: &Cells<'_>) -> bool {
-    cells.axes()[1].quantity == Quantity::Amplitude
-}
-
-/// The results of a map whose rows are all there, from a part of it or from several.
+/// The results of a map whose rows are all there, from several parts of it.
 pub fn merge(
     scenario: &str,
-    rows: &Rows,
+    rows: Vec<MapRow>,
     folder: &Path,
     boundary: BoundaryOption,
     quiet: bool,
 ) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
-    boundary.check(&cells(&scenario)?)?;
-    finish(&scenario, rows, folder, boundary, quiet)
+    let map = overturning_map(&scenario)?;
+    boundary.check(&MapWithBoundary::new(&map))?;
+    finish(&map, rows, folder, boundary, quiet)
 }
 
 /// Writes the results.
 fn finish(
-    scenario: &Scenario,
-    rows: &Rows,
+    map: &OverturningMap<'_>,
+    rows: Vec<MapRow>,
     path: &Path,
     boundary: BoundaryOption,
     quiet: bool,
 ) -> Result<(), Failure> {
-    let cells = cells(scenario)?;
-    let along_x = if has_boundary(&cells) {
-        cells.values()[0].len()
-    } else {
-        0
-    };
-    let found: Vec<_> = (0..along_x)
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|x| cells.boundary(x))
-        .collect();
-    let failed = found.iter().filter_map(|found| found.as_ref().err()).next();
-    let failed = failed.map(ToString::to_string);
-    let boundaries: Vec<Boundary> = found.into_iter().filter_map(Result::ok).flatten().collect();
+    let scenario = map.scenario();
+    let (cells, boundaries) = MapRow::sorted(rows);
     let mut files = vec![PICTURE, SUMMARY, TABLE];
     if boundary.no_impact {
         files.insert(0, BOUNDARY);
     }
     let mut folder = Folder::open(path, &files)?;
     if boundary.no_impact {
-        output::write_boundaries(folder.file(BOUNDARY), &cells, &boundaries)?;
+        output::write_boundaries(folder.file(BOUNDARY), map.axes()[0], &boundaries)?;
     } else {
         folder.forget(BOUNDARY);
     }
     let title = scenario.title.as_deref().unwrap_or("Overturning map");
-    let picture = output::draw(title, &cells, rows, &boundaries);
+    let picture = output::draw(title, map, &cells, &boundaries);
     folder
         .file(PICTURE)
         .write_all(picture.as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-    write_summary(folder.file(SUMMARY), scenario, rows)?;
-    output::write_table(folder.file(TABLE), &cells, rows)?;
+    write_summary(folder.file(SUMMARY), scenario, cells.len())?;
+    output::write_table(folder.file(TABLE), map.axes(), &cells)?;
     folder.complete()?;
     if !quiet {
-        say(&summary(&cells, rows));
-        if let Some(error) = failed {
-            say(&format!("  the boundary without impact has gaps: {error}"));
+        say(&summary(&cells));
+        if let Some(reason) = first_failed(&boundaries) {
+            say(&format!("  the boundary without impact has gaps: {reason}"));
         }
         say(&format!(
             "  results in {}: {}",
@@ -165,8 +136,8 @@ fn finish(
 }
 
 /// How many cells came to what, and why some to nothing.
-fn summary(cells: &Cells<'_>, rows: &Rows) -> String {
-    let counts = output::counts(rows);
+fn summary(cells: &[CellRow]) -> String {
+    let counts = output::counts(cells);
     let outcomes = [
         ("never_moved", "never move"),
         ("rest", "come to rest"),
@@ -177,18 +148,24 @@ fn summary(cells: &Cells<'_>, rows: &Rows) -> String {
         ),
         ("cannot_stand", "cannot stand"),
         ("not_four_links", "are too thick for four links"),
-        (verdict::FAILED, "failed"),
+        (ending::FAILED, "failed"),
     ];
     let parts: Vec<_> = outcomes
         .into_iter()
         .filter_map(|(outcome, label)| Some(format!("{} {label}", counts.get(outcome)?)))
         .collect();
-    let mut text = format!("{} cells: {}", rows.len(), parts.join(", "));
-    let reason = rows.iter().find_map(|(index, row)| {
-        (output::outcome(row) == verdict::FAILED).then(|| cells.cell(*index))
+    let mut text = format!("{} cells: {}", cells.len(), parts.join(", "));
+    let reason = cells.iter().find_map(|cell| match &cell.result {
+        CellResult::Failed(reason) => Some(reason),
+        _ => None,
     });
-    if let Some(Cell::Failed(error)) = reason {
-        text += &format!("; the first that failed: {error}");
+    if let Some(reason) = reason {
+        text += &format!("; the first that failed: {reason}");
     }
     text
+}
+
+/// Why a boundary could not be found, if there is such.
+fn first_failed(boundaries: &[BoundaryRow]) -> Option<&String> {
+    boundaries.iter().find_map(|row| row.result.as_ref().err())
 }

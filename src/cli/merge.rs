@@ -2,7 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use archrock::output::part;
+use archrock::studies::boundary::MapWithBoundary;
+use archrock::studies::part;
+use archrock::studies::runner::Study as _;
+use archrock::studies::spectrum::OverturningSpectrum;
+use archrock::studies::suite::RecordSuite;
 
 use super::Failure;
 use super::map::{self, BoundaryOption};
@@ -22,20 +26,25 @@ pub struct Arguments {
 }
 
 pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let (header, rows) = part::merge(&arguments.parts)?;
-    let beside = arguments.parts[0].parent();
+    let parts = &arguments.parts;
+    let beside = parts[0].parent();
     let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
     let beside = beside.unwrap_or(Path::new("."));
     let folder = arguments.out.as_deref().unwrap_or(beside);
-    match header.study.as_str() {
-        map::STUDY => map::merge(&header.scenario, &rows, folder, arguments.boundary, quiet),
-        spectrum::STUDY => {
+    match part::read_header(&parts[0])?.study.as_str() {
+        MapWithBoundary::NAME => {
+            let (header, rows) = part::merge(parts)?;
+            map::merge(&header.scenario, rows, folder, arguments.boundary, quiet)
+        }
+        OverturningSpectrum::NAME => {
             arguments.boundary.refuse()?;
+            let (header, rows) = part::merge(parts)?;
             spectrum::merge(&header.scenario, &rows, folder, quiet)
         }
-        suite::STUDY => {
+        RecordSuite::NAME => {
             arguments.boundary.refuse()?;
-            suite::finish(&header.scenario, &rows, folder, quiet)
+            let (header, rows) = part::merge(parts)?;
+            suite::merge(&header.scenario, rows, folder, quiet)
         }
         study => Err(Failure::Input(format!(
             "parts of a study that this program does not know: {study:?}"

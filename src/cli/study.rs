@@ -1,25 +1,19 @@
-//! Long work: the cases of a study on all processors, with progress, that can be interrupted and resumed.
+//! Long work as the program does it: its options, its progress on the terminal, and Ctrl-C.
 
-use std::cell::Cell;
 use std::fmt;
-use std::fs;
 use std::io::{self, IsTerminal as _, Write as _};
-use std::panic::resume_unwind;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process;
-use std::sync::mpsc::{self, TryRecvError};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use archrock::output::part::{Header, Part, PartError, Rows, Shard};
-use archrock::output::{OutputError, results};
+use archrock::output::results;
 use archrock::scenario::Scenario;
+use archrock::studies::part::{PartError, PartFile, Shard};
+use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use rayon::ThreadPoolBuilder;
-use rayon::iter::{
-    IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
-};
 
 use super::Failure;
 
@@ -44,9 +38,31 @@ pub struct Options {
 
 impl From<PartError> for Failure {
     fn from(error: PartError) -> Self {
+        let remedy = match &error {
+            PartError::Io { .. } => return Self::Work(error.to_string()),
+            PartError::Unusable { .. } => String::new(),
+            PartError::Other { .. } => {
+                ": remove it, or choose another folder with --out".to_owned()
+            }
+            PartError::Interrupted { .. } => {
+                ": go on with --resume, or remove it to start over".to_owned()
+            }
+            PartError::Incomplete { shard, .. } => {
+                format!(": finish it with --shard {shard} --resume")
+            }
+        };
+        Self::Input(format!("{error}{remedy}"))
+    }
+}
+
+impl From<RunnerError> for Failure {
+    fn from(error: RunnerError) -> Self {
         match error {
-            PartError::Output(error) => error.into(),
-            PartError::Unusable { .. } => Self::Input(error.to_string()),
+            RunnerError::Part(error) => error.into(),
+            RunnerError::Folder { .. } => {
+                Self::Input(format!("{error}; choose another with --out"))
+            }
+            RunnerError::Cancelled(_) | RunnerError::Threads(_) => Self::Work(error.to_string()),
         }
     }
 }
@@ -67,161 +83,80 @@ impl Options {
         }
     }
 
-    /// Runs `work` on as many threads as were asked for.
-    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(self.threads.map_or(0, usize::from))
-            .build()
-            .map_err(|error| Failure::Work(format!("cannot start the threads: {error}")))?;
-        Ok(pool.install(work))
-    }
-
-    /// Computes the rows of all cases, or of the part that was asked for, in a file of their own: the study
-    /// when it is complete, with all rows, or `None` after a part, whose file is then the result.
-    ///
-    /// A row depends on its case alone, so neither threads nor interruptions nor parts change it.
-    pub fn compute(
+    /// Computes the rows of all cases, or of the part that was asked for: all rows, with the file that they are in
+    /// until the results are complete, or `None` after a part, whose file is then the result.
+    pub fn compute<S: Study>(
         &self,
-        header: Header,
+        study: &S,
         quiet: bool,
-        row: impl Fn(usize) -> Result<String, OutputError> + Sync,
-    ) -> Result<Option<Computed>, Failure> {
-        let shard = self.shard.unwrap_or(Shard::WHOLE);
-        let header = Header { shard, ..header };
+    ) -> Result<Option<(Vec<S::Row>, PartFile)>, Failure> {
+        let runner = Runner {
+            threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
+        };
         let folder = self.folder();
-        fs::create_dir_all(&folder).map_err(|error| {
-            let folder = folder.display();
-            Failure::Input(format!(
-                "cannot make the folder {folder}: {error}; choose another with --out"
-            ))
+        let task = Task {
+            folder: &folder,
+            shard: self.shard.unwrap_or(Shard::WHOLE),
+            resume: self.resume,
+        };
+        listen_to_interrupts();
+        let mut display = None;
+        let computed = runner.rows_in(study, task, |progress| {
+            let display = display.get_or_insert_with(|| Display::new(progress, quiet));
+            // All rows so far are in the file, and none is being written: the program may end here.
+            if INTERRUPTED.load(Ordering::Relaxed) {
+                display.bar.abandon();
+                say(&format!(
+                    "interrupted: {} of {} cases are done; go on with --resume",
+                    progress.done, progress.all
+                ));
+                process::exit(INTERRUPTED_CODE);
+            }
+            display.show(progress);
+            ControlFlow::Continue(())
         })?;
-        let path = folder.join(shard.file_name(&header.study));
-        let (part, mut rows) = Part::open(&path, &header, self.resume)?;
-        let todo: Vec<usize> = shard
-            .cases(header.cases)
-            .filter(|index| !rows.contains_key(index))
-            .collect();
-        let part = Arc::new(Mutex::new(part));
-        let progress = Progress::new(rows.len(), rows.len() + todo.len(), quiet);
-        stop_on_interrupt(&part, &progress);
-        let new = self.work(&todo, &part, &progress, row)?;
-        progress.finish();
-        rows.extend(new);
-        if shard.is_whole() {
-            return Ok(Some(Computed { rows, part }));
+        if let Some(display) = display {
+            display.bar.finish_and_clear();
         }
-        if !quiet {
-            let (count, path) = (rows.len(), path.display());
-            say(&format!(
-                "part {shard}: {count} of {} cases in {path}; join the parts with archrock merge",
-                header.cases
-            ));
+        match computed {
+            Computed::Whole(rows, part) => Ok(Some((rows, part))),
+            Computed::Shard(part) => {
+                if !quiet {
+                    let (shard, all, path) = (task.shard, study.count(), part.path().display());
+                    let count = shard.cases(all).count();
+                    say(&format!(
+                        "part {shard}: {count} of {all} cases in {path}; join the parts with archrock merge"
+                    ));
+                }
+                Ok(None)
+            }
         }
-        Ok(None)
-    }
-
-    /// Computes the cases, and writes their rows as they come.
-    fn work(
-        &self,
-        todo: &[usize],
-        part: &Mutex<Part>,
-        progress: &Progress,
-        row: impl Fn(usize) -> Result<String, OutputError> + Sync,
-    ) -> Result<Rows, Failure> {
-        let (sender, receiver) = mpsc::channel();
-        let compute = || {
-            // Cases cost from microseconds to seconds: each is dealt out on its own.
-            let todo = todo.par_iter().with_max_len(1);
-            todo.try_for_each_with(sender, |sender, index| {
-                let row = row(*index).map_err(Some)?;
-                // When rows cannot be written any more, nobody listens.
-                sender.send((*index, row)).map_err(|_| None::<OutputError>)
-            })
-        };
-        let writer = thread::current();
-        let on_threads = || {
-            let done = self.on_threads(compute);
-            writer.unpark();
-            done
-        };
-        thread::scope(move |scope| {
-            let working = scope.spawn(on_threads);
-            let mut rows = Rows::new();
-            let mut over = false;
-            while !over {
-                // What comes meanwhile is written in one go; nobody loses time in waking this thread.
-                thread::park_timeout(TICK);
-                let mut new: Vec<(usize, String)> = Vec::new();
-                over = loop {
-                    match receiver.try_recv() {
-                        Ok(row) => new.push(row),
-                        Err(error) => break error == TryRecvError::Disconnected,
-                    }
-                };
-                lock(part).append(new.iter().map(|(index, row)| (*index, row.as_str())))?;
-                progress.advance(new.len());
-                rows.extend(new);
-            }
-            drop(receiver);
-            match working
-                .join()
-                .unwrap_or_else(|panic| resume_unwind(panic))?
-            {
-                Err(Some(error)) => Err(error.into()),
-                Ok(()) | Err(None) => Ok(rows),
-            }
-        })
     }
 }
 
-/// How often rows are written and progress is shown.
-const TICK: Duration = Duration::from_millis(100);
+/// Whether Ctrl-C was pressed.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// The part, which is only held to write lines, and that does not panic.
-fn lock(part: &Mutex<Part>) -> MutexGuard<'_, Part> {
-    part.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// All rows of a study, and the file that they are in until the results are complete.
-pub struct Computed {
-    /// The rows.
-    pub rows: Rows,
-    part: Arc<Mutex<Part>>,
-}
-
-impl Computed {
-    /// Takes the file away when the results are complete.
-    pub fn remove_part(&self) -> Result<(), Failure> {
-        Ok(lock(&self.part).remove()?)
-    }
-}
-
-/// On Ctrl-C: ends the program at once, between two lines of the part's file.
-fn stop_on_interrupt(part: &Arc<Mutex<Part>>, progress: &Progress) {
-    let (part, bar) = (part.clone(), progress.bar.clone());
+/// On Ctrl-C: ends the work between two lines of its file. Pressed again, it ends the program wherever it is.
+fn listen_to_interrupts() {
     // Without the handler Ctrl-C ends the program as well; it then does so without a word.
-    let _ = ctrlc::set_handler(move || {
-        let _part = lock(&part);
-        bar.abandon();
-        say(&format!(
-            "interrupted: {} of {} cases are done; go on with --resume",
-            bar.position(),
-            bar.length().unwrap_or_default()
-        ));
-        process::exit(INTERRUPTED);
+    let _ = ctrlc::set_handler(|| {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            process::exit(INTERRUPTED_CODE);
+        }
     });
 }
 
 /// As shells tell of a program that Ctrl-C ended.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED_CODE: i32 = 130;
 
 /// Writes what a study was of.
 pub fn write_summary(
     mut file: impl io::Write,
     scenario: &Scenario,
-    rows: &Rows,
+    cases: usize,
 ) -> Result<(), Failure> {
-    let summary = results::study_summary(scenario, rows.len());
+    let summary = results::study_summary(scenario, cases);
     writeln!(file, "{summary:#}")
         .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))
 }
@@ -233,24 +168,24 @@ pub fn say(text: &str) {
 }
 
 /// How far the work is: a bar on a terminal, a line a minute elsewhere.
-struct Progress {
+struct Display {
     bar: ProgressBar,
     /// When the last line was said, if lines are.
-    said: Option<Cell<Instant>>,
+    said: Option<Instant>,
 }
 
 /// Time between lines.
 const MINUTE: Duration = Duration::from_secs(60);
 
-impl Progress {
-    fn new(done: usize, all: usize, quiet: bool) -> Self {
+impl Display {
+    fn new(begin: Progress, quiet: bool) -> Self {
         let on_terminal = io::stderr().is_terminal();
         let target = if quiet || !on_terminal {
             ProgressDrawTarget::hidden()
         } else {
             ProgressDrawTarget::stderr()
         };
-        let bar = ProgressBar::with_draw_target(Some(all as u64), target);
+        let bar = ProgressBar::with_draw_target(Some(begin.all as u64), target);
         let template = "{bar:40} {pos}/{len} cases, {rate} a second, {eta} left";
         let style = ProgressStyle::with_template(template)
             .expect("the template is valid")
@@ -259,31 +194,27 @@ impl Progress {
                 let _ = write!(out, "{:.0}", state.per_sec());
             });
         bar.set_style(style);
-        bar.set_position(done as u64);
+        bar.set_position(begin.done as u64);
         bar.reset_eta();
         Self {
             bar,
-            said: (!quiet && !on_terminal).then(|| Cell::new(Instant::now())),
+            said: (!quiet && !on_terminal).then(Instant::now),
         }
     }
 
-    fn advance(&self, by: usize) {
-        self.bar.inc(by as u64);
-        if let Some(said) = &self.said
-            && said.get().elapsed() >= MINUTE
+    fn show(&mut self, progress: Progress) {
+        self.bar.set_position(progress.done as u64);
+        if let Some(said) = &mut self.said
+            && said.elapsed() >= MINUTE
         {
-            said.set(Instant::now());
+            *said = Instant::now();
             say(&format!(
                 "{} of {} cases, {:.0} a second, {} left",
-                self.bar.position(),
-                self.bar.length().unwrap_or_default(),
+                progress.done,
+                progress.all,
                 self.bar.per_sec(),
                 HumanDuration(self.bar.eta())
             ));
         }
-    }
-
-    fn finish(&self) {
-        self.bar.finish_and_clear();
     }
 }

@@ -3,10 +3,11 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use archrock::output::part::{Header, Rows};
-use archrock::output::suite::{self as output, Results};
-use archrock::output::{Folder, verdict};
-use archrock::scenario::{Scenario, Shakes};
+use archrock::dynamics::history::Outcome;
+use archrock::output::Folder;
+use archrock::output::suite::{self as output, Heading};
+use archrock::scenario::{Scenario, Suite};
+use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 
 use super::Failure;
 use super::commands::pretty;
@@ -18,9 +19,6 @@ pub struct Arguments {
     options: Options,
 }
 
-/// Name of the study in its parts.
-pub const STUDY: &str = "suite";
-
 const PICTURE: &str = "suite.svg";
 const LEVELS: &str = "fragility.csv";
 const FRAGILITY: &str = "fragility.json";
@@ -30,52 +28,61 @@ const TABLE: &str = "suite.csv";
 pub fn suite(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let scenario = Scenario::read(&options.scenario)?;
-    let shakes = shakes(&scenario).map_err(|failure| options.about_scenario(failure))?;
-    let text = scenario.to_toml();
-    let header = Header::new(STUDY, text.clone(), shakes.inputs(), shakes.count());
-    let row = |index| output::row(&shakes, index);
-    let Some(computed) = options.compute(header, quiet, row)? else {
+    let suite = suite_of(&scenario).map_err(|failure| options.about_scenario(failure))?;
+    let study = RecordSuite::new(&scenario, suite)
+        .map_err(|error| options.about_scenario(Failure::Input(error.to_string())))?;
+    let Some((rows, part)) = options.compute(&study, quiet)? else {
         return Ok(());
     };
-    finish(&text, &computed.rows, &options.folder(), quiet)?;
-    computed.remove_part()
+    let heading = Heading::of(&scenario, suite);
+    finish(&heading, rows, &options.folder(), quiet)?;
+    Ok(part.remove()?)
 }
 
-fn shakes(scenario: &Scenario) -> Result<Shakes<'_>, Failure> {
+fn suite_of(scenario: &Scenario) -> Result<&Suite, Failure> {
     if scenario.initial.is_some() {
         let message = "the histories of a suite start from rest: leave [initial] out";
         return Err(Failure::Input(message.to_owned()));
     }
-    let suite = scenario.suite.as_ref().ok_or_else(|| {
+    scenario.suite.as_ref().ok_or_else(|| {
         let message = "the scenario has no [suite]: give it a table with records and levels, such as\n\n\
                        [suite]\n\
                        records = \"records/*.at2\"\n\
                        peaks_g = { from = 0.1, to = 2.0, count = 20, spacing = \"logarithmic\" }";
         Failure::Input(message.to_owned())
-    })?;
-    Shakes::new(scenario, suite).map_err(|error| Failure::Input(error.to_string()))
+    })
 }
 
-/// Writes the results of a suite whose rows are all there, from one part or from several; the scenario is
-/// that of their header.
-pub fn finish(scenario: &str, rows: &Rows, path: &Path, quiet: bool) -> Result<(), Failure> {
-    let results = Results::of(scenario, rows).ok_or_else(|| {
-        let message = "the rows of the suite are damaged: compute it again without --resume";
+/// The results of a suite whose rows are all there, from several parts of it; its records may be elsewhere.
+pub fn merge(
+    scenario: &str,
+    rows: Vec<CaseRow>,
+    folder: &Path,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let heading = Heading::of_resolved(scenario).ok_or_else(|| {
+        let message = "the scenario of the parts is damaged: compute them again";
         Failure::Input(message.to_owned())
     })?;
+    finish(&heading, rows, folder, quiet)
+}
+
+/// Writes the results.
+fn finish(heading: &Heading, rows: Vec<CaseRow>, path: &Path, quiet: bool) -> Result<(), Failure> {
+    let results = SuiteFragility::new(heading.measure, rows);
     let files = [PICTURE, LEVELS, FRAGILITY, TABLE];
     let mut folder = Folder::open(path, &files)?;
-    results.write_levels(folder.file(LEVELS))?;
+    output::write_fragility(folder.file(LEVELS), &results)?;
     for (name, text) in [
-        (PICTURE, results.draw()),
-        (FRAGILITY, pretty(&results.to_json()?)),
+        (PICTURE, output::draw(heading, &results)),
+        (FRAGILITY, pretty(&output::to_json(heading, &results)?)),
     ] {
         folder
             .file(name)
             .write_all(text.as_bytes())
             .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
     }
-    output::write_table(folder.file(TABLE), rows)?;
+    output::write_table(folder.file(TABLE), &results.cases)?;
     folder.complete()?;
     if !quiet {
         say(&summary(&results));
@@ -89,13 +96,13 @@ pub fn finish(scenario: &str, rows: &Rows, path: &Path, quiet: bool) -> Result<(
 }
 
 /// What the results say, line by line.
-fn summary(results: &Results) -> String {
+fn summary(results: &SuiteFragility) -> String {
     let mut lines = vec![counts(results)];
-    lines.push(match results.curve_in_words() {
+    lines.push(match output::curve_in_words(results) {
         Some(words) => format!("fragility over {}: {words}", results.measure.column()),
         None => format!(
             "no fragility curve: {}",
-            results.no_fit().unwrap_or_default()
+            output::no_fit(results).unwrap_or_default()
         ),
     });
     for (overturned, how) in [(false, "never"), (true, "always")] {
@@ -104,38 +111,50 @@ fn summary(results: &Results) -> String {
             lines.push(format!("{how} overturn: {}", records.join(", ")));
         }
     }
-    if results.outcome_count("still_rocking") > 0 {
+    if count(results, Some(Outcome::StillRocking.name())) > 0 {
         lines.push(
             "those still rocking at duration_s of [simulation] count as not overturned".to_owned(),
         );
     }
-    if let Some(first) = results.first_failed() {
+    if let Some((case, reason)) = results.first_failed() {
         lines.push(format!(
-            "those that failed do not count; the first: {first}: `archrock run` says why"
+            "those that failed do not count; the first: {}{}, {} {:?}: {reason}",
+            case.record,
+            if case.mirrored { " mirrored" } else { "" },
+            results.measure.column(),
+            case.level(results.measure)
         ));
     }
     lines.join("\n  ")
 }
 
+/// Number of cases with an outcome; `None`: of those that failed.
+fn count(results: &SuiteFragility, outcome: Option<&str>) -> usize {
+    let cases = results.cases.iter();
+    cases
+        .filter(|case| case.outcome().map(Outcome::name) == outcome)
+        .count()
+}
+
 /// How many cases came to what.
-fn counts(results: &Results) -> String {
+fn counts(results: &SuiteFragility) -> String {
     let outcomes = [
-        ("never_moved", "never move"),
-        ("rest", "come to rest"),
-        ("overturned", "overturn"),
-        ("still_rocking", "are still rocking"),
-        (verdict::FAILED, "failed"),
+        (Some("never_moved"), "never move"),
+        (Some("rest"), "come to rest"),
+        (Some("overturned"), "overturn"),
+        (Some("still_rocking"), "are still rocking"),
+        (None, "failed"),
     ];
     let counts: Vec<_> = outcomes
         .into_iter()
-        .map(|(outcome, label)| (results.outcome_count(outcome), label))
+        .map(|(outcome, label)| (count(results, outcome), label))
         .filter(|(count, _)| *count > 0)
         .map(|(count, label)| format!("{count} {label}"))
         .collect();
     format!(
         "{} cases of {}: {}",
-        results.count(),
-        results.records_in_words(),
+        results.cases.len(),
+        output::records_in_words(results),
         counts.join(", ")
     )
 }

@@ -12,7 +12,8 @@ use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::pose::Pose;
 
 /// How a history ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// The structure never left the rest.
     NeverMoved,

@@ -1,5 +1,6 @@
 //! What can be shaken: the seam between a model of motion and everything that uses it.
 
+use std::fmt::Debug;
 use std::ops::ControlFlow;
 
 use thiserror::Error;
@@ -16,7 +17,7 @@ use crate::mechanics::four_link::mechanism::Sway;
 ///
 /// A model is chosen once a history; its equation of motion is its own affair, and is not called through this
 /// trait.
-pub trait Model: Send + Sync {
+pub trait Model: Debug + Send + Sync {
     /// Names of its bodies from left to right, in the order of all lists by body; a single body has an empty
     /// name.
     fn bodies(&self) -> Vec<String>;

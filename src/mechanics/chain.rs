@@ -137,7 +137,7 @@ impl<M: Mechanism> Link<M> {
 /// Which mechanism follows an impact depends on the one that closes, not on how fast it does: from the
 /// mechanism that starts at the incipient acceleration the sequence is fixed. Whatever implements this is a
 /// [`Model`](crate::dynamics::model::Model).
-pub trait MechanismChain: Send + Sync {
+pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// Its mechanisms.
     type Mechanism: Mechanism + Send + Sync;
 

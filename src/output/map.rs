@@ -6,45 +6,36 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::part::{self, Rows};
+use super::ending;
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
-use super::{OutputError, finite, verdict};
-use crate::mechanics::four_link::arch::FourLinkError;
-use crate::mechanics::four_link::limit::LimitError;
-use crate::scenario::{Axis, Boundary, Cell, Cells, Quantity, Spacing};
+use super::{OutputError, finite};
+use crate::dynamics::history::Outcome;
+use crate::scenario::{Axis, Quantity, Spacing};
+use crate::studies::boundary::{Boundary, BoundaryRow};
+use crate::studies::map::{CellResult, CellRow, OverturningMap};
 
 /// Outcome of a cell whose arch cannot carry its own weight.
 const CANNOT_STAND: &str = "cannot_stand";
 /// Outcome of a cell whose arch is too thick for four links.
 const NOT_FOUR_LINKS: &str = "not_four_links";
 
-/// The row of a cell.
-///
-/// # Errors
-/// When a value is not finite.
-pub fn row(cells: &Cells<'_>, index: usize) -> Result<String, OutputError> {
-    let fields = match cells.cell(index) {
-        Cell::Shaken(ended) => verdict::fields(&ended)?,
-        Cell::NoArch(FourLinkError::Limit(LimitError::CannotStand)) => verdict::none(CANNOT_STAND),
-        Cell::NoArch(_) => verdict::none(NOT_FOUR_LINKS),
-        Cell::Failed(_) => verdict::none(verdict::FAILED),
-    };
-    let [x, y] = cells.coordinates(index);
-    Ok(format!("{x:?},{y:?},{}", fields.join(",")))
+/// The outcome of a cell, as it stands in the table.
+#[must_use]
+pub const fn outcome(result: &CellResult) -> &'static str {
+    match result {
+        CellResult::Ended(ending) => ending.outcome.name(),
+        CellResult::CannotStand => CANNOT_STAND,
+        CellResult::NotFourLinks => NOT_FOUR_LINKS,
+        CellResult::Failed(_) => ending::FAILED,
+    }
 }
 
-/// The outcome of a row.
+/// How many cells have each outcome.
 #[must_use]
-pub fn outcome(row: &str) -> &str {
-    row.split(',').nth(2).unwrap_or_default()
-}
-
-/// How many rows have each outcome.
-#[must_use]
-pub fn counts(rows: &Rows) -> BTreeMap<&str, usize> {
+pub fn counts(rows: &[CellRow]) -> BTreeMap<&'static str, usize> {
     let mut counts = BTreeMap::new();
-    for row in rows.values() {
-        *counts.entry(outcome(row)).or_default() += 1;
+    for row in rows {
+        *counts.entry(outcome(&row.result)).or_default() += 1;
     }
     counts
 }
@@ -52,41 +43,64 @@ pub fn counts(rows: &Rows) -> BTreeMap<&str, usize> {
 /// Writes the table, a row per cell: x varies slowly, y fast.
 ///
 /// # Errors
-/// When the system refuses.
-pub fn write_table(writer: impl Write, cells: &Cells<'_>, rows: &Rows) -> Result<(), OutputError> {
-    let axes = cells.axes().map(|axis| axis.quantity.name());
-    part::write_table(writer, &[&axes[..], &verdict::COLUMNS].concat(), rows)
+/// When the system refuses, or a value is not finite.
+pub fn write_table(
+    writer: impl Write,
+    axes: [&Axis; 2],
+    rows: &[CellRow],
+) -> Result<(), OutputError> {
+    const WHAT: &str = "cannot write the table";
+    let mut csv = csv::Writer::from_writer(writer);
+    let axes = axes.map(|axis| axis.quantity.name());
+    csv.write_record([&axes[..], &ending::COLUMNS].concat())
+        .map_err(OutputError::csv(WHAT))?;
+    for CellRow { x, y, result } in rows {
+        finite("of a cell", &[*x, *y])?;
+        let fields = match result {
+            CellResult::Ended(ended) => ending::fields(ended)?,
+            other => ending::none(outcome(other)),
+        };
+        let lead = [*x, *y].map(ending::number);
+        csv.write_record(lead.iter().chain(&fields))
+            .map_err(OutputError::csv(WHAT))?;
+    }
+    csv.flush().map_err(OutputError::io(WHAT))
 }
 
-/// Writes the boundaries, a row per value of x.
+/// Writes the boundaries that were found, a row per value of x.
 ///
 /// # Errors
 /// When the system refuses, or a value is not finite.
 pub fn write_boundaries(
     writer: impl Write,
-    cells: &Cells<'_>,
-    boundaries: &[Boundary],
+    x_axis: &Axis,
+    boundaries: &[BoundaryRow],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the boundary";
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record([
-        cells.axes()[0].quantity.name(),
+        x_axis.quantity.name(),
         "incipient_acceleration_g",
         "no_impact_amplitude_g",
     ])
     .map_err(OutputError::csv(WHAT))?;
-    for boundary in boundaries {
+    for (x, boundary) in found(boundaries) {
         let Boundary {
-            x,
             incipient_g,
             impact_free_g,
-        } = *boundary;
+        } = boundary;
         finite("of a boundary", &[x, incipient_g])?;
         finite("of a boundary", impact_free_g.as_slice())?;
         csv.serialize((x, incipient_g, impact_free_g))
             .map_err(OutputError::csv(WHAT))?;
     }
     csv.flush().map_err(OutputError::io(WHAT))
+}
+
+/// The boundaries that there are, with their x.
+fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
+    let rows = boundaries.iter();
+    rows.filter_map(|row| Some((row.x, row.result.as_ref().ok().copied()??)))
 }
 
 /// What a cell is coloured by.
@@ -112,18 +126,20 @@ const KINDS: [Kind; 10] = [
     kind("overturned-more", "overturns after more", color::PURPLE),
     kind(CANNOT_STAND, "cannot stand", "#ffffff"),
     kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
-    kind(verdict::FAILED, "failed", color::BLACK),
+    kind(ending::FAILED, "failed", color::BLACK),
 ];
 
 impl Kind {
-    fn of(row: &str) -> Self {
-        let impacts = row.split(',').nth(5).unwrap_or_default();
-        let name = match (outcome(row), impacts) {
-            ("overturned", "0") => "overturned-0",
-            ("overturned", "1") => "overturned-1",
-            ("overturned", "2") => "overturned-2",
-            ("overturned", _) => "overturned-more",
-            (outcome, _) => outcome,
+    fn of(result: &CellResult) -> Self {
+        let name = match result {
+            CellResult::Ended(ending) => match (ending.outcome, ending.impacts) {
+                (Outcome::Overturned(_), 0) => "overturned-0",
+                (Outcome::Overturned(_), 1) => "overturned-1",
+                (Outcome::Overturned(_), 2) => "overturned-2",
+                (Outcome::Overturned(_), _) => "overturned-more",
+                (outcome, _) => outcome.name(),
+            },
+            other => outcome(other),
         };
         let known = KINDS.into_iter().find(|kind| kind.name == name);
         known.unwrap_or(KINDS[KINDS.len() - 1])
@@ -189,12 +205,18 @@ fn scale(axis: &Axis) -> (Scale, Vec<f64>) {
 
 /// Draws the map. Boundaries are of maps whose y is the amplitude.
 #[must_use]
-pub fn draw(title: &str, cells: &Cells<'_>, rows: &Rows, boundaries: &[Boundary]) -> String {
+pub fn draw(
+    title: &str,
+    map: &OverturningMap<'_>,
+    rows: &[CellRow],
+    boundaries: &[BoundaryRow],
+) -> String {
+    let boundaries: Vec<_> = found(boundaries).collect();
     let mut drawing = Drawing::new(900.0, 720.0);
     drawing.title(title);
-    let kinds: Vec<_> = rows.values().map(|row| Kind::of(row)).collect();
-    let top = legend(&mut drawing, cells, &kinds, !boundaries.is_empty());
-    let [(x, x_edges), (y, y_edges)] = cells.axes().map(scale);
+    let kinds: Vec<_> = rows.iter().map(|row| Kind::of(&row.result)).collect();
+    let top = legend(&mut drawing, map, &kinds, !boundaries.is_empty());
+    let [(x, x_edges), (y, y_edges)] = map.axes().map(scale);
     let axes = Axes {
         frame: Frame {
             left: LEFT,
@@ -205,7 +227,7 @@ pub fn draw(title: &str, cells: &Cells<'_>, rows: &Rows, boundaries: &[Boundary]
         x,
         y,
     };
-    let high = cells.values()[1].len();
+    let high = map.values()[1].len();
     for kind in KINDS {
         let mut path = String::new();
         for (column, kinds) in kinds.chunks(high).enumerate() {
@@ -225,22 +247,22 @@ pub fn draw(title: &str, cells: &Cells<'_>, rows: &Rows, boundaries: &[Boundary]
             }
         }
         if !path.is_empty() {
-            // The stroke closes the seams between cells.
+            // The stroke closes the seams between map.
             drawing.path(kind.name, &path, kind.fill, Stroke::new(kind.fill, 0.4, ""));
         }
     }
-    let [x_label, y_label] = cells.axes().map(|axis| label(axis.quantity));
+    let [x_label, y_label] = map.axes().map(|axis| label(axis.quantity));
     axes.draw(&mut drawing, Some(x_label), y_label);
     let signs: Vec<f64> = [1.0, -1.0]
         .into_iter()
-        .filter(|sign| cells.values()[1].iter().any(|value| sign * value > 0.0))
+        .filter(|sign| map.values()[1].iter().any(|value| sign * value > 0.0))
         .collect();
     drawing.within(&axes.frame, |drawing| {
         for sign in &signs {
             let mut curve = |name, stroke, value: fn(&Boundary) -> Option<f64>| {
-                let points = boundaries.iter().filter_map(|boundary| {
+                let points = boundaries.iter().filter_map(|(x, boundary)| {
                     let value = sign * value(boundary)?;
-                    Some(axes.place(boundary.x, value))
+                    Some(axes.place(*x, value))
                 });
                 drawing.curve(name, points, stroke);
             };
@@ -258,7 +280,12 @@ const LEFT: f64 = 85.0;
 const WIDTH: f64 = 790.0;
 
 /// What the colours and lines mean, in as many rows as it takes; returns where these end.
-fn legend(drawing: &mut Drawing, cells: &Cells<'_>, kinds: &[Kind], boundaries: bool) -> f64 {
+fn legend(
+    drawing: &mut Drawing,
+    map: &OverturningMap<'_>,
+    kinds: &[Kind],
+    boundaries: bool,
+) -> f64 {
     const ROW: f64 = 24.0;
     let (mut x, mut y) = (LEFT, 46.0);
     for kind in KINDS.into_iter().filter(|kind| kinds.contains(kind)) {
@@ -276,7 +303,7 @@ fn legend(drawing: &mut Drawing, cells: &Cells<'_>, kinds: &[Kind], boundaries: 
     }
     y += ROW;
     if boundaries {
-        let incipient = if cells.moves_vertically() {
+        let incipient = if map.moves_vertically() {
             "incipient acceleration, were there no vertical motion"
         } else {
             "incipient acceleration"

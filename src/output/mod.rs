@@ -3,11 +3,11 @@
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
 pub mod chart;
+pub mod ending;
 mod folder;
 pub mod impact;
 pub mod map;
 pub mod mechanisms;
-pub mod part;
 pub mod pictures;
 pub mod results;
 pub mod rotations;
@@ -15,7 +15,6 @@ pub mod spectrum;
 pub mod suite;
 pub mod svg;
 pub mod timeline;
-pub mod verdict;
 
 use std::io;
 

@@ -4,13 +4,13 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::part::{self, Rows};
+use super::ending::number;
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite};
-use crate::scenario::{Point, Points};
+use crate::studies::spectrum::{OverturningSpectrum, PointRow, Shaken};
 
 /// Names of the columns.
-pub const COLUMNS: [&str; 9] = [
+const COLUMNS: [&str; 9] = [
     "structure",
     "p_t",
     "duration_s",
@@ -22,13 +22,24 @@ pub const COLUMNS: [&str; 9] = [
     "failed",
 ];
 
-/// The row of a point.
+/// Writes the table: structure by structure, sizes ascending.
 ///
 /// # Errors
-/// When a value is not finite.
-pub fn row(points: &Points<'_>, index: usize) -> Result<String, OutputError> {
+/// When the system refuses, or a value is not finite.
+pub fn write_table(writer: impl Write, rows: &[PointRow]) -> Result<(), OutputError> {
+    const WHAT: &str = "cannot write the table";
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(COLUMNS).map_err(OutputError::csv(WHAT))?;
+    for row in rows {
+        csv.write_record(fields(row)?)
+            .map_err(OutputError::csv(WHAT))?;
+    }
+    csv.flush().map_err(OutputError::io(WHAT))
+}
+
+fn fields(row: &PointRow) -> Result<[String; 9], OutputError> {
     const WHAT: &str = "of a point of the spectrum";
-    let Point {
+    let PointRow {
         structure,
         p_t,
         duration_s,
@@ -36,38 +47,22 @@ pub fn row(points: &Points<'_>, index: usize) -> Result<String, OutputError> {
         least,
         still_rocking,
         failures,
-    } = points.point(index);
-    finite(WHAT, &[p_t, duration_s])?;
+    } = row;
+    finite(WHAT, &[*p_t, *duration_s])?;
     finite(WHAT, no_impact_over_incipient.as_slice())?;
     finite(WHAT, least.map(|one| one.over_incipient).as_slice())?;
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:?}"));
-    let fields = [
-        structure.to_owned(),
-        format!("{p_t:?}"),
-        format!("{duration_s:?}"),
-        number(no_impact_over_incipient),
-        number(least.map(|one| one.over_incipient)),
+    let optional = |value: Option<f64>| value.map_or(String::new(), number);
+    Ok([
+        structure.name().to_owned(),
+        number(*p_t),
+        number(*duration_s),
+        optional(*no_impact_over_incipient),
+        optional(least.map(|one| one.over_incipient)),
         least.map_or(String::new(), |one| one.impacts.to_string()),
         least.map_or(String::new(), |one| one.sway.name().to_owned()),
         still_rocking.to_string(),
         failures.len().to_string(),
-    ];
-    Ok(fields.join(","))
-}
-
-/// The number in a column of a row; `None` where there is none.
-#[must_use]
-pub fn number(row: &str, column: &str) -> Option<f64> {
-    let place = COLUMNS.iter().position(|name| *name == column)?;
-    row.split(',').nth(place)?.parse().ok()
-}
-
-/// Writes the table: structure by structure, sizes ascending.
-///
-/// # Errors
-/// When the system refuses.
-pub fn write_table(writer: impl Write, rows: &Rows) -> Result<(), OutputError> {
-    part::write_table(writer, &COLUMNS, rows)
+    ])
 }
 
 /// How a structure is drawn.
@@ -93,7 +88,7 @@ const RADIUS_PX: f64 = 3.0;
 
 /// Draws the spectrum: what overturns without impact as curves, and where less does after impacts, as points.
 #[must_use]
-pub fn draw(title: &str, points: &Points<'_>, rows: &Rows) -> String {
+pub fn draw(title: &str, spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
     let mut drawing = Drawing::new(900.0, 660.0);
     drawing.title(title);
     let axes = Axes {
@@ -103,35 +98,36 @@ pub fn draw(title: &str, points: &Points<'_>, rows: &Rows) -> String {
             width: 790.0,
             height: 500.0,
         },
-        x: scale(points.sizes()),
-        y: scale(&heights(points, rows)),
+        x: scale(spectrum.sizes()),
+        y: scale(&heights(spectrum, rows)),
     };
     axes.draw(
         &mut drawing,
         Some("size p t_p"),
         "peak acceleration / (g A_L)",
     );
-    let rows: Vec<&str> = rows.values().map(String::as_str).collect();
-    let size = points.sizes().len();
-    let beside_arch = points.structures().len() > 1;
-    for (index, ((name, _), rows)) in points
+    let size = spectrum.sizes().len();
+    let beside_arch = spectrum.structures().len() > 1;
+    for (index, ((shaken, _), rows)) in spectrum
         .structures()
         .iter()
         .zip(rows.chunks(size))
         .enumerate()
     {
-        let look = if *name == ARCH.name { ARCH } else { COLUMN };
+        let look = match shaken {
+            Shaken::Arch => ARCH,
+            Shaken::Column => COLUMN,
+        };
         drawing.within(&axes.frame, |drawing| curves(drawing, &axes, &look, rows));
-        let called = if beside_arch && look.name == COLUMN.name {
-            "equivalent column"
-        } else {
-            look.name
+        let called = match shaken {
+            Shaken::Column if beside_arch => "equivalent column",
+            _ => shaken.name(),
         };
         #[expect(clippy::cast_precision_loss, reason = "one or two")]
         let y = 54.0 + 22.0 * index as f64;
         let text = format!("{called}, without impact");
         drawing.legend(Vector2::new(85.0, y), 0.0, [(text.as_str(), look.line)]);
-        if rows.iter().any(|row| less(row).is_some()) {
+        if rows.iter().any(|row| row.least_after_impacts().is_some()) {
             drawing.circle("", Vector2::new(415.0, y), RADIUS_PX, look.point);
             let text = format!("{called}, less after impacts (of those tried)");
             drawing.label(Vector2::new(430.0, y + 4.5), Anchor::Start, 0.0, &text);
@@ -140,23 +136,16 @@ pub fn draw(title: &str, points: &Points<'_>, rows: &Rows) -> String {
     drawing.finish()
 }
 
-/// What overturns without impact.
-fn edge(row: &str) -> Option<f64> {
-    number(row, "no_impact_over_incipient")
-}
-
-/// What overturns after impacts, and is less than that.
-fn less(row: &str) -> Option<f64> {
-    number(row, "least_over_incipient").filter(|least| edge(row).is_none_or(|edge| *least < edge))
-}
-
 /// Peak accelerations to be drawn, ascending: from the least tried to the largest result, unless that is beyond all
 /// that were tried and beyond the half as much again of the least result.
-fn heights(points: &Points<'_>, rows: &Rows) -> Vec<f64> {
-    let tried = points.over_incipient();
+fn heights(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> Vec<f64> {
+    let tried = spectrum.over_incipient();
     let last = tried[tried.len() - 1];
-    let results = rows.values().flat_map(|row| [edge(row), less(row)]);
-    let results: Vec<f64> = results.flatten().collect();
+    let results: Vec<f64> = rows
+        .iter()
+        .flat_map(|row| [row.no_impact_over_incipient, row.least_after_impacts()])
+        .flatten()
+        .collect();
     let least = results.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = last.max(1.5 * least);
     let mut heights: Vec<f64> = results
@@ -168,12 +157,13 @@ fn heights(points: &Points<'_>, rows: &Rows) -> Vec<f64> {
     heights
 }
 
-fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[&str]) {
+fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[PointRow]) {
+    let edge = |row: &PointRow| row.no_impact_over_incipient;
     // Where there is no value the curve breaks.
     for run in rows.chunk_by(|a, b| edge(a).is_some() == edge(b).is_some()) {
         let places: Vec<_> = run
             .iter()
-            .filter_map(|row| Some(axes.place(number(row, "p_t")?, edge(row)?)))
+            .filter_map(|row| Some(axes.place(row.p_t, edge(row)?)))
             .collect();
         // A single point is no curve.
         let name = format!("{} no-impact", look.name);
@@ -185,9 +175,9 @@ fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[&str]) {
         }
     }
     for row in rows {
-        if let (Some(p_t), Some(least)) = (number(row, "p_t"), less(row)) {
+        if let Some(least) = row.least_after_impacts() {
             let name = format!("{} least", look.name);
-            drawing.circle(&name, axes.place(p_t, least), RADIUS_PX, look.point);
+            drawing.circle(&name, axes.place(row.p_t, least), RADIUS_PX, look.point);
         }
     }
 }

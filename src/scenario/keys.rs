@@ -33,7 +33,7 @@ const VOUSSOIRS: Count = Count {
     why: "four hinges need four joints",
 };
 /// What is beyond is no ground motion.
-pub(super) const LARGEST_G: f64 = 1e3;
+pub(crate) const LARGEST_G: f64 = 1e3;
 pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
 pub(super) const DURATION_S: Number = Number(Included(1e-6), Included(1e6));

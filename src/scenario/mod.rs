@@ -40,8 +40,8 @@ use std::path::Path;
 
 use nalgebra::Vector2;
 
-use crate::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
-use crate::dynamics::model::{self, MechanismModel, Request, SimulationError};
+use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
+use crate::dynamics::model::{self, MechanismModel, Request};
 use crate::mechanics::arch;
 use crate::mechanics::column::{self, RockingColumn};
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
@@ -50,17 +50,17 @@ use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::linkage::Linkage;
 use crate::mechanics::four_link::mechanism::{HingeSites, Sway};
 use crate::mechanics::geometry::ring::Ring;
-use crate::studies::impact_free::{least_amplitude, strides};
-use crate::studies::specimen::{Conditions, Specimen};
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
-pub use map::{Axis, Boundary, Cell, Cells, Map, Quantity};
+pub(crate) use keys::LARGEST_G;
+pub use map::{Axis, Map, Quantity};
 pub use record::{
     Component, Format, Layout, LineFault, Record, Scaling, Series, TableColumn, Unit,
 };
 pub use sequence::{Sequence, Spacing};
-pub use spectrum::{NoSpectrum, Overturning, Point, Points, Spectrum};
-pub use suite::{Measure, Shaken, Shakes, Suite};
+pub use spectrum::Spectrum;
+pub(crate) use spectrum::block;
+pub use suite::{Measure, Suite};
 use table::Writer;
 
 /// What to simulate, every default resolved.
@@ -177,22 +177,14 @@ impl Column {
 }
 
 impl Structure {
-    /// It, ready to rock.
-    fn specimen(&self, model: ImpactModel) -> Result<Specimen, FourLinkError> {
-        match self {
-            Self::Arch(arch) => arch.build(model).map(Specimen::Arch),
-            Self::Column(column) => column.build(model).map(Specimen::Column),
-        }
-    }
-
     /// The model of its motion.
     ///
     /// # Errors
     /// When it does not rock as four links.
-    pub fn model(&self, model: ImpactModel) -> Result<Box<dyn MechanismModel>, FourLinkError> {
-        Ok(match self.specimen(model)? {
-            Specimen::Arch(arch) => Box::new(arch),
-            Specimen::Column(column) => Box::new(column),
+    pub fn model(&self, impact: ImpactModel) -> Result<Box<dyn MechanismModel>, FourLinkError> {
+        Ok(match self {
+            Self::Arch(arch) => Box::new(arch.build(impact)?),
+            Self::Column(column) => Box::new(column.build(impact)?),
         })
     }
 
@@ -249,61 +241,19 @@ impl Ground {
 }
 
 impl PulseGround {
+    /// The pulse without its amplitudes.
+    #[must_use]
+    pub fn shape(&self) -> PulseShape {
+        let train = WaveTrain {
+            cycles: self.cycles,
+            phase_rad: self.phase_deg.to_radians(),
+        };
+        PulseShape::new(self.kind, self.duration_s, self.start_s, train)
+    }
+
     fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
-        GroundMotion::pulse_along(
-            self.kind,
-            Vector2::new(self.amplitude_g, self.vertical_amplitude_g) * gravity_m_s2,
-            self.duration_s,
-            self.start_s,
-            WaveTrain {
-                cycles: self.cycles,
-                phase_rad: self.phase_deg.to_radians(),
-            },
-        )
-    }
-
-    /// The same pulse to the same side with another amplitude.
-    fn of_magnitude(&self, magnitude_g: f64) -> Self {
-        Self {
-            amplitude_g: magnitude_g.copysign(self.amplitude_g),
-            ..self.clone()
-        }
-    }
-
-    /// The least amplitude, as a magnitude in g, with which the pulse overturns a specimen without impact,
-    /// all else as it is, and the side to which it does; `None` if no amplitude does that a scenario may have.
-    /// It is looked for in strides and, where there can be windows between these, at `tried_g` as well.
-    fn without_impact(
-        &self,
-        specimen: &Specimen,
-        conditions: &Conditions,
-        tried_g: &[f64],
-    ) -> Result<Option<(f64, Sway)>, SimulationError> {
-        let overturns = |magnitude_g: f64| {
-            let ground = self
-                .of_magnitude(magnitude_g)
-                .motion(conditions.gravity_m_s2);
-            specimen.overturns_without_impact(&ground, conditions)
-        };
-        // Ground that falls makes the structure lighter.
-        let from_g = specimen.incipient_g() * (1.0 - self.vertical_amplitude_g.abs().min(0.99));
-        let mut ascending_g: Vec<f64> = strides(self.kind, from_g, keys::LARGEST_G)
-            .chain(
-                tried_g
-                    .iter()
-                    .copied()
-                    .filter(|_| !self.kind.is_one_sided()),
-            )
-            .filter(|amplitude_g| *amplitude_g <= keys::LARGEST_G)
-            .collect();
-        ascending_g.sort_by(f64::total_cmp);
-        let least_g = least_amplitude(ascending_g, |amplitude_g| {
-            overturns(amplitude_g).map(|sway| sway.is_some())
-        })?;
-        let Some(least_g) = least_g else {
-            return Ok(None);
-        };
-        Ok(overturns(least_g)?.map(|sway| (least_g, sway)))
+        let amplitude_g = Vector2::new(self.amplitude_g, self.vertical_amplitude_g);
+        self.shape().motion(amplitude_g * gravity_m_s2)
     }
 }
 
@@ -420,14 +370,12 @@ impl Scenario {
         }
     }
 
-    /// How all histories of a study are computed.
+    /// The same from rest, whatever the scenario starts from: what studies ask of their histories.
     #[must_use]
-    pub const fn conditions(&self) -> Conditions {
-        Conditions {
-            gravity_m_s2: self.simulation.gravity_m_s2,
-            end_s: self.simulation.duration_s,
-            relative_tolerance: self.simulation.relative_tolerance,
-            rest_energy_ratio: self.simulation.rest_energy_ratio,
+    pub fn request_from_rest(&self) -> Request {
+        Request {
+            initial: None,
+            ..self.request()
         }
     }
 

@@ -22,10 +22,7 @@ use glob::MatchOptions;
 use super::record::{self, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::table::{Number, OneOrMore, Reading, Switch, Table, Text, Writer};
-use super::{Component, Scenario, Simulation};
-use crate::dynamics::model::SimulationError;
-use crate::mechanics::four_link::arch::FourLinkError;
-use crate::studies::specimen::{Specimen, Verdict};
+use super::{Component, Simulation};
 
 named! {
     /// What the levels of a suite are, by its key in `[suite]`.
@@ -163,6 +160,18 @@ impl Suite {
             levels,
             both_signs,
         })
+    }
+
+    /// A record as it shakes at a level, perhaps mirrored.
+    pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
+        let series = &self.records[record];
+        let signed = if mirrored { -level } else { level };
+        Record {
+            component: Component::Horizontal,
+            main: series.scaled(self.measure.scaling(signed)),
+            vertical: None,
+            start_s: start_s(series),
+        }
     }
 
     pub(super) fn write(&self, out: &mut Writer) {
@@ -338,94 +347,5 @@ fn file_name(path: &Path) -> Result<String, String> {
             "names {:?}; allowed are names in UTF-8 without control characters",
             plain.display().to_string()
         )),
-    }
-}
-
-/// A record that shakes the structure, and what became of it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shaken<'a> {
-    /// The file.
-    pub record: &'a str,
-    /// Whether the record is mirrored.
-    pub mirrored: bool,
-    /// What it is multiplied by, above 0.
-    pub scale: f64,
-    /// Its peak as scaled, in units of gravity.
-    pub peak_g: f64,
-    /// Its history, or why it could not be computed.
-    pub ended: Result<Verdict, SimulationError>,
-}
-
-/// The cases of a suite, each a function of its index alone: the levels of a record follow one another, then
-/// those of the record mirrored, then the next record.
-#[derive(Debug)]
-pub struct Shakes<'a> {
-    scenario: &'a Scenario,
-    suite: &'a Suite,
-    specimen: Specimen,
-    levels: Vec<f64>,
-}
-
-impl<'a> Shakes<'a> {
-    /// The cases of a scenario's suite.
-    ///
-    /// # Errors
-    /// As [`super::Arch::build`].
-    pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, FourLinkError> {
-        Ok(Self {
-            scenario,
-            suite,
-            specimen: scenario.structure.specimen(scenario.impact)?,
-            levels: suite.levels.values(),
-        })
-    }
-
-    const fn signs(&self) -> usize {
-        if self.suite.both_signs { 2 } else { 1 }
-    }
-
-    /// Number of cases.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.suite.records.len() * self.signs() * self.levels.len()
-    }
-
-    /// What the cases depend on besides the scenario: the records, by name and checksum.
-    #[must_use]
-    pub fn inputs(&self) -> Vec<String> {
-        let records = self.suite.records.iter();
-        records
-            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
-            .collect()
-    }
-
-    /// The history of a case.
-    #[must_use]
-    pub fn case(&self, index: usize) -> Shaken<'a> {
-        let level = self.levels[index % self.levels.len()];
-        let shake = index / self.levels.len();
-        let mirrored = shake % self.signs() == 1;
-        let series = &self.suite.records[shake / self.signs()];
-        let conditions = self.scenario.conditions();
-        let own_g = series.peak_g(conditions.gravity_m_s2);
-        let (scale, peak_g) = match self.suite.measure {
-            Measure::Scale => (level, level * own_g),
-            Measure::PeakG => (level / own_g, level),
-        };
-        let signed = if mirrored { -level } else { level };
-        let record = Record {
-            component: Component::Horizontal,
-            main: series.scaled(self.suite.measure.scaling(signed)),
-            vertical: None,
-            start_s: start_s(series),
-        };
-        let ground = record.motion(conditions.gravity_m_s2);
-        Shaken {
-            record: &series.file,
-            mirrored,
-            scale,
-            peak_g,
-            ended: self.specimen.verdict(&ground, &conditions),
-        }
     }
 }

@@ -45,9 +45,9 @@ pub struct Observation {
     pub record: usize,
 }
 
-/// All cases of one intensity.
+/// How many of the cases of one intensity overturned.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
+pub struct Fraction {
     /// The intensity.
     pub intensity: f64,
     /// Number of cases.
@@ -194,17 +194,27 @@ fn logarithm(x: f64) -> f64 {
     x.clamp(f64::MIN_POSITIVE, f64::MAX).ln()
 }
 
-/// The cases by intensity, lowest first. Levels are the same only if their intensities are exactly equal.
+/// Cases by intensity, lowest first. Intensities are the same only if they are exactly equal.
+pub(super) fn by_intensity<T: Copy>(
+    mut cases: Vec<T>,
+    intensity: impl Fn(T) -> f64,
+) -> Vec<(f64, Vec<T>)> {
+    cases.sort_by(|a, b| intensity(*a).total_cmp(&intensity(*b)));
+    cases
+        .chunk_by(|a, b| intensity(*a) == intensity(*b))
+        .map(|alike| (intensity(alike[0]), alike.to_vec()))
+        .collect()
+}
+
+/// The fraction of the cases that overturned at each intensity, lowest first.
 #[must_use]
-pub fn fractions(observations: &[Observation]) -> Vec<Level> {
-    let mut sorted = observations.to_vec();
-    sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
-    sorted
-        .chunk_by(|a, b| a.intensity == b.intensity)
-        .map(|level| Level {
-            intensity: level[0].intensity,
-            cases: level.len(),
-            overturned: level.iter().filter(|case| case.overturned).count(),
+pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
+    by_intensity(observations.to_vec(), |case| case.intensity)
+        .into_iter()
+        .map(|(intensity, cases)| Fraction {
+            intensity,
+            cases: cases.len(),
+            overturned: cases.iter().filter(|case| case.overturned).count(),
         })
         .collect()
 }
@@ -225,7 +235,7 @@ pub fn fit(observations: &[Observation]) -> Result<Fragility, NoFit> {
 }
 
 /// Fails without cases of both kinds, at two intensities at least, all of them valid.
-fn demand_two_levels(levels: &[Level]) -> Result<(), NoFit> {
+fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
     let valid = |intensity: f64| intensity > 0.0 && intensity.is_finite();
     if let Some(level) = levels.iter().find(|level| !valid(level.intensity)) {
         return Err(NoFit::Intensity {
@@ -266,8 +276,8 @@ struct LogLevel {
     overturned: f64,
 }
 
-impl From<&Level> for LogLevel {
-    fn from(level: &Level) -> Self {
+impl From<&Fraction> for LogLevel {
+    fn from(level: &Fraction) -> Self {
         Self {
             intensity: level.intensity,
             log: level.intensity.ln(),

@@ -5,7 +5,13 @@
 //! overturn within narrow windows of the amplitude, in which a lobe carries the structure just over and the next
 //! does not catch it; so the edge is looked for in small strides, and bisected where it is found.
 
-use crate::dynamics::ground::Pulse;
+use nalgebra::Vector2;
+
+use crate::bisection::{Width, try_bisect};
+use crate::dynamics::ground::{GroundMotion, PulseShape};
+use crate::dynamics::model::{MechanismModel, Request, SimulationError};
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::scenario::{LARGEST_G, PulseGround};
 
 /// Ratio of the amplitudes at which the edge of a pulse with lobes to both sides is looked for: a window that is
 /// narrower may go unseen. The narrowest found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
@@ -18,14 +24,80 @@ const ONE_SIDED_STRIDE: f64 = 1.5;
 /// Relative width to which the edge is bisected: the integration at the default tolerance knows no more.
 const RESOLUTION: f64 = 1e-9;
 
-/// Amplitudes of a pulse from `from` to `to`, in strides that do not miss an edge: of 0.5 % where there can be
-/// windows.
-pub fn strides(pulse: Pulse, from: f64, to: f64) -> impl Iterator<Item = f64> {
-    let stride = if pulse.is_one_sided() {
-        ONE_SIDED_STRIDE
-    } else {
-        STRIDE
-    };
+/// A pulse whose amplitude varies, all else as it is.
+#[derive(Clone, Debug)]
+pub struct ScalablePulse {
+    pulse: PulseGround,
+    shape: PulseShape,
+    gravity_m_s2: f64,
+}
+
+impl ScalablePulse {
+    /// The pulse under the given gravity. Its own amplitude says to which side it pushes.
+    #[must_use]
+    pub fn new(pulse: PulseGround, gravity_m_s2: f64) -> Self {
+        Self {
+            shape: pulse.shape(),
+            pulse,
+            gravity_m_s2,
+        }
+    }
+
+    /// The ground motion with an amplitude, positive to the right.
+    #[must_use]
+    pub fn motion(&self, amplitude_g: f64) -> GroundMotion {
+        let amplitude_g = Vector2::new(amplitude_g, self.pulse.vertical_amplitude_g);
+        self.shape.motion(amplitude_g * self.gravity_m_s2)
+    }
+
+    /// The ground motion with an amplitude to the pulse's own side.
+    #[must_use]
+    pub fn motion_of_magnitude(&self, magnitude_g: f64) -> GroundMotion {
+        self.motion(magnitude_g.copysign(self.pulse.amplitude_g))
+    }
+
+    /// The least amplitude, as a magnitude in g, with which the pulse overturns a structure without impact, and the
+    /// side to which it does; `None` if no amplitude does that a scenario may have. It is looked for in strides
+    /// and, where there can be windows between these, at `tried_g` as well.
+    ///
+    /// # Errors
+    /// When the integration fails.
+    pub fn least_without_impact(
+        &self,
+        model: &dyn MechanismModel,
+        request: &Request,
+        tried_g: &[f64],
+    ) -> Result<Option<(f64, Sway)>, SimulationError> {
+        let overturns = |magnitude_g: f64| {
+            let ground = self.motion_of_magnitude(magnitude_g);
+            model.overturns_without_impact(&ground, request)
+        };
+        let one_sided = self.pulse.kind.is_one_sided();
+        let side = Sway::pushed_by(self.pulse.amplitude_g);
+        let Some(incipient_g) = model.incipient_acceleration_g(side) else {
+            return Ok(None);
+        };
+        // Ground that falls makes the structure lighter.
+        let from_g = incipient_g * (1.0 - self.pulse.vertical_amplitude_g.abs().min(0.99));
+        let tried_g: &[f64] = if one_sided { &[] } else { tried_g };
+        let mut ascending_g: Vec<f64> = strides(one_sided, from_g, LARGEST_G)
+            .chain(tried_g.iter().copied())
+            .filter(|amplitude_g| *amplitude_g <= LARGEST_G)
+            .collect();
+        ascending_g.sort_by(f64::total_cmp);
+        let least_g = least_amplitude(ascending_g, |amplitude_g| {
+            overturns(amplitude_g).map(|sway| sway.is_some())
+        })?;
+        let Some(least_g) = least_g else {
+            return Ok(None);
+        };
+        Ok(overturns(least_g)?.map(|sway| (least_g, sway)))
+    }
+}
+
+/// Amplitudes from `from` to `to`, in strides that do not miss an edge: of 0.5 % where there can be windows.
+fn strides(one_sided: bool, from: f64, to: f64) -> impl Iterator<Item = f64> {
+    let stride = if one_sided { ONE_SIDED_STRIDE } else { STRIDE };
     std::iter::successors(Some(from), move |last| {
         (*last < to).then(|| (last * stride).min(to))
     })
@@ -36,22 +108,15 @@ pub fn strides(pulse: Pulse, from: f64, to: f64) -> impl Iterator<Item = f64> {
 ///
 /// # Errors
 /// Those of the function.
-pub fn least_amplitude<E>(
+fn least_amplitude<E>(
     ascending: impl IntoIterator<Item = f64>,
     overturns: impl Fn(f64) -> Result<bool, E>,
 ) -> Result<Option<f64>, E> {
     let mut below = None;
     for amplitude in ascending {
         if overturns(amplitude)? {
-            let (mut low, mut high) = (below.unwrap_or(amplitude), amplitude);
-            while high - low > RESOLUTION * high {
-                let middle = 0.5 * (low + high);
-                if overturns(middle)? {
-                    high = middle;
-                } else {
-                    low = middle;
-                }
-            }
+            let low = below.unwrap_or(amplitude);
+            let (_, high) = try_bisect(low, amplitude, Width::Relative(RESOLUTION), overturns)?;
             return Ok(Some(high));
         }
         below = Some(amplitude);

@@ -18,7 +18,7 @@ use nalgebra::Vector2;
 use crate::bisection::{Width, bisect, middle};
 use piece::Formula;
 pub use piece::Piece;
-pub use pulse::{Pulse, WaveTrain};
+pub use pulse::{Pulse, PulseShape, WaveTrain};
 
 /// Ground acceleration from time zero on, zero after the last corner.
 #[derive(Clone, Debug, PartialEq)]

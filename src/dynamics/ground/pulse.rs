@@ -112,7 +112,49 @@ impl GroundMotion {
         start_s: f64,
         train: WaveTrain,
     ) -> Self {
-        let (a, t) = (amplitude_m_s2, duration_s);
+        PulseShape::new(pulse, duration_s, start_s, train).motion(amplitude_m_s2)
+    }
+}
+
+/// A pulse of any amplitude: its kind, its duration and when it starts.
+///
+/// To find the extrema of a wave train takes far longer than to shake a structure with it once. They are the same
+/// at every amplitude; so a study that varies the amplitude finds them once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PulseShape {
+    pulse: Pulse,
+    duration_s: f64,
+    start_s: f64,
+    train: Option<CutTrain>,
+}
+
+/// A wave train, cut at its extrema.
+#[derive(Clone, Debug, PartialEq)]
+struct CutTrain {
+    shape: Shape,
+    /// Extrema and end, in seconds since the start.
+    ends_s: Vec<f64>,
+    /// Largest magnitude of the shape.
+    peak: f64,
+}
+
+impl PulseShape {
+    /// The pulse of that kind of length `duration_s > 0` that starts at `start_s >= 0`. `train` matters only to
+    /// pulses that are wave trains.
+    #[must_use]
+    pub fn new(pulse: Pulse, duration_s: f64, start_s: f64, train: WaveTrain) -> Self {
+        Self {
+            pulse,
+            duration_s,
+            start_s,
+            train: CutTrain::new(pulse, duration_s, train),
+        }
+    }
+
+    /// The ground motion with these horizontal and vertical peak accelerations, of one common shape.
+    #[must_use]
+    pub fn motion(&self, amplitude_m_s2: Vector2<f64>) -> GroundMotion {
+        let (a, t) = (amplitude_m_s2, self.duration_s);
         let shaped = |shape: Shape| Formula::Shaped {
             amplitude: a,
             shape,
@@ -126,7 +168,7 @@ impl GroundMotion {
         };
         let cut =
             |ends: &[f64], formula: Formula| ends.iter().map(|end| (end * t, formula)).collect();
-        let pieces: Vec<_> = match pulse {
+        let pieces: Vec<_> = match self.pulse {
             Pulse::Rectangular => vec![(t, Formula::constant(a))],
             Pulse::StepPair => {
                 vec![
@@ -167,6 +209,20 @@ impl GroundMotion {
                 };
                 cut(&[ends[0], ends[1], ends[2], ends[3], 5.0], wavelet)
             }
+            Pulse::MavroeidisPapageorgiou | Pulse::Gabor | Pulse::WindowedSine => {
+                let train = self.train.as_ref().expect("these are wave trains");
+                train.pieces(a)
+            }
+        };
+        GroundMotion::from_pieces(self.start_s, pieces)
+    }
+}
+
+impl CutTrain {
+    /// `None` if the pulse is no wave train.
+    fn new(pulse: Pulse, duration_s: f64, train: WaveTrain) -> Option<Self> {
+        let t = duration_s;
+        let (shape, length_s) = match pulse {
             Pulse::MavroeidisPapageorgiou => {
                 // The product of cosines is a sum of three; about its middle the derivative is this.
                 let length_s = train.cycles * t;
@@ -181,7 +237,7 @@ impl GroundMotion {
                 let side = 1.0 / train.cycles;
                 let shape =
                     Shape::Beat([term(1.0, 1.0), term(0.5, 1.0 - side), term(0.5, 1.0 + side)]);
-                train_pieces(a, shape, length_s, t)
+                (shape, length_s)
             }
             Pulse::Gabor => {
                 let centre_s = 3.0 * train.cycles * t / PI;
@@ -190,7 +246,7 @@ impl GroundMotion {
                     frequency_rad_s: 2.0 * PI / t,
                     train,
                 };
-                train_pieces(a, shape, 2.0 * centre_s, t)
+                (shape, 2.0 * centre_s)
             }
             Pulse::WindowedSine => {
                 // sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
@@ -205,32 +261,32 @@ impl GroundMotion {
                     term(-0.25, 1.0 - side),
                     term(-0.25, 1.0 + side),
                 ]);
-                train_pieces(a, shape, train.cycles * t, t)
+                (shape, train.cycles * t)
             }
+            _ => return None,
         };
-        Self::from_pieces(start_s, pieces)
+        let mut ends_s = shape.extrema_s(length_s, t);
+        ends_s.push(length_s);
+        // Where the train begins it is no stronger than at its strongest extremum or its end.
+        let peak = ends_s
+            .iter()
+            .map(|end| shape.at(*end).0.abs())
+            .fold(0.0, f64::max);
+        Some(Self {
+            shape,
+            ends_s,
+            peak,
+        })
     }
-}
 
-/// The pieces of a wave train, cut at its extrema and scaled so that the largest is the amplitude.
-fn train_pieces(
-    amplitude: Vector2<f64>,
-    shape: Shape,
-    length_s: f64,
-    period_s: f64,
-) -> Vec<(f64, Formula)> {
-    let mut ends = shape.extrema_s(length_s, period_s);
-    ends.push(length_s);
-    // Where the train begins it is no stronger than at its strongest extremum or its end.
-    let peak = ends
-        .iter()
-        .map(|end| shape.at(*end).0.abs())
-        .fold(0.0, f64::max);
-    let formula = Formula::Shaped {
-        amplitude: amplitude / peak,
-        shape,
-    };
-    ends.into_iter().map(|end| (end, formula)).collect()
+    /// Its pieces, scaled so that the largest extremum is the amplitude.
+    fn pieces(&self, amplitude: Vector2<f64>) -> Vec<(f64, Formula)> {
+        let formula = Formula::Shaped {
+            amplitude: amplitude / self.peak,
+            shape: self.shape,
+        };
+        self.ends_s.iter().map(|end| (*end, formula)).collect()
+    }
 }
 
 #[cfg(test)]

@@ -271,7 +271,7 @@ impl Series {
     }
 
     /// Largest magnitude as scaled, in units of gravity.
-    pub(super) fn peak_g(&self, gravity_m_s2: f64) -> f64 {
+    pub(crate) fn peak_g(&self, gravity_m_s2: f64) -> f64 {
         (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs()
     }
 

@@ -2,10 +2,10 @@
 
 use super::{OutputError, finite};
 use crate::dynamics::history::Outcome;
-use crate::studies::specimen::Verdict;
+use crate::studies::ending::Ending;
 
 /// Names of the columns.
-pub const COLUMNS: [&str; 7] = [
+pub(super) const COLUMNS: [&str; 7] = [
     "outcome",
     "overturning_sway",
     "impacts",
@@ -18,18 +18,18 @@ pub const COLUMNS: [&str; 7] = [
 /// Outcome where a history could not be computed.
 pub const FAILED: &str = "failed";
 
-/// The fields of a verdict. Only what overturned has a sway and impacts before it.
+/// The fields of an ending. Only what overturned has a sway and impacts before it.
 ///
 /// # Errors
 /// When a value is not finite.
-pub fn fields(verdict: &Verdict) -> Result<[String; 7], OutputError> {
-    let Verdict {
+pub(super) fn fields(ending: &Ending) -> Result<[String; 7], OutputError> {
+    let Ending {
         outcome,
         outcome_time_s,
         impacts,
         peak_over_critical,
         energy_defect_ratio,
-    } = *verdict;
+    } = *ending;
     finite(
         "of a history",
         &[outcome_time_s, peak_over_critical, energy_defect_ratio],
@@ -43,16 +43,20 @@ pub fn fields(verdict: &Verdict) -> Result<[String; 7], OutputError> {
         sway,
         impacts.to_string(),
         before,
-        format!("{outcome_time_s:?}"),
-        format!("{peak_over_critical:?}"),
-        format!("{energy_defect_ratio:?}"),
+        number(outcome_time_s),
+        number(peak_over_critical),
+        number(energy_defect_ratio),
     ])
 }
 
 /// The fields where there is no history, for the reason named.
-#[must_use]
-pub fn none(reason: &str) -> [String; 7] {
+pub(super) fn none(reason: &str) -> [String; 7] {
     let mut fields = <[String; 7]>::default();
     reason.clone_into(&mut fields[0]);
     fields
+}
+
+/// A number with the digits that it takes to read the same back.
+pub(super) fn number(value: f64) -> String {
+    format!("{value:?}")
 }

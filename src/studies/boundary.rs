@@ -1,0 +1,160 @@
+//! The boundaries of a map whose y is the amplitude of the pulse: where rocking starts, and from where on the first
+//! fall overturns, before any impact.
+
+use serde::{Deserialize, Serialize};
+
+use super::ending::check_finite;
+use super::map::{CellRow, OverturningMap};
+use super::runner::Study;
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::scenario::Quantity;
+
+/// The boundaries at a value of x, as magnitudes: the mirror image of a pulse has the same.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Boundary {
+    /// Below this peak acceleration nothing moves, in g.
+    pub incipient_g: f64,
+    /// The least amplitude with which the first fall overturns, before any impact, in g; `None` where no amplitude
+    /// does that a scenario may have.
+    pub impact_free_g: Option<f64>,
+}
+
+/// What was found at a value of x.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundaryRow {
+    /// The value of x.
+    pub x: f64,
+    /// The boundaries; `None` where there is no arch of four links; or why they could not be found.
+    pub result: Result<Option<Boundary>, String>,
+}
+
+/// The boundaries of a map, a case for each value of x.
+#[derive(Clone, Copy, Debug)]
+pub struct ImpactFreeBoundary<'m> {
+    map: &'m OverturningMap<'m>,
+}
+
+impl<'m> ImpactFreeBoundary<'m> {
+    /// The boundaries of a map; `None` if its y is not the amplitude.
+    #[must_use]
+    pub fn new(map: &'m OverturningMap<'m>) -> Option<Self> {
+        // The amplitude, where it is one of the axes, goes upwards.
+        (map.axes()[1].quantity == Quantity::Amplitude).then_some(Self { map })
+    }
+
+    fn result(&self, x: usize) -> Result<Option<Boundary>, String> {
+        let amplitudes_g = &self.map.values()[1];
+        let index = x * amplitudes_g.len();
+        let Ok(model) = self.map.model(index) else {
+            return Ok(None);
+        };
+        let request = self.map.scenario().request_from_rest();
+        // The cells are looked at as well, so that none contradicts the boundary.
+        let tried_g: Vec<f64> = amplitudes_g.iter().map(|value| value.abs()).collect();
+        let found = self
+            .map
+            .pulse(index)
+            .least_without_impact(&*model, &request, &tried_g)
+            .map_err(|error| error.to_string())?;
+        let incipient_g = model
+            .incipient_acceleration_g(Sway::Right)
+            .unwrap_or(f64::INFINITY);
+        check_finite(&[incipient_g])?;
+        Ok(Some(Boundary {
+            incipient_g,
+            impact_free_g: found.map(|(amplitude_g, _)| amplitude_g),
+        }))
+    }
+}
+
+impl Study for ImpactFreeBoundary<'_> {
+    type Row = BoundaryRow;
+
+    const NAME: &'static str = "boundary";
+
+    fn scenario(&self) -> String {
+        Study::scenario(self.map)
+    }
+
+    fn count(&self) -> usize {
+        self.map.values()[0].len()
+    }
+
+    fn row(&self, index: usize) -> BoundaryRow {
+        BoundaryRow {
+            x: self.map.values()[0][index],
+            result: self.result(index),
+        }
+    }
+}
+
+/// A map with its boundaries, where it has any: first the cells, then the boundaries, in one study, so that threads,
+/// parts and interruptions serve both.
+#[derive(Clone, Copy, Debug)]
+pub struct MapWithBoundary<'m> {
+    map: &'m OverturningMap<'m>,
+    boundary: Option<ImpactFreeBoundary<'m>>,
+}
+
+/// A row of either kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MapRow {
+    /// A cell.
+    Cell(CellRow),
+    /// The boundaries at a value of x.
+    Boundary(BoundaryRow),
+}
+
+impl MapRow {
+    /// The cells and the boundaries, each in their order.
+    #[must_use]
+    pub fn sorted(rows: Vec<Self>) -> (Vec<CellRow>, Vec<BoundaryRow>) {
+        let (mut cells, mut boundaries) = (Vec::new(), Vec::new());
+        for row in rows {
+            match row {
+                Self::Cell(cell) => cells.push(cell),
+                Self::Boundary(boundary) => boundaries.push(boundary),
+            }
+        }
+        (cells, boundaries)
+    }
+}
+
+impl<'m> MapWithBoundary<'m> {
+    /// The study of a map.
+    #[must_use]
+    pub fn new(map: &'m OverturningMap<'m>) -> Self {
+        Self {
+            map,
+            boundary: ImpactFreeBoundary::new(map),
+        }
+    }
+
+    /// Whether the map has boundaries.
+    #[must_use]
+    pub const fn has_boundary(&self) -> bool {
+        self.boundary.is_some()
+    }
+}
+
+impl Study for MapWithBoundary<'_> {
+    type Row = MapRow;
+
+    const NAME: &'static str = "map";
+
+    fn scenario(&self) -> String {
+        Study::scenario(self.map)
+    }
+
+    fn count(&self) -> usize {
+        self.map.count() + self.boundary.map_or(0, |boundary| boundary.count())
+    }
+
+    fn row(&self, index: usize) -> MapRow {
+        match (index.checked_sub(self.map.count()), &self.boundary) {
+            (Some(x), Some(boundary)) => MapRow::Boundary(boundary.row(x)),
+            _ => MapRow::Cell(self.map.row(index)),
+        }
+    }
+}

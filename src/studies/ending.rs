@@ -1,0 +1,56 @@
+//! How a history ended, as studies keep it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::Outcome;
+use crate::dynamics::model::{Model, Request};
+
+/// How a history ended, in the numbers that studies compare. They are finite.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ending {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// When that was decided, in seconds.
+    pub outcome_time_s: f64,
+    /// Number of impacts; where the structure overturns, all are before.
+    pub impacts: usize,
+    /// Largest rotation over that at the unstable equilibrium.
+    pub peak_over_critical: f64,
+    /// Largest gap in the energy balance, over the energy barrier.
+    pub energy_defect_ratio: f64,
+}
+
+impl Ending {
+    /// Shakes a structure from rest and says how that ended.
+    ///
+    /// # Errors
+    /// Says why there is no history, or none that could be kept.
+    pub fn of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Result<Self, String> {
+        let summary = model
+            .simulate(ground, request, None)
+            .map_err(|error| error.to_string())?;
+        let ending = Self {
+            outcome: summary.outcome,
+            outcome_time_s: summary.outcome_time_s,
+            impacts: summary.impacts,
+            peak_over_critical: summary.peak_over_critical,
+            energy_defect_ratio: summary.energy_defect_ratio,
+        };
+        check_finite(&[
+            ending.outcome_time_s,
+            ending.peak_over_critical,
+            ending.energy_defect_ratio,
+        ])?;
+        Ok(ending)
+    }
+}
+
+/// Refuses what is not a number. That is a defect of the program.
+pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err("a result is not a finite number: please report the scenario".to_owned())
+    }
+}

@@ -1,0 +1,505 @@
+//! The file of a study at work: what it computes, and the rows that it has so far.
+//!
+//! The first line says to what the rows belong; every other line is a checksum, the index of a case and its row,
+//! with commas between. Header and rows are JSON, whose numbers read back as the same `f64`. Lines are only ever
+//! appended, so what a killed program leaves is good up to its last complete line, and the checksums tell if
+//! anything else happened to them. A study that is computed in shards, on several machines, is joined from such
+//! files.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::runner::Study;
+
+/// Shards of a study: more than any cluster has nodes.
+const MAX_SHARDS: usize = 100_000;
+
+/// Which of the cases: the one whose number, counted from 1, is `index` and every `count`-th after.
+///
+/// Neighbouring cases cost alike, so dealing them out like cards gives all shards the same work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// All cases.
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// Its cases out of all.
+    pub fn cases(self, all: usize) -> impl Iterator<Item = usize> {
+        (self.index - 1..all).step_by(self.count)
+    }
+
+    /// Whether the case of this index is one of its own.
+    #[must_use]
+    pub const fn has(self, case: usize) -> bool {
+        case % self.count == self.index - 1
+    }
+
+    /// Whether it is all there is.
+    #[must_use]
+    pub const fn is_whole(self) -> bool {
+        self.count == 1
+    }
+
+    /// What its file is called: `map-2-of-4.part`.
+    #[must_use]
+    pub fn file_name(self, study: &str) -> String {
+        if self.is_whole() {
+            format!("{study}.part")
+        } else {
+            format!("{study}-{}-of-{}.part", self.index, self.count)
+        }
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+impl From<Shard> for String {
+    fn from(shard: Shard) -> Self {
+        shard.to_string()
+    }
+}
+
+impl TryFrom<String> for Shard {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    /// Reads `2/4`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!(
+                "{text:?} is no part of a whole; allowed is i/n with 1 <= i <= n <= {MAX_SHARDS}, such as 2/4"
+            )
+        };
+        let (index, count) = text.split_once('/').ok_or_else(wrong)?;
+        let number = |text: &str| text.parse::<usize>().map_err(|_| wrong());
+        let (index, count) = (number(index)?, number(count)?);
+        if (1..=count).contains(&index) && count <= MAX_SHARDS {
+            Ok(Self { index, count })
+        } else {
+            Err(wrong())
+        }
+    }
+}
+
+/// To what rows belong: equal headers, but for the shard, are of one study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// Name of the program.
+    program: String,
+    /// Its version.
+    pub version: String,
+    /// Which study: [`Study::NAME`].
+    pub study: String,
+    /// Number of cases of the whole study.
+    pub cases: usize,
+    /// Which of them are here.
+    pub shard: Shard,
+    /// The scenario, every default resolved.
+    pub scenario: String,
+    /// What else the cases depend on: checksums of the files that the scenario names.
+    pub inputs: Vec<String>,
+}
+
+impl Header {
+    /// The header of a shard of a study by this version of the program.
+    #[must_use]
+    pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
+        Self {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            study: S::NAME.to_owned(),
+            cases: study.count(),
+            shard,
+            scenario: study.scenario(),
+            inputs: study.inputs(),
+        }
+    }
+
+    /// Number of cases of its shard.
+    #[must_use]
+    pub fn shard_cases(&self) -> usize {
+        self.shard.cases(self.cases).count()
+    }
+
+    /// What another header has that makes it one of other rows; `None` if both are of the very same part.
+    fn other(&self, other: &Self) -> Option<String> {
+        self.difference(other).or_else(|| {
+            let (here, there) = (self.shard, other.shard);
+            (here != there).then(|| format!("part {there} instead of {here}"))
+        })
+    }
+
+    /// The first input that another header has and this one has not, or the other way round.
+    fn other_input(&self, other: &Self) -> Option<String> {
+        fn only<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
+            let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
+            // The checksum is no news to anybody.
+            Some(input.rsplit_once(' ').map_or(input, |(name, _)| name))
+        }
+        match (only(self, other), only(other, self)) {
+            (Some(here), Some(there)) if here == there => {
+                Some(format!("other contents of {there}"))
+            }
+            (_, Some(there)) => Some(format!("{there} as well")),
+            (Some(here), None) => Some(format!("no {here}")),
+            (None, None) => None,
+        }
+    }
+
+    /// How the study of another header differs from this one's; `None` if they belong together.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        let differ = |what: &str, here: &str, there: &str| {
+            (here != there).then(|| format!("{what} {there:?} instead of {here:?}"))
+        };
+        differ("the study", &self.study, &other.study)
+            .or_else(|| differ("the program version", &self.version, &other.version))
+            .or_else(|| self.other_input(other))
+            .or_else(|| {
+                let mut lines = self.scenario.lines().zip(other.scenario.lines());
+                let (here, there) = lines
+                    .find(|(here, there)| here != there)
+                    .unwrap_or((&self.scenario, &other.scenario));
+                differ("in the scenario", here, there)
+            })
+            .or_else(|| {
+                let (here, there) = (self.cases, other.cases);
+                (here != there).then(|| format!("{there} cases instead of {here}"))
+            })
+    }
+}
+
+/// A line for a row.
+fn to_line(index: usize, row: &impl Serialize) -> Result<String, serde_json::Error> {
+    let content = format!("{index},{}", serde_json::to_string(row)?);
+    let checksum = crc32fast::hash(content.as_bytes());
+    Ok(format!("{checksum:08x},{content}\n"))
+}
+
+/// The index and the row of a line, if it is as it was written.
+fn from_line<R: DeserializeOwned>(line: &str) -> Option<(usize, R)> {
+    let (checksum, content) = line.split_once(',')?;
+    let checksum = u32::from_str_radix(checksum, 16).ok()?;
+    let (index, row) = content.split_once(',')?;
+    if crc32fast::hash(content.as_bytes()) != checksum {
+        return None;
+    }
+    Some((index.parse().ok()?, serde_json::from_str(row).ok()?))
+}
+
+/// Rows by the index of their case.
+pub type Rows<R> = BTreeMap<usize, R>;
+
+/// Why the file of a part cannot be used.
+#[derive(Debug, Error)]
+pub enum PartError {
+    /// The system refused.
+    #[error("cannot {what} {}: {source}", path.display())]
+    Io {
+        /// What was to be done with it.
+        what: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is not one of ours, or was damaged, or is in use.
+    #[error("{}: {what}", path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// What is the matter, and the remedy.
+        what: String,
+    },
+    /// The file has rows of something else.
+    #[error("{}: belongs to something else, with {difference}", path.display())]
+    Other {
+        /// The file.
+        path: PathBuf,
+        /// The first difference.
+        difference: String,
+    },
+    /// The file has some of the cases that are to be computed, and nobody asked to resume.
+    #[error("{}: has {done} cases of this very study, interrupted", path.display())]
+    Interrupted {
+        /// The file.
+        path: PathBuf,
+        /// How many it has.
+        done: usize,
+    },
+    /// A shard to be merged lacks cases.
+    #[error("{}: part {shard} has {done} of its {all} cases", path.display())]
+    Incomplete {
+        /// The file.
+        path: PathBuf,
+        /// Its shard.
+        shard: Shard,
+        /// How many it has.
+        done: usize,
+        /// How many it should have.
+        all: usize,
+    },
+}
+
+fn unusable(path: &Path, what: impl Into<String>) -> PartError {
+    PartError::Unusable {
+        path: path.to_owned(),
+        what: what.into(),
+    }
+}
+
+/// Reads a file; returns its complete lines and how many bytes these are.
+fn read_lines(path: &Path) -> Result<(String, u64), PartError> {
+    let mut bytes =
+        fs::read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
+    // A line without end was being written when the program was killed.
+    let complete = bytes
+        .iter()
+        .rposition(|byte| *byte == b'\n')
+        .map_or(0, |last| last + 1);
+    bytes.truncate(complete);
+    let text = String::from_utf8(bytes).map_err(|_| unusable(path, "is not a part of a study"))?;
+    Ok((text, complete as u64))
+}
+
+/// The header and the other lines; `None` if the program was killed before it wrote the header.
+fn header_of<'t>(
+    path: &Path,
+    text: &'t str,
+) -> Result<Option<(Header, std::str::Lines<'t>)>, PartError> {
+    let mut lines = text.lines();
+    let Some(first) = lines.next() else {
+        return Ok(None);
+    };
+    match serde_json::from_str::<Header>(first) {
+        Ok(header) if header.program == env!("CARGO_PKG_NAME") => Ok(Some((header, lines))),
+        _ => Err(unusable(path, "is not a part of a study by this program")),
+    }
+}
+
+/// The rows of all lines after the header.
+fn rows_of<R: DeserializeOwned>(
+    path: &Path,
+    header: &Header,
+    lines: std::str::Lines<'_>,
+) -> Result<Rows<R>, PartError> {
+    let mut rows = Rows::new();
+    for (number, line) in lines.enumerate() {
+        let damaged = |what: &str| {
+            let what = format!("line {}: {what}; compute this part again", number + 2);
+            unusable(path, what)
+        };
+        let (index, row) =
+            from_line(line).ok_or_else(|| damaged("not as this program wrote it"))?;
+        if !header.shard.has(index) || index >= header.cases {
+            return Err(damaged("a case that does not belong here"));
+        }
+        if rows.insert(index, row).is_some() {
+            return Err(damaged("a case for the second time"));
+        }
+    }
+    Ok(rows)
+}
+
+/// The header of a part that was computed before, complete or not.
+///
+/// # Errors
+/// When the file cannot be read or is not a part.
+pub fn read_header(path: &Path) -> Result<Header, PartError> {
+    let (text, _) = read_lines(path)?;
+    let (header, _) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
+    Ok(header)
+}
+
+/// Reads a part that was computed before, complete or not.
+///
+/// # Errors
+/// When the file cannot be read or is not a part, or its rows are not of this type.
+pub fn read<R: DeserializeOwned>(path: &Path) -> Result<(Header, Rows<R>), PartError> {
+    let (text, _) = read_lines(path)?;
+    let (header, lines) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
+    let rows = rows_of(path, &header, lines)?;
+    Ok((header, rows))
+}
+
+/// The file of a shard that is being computed. It is locked as long as this lives.
+#[derive(Debug)]
+pub struct PartFile {
+    path: PathBuf,
+    file: File,
+}
+
+impl PartFile {
+    /// Begins a part, or goes on with it; returns the rows that it has. A part that is complete is as good as
+    /// computed again. The folder must be there.
+    ///
+    /// # Errors
+    /// When the system refuses, another program is at work on it, a part to `resume` is of something else, or
+    /// one that was interrupted would be lost.
+    pub fn open<R: DeserializeOwned>(
+        path: &Path,
+        header: &Header,
+        resume: bool,
+    ) -> Result<(Self, Rows<R>), PartError> {
+        let file = OpenOptions::new()
+            .create(true)
+            .read(true)
+            .append(true)
+            .open(path)
+            .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
+        // Where files cannot be locked, two programs are not kept apart.
+        if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
+            return Err(unusable(path, "another program is at work on it"));
+        }
+        let (text, length) = read_lines(path)?;
+        let rows = match header_of(path, &text)? {
+            None => Rows::new(),
+            Some((found, lines)) => {
+                // Work is not thrown away unasked; a header alone is none.
+                let begun = resume || lines.clone().next().is_some();
+                if begun && let Some(difference) = header.other(&found) {
+                    let path = path.to_owned();
+                    return Err(PartError::Other { path, difference });
+                }
+                rows_of(path, header, lines)?
+            }
+        };
+        let done = rows.len();
+        if !resume && (1..header.shard_cases()).contains(&done) {
+            let path = path.to_owned();
+            return Err(PartError::Interrupted { path, done });
+        }
+        let mut part = Self {
+            path: path.to_owned(),
+            file,
+        };
+        let length = if rows.is_empty() { 0 } else { length };
+        part.file.set_len(length).map_err(part.cannot("shorten"))?;
+        if length == 0 {
+            let mut line = serde_json::to_string(header).map_err(part.cannot_tell())?;
+            line.push('\n');
+            part.write(&line)?;
+        }
+        Ok((part, rows))
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Appends rows. They survive if the program is killed thereafter.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn append<R: Serialize>(&mut self, rows: &[(usize, R)]) -> Result<(), PartError> {
+        let mut lines = String::new();
+        for (index, row) in rows {
+            lines += &to_line(*index, row).map_err(self.cannot_tell())?;
+        }
+        self.write(&lines)
+    }
+
+    fn write(&mut self, lines: &str) -> Result<(), PartError> {
+        let written = self.file.write_all(lines.as_bytes());
+        written.map_err(self.cannot("write"))
+    }
+
+    /// Takes it away, when its rows have found their place.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn remove(self) -> Result<(), PartError> {
+        fs::remove_file(&self.path).map_err(self.cannot("remove"))
+    }
+
+    fn cannot(&self, what: &'static str) -> impl FnOnce(io::Error) -> PartError + use<> {
+        let path = self.path.clone();
+        move |source| PartError::Io { what, path, source }
+    }
+
+    fn cannot_tell(&self) -> impl FnOnce(serde_json::Error) -> PartError + use<> {
+        let cannot = self.cannot("write");
+        move |error| cannot(error.into())
+    }
+}
+
+/// Joins the parts of a study: its header as a whole, and all its rows in the order of their cases.
+///
+/// # Errors
+/// When a file is no part, or they do not belong together, or do not make up the whole, or their rows are not of
+/// this type.
+pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>), PartError> {
+    let mut whole: Option<(Header, Rows<R>)> = None;
+    let mut places: BTreeMap<usize, &Path> = BTreeMap::new();
+    for path in paths {
+        let (text, _) = read_lines(path)?;
+        let (header, lines) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
+        let shard = header.shard;
+        if let Some((first, _)) = &whole {
+            let difference = first.difference(&header).or_else(|| {
+                let (here, there) = (first.shard.count, shard.count);
+                (here != there).then(|| format!("a study in {there} parts instead of {here}"))
+            });
+            if let Some(difference) = difference {
+                let what = format!("does not belong to {}: {difference}", paths[0].display());
+                return Err(unusable(path, what));
+            }
+        }
+        let rows = rows_of(path, &header, lines)?;
+        let (done, all) = (rows.len(), header.shard_cases());
+        if done < all {
+            let path = path.clone();
+            return Err(PartError::Incomplete {
+                path,
+                shard,
+                done,
+                all,
+            });
+        }
+        if let Some(earlier) = places.insert(shard.index, path) {
+            let what = format!("is part {shard}, and so is {}", earlier.display());
+            return Err(unusable(path, what));
+        }
+        match &mut whole {
+            Some((_, all)) => all.extend(rows),
+            None => whole = Some((header, rows)),
+        }
+    }
+    let Some((mut header, rows)) = whole else {
+        return Err(unusable(Path::new("merge"), "no parts"));
+    };
+    let count = header.shard.count;
+    if let Some(first) = (1..=count).find(|index| !places.contains_key(index)) {
+        let missing = count - places.len();
+        let what =
+            format!("goes with parts of which {missing} are missing: the first is {first}/{count}");
+        return Err(unusable(&paths[0], what));
+    }
+    header.shard = Shard::WHOLE;
+    Ok((header, rows.into_values().collect()))
+}

@@ -1,0 +1,271 @@
+//! Long work: the cases of a study on all processors, with progress, that can be cancelled and resumed.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! use archrock::studies::runner::{Runner, Study};
+//!
+//! struct Squares;
+//!
+//! impl Study for Squares {
+//!     type Row = usize;
+//!     const NAME: &'static str = "squares";
+//!
+//!     fn scenario(&self) -> String {
+//!         String::new()
+//!     }
+//!
+//!     fn count(&self) -> usize {
+//!         1000
+//!     }
+//!
+//!     fn row(&self, index: usize) -> usize {
+//!         index * index
+//!     }
+//! }
+//!
+//! let mut done = 0;
+//! let rows = Runner::default().rows(&Squares, |progress| {
+//!     done = progress.done;
+//!     ControlFlow::Continue(())
+//! })?;
+//! assert_eq!((done, rows[30]), (1000, 900));
+//! # Ok::<(), archrock::studies::runner::RunnerError>(())
+//! ```
+
+use std::fs;
+use std::io;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::panic::resume_unwind;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, TryRecvError};
+use std::thread;
+use std::time::Duration;
+
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
+};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use thiserror::Error;
+
+use super::part::{Header, PartError, PartFile, Rows, Shard};
+
+/// Many cases, each a function of its index alone. So they may be computed in any order, by any number of threads,
+/// on several machines, and today or tomorrow.
+pub trait Study: Sync {
+    /// What is known of a case once it is computed. A case that fails has a row as well, which says why.
+    type Row: Serialize + DeserializeOwned + Send;
+
+    /// Name of the study in the files of its parts, and of these files.
+    const NAME: &'static str;
+
+    /// The scenario, every default resolved: with the inputs, all that the rows depend on.
+    fn scenario(&self) -> String;
+
+    /// What else the rows depend on: name and checksum of each file that the scenario names, with a space between.
+    fn inputs(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Number of cases.
+    fn count(&self) -> usize;
+
+    /// Computes the row of a case, below [`Study::count`].
+    fn row(&self, index: usize) -> Self::Row;
+}
+
+/// How far the work is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Number of cases that are done, those of an earlier run included.
+    pub done: usize,
+    /// Number of cases to be done.
+    pub all: usize,
+}
+
+/// Why the rows of a study are not complete.
+#[derive(Debug, Error)]
+pub enum RunnerError {
+    /// The caller broke off.
+    #[error("cancelled: {} of {} cases are done", .0.done, .0.all)]
+    Cancelled(Progress),
+    /// The file of the part cannot be used.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// The folder cannot be made.
+    #[error("cannot make the folder {}: {source}", path.display())]
+    Folder {
+        /// Its path.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The system has no threads to spare.
+    #[error("cannot start the threads: {0}")]
+    Threads(String),
+}
+
+/// What is to be computed in a folder.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'p> {
+    /// The folder, which is made if need be.
+    pub folder: &'p Path,
+    /// Which cases.
+    pub shard: Shard,
+    /// Whether to go on where an interrupted run stopped, if there is one.
+    pub resume: bool,
+}
+
+/// What was computed in a folder.
+#[derive(Debug)]
+pub enum Computed<R> {
+    /// The rows of all cases, and the file that has them until there are results.
+    Whole(Vec<R>, PartFile),
+    /// The file of a shard, to be merged with the others.
+    Shard(PartFile),
+}
+
+/// Computes the rows of studies.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Runner {
+    /// How many threads work; `None`: as many as there are processors.
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// How often rows are written and progress is told.
+const TICK: Duration = Duration::from_millis(100);
+
+impl Runner {
+    /// The rows of all cases, in their order, in memory.
+    ///
+    /// `watch` is told the progress at the beginning, ten times a second, and at the end, on this thread. Where it
+    /// breaks, the cases under way are finished and no others begun.
+    ///
+    /// # Errors
+    /// When `watch` breaks or threads cannot be started.
+    pub fn rows<S: Study>(
+        &self,
+        study: &S,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<S::Row>, RunnerError> {
+        let mut rows = Rows::new();
+        self.complete(study, Shard::WHOLE, &mut rows, |_| Ok(()), watch)?;
+        Ok(rows.into_values().collect())
+    }
+
+    /// The rows of the cases of a shard, kept in the file of a part as they come: see [`super::part`]. Whatever
+    /// ends the program, the file can be resumed.
+    ///
+    /// `watch` is as in [`Runner::rows`]. Whenever it is called, all rows that it counts are in the file.
+    ///
+    /// # Errors
+    /// When `watch` breaks, threads cannot be started, or the file cannot be used.
+    pub fn rows_in<S: Study>(
+        &self,
+        study: &S,
+        task: Task<'_>,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Computed<S::Row>, RunnerError> {
+        let Task {
+            folder,
+            shard,
+            resume,
+        } = task;
+        fs::create_dir_all(folder).map_err(|source| {
+            let path = folder.to_owned();
+            RunnerError::Folder { path, source }
+        })?;
+        let path = folder.join(shard.file_name(S::NAME));
+        let header = Header::new(study, shard);
+        let (mut part, mut rows) = PartFile::open(&path, &header, resume)?;
+        let keep = |new: &[_]| part.append(new);
+        self.complete(study, shard, &mut rows, keep, watch)?;
+        Ok(if shard.is_whole() {
+            Computed::Whole(rows.into_values().collect(), part)
+        } else {
+            Computed::Shard(part)
+        })
+    }
+
+    fn pool(&self) -> Result<ThreadPool, RunnerError> {
+        ThreadPoolBuilder::new()
+            .num_threads(self.threads.map_or(0, NonZeroUsize::get))
+            .build()
+            .map_err(|error| RunnerError::Threads(error.to_string()))
+    }
+
+    /// Computes the rows that are missing, and hands them to `keep` as they come.
+    fn complete<S: Study>(
+        &self,
+        study: &S,
+        shard: Shard,
+        rows: &mut Rows<S::Row>,
+        mut keep: impl FnMut(&[(usize, S::Row)]) -> Result<(), PartError>,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), RunnerError> {
+        let todo: Vec<usize> = shard
+            .cases(study.count())
+            .filter(|index| !rows.contains_key(index))
+            .collect();
+        let all = rows.len() + todo.len();
+        let pool = self.pool()?;
+        let cancelled = AtomicBool::new(false);
+        let (sender, receiver) = mpsc::channel();
+        let compute = || {
+            // Cases cost from microseconds to seconds: each is dealt out on its own.
+            let todo = todo.par_iter().with_max_len(1);
+            todo.try_for_each_with(sender, |sender, index| {
+                if cancelled.load(Ordering::Relaxed) {
+                    return None;
+                }
+                // When rows cannot be kept any more, nobody listens.
+                sender.send((*index, study.row(*index))).ok()
+            })
+        };
+        let keeper = thread::current();
+        let on_threads = || {
+            pool.install(compute);
+            keeper.unpark();
+        };
+        thread::scope(|scope| {
+            let receiver = receiver;
+            let working = scope.spawn(on_threads);
+            let mut over = false;
+            loop {
+                let progress = Progress {
+                    done: rows.len(),
+                    all,
+                };
+                if !cancelled.load(Ordering::Relaxed) && watch(progress).is_break() {
+                    cancelled.store(true, Ordering::Relaxed);
+                }
+                if over {
+                    break;
+                }
+                // What comes meanwhile is kept in one go; nobody loses time in waking this thread.
+                thread::park_timeout(TICK);
+                let mut new = Vec::new();
+                over = loop {
+                    match receiver.try_recv() {
+                        Ok(row) => new.push(row),
+                        Err(error) => break error == TryRecvError::Disconnected,
+                    }
+                };
+                keep(&new)?;
+                rows.extend(new);
+            }
+            if let Err(panic) = working.join() {
+                resume_unwind(panic);
+            }
+            let done = rows.len();
+            if done < all {
+                return Err(RunnerError::Cancelled(Progress { done, all }));
+            }
+            Ok(())
+        })
+    }
+}
