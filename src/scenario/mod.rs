@@ -260,6 +260,7 @@ impl PulseGround {
                 phase_rad: self.phase_deg.to_radians(),
             },
         )
+        .expect("the ranges of the keys are those of a ground motion")
     }
 
     /// The same pulse to the same side with another amplitude.
