@@ -28,7 +28,7 @@
 //!
 //! let model = FourLinkArch::new(arch, ImpactModel::MaxRestitution)?;
 //! // -0.30 g for 0.20 s, from the start.
-//! let ground = GroundMotion::pulse(Pulse::Rectangular, -0.30 * 9.81, 0.20, 0.0);
+//! let ground = GroundMotion::pulse(Pulse::Rectangular, -0.30 * 9.81, 0.20, 0.0)?;
 //! let history = model.history(&ground, &Request::default())?;
 //! assert_eq!(history.summary.outcome, Outcome::Rest);
 //! let (time_s, impact) = history.impacts().next().expect("an impact");
@@ -60,7 +60,7 @@ pub mod scenario;
 pub mod studies;
 
 pub use argument::ArgumentError;
-pub use dynamics::ground::{GroundMotion, Pulse, WaveTrain};
+pub use dynamics::ground::{GroundError, GroundMotion, Pulse, WaveTrain};
 pub use dynamics::history::{
     Event, EventKind, History, Impact, OpenHinge, Outcome, Sample, Samples, State, Summary,
 };

@@ -51,7 +51,7 @@ fn run(column: &RockingColumn, ground: &GroundMotion, request: &Request) -> Hist
 }
 
 fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(kind, amplitude_g * GRAVITY_M_S2, duration_s, 0.0)
+    GroundMotion::pulse(kind, amplitude_g * GRAVITY_M_S2, duration_s, 0.0).unwrap()
 }
 
 /// Integral over `0..1` by Simpson's rule, for smooth integrands: error about `1e-13`.

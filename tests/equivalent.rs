@@ -101,7 +101,8 @@ fn dimensionless(
         amplitude * scales.incipient_m_s2,
         p_t_p / p,
         0.0,
-    );
+    )
+    .unwrap();
     let request = Request {
         end_s: 12.1 / p,
         relative_tolerance: 1e-12,

@@ -16,7 +16,7 @@ use common::{
 };
 
 fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0)
+    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
 }
 
 /// Everything a history tells, for comparisons to the last bit.
@@ -172,7 +172,7 @@ fn size_and_gravity_only_stretch_time() {
         let (short, long) = (pulse(kind, -0.4, 0.25), pulse(kind, -0.4, 0.5));
         let a = run(&small, &short, &request(20.0));
         let b = run(&large, &long, &request(40.0));
-        let weak = GroundMotion::pulse(kind, -0.1 * GRAVITY, 0.5, 0.0);
+        let weak = GroundMotion::pulse(kind, -0.1 * GRAVITY, 0.5, 0.0).unwrap();
         let at = Request {
             gravity_m_s2: 0.25 * GRAVITY,
             ..request(40.0)
@@ -403,7 +403,8 @@ fn a_very_short_blow_gives_its_momentum() {
         for duration_s in [1e-6, 1e-4] {
             let velocity_m_s = 0.5;
             let acceleration = -velocity_m_s / duration_s;
-            let ground = GroundMotion::pulse(Pulse::Rectangular, acceleration, duration_s, start_s);
+            let ground =
+                GroundMotion::pulse(Pulse::Rectangular, acceleration, duration_s, start_s).unwrap();
             let end_s = start_s + 2.0 * duration_s;
             let (_, samples) = run_sampled(&arch, &ground, &request(end_s));
             let rate = -samples.last().unwrap().rates_rad_s[0];
@@ -427,7 +428,7 @@ fn a_very_short_blow_gives_its_momentum() {
 fn a_late_pulse_is_the_same_pulse() {
     let arch = semicircle();
     let now = pulse(Pulse::HalfSine, -0.6, 0.3);
-    let later = GroundMotion::pulse(Pulse::HalfSine, -0.6 * GRAVITY, 0.3, 512.0);
+    let later = GroundMotion::pulse(Pulse::HalfSine, -0.6 * GRAVITY, 0.3, 512.0).unwrap();
     let (a, b) = (
         run(&arch, &now, &request(20.0)),
         run(&arch, &later, &request(532.0)),

@@ -51,7 +51,8 @@ fn a_cell_is_the_history_of_its_scenario() {
     for index in 0..6 {
         let [mean_radius_m, amplitude_g] = cells.coordinates(index);
         let arch = seven_voussoirs().with_mean_radius_m(mean_radius_m).unwrap();
-        let ground = GroundMotion::pulse(Pulse::OneCosine, amplitude_g * GRAVITY, 0.4, 0.0);
+        let ground =
+            GroundMotion::pulse(Pulse::OneCosine, amplitude_g * GRAVITY, 0.4, 0.0).unwrap();
         let summary = arch.simulate(&ground, &request(10.0), None).unwrap();
         assert_eq!(shaken(&cells, index), Verdict::from(summary));
     }

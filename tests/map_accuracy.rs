@@ -26,7 +26,8 @@ fn a_map_of_rectangular_pulses_does_not_depend_on_the_tolerance() {
         let duration_s = between(0.05, 1.0, cell % CELLS);
         let name = format!("{amplitude_g:.4} g for {duration_s:.4} s");
         let ground =
-            GroundMotion::pulse(Pulse::Rectangular, amplitude_g * GRAVITY, duration_s, 0.0);
+            GroundMotion::pulse(Pulse::Rectangular, amplitude_g * GRAVITY, duration_s, 0.0)
+                .unwrap();
         let [usual, exact] = [1e-9, 1e-12].map(|relative_tolerance| {
             let request = Request {
                 relative_tolerance,

@@ -112,7 +112,8 @@ fn free_motion_keeps_the_energy_of_its_bodies() {
 fn the_energy_defect_is_small_under_every_pulse_and_falls_with_the_tolerance() {
     for arch in [semicircle(), seven_voussoirs()] {
         for kind in Pulse::ALL.iter().copied() {
-            let ground = GroundMotion::pulse(kind, -1.6 * arch.incipient_g() * GRAVITY, 0.3, 0.1);
+            let ground =
+                GroundMotion::pulse(kind, -1.6 * arch.incipient_g() * GRAVITY, 0.3, 0.1).unwrap();
             let defect = |relative_tolerance: f64| {
                 let request = Request {
                     relative_tolerance,
@@ -227,7 +228,7 @@ fn event_times_meet_those_of_the_smallest_tolerance() {
 fn event_times_under_a_pulse_meet_those_of_the_smallest_tolerance() {
     let arch = semicircle();
     for kind in Pulse::ALL.iter().copied() {
-        let ground = GroundMotion::pulse(kind, -0.25 * GRAVITY, 0.25, 0.0);
+        let ground = GroundMotion::pulse(kind, -0.25 * GRAVITY, 0.25, 0.0).unwrap();
         let times = |relative_tolerance: f64| {
             let request = Request {
                 relative_tolerance,
@@ -246,14 +247,14 @@ fn event_times_under_a_pulse_meet_those_of_the_smallest_tolerance() {
 fn cuts_in_the_ground_motion_change_nothing() {
     let arch = semicircle();
     for kind in Pulse::ALL.iter().copied() {
-        let ground = GroundMotion::pulse(kind, -0.3 * GRAVITY, 0.3, 0.05);
+        let ground = GroundMotion::pulse(kind, -0.3 * GRAVITY, 0.3, 0.05).unwrap();
         let whole = run(&arch, &ground, &request(20.0));
         for cuts in [
             &[0.21][..],
             &[0.01, 0.0501, 0.111, 0.25, 0.7, 1.3],
             &[0.3, 0.3 + 1e-9],
         ] {
-            let cut_ground = ground.cut_at(cuts);
+            let cut_ground = ground.cut_at(cuts).unwrap();
             assert!(cut_ground.pieces().len() > ground.pieces().len());
             let cut = run(&arch, &cut_ground, &request(20.0));
             let times_s = impact_times_s(&cut).into_iter().zip(impact_times_s(&whole));
@@ -297,7 +298,8 @@ fn the_critical_rotation_is_where_it_turns_over() {
         let rate = factor * (2.0 * barrier / c.inertia).sqrt();
         let velocity = rate * c.inertia * arch.length_m() / c.sway;
         let ground =
-            GroundMotion::pulse(Pulse::Rectangular, -velocity / duration_s, duration_s, 0.0);
+            GroundMotion::pulse(Pulse::Rectangular, -velocity / duration_s, duration_s, 0.0)
+                .unwrap();
         let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
         assert!((rocking.barrier() / barrier - 1.0).abs() < 1e-14);
         let summary = run(&arch, &ground, &request(60.0)).summary;

@@ -63,7 +63,7 @@ proptest! {
         let Ok(arch) = FourLinkArch::new(arch, model) else { return Ok(()) };
         let incipient = arch.incipient_g() * gravity;
         let ground = ground.map_or_else(GroundMotion::still, |(pulse, factor, duration_s, start_s)| {
-            GroundMotion::pulse(pulse, factor * incipient, duration_s, start_s)
+            GroundMotion::pulse(pulse, factor * incipient, duration_s, start_s).unwrap()
         });
         let link = arch.link(0).unwrap();
         let request = Request {

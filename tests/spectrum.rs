@@ -196,7 +196,7 @@ fn outcome(
     duration_s: f64,
 ) -> (Outcome, usize) {
     let amplitude_m_s2 = -9.81 * over_incipient * specimen.incipient_g();
-    let ground = GroundMotion::pulse(kind, amplitude_m_s2, duration_s, 0.0);
+    let ground = GroundMotion::pulse(kind, amplitude_m_s2, duration_s, 0.0).unwrap();
     let request = Request {
         // Longer than any of these goes on.
         end_s: 1e3,

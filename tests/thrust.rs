@@ -257,7 +257,8 @@ fn pulse_history(
         amplitude_g * GRAVITY,
         duration_s,
         start_s,
-    );
+    )
+    .unwrap();
     run(arch, &ground, &sampled(end_s, 0.001))
 }
 

@@ -27,8 +27,8 @@ fn a_steady_vertical_acceleration_is_gravity() {
     for vertical in [-3.0, 4.0] {
         let horizontal = scaled(&synthetic(11, 8.0, 0.02), 0.25 * (G + vertical));
         let steady = [(0.0, vertical), (50.0, vertical)];
-        let lifted = GroundMotion::record(&horizontal, &steady, 0.0);
-        let plain = GroundMotion::record(&horizontal, &[], 0.0);
+        let lifted = GroundMotion::record(&horizontal, &steady, 0.0).unwrap();
+        let plain = GroundMotion::record(&horizontal, &[], 0.0).unwrap();
         let ((a, rows_a), (b, rows_b)) = (
             run(&arch, &lifted, G, None, 9.0),
             run(&arch, &plain, G + vertical, None, 9.0),
@@ -51,8 +51,9 @@ fn a_steady_vertical_acceleration_is_gravity() {
         50.0,
         0.0,
         WaveTrain::default(),
-    );
-    let push = GroundMotion::pulse(Pulse::Rectangular, 0.05 * G, 50.0, 0.0);
+    )
+    .unwrap();
+    let push = GroundMotion::pulse(Pulse::Rectangular, 0.05 * G, 50.0, 0.0).unwrap();
     let (_, rows_a) = run(&arch, &shake, G, release(0.03), 3.0);
     let (_, rows_b) = run(&arch, &push, G + 2.0, release(0.03), 3.0);
     for (x, y) in rows_a.iter().zip(&rows_b) {
@@ -80,7 +81,8 @@ fn uplift_is_at_the_tilt_of_gravity() {
                 &[(0.0, 0.0), (end, h * end)],
                 &[(0.0, 0.0), (end, v * end)],
                 0.3,
-            );
+            )
+            .unwrap();
             run(&arch, &ground, G, None, end + 1.0).0.summary.outcome
         };
         assert_eq!(outcome(1.0 - 1e-9), Outcome::NeverMoved);
@@ -94,7 +96,8 @@ fn uplift_is_at_the_tilt_of_gravity() {
         &[(0.0, 1.2), (2.0, 0.6)],
         &[(0.0, 0.0), (1.0, -4.0), (2.0, 0.0)],
         0.0,
-    );
+    )
+    .unwrap();
     let (history, _) = run(&arch, &ground, G, None, 4.0);
     assert_ne!(history.summary.outcome, Outcome::NeverMoved);
 }
@@ -136,7 +139,8 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
     }
     let amplitude = Vector2::new(horizontal, vertical);
     let ground =
-        GroundMotion::pulse_along(Pulse::OneSine, amplitude, period, 0.0, WaveTrain::default());
+        GroundMotion::pulse_along(Pulse::OneSine, amplitude, period, 0.0, WaveTrain::default())
+            .unwrap();
     let (history, rows) = run(&arch, &ground, G, release(released), end);
     assert!(history.summary.impacts == 0 && q > 0.0);
     for (i, row) in rows.iter().enumerate() {
@@ -147,7 +151,7 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
         );
     }
     // Without the vertical part it is elsewhere.
-    let plain = GroundMotion::pulse(Pulse::OneSine, horizontal, period, 0.0);
+    let plain = GroundMotion::pulse(Pulse::OneSine, horizontal, period, 0.0).unwrap();
     let (_, rows) = run(&arch, &plain, G, release(released), end);
     assert!((rows.last().unwrap().rotations_rad[0] + q).abs() > 1e-4);
     // The ground's work on an arch that is open is real: without it the energy would not balance.
@@ -207,7 +211,8 @@ fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
             0.1,
             0.0,
             WaveTrain::default(),
-        );
+        )
+        .unwrap();
         let (history, rows) = run(&arch, &ground, G, None, 0.2);
         let mut text = Vec::new();
         let mut table =
@@ -245,7 +250,7 @@ proptest! {
             let value = |i| (f64::from(i) * step_s, peak * G * (2.0 * random.next() - 1.0));
             (0..100).map(value).collect()
         };
-        let ground = GroundMotion::record(&rough(push), &rough(lift), 0.0);
+        let ground = GroundMotion::record(&rough(push), &rough(lift), 0.0).unwrap();
         let arch = semicircle();
         let (history, rows) = run(&arch, &ground, G, None, 15.0);
         prop_assert!(history.summary.energy_defect_ratio < 1e-6);

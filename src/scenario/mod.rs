@@ -249,11 +249,13 @@ impl PulseGround {
             phase_rad: self.phase_deg.to_radians(),
         };
         PulseShape::new(self.kind, self.duration_s, self.start_s, train)
+            .expect("the ranges of the keys are those of a ground motion")
     }
 
     fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(self.amplitude_g, self.vertical_amplitude_g);
-        self.shape().motion(amplitude_g * gravity_m_s2)
+        let motion = self.shape().motion(amplitude_g * gravity_m_s2);
+        motion.expect("the ranges of the keys are those of a ground motion")
     }
 }
 

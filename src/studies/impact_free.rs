@@ -47,7 +47,8 @@ impl ScalablePulse {
     #[must_use]
     pub fn motion(&self, amplitude_g: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(amplitude_g, self.pulse.vertical_amplitude_g);
-        self.shape.motion(amplitude_g * self.gravity_m_s2)
+        let motion = self.shape.motion(amplitude_g * self.gravity_m_s2);
+        motion.expect("the amplitudes of a scenario are those of a ground motion")
     }
 
     /// The ground motion with an amplitude to the pulse's own side.

@@ -8,6 +8,7 @@
 //! are multiples of one monotone shape: **every linear combination of the two is monotone**, and so is the
 //! distance from the onset of rocking.
 
+mod error;
 mod piece;
 mod pulse;
 mod record;
@@ -16,6 +17,7 @@ mod shape;
 use nalgebra::Vector2;
 
 use crate::bisection::{Width, bisect, middle};
+pub use error::GroundError;
 use piece::Formula;
 pub use piece::Piece;
 pub use pulse::{Pulse, PulseShape, WaveTrain};
@@ -116,11 +118,15 @@ impl GroundMotion {
         Some(middle(before_s, after_s))
     }
 
-    /// The same motion with further corners, which change nothing: for tests of the integration.
-    #[must_use]
-    pub fn cut_at(&self, times_s: &[f64]) -> Self {
+    /// The same motion with further corners at these times (0 to 1e9), which change nothing: for tests of the
+    /// integration.
+    ///
+    /// # Errors
+    /// When a time is outside its range.
+    pub fn cut_at(&self, times_s: &[f64]) -> Result<Self, GroundError> {
         let mut pieces = self.pieces.clone();
         for time in times_s {
+            error::time_s("times_s", *time)?;
             if let Some(index) = pieces
                 .iter()
                 .position(|p| p.start_s < *time && *time < p.end_s)
@@ -131,7 +137,7 @@ impl GroundMotion {
                 pieces.insert(index + 1, rest);
             }
         }
-        Self { pieces }
+        Ok(Self { pieces })
     }
 }
 
@@ -143,7 +149,7 @@ mod tests {
     fn pieces_follow_one_another_from_zero_to_infinity() {
         for pulse in Pulse::ALL.iter().copied() {
             for start in [0.0, 0.7] {
-                let ground = GroundMotion::pulse(pulse, 2.0, 0.3, start);
+                let ground = GroundMotion::pulse(pulse, 2.0, 0.3, start).unwrap();
                 let pieces = ground.pieces();
                 assert!(pieces[0].start_s == 0.0);
                 assert!(
@@ -159,7 +165,7 @@ mod tests {
 
     #[test]
     fn free_fall_is_found_at_corners_and_within_pieces() {
-        let ground = |vertical: &[(f64, f64)]| GroundMotion::record(&[], vertical, 0.0);
+        let ground = |vertical: &[(f64, f64)]| GroundMotion::record(&[], vertical, 0.0).unwrap();
         assert_eq!(ground(&[(0.0, 0.0), (1.0, -9.0)]).free_fall_s(9.81), None);
         let sloping = ground(&[(0.0, 0.0), (1.0, -20.0), (2.0, 5.0)]);
         assert!((sloping.free_fall_s(10.0).unwrap() - 0.5).abs() < 1e-15);
@@ -175,6 +181,7 @@ mod tests {
                 0.0,
                 WaveTrain::default(),
             )
+            .unwrap()
         };
         assert_eq!(wave(9.0).free_fall_s(9.81), None);
         // 20 sin(2 pi s) = -10 first at 7/12.
@@ -183,8 +190,8 @@ mod tests {
 
     #[test]
     fn cuts_change_no_value() {
-        let ground = GroundMotion::pulse(Pulse::OneSine, 2.0, 0.3, 0.1);
-        let cut = ground.cut_at(&[0.05, 0.11, 0.3, 5.0]);
+        let ground = GroundMotion::pulse(Pulse::OneSine, 2.0, 0.3, 0.1).unwrap();
+        let cut = ground.cut_at(&[0.05, 0.11, 0.3, 5.0]).unwrap();
         assert_eq!(cut.pieces().len(), ground.pieces().len() + 4);
         for piece in cut.pieces() {
             let time = piece.start_s;

@@ -5,8 +5,10 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 
 use super::GroundMotion;
+use super::error::{self, GroundError};
 use super::piece::Formula;
 use super::shape::{Shape, Sine};
+use crate::argument::within;
 
 named! {
     /// Shape of a single pulse. Accelerations follow with the amplitude `a`, which is the peak acceleration,
@@ -73,9 +75,9 @@ impl Pulse {
 /// Parameters of the pulses that are an oscillation under an envelope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaveTrain {
-    /// Length of the envelope in periods of the oscillation, at least 1: `gamma`, or the number of cycles.
+    /// Length of the envelope in periods of the oscillation, 1 to 1000: `gamma`, or the number of cycles.
     pub cycles: f64,
-    /// Phase of the oscillation, in radians.
+    /// Phase of the oscillation, at most 1000 in magnitude.
     pub phase_rad: f64,
 }
 
@@ -89,30 +91,35 @@ impl Default for WaveTrain {
 }
 
 impl GroundMotion {
-    /// A single horizontal pulse that starts at `start_s >= 0`, with peak acceleration `amplitude_m_s2` and
-    /// length `duration_s > 0`.
-    #[must_use]
-    pub fn pulse(pulse: Pulse, amplitude_m_s2: f64, duration_s: f64, start_s: f64) -> Self {
-        Self::pulse_along(
-            pulse,
-            Vector2::new(amplitude_m_s2, 0.0),
-            duration_s,
-            start_s,
-            WaveTrain::default(),
-        )
+    /// A single horizontal pulse that starts at `start_s` (0 to 1e9), with peak acceleration `amplitude_m_s2`
+    /// (at most 1e9 in magnitude) and length `duration_s` (1e-12 to 1e9). A wave train has [`WaveTrain::default`].
+    ///
+    /// # Errors
+    /// When an argument is outside its range.
+    pub fn pulse(
+        pulse: Pulse,
+        amplitude_m_s2: f64,
+        duration_s: f64,
+        start_s: f64,
+    ) -> Result<Self, GroundError> {
+        let train = WaveTrain::default();
+        PulseShape::new(pulse, duration_s, start_s, train)?
+            .motion(Vector2::new(amplitude_m_s2, 0.0))
     }
 
     /// A single pulse, as [`GroundMotion::pulse`], with horizontal and vertical peak accelerations of one
     /// common shape. `train` matters only to pulses that are wave trains.
-    #[must_use]
+    ///
+    /// # Errors
+    /// When an argument is outside its range.
     pub fn pulse_along(
         pulse: Pulse,
         amplitude_m_s2: Vector2<f64>,
         duration_s: f64,
         start_s: f64,
         train: WaveTrain,
-    ) -> Self {
-        PulseShape::new(pulse, duration_s, start_s, train).motion(amplitude_m_s2)
+    ) -> Result<Self, GroundError> {
+        PulseShape::new(pulse, duration_s, start_s, train)?.motion(amplitude_m_s2)
     }
 }
 
@@ -139,21 +146,46 @@ struct CutTrain {
 }
 
 impl PulseShape {
-    /// The pulse of that kind of length `duration_s > 0` that starts at `start_s >= 0`. `train` matters only to
-    /// pulses that are wave trains.
-    #[must_use]
-    pub fn new(pulse: Pulse, duration_s: f64, start_s: f64, train: WaveTrain) -> Self {
-        Self {
+    /// The pulse of that kind of length `duration_s` (1e-12 to 1e9) that starts at `start_s` (0 to 1e9). `train`
+    /// matters only to pulses that are wave trains.
+    ///
+    /// # Errors
+    /// When an argument is outside its range.
+    pub fn new(
+        pulse: Pulse,
+        duration_s: f64,
+        start_s: f64,
+        train: WaveTrain,
+    ) -> Result<Self, GroundError> {
+        let duration_s = error::duration_s("duration_s", duration_s)?;
+        if pulse.is_wave_train() {
+            within("cycles", train.cycles, 1.0..=1e3)?;
+            within("phase_rad", train.phase_rad, -1e3..=1e3)?;
+        }
+        Ok(Self {
             pulse,
             duration_s,
-            start_s,
+            start_s: error::time_s("start_s", start_s)?,
             train: CutTrain::new(pulse, duration_s, train),
-        }
+        })
     }
 
-    /// The ground motion with these horizontal and vertical peak accelerations, of one common shape.
-    #[must_use]
-    pub fn motion(&self, amplitude_m_s2: Vector2<f64>) -> GroundMotion {
+    /// The ground motion with these horizontal and vertical peak accelerations (at most 1e9 in magnitude), of one
+    /// common shape.
+    ///
+    /// # Errors
+    /// When one of them is outside its range.
+    pub fn motion(&self, amplitude_m_s2: Vector2<f64>) -> Result<GroundMotion, GroundError> {
+        error::acceleration_m_s2("amplitude_m_s2.x", amplitude_m_s2.x)?;
+        error::acceleration_m_s2("amplitude_m_s2.y", amplitude_m_s2.y)?;
+        Ok(GroundMotion::from_pieces(
+            self.start_s,
+            self.pieces(amplitude_m_s2),
+        ))
+    }
+
+    /// Ends in the time since the start, and formulas.
+    fn pieces(&self, amplitude_m_s2: Vector2<f64>) -> Vec<(f64, Formula)> {
         let (a, t) = (amplitude_m_s2, self.duration_s);
         let shaped = |shape: Shape| Formula::Shaped {
             amplitude: a,
@@ -168,7 +200,7 @@ impl PulseShape {
         };
         let cut =
             |ends: &[f64], formula: Formula| ends.iter().map(|end| (end * t, formula)).collect();
-        let pieces: Vec<_> = match self.pulse {
+        match self.pulse {
             Pulse::Rectangular => vec![(t, Formula::constant(a))],
             Pulse::StepPair => {
                 vec![
@@ -213,13 +245,12 @@ impl PulseShape {
                 let train = self.train.as_ref().expect("these are wave trains");
                 train.pieces(a)
             }
-        };
-        GroundMotion::from_pieces(self.start_s, pieces)
+        }
     }
 }
 
 impl CutTrain {
-    /// `None` if the pulse is no wave train.
+    /// `None` if the pulse is not a wave train.
     fn new(pulse: Pulse, duration_s: f64, train: WaveTrain) -> Option<Self> {
         let t = duration_s;
         let (shape, length_s) = match pulse {
@@ -313,7 +344,7 @@ mod tests {
         let plain = Pulse::ALL.iter().map(|pulse| (*pulse, default));
         let amplitude = Vector2::new(-3.0, 1.5);
         for (pulse, train) in plain.chain(trains()) {
-            let ground = GroundMotion::pulse_along(pulse, amplitude, 0.4, 0.2, train);
+            let ground = GroundMotion::pulse_along(pulse, amplitude, 0.4, 0.2, train).unwrap();
             for piece in ground.pieces() {
                 let end = piece.end_s.min(piece.start_s + 10.0);
                 let at = |i: i32| piece.start_s + (end - piece.start_s) * f64::from(i) / 100.0;
@@ -340,7 +371,7 @@ mod tests {
     fn wave_trains_reach_their_amplitude_and_not_more() {
         for (pulse, train) in trains() {
             let amplitude = Vector2::new(2.0, 0.0);
-            let ground = GroundMotion::pulse_along(pulse, amplitude, 0.3, 0.1, train);
+            let ground = GroundMotion::pulse_along(pulse, amplitude, 0.3, 0.1, train).unwrap();
             assert!((ground.peaks_m_s2(f64::INFINITY).x - 2.0).abs() < 1e-12);
             // The pieces end at the extrema: nothing between is beyond.
             let moving = ground.pieces().iter().filter(|p| !p.stays_still());
@@ -384,7 +415,7 @@ mod tests {
                     _ => (w * s + phase).sin() * (w * s / (2.0 * n)).sin().powi(2),
                 }
             };
-            let ground = GroundMotion::pulse_along(pulse, Vector2::x(), t, 0.0, train);
+            let ground = GroundMotion::pulse_along(pulse, Vector2::x(), t, 0.0, train).unwrap();
             let ours = |part: f64| acceleration_at(&ground, part * length);
             let strongest = (1..50)
                 .map(|i| f64::from(i) / 50.0)
@@ -406,7 +437,7 @@ mod tests {
     #[test]
     fn the_antisymmetric_wavelet_is_the_published_one() {
         let (t, b) = (0.3, 1.3801);
-        let ground = GroundMotion::pulse(Pulse::AntisymmetricRicker, 1.0, t, 0.0);
+        let ground = GroundMotion::pulse(Pulse::AntisymmetricRicker, 1.0, t, 0.0).unwrap();
         for since in [0.1, 0.4, 0.7, 0.75, 0.9, 1.2] {
             let y = 2.0 * PI * (since - 2.5 * t) / (3.0_f64.sqrt() * t);
             let published = (y * y * y - 3.0 * y) * (-0.5 * y * y).exp() / b;
@@ -440,7 +471,7 @@ mod tests {
 
     #[test]
     fn velocities_left_by_the_pulses_are_the_closed_forms() {
-        let velocity = |pulse| final_velocity(&GroundMotion::pulse(pulse, 2.0, 0.3, 0.1));
+        let velocity = |pulse| final_velocity(&GroundMotion::pulse(pulse, 2.0, 0.3, 0.1).unwrap());
         assert!((velocity(Pulse::Rectangular) - 0.6).abs() < 1e-12);
         assert!(velocity(Pulse::StepPair).abs() < 1e-12);
         assert!((velocity(Pulse::HalfSine) - 1.2 / PI).abs() < 1e-12);
@@ -459,7 +490,7 @@ mod tests {
     #[test]
     fn pulses_reach_their_amplitude_where_they_say() {
         let peak = |pulse, at: f64| {
-            let ground = GroundMotion::pulse(pulse, 2.0, 0.3, 0.1);
+            let ground = GroundMotion::pulse(pulse, 2.0, 0.3, 0.1).unwrap();
             let inside = |p: &&Piece| p.start_s <= 0.1 + at && 0.1 + at < p.end_s;
             ground
                 .pieces()
@@ -475,7 +506,7 @@ mod tests {
         assert!((peak(Pulse::Ricker, 0.6) - 2.0).abs() < 1e-12);
         assert!((peak(Pulse::StepPair, 0.5) + 1.0).abs() < 1e-12);
         // A tiny pulse keeps its piece, however long the time before it.
-        let short = GroundMotion::pulse(Pulse::Rectangular, 2.0, 1e-12, 100.0);
+        let short = GroundMotion::pulse(Pulse::Rectangular, 2.0, 1e-12, 100.0).unwrap();
         assert_eq!(short.pieces().len(), 3);
     }
 }

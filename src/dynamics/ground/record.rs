@@ -3,21 +3,74 @@
 use nalgebra::Vector2;
 
 use super::GroundMotion;
+use super::error::{self, GroundError};
 use super::piece::Formula;
+use crate::argument::within;
 
-/// Corners of a record that are closer than this, in seconds, are one.
-const LEAST_SPACING_S: f64 = 1e-9;
+/// Least spacing of samples, in seconds.
+const MIN_STEP_S: f64 = 1e-8;
+/// Corners of the two components that are closer than this, in seconds, are one.
+const MIN_CORNER_SPACING_S: f64 = 1e-9;
 
 impl GroundMotion {
-    /// Recorded motion: straight lines between samples `(time in s, acceleration in m/s2)`, zero before the
-    /// first and after the last. Either component may be empty.
+    /// Horizontal accelerations in m/s2, one every `step_s` (1e-8 to 1e9) from time zero on, joined by straight lines;
+    /// zero after the last.
     ///
-    /// Times count from `start_s`; they increase, and none falls before time zero.
-    #[must_use]
-    pub fn record(horizontal: &[(f64, f64)], vertical: &[(f64, f64)], start_s: f64) -> Self {
+    /// ```
+    /// use archrock::GroundMotion;
+    ///
+    /// let ground = GroundMotion::from_samples(0.01, &[0.0, 0.8, -1.2, 0.3])?;
+    /// assert_eq!(ground.peaks_m_s2(f64::INFINITY).x, 1.2);
+    /// # Ok::<(), archrock::GroundError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When there are fewer than two samples, or a number is outside its range.
+    pub fn from_samples(step_s: f64, horizontal_m_s2: &[f64]) -> Result<Self, GroundError> {
+        within("step_s", step_s, MIN_STEP_S..=1e9)?;
+        #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
+        let samples: Vec<_> = horizontal_m_s2
+            .iter()
+            .enumerate()
+            .map(|(index, acceleration)| (index as f64 * step_s, *acceleration))
+            .collect();
+        check("horizontal_m_s2", &samples)?;
+        Ok(Self::polylines(&samples, &[], 0.0))
+    }
+
+    /// Recorded motion: straight lines between samples `(time in s, acceleration in m/s2)`, zero before the
+    /// first and after the last. One of the two components may be empty.
+    ///
+    /// Times count from `start_s` (0 to 1e9); they rise by at least 1e-8 s, and none falls before time zero. Times and
+    /// accelerations are at most 1e9 in magnitude.
+    ///
+    /// # Errors
+    /// When both components are empty, one has a single sample, or times and accelerations are not like that.
+    pub fn record(
+        horizontal: &[(f64, f64)],
+        vertical: &[(f64, f64)],
+        start_s: f64,
+    ) -> Result<Self, GroundError> {
+        error::time_s("start_s", start_s)?;
+        // Of two empty components, the first is said to be.
+        if !horizontal.is_empty() || vertical.is_empty() {
+            check("horizontal", horizontal)?;
+        }
+        if !vertical.is_empty() {
+            check("vertical", vertical)?;
+        }
+        let first_s = [horizontal, vertical]
+            .into_iter()
+            .filter_map(|samples| Some(samples.first()?.0))
+            .fold(f64::INFINITY, f64::min);
+        error::time_s("start_s + first time", start_s + first_s)?;
+        Ok(Self::polylines(horizontal, vertical, start_s))
+    }
+
+    fn polylines(horizontal: &[(f64, f64)], vertical: &[(f64, f64)], start_s: f64) -> Self {
         let mut corners: Vec<f64> = horizontal.iter().chain(vertical).map(|s| s.0).collect();
         corners.sort_unstable_by(f64::total_cmp);
-        corners.dedup_by(|later, earlier| *later - *earlier < LEAST_SPACING_S);
+        corners.dedup_by(|later, earlier| *later - *earlier < MIN_CORNER_SPACING_S);
         let mut components = [Polyline::new(horizontal), Polyline::new(vertical)];
         let lines = corners.windows(2).map(|ends| {
             let [x, y] = components
@@ -32,6 +85,40 @@ impl GroundMotion {
         let first_s = start_s + corners.first().copied().unwrap_or(0.0);
         Self::join(first_s, lines)
     }
+}
+
+/// Refuses samples between which there are no lines.
+fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundError> {
+    if samples.len() < 2 {
+        return Err(GroundError::TooFewSamples {
+            argument,
+            count: samples.len(),
+        });
+    }
+    let mut before_s = f64::NEG_INFINITY;
+    for (index, &(time_s, acceleration_m_s2)) in samples.iter().enumerate() {
+        error::clock_s("time_s", time_s)
+            .and(error::acceleration_m_s2(
+                "acceleration_m_s2",
+                acceleration_m_s2,
+            ))
+            .map_err(|fault| GroundError::Sample {
+                argument,
+                index,
+                fault,
+            })?;
+        // Products that are a step apart may round to a hair less.
+        if time_s - before_s < 0.999 * MIN_STEP_S {
+            return Err(GroundError::Order {
+                argument,
+                index,
+                time_s,
+                before_s,
+            });
+        }
+        before_s = time_s;
+    }
+    Ok(())
 }
 
 /// Straight lines between samples, asked for from left to right.
@@ -68,7 +155,7 @@ mod tests {
     fn records_are_straight_lines_between_their_samples() {
         let horizontal = [(0.5, 1.0), (1.0, -2.0), (1.5, 0.5)];
         let vertical = [(0.75, 4.0), (1.0 + 1e-12, 2.0), (3.0, 0.0)];
-        let ground = GroundMotion::record(&horizontal, &vertical, 0.25);
+        let ground = GroundMotion::record(&horizontal, &vertical, 0.25).unwrap();
         let corners: Vec<_> = ground.pieces().iter().map(|p| p.start_s).collect();
         assert_eq!(corners, [0.0, 0.75, 1.0, 1.25, 1.75, 3.25]);
         let at = |time: f64| {
@@ -89,7 +176,5 @@ mod tests {
             assert!((at(time) - Vector2::new(x, y)).norm() < 1e-11, "{time}");
         }
         assert!(ground.has_vertical() && ground.peaks_m_s2(f64::INFINITY).x == 2.0);
-        let none = GroundMotion::record(&[], &[], 0.25);
-        assert!(none.pieces().len() == 2 && !none.has_vertical());
     }
 }

@@ -159,6 +159,9 @@ pub struct Record {
     pub start_s: f64,
 }
 
+/// Why the samples of a file make a ground motion.
+const READ: &str = "what was read and checked is a ground motion";
+
 /// What a series is read for.
 struct Purpose<'a> {
     /// Folder of the scenario.
@@ -170,8 +173,7 @@ struct Purpose<'a> {
 
 impl Record {
     /// The ground motion under the given gravity.
-    #[must_use]
-    pub fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+    pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let main = self.main.accelerations_m_s2(gravity_m_s2);
         match (self.component, &self.vertical) {
             (Component::Vertical, _) => GroundMotion::record(&[], &main, self.start_s),
@@ -182,6 +184,7 @@ impl Record {
                 GroundMotion::record(&main, &vertical, self.start_s)
             }
         }
+        .expect(READ)
     }
 
     pub(super) fn read(
@@ -360,7 +363,7 @@ impl Series {
         }
         if purpose.component == Component::Vertical {
             let samples = self.accelerations_m_s2(gravity_m_s2);
-            let motion = GroundMotion::record(&[], &samples, purpose.start_s);
+            let motion = GroundMotion::record(&[], &samples, purpose.start_s).expect(READ);
             if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
                 return Err(table.wrong("file", super::free_fall(time_s)));
             }
