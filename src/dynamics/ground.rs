@@ -108,7 +108,28 @@ impl Sine {
             self.amplitude * self.frequency_rad_s * cos,
         )
     }
+
+    /// Integral between two times, by the chord of the unit circle: exact at any frequency, zero included.
+    fn integral(&self, from_s: f64, to_s: f64) -> f64 {
+        let half_angle = 0.5 * self.frequency_rad_s * (to_s - from_s);
+        let per_angle = if half_angle == 0.0 {
+            1.0
+        } else {
+            half_angle.sin() / half_angle
+        };
+        let middle = 0.5 * self.frequency_rad_s * (from_s + to_s) + self.phase_rad;
+        self.amplitude * (to_s - from_s) * middle.sin() * per_angle
+    }
 }
+
+/// Nodes, on both sides of the middle, and weights of the Gauss-Legendre rule of eight points on `[-1, 1]`.
+/// Source: Abramowitz and Stegun, table 25.4.
+const GAUSS_LEGENDRE_8: [(f64, f64); 4] = [
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
+    (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
+];
 
 /// A smooth function of the time since the start of a pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,6 +192,46 @@ impl Shape {
                     bell * cos,
                     -bell * frequency_rad_s * (2.0 * angle / square * cos + sin),
                 )
+            }
+        }
+    }
+
+    /// Integral over a piece, or over a part of it.
+    fn integral(&self, from_s: f64, to_s: f64) -> f64 {
+        match *self {
+            Self::Sine(sine) => sine.integral(from_s, to_s),
+            Self::Beat(sines) => sines.iter().map(|sine| sine.integral(from_s, to_s)).sum(),
+            Self::Ricker { period_s } => {
+                let scale = PI / period_s;
+                let antiderivative = |since_s: f64| {
+                    let x = scale * (since_s - 2.0 * period_s);
+                    x * (-x * x).exp()
+                };
+                (antiderivative(to_s) - antiderivative(from_s)) / scale
+            }
+            Self::AntisymmetricRicker { period_s } => {
+                let scale = 2.0 * PI / (3.0_f64.sqrt() * period_s);
+                let antiderivative = |since_s: f64| {
+                    let y = scale * (since_s - 2.5 * period_s);
+                    (1.0 - y * y) * (-0.5 * y * y).exp()
+                };
+                (antiderivative(to_s) - antiderivative(from_s)) / scale
+            }
+            // Its antiderivative is an error function of a complex argument: quadrature is simpler, and exact to
+            // rounding over the half period that a piece lasts.
+            Self::Gabor { .. } => {
+                let quarter_s = 0.25 * (to_s - from_s);
+                let quarters = [0.5, 1.5, 2.5, 3.5].map(|part| from_s + part * quarter_s);
+                let panel = |middle_s: f64| {
+                    GAUSS_LEGENDRE_8
+                        .iter()
+                        .map(|(node, weight)| {
+                            let offset_s = 0.5 * quarter_s * node;
+                            weight * (self.at(middle_s - offset_s).0 + self.at(middle_s + offset_s).0)
+                        })
+                        .sum::<f64>()
+                };
+                0.5 * quarter_s * quarters.map(panel).iter().sum::<f64>()
             }
         }
     }
@@ -287,6 +348,16 @@ impl Formula {
             }
         }
     }
+
+    /// Integral of the acceleration between two times.
+    fn integral(&self, from_s: f64, to_s: f64) -> Vector2<f64> {
+        match *self {
+            Self::Linear { at_origin, slope } => {
+                (at_origin + slope * (0.5 * (from_s + to_s))) * (to_s - from_s)
+            }
+            Self::Shaped { amplitude, shape } => amplitude * shape.integral(from_s, to_s),
+        }
+    }
 }
 
 /// A piece of ground motion: smooth, and every combination of its components monotone, from its start to
@@ -300,6 +371,8 @@ pub struct Piece {
     /// Time that the formula counts from.
     origin_s: f64,
     formula: Formula,
+    /// Velocity of the ground at the start.
+    start_m_s: Vector2<f64>,
 }
 
 impl Piece {
@@ -308,6 +381,14 @@ impl Piece {
     #[must_use]
     pub fn at(&self, time_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         self.formula.at(time_s - self.origin_s)
+    }
+
+    /// Velocity of the ground in m/s, horizontal and vertical, at a time in the piece, its ends included: the
+    /// integral of the acceleration since time zero, in closed form.
+    #[must_use]
+    pub fn velocity_m_s(&self, time_s: f64) -> Vector2<f64> {
+        let (from_s, to_s) = (self.start_s - self.origin_s, time_s - self.origin_s);
+        self.start_m_s + self.formula.integral(from_s, to_s)
     }
 
     /// Horizontal acceleration in m/s2, as [`Piece::at`].
@@ -525,16 +606,20 @@ impl GroundMotion {
             .into_iter()
             .chain(moving)
             .chain([quiet(f64::INFINITY)]);
-        let mut pieces = Vec::new();
+        let mut pieces: Vec<Piece> = Vec::new();
         let mut piece_start_s = 0.0;
         for (end_s, origin_s, formula) in all {
             // Nothing is left of a piece that is shorter than the spacing of times around it.
             if end_s > piece_start_s {
+                let start_m_s = pieces.last().map_or(Vector2::zeros(), |before| {
+                    before.velocity_m_s(piece_start_s)
+                });
                 pieces.push(Piece {
                     start_s: piece_start_s,
                     end_s,
                     origin_s,
                     formula,
+                    start_m_s,
                 });
                 piece_start_s = end_s;
             }
@@ -559,6 +644,14 @@ impl GroundMotion {
                 [piece.start_s, piece.end_s.min(until_s)].map(|t| piece.at(t).0.abs())
             })
             .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at))
+    }
+
+    /// Velocity of the ground in m/s, horizontal and vertical, at a time that is not negative, when it starts
+    /// from rest: the integral of its acceleration, in closed form.
+    #[must_use]
+    pub fn velocity_m_s(&self, time_s: f64) -> Vector2<f64> {
+        let after = self.pieces.partition_point(|piece| piece.start_s <= time_s);
+        self.pieces[after.max(1) - 1].velocity_m_s(time_s)
     }
 
     /// When the ground falls quiet for good, in seconds.
@@ -601,6 +694,7 @@ impl GroundMotion {
             {
                 let mut rest = pieces[index];
                 pieces[index].end_s = *time;
+                rest.start_m_s = rest.velocity_m_s(*time);
                 rest.start_s = *time;
                 pieces.insert(index + 1, rest);
             }
@@ -849,6 +943,44 @@ mod tests {
         // The Fourier transform of the bell; the peak is in the middle.
         let gabor = 2.0 * 0.3 / PI.sqrt() * (-1.0_f64).exp();
         assert!((velocity(Pulse::Gabor) - gabor).abs() < 1e-12);
+    }
+
+    /// Simpson's rule on fine parts that respect the corners errs by less than rounding.
+    #[test]
+    fn the_velocity_is_the_integral_of_the_acceleration() {
+        let simple = [
+            Pulse::Rectangular,
+            Pulse::StepPair,
+            Pulse::HalfSine,
+            Pulse::OneSine,
+            Pulse::OneCosine,
+            Pulse::Triangular,
+            Pulse::Ricker,
+            Pulse::AntisymmetricRicker,
+        ];
+        let simple = simple.map(|pulse| (pulse, WaveTrain::default()));
+        let amplitude = Vector2::new(2.0, -0.7);
+        for (pulse, train) in trains().chain(simple) {
+            let ground = GroundMotion::pulse_along(pulse, amplitude, 0.3, 0.1, train);
+            let (mut velocity, n) = (Vector2::zeros(), 400);
+            for piece in ground.pieces().iter().filter(|p| p.end_s.is_finite()) {
+                let h = (piece.end_s - piece.start_s) / f64::from(n);
+                for i in 0..n {
+                    let time = piece.start_s + h * f64::from(i);
+                    let miss: Vector2<f64> = ground.velocity_m_s(time) - velocity;
+                    assert!(miss.norm() < 1e-12, "{pulse:?} {train:?} {time} {miss}");
+                    let at = |part: f64| piece.at(time + part * h).0;
+                    velocity += (at(0.0) + at(0.5) * 4.0 + at(1.0)) * (h / 6.0);
+                }
+            }
+            assert!((ground.velocity_m_s(100.0) - velocity).norm() < 1e-12);
+        }
+        let record = GroundMotion::record(&[(0.5, 1.0), (1.0, -2.0), (1.5, 0.5)], &[], 0.25);
+        // Trapezia of -1/2 * 1/2 and -3/2 * 1/2.
+        assert!((record.velocity_m_s(1.25).x + 0.25).abs() < 1e-15);
+        assert!((record.velocity_m_s(9.0).x + 0.625).abs() < 1e-15);
+        let cut = record.cut_at(&[0.9, 1.4]);
+        assert!((cut.velocity_m_s(1.6) - record.velocity_m_s(1.6)).norm() < 1e-15);
     }
 
     #[test]

@@ -1,17 +1,21 @@
 //! Mechanics of the arch and the column: pure functions, no time, no files.
 pub mod arch;
+pub mod blocks;
 pub mod certificate;
 pub mod chain;
 pub mod column;
+pub mod contact;
 pub mod equivalent;
 pub mod field;
 pub mod impact;
 pub mod impulse_line;
 pub mod limit;
+pub mod joints;
 pub mod linkage;
 pub mod mechanism;
 pub mod resultant;
 pub mod ring;
 mod search;
+pub mod stability;
 pub mod structure;
 pub mod thrust;
