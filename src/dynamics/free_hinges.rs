@@ -355,7 +355,8 @@ struct Engine<'a> {
     shares: Vec<[f64; 2]>,
     shut: Vec<usize>,
     opened: Vec<usize>,
-    was_shut: Vec<bool>,
+    /// Corners that touched at the beginning of the step.
+    closed: Vec<Corners>,
     rotations: Vec<f64>,
     rates: Vec<f64>,
     potential: f64,
@@ -402,7 +403,7 @@ impl<'a> Engine<'a> {
             shares: vec![[0.0; 2]; joints],
             shut: Vec::with_capacity(joints),
             opened: Vec::with_capacity(joints),
-            was_shut: vec![true; joints],
+            closed: vec![[true; 2]; joints],
             rotations: vec![0.0; blocks],
             rates: vec![0.0; blocks],
             potential: 0.0,
@@ -522,16 +523,15 @@ impl<'a> Engine<'a> {
         let mut step = left / (left / longest - 1e-9).ceil().max(1.0);
         let before = self.momentum();
         self.touch_shut();
-        for (was, touching) in self.was_shut.iter_mut().zip(&self.touching) {
-            *was = *touching == [true; 2];
-        }
+        self.closed.copy_from_slice(&self.touching);
+        let taken_before = self.run.energy_taken_j;
         self.landing.fill([0.0; 2]);
         let shortest = self.settings.shortest_step_s.min(step);
 
         // A step that ends at the first landing: its length changes the kick, and so the landing.
         let planned = step;
         let mut earlier: Option<(f64, f64)> = None;
-        let (mut merged, mut landed) = (false, false);
+        let mut merged = false;
         for pass in 0..LANDING_PASSES {
             self.solve_step(step)?;
             let (fall, residual_ratio) = self.first_landing(step);
@@ -539,7 +539,6 @@ impl<'a> Engine<'a> {
                 break;
             }
             if residual_ratio.abs() <= 0.5 * SHUT_RATIO || pass + 1 == LANDING_PASSES {
-                landed = true;
                 break;
             }
             let miss = fall - step;
@@ -562,12 +561,9 @@ impl<'a> Engine<'a> {
         }
         self.account(step, before, !merged);
         self.drift(step)?;
-        let velocity_energy = self.run.energy_taken_j;
-        if landed && self.has_landed() {
+        if self.has_landed() {
             self.impact()?;
-        }
-        if landed || merged {
-            self.report(velocity_energy, recorder);
+            self.report(taken_before, recorder);
         }
         let cost = &mut self.run.cost;
         cost.steps += 1;
@@ -876,8 +872,10 @@ impl<'a> Engine<'a> {
 
     /// Whether a corner touches that did not at the beginning of the step.
     fn has_landed(&self) -> bool {
-        let corners = self.placement.gaps_m().iter().zip(&self.touching);
-        corners.flat_map(|(gaps, touching)| gaps.iter().zip(touching)).any(|(gap, touching)| *gap == 0.0 && !touching)
+        let corners = self.placement.gaps_m().iter().zip(&self.closed);
+        corners
+            .flat_map(|(gaps, closed)| gaps.iter().zip(closed))
+            .any(|(gap, closed)| *gap == 0.0 && !closed)
     }
 
     /// Completes the velocity at a landing with the old mechanism, then projects it.
@@ -887,9 +885,10 @@ impl<'a> Engine<'a> {
         self.kick(impulse);
         self.jumps.fill(Twist::ZERO);
         self.landing.fill([0.0; 2]);
-        for (touching, gaps) in self.touching.iter_mut().zip(self.placement.gaps_m()) {
+        self.touch_shut();
+        for (touching, closed) in self.touching.iter_mut().zip(&self.closed) {
             for edge in 0..2 {
-                touching[edge] &= gaps[edge] == 0.0;
+                touching[edge] &= closed[edge];
             }
         }
         self.solve()?;
@@ -957,6 +956,7 @@ impl Engine<'_> {
     fn audit(&mut self, kinetic: f64) {
         let due = self.start_energy + self.ground_work - self.run.energy_taken_j;
         let defect = (kinetic + self.potential - due) / self.energy_unit;
+        if std::env::var("AUD").is_ok() {eprintln!("aud {:.6} {:.4e} h {:.3e}",self.time,defect,self.last_step);}
         let worst = &mut self.run.energy_defect_ratio;
         *worst = worst.max(defect.abs());
     }
@@ -1013,14 +1013,14 @@ impl Engine<'_> {
         self.shut.clear();
         self.opened.clear();
         for joint in 0..self.touching.len() {
-            if !self.was_shut[joint] && self.placement.is_shut(joint) && self.program.keeps_shut(joint) {
+            if self.closed[joint] != [true; 2] && self.placement.is_shut(joint) && self.program.keeps_shut(joint) {
                 self.shut.push(joint);
             }
         }
         let fastest = self.program.open_joints().flat_map(|(_, rates)| rates).fold(0.0, f64::max);
         for (joint, rates) in self.program.open_joints() {
             let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
-            if self.was_shut[joint] && opens {
+            if self.closed[joint] == [true; 2] && opens {
                 self.opened.push(joint);
             }
         }

@@ -28,7 +28,7 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 /// The same as part of all momentum, for rows that nothing presses together.
 const MOMENTUM_TOLERANCE: f64 = 1e-14;
 /// Corners close when they do so faster than this part of the largest velocity.
-const RATE_TOLERANCE: f64 = 1e-13;
+const RATE_TOLERANCE: f64 = 1e-11;
 /// To this it is relaxed, tenfold at a time, before a program counts as unsolved.
 const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
 /// A corner that a unit impulse accelerates less than this part of what it does to free bodies depends on
