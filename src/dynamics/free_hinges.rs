@@ -528,32 +528,41 @@ impl<'a> Engine<'a> {
         self.landing.fill([0.0; 2]);
         let shortest = self.settings.shortest_step_s.min(step);
 
-        // A step that ends at the first landing: its length changes the kick, and so the landing.
-        let planned = step;
+        // A step that ends at the first landing: its length changes the kick, and so the landing. No corner lands
+        // within `safe`, some do within `late`.
+        let (mut safe, mut late) = (0.0, step);
         let mut earlier: Option<(f64, f64)> = None;
         let mut merged = false;
-        for pass in 0..LANDING_PASSES {
+        for pass in 0.. {
             self.solve_step(step)?;
             let (fall, residual_ratio) = self.first_landing(step);
-            if fall >= step && earlier.is_none() {
+            if residual_ratio.abs() <= 0.5 * SHUT_RATIO || (fall > step && pass == 0) {
                 break;
             }
-            if residual_ratio.abs() <= 0.5 * SHUT_RATIO || pass + 1 == LANDING_PASSES {
-                break;
+            if fall > step {
+                safe = step;
+                if pass >= LANDING_PASSES {
+                    break;
+                }
+            } else {
+                late = step;
             }
             let miss = fall - step;
-            let secant = earlier.map(|(other, other_miss)| {
+            let secant = earlier.map_or(fall, |(other, other_miss)| {
                 step - miss * (step - other) / (miss - other_miss)
             });
-            let next = secant
-                .filter(|next| *next > 0.0 && *next <= planned)
-                .unwrap_or(fall.min(planned));
-            if next < shortest {
+            earlier = Some((step, miss));
+            step = if pass + 1 >= LANDING_PASSES {
+                safe
+            } else if safe < secant && secant < late {
+                secant
+            } else {
+                0.5 * (safe + late)
+            };
+            if step < shortest {
                 merged = true;
                 break;
             }
-            earlier = Some((step, miss));
-            step = next;
         }
         if merged {
             step = shortest;
