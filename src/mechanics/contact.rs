@@ -34,6 +34,8 @@ const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
 /// A corner that a unit impulse accelerates less than this part of what it does to free bodies depends on
 /// the active ones.
 const DEPENDENCE: f64 = 1e-10;
+/// Rounds of exchanging many corners without progress after which the dual method takes over.
+const EXCHANGE_PATIENCE: usize = 6;
 /// A corner whose impulse falls by less than this part of a unit impulse elsewhere keeps it.
 const LEAST_SLOPE: f64 = 1e-12;
 
@@ -191,6 +193,8 @@ pub struct Program {
     response: Answer,
     velocities: Vec<Twist>,
     force_floor: f64,
+    /// Corners that pull or close.
+    wrong: Vec<(usize, usize)>,
 }
 
 impl Program {
@@ -212,6 +216,7 @@ impl Program {
             response: Answer::with_capacity(joints),
             velocities: vec![Twist::ZERO; blocks],
             force_floor: 0.0,
+            wrong: Vec::with_capacity(2 * joints),
         };
         program.reset();
         program
@@ -305,12 +310,14 @@ impl Program {
         let mut effort = Effort::default();
         let patience = 60 + 2 * frames.len();
         let mut tolerance = RATE_TOLERANCE;
-        if !self.factor(frames) {
+        // Not a number neither.
+        if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) {
             self.active.fill([false; 2]);
             self.factor(frames);
         }
         self.answer_load(frames, None);
         effort.iterations += 1;
+        self.exchange(frames, load.touching, tolerance * largest_rate, &mut effort.iterations);
         loop {
             if effort.iterations > patience * (effort.relaxed + 1) {
                 tolerance *= 10.0;
@@ -373,8 +380,9 @@ impl Program {
         largest
     }
 
-    /// Bodies, pins and pivots of the active set. False when its rows depend on each other.
-    fn factor(&mut self, frames: &[Frame]) -> bool {
+    /// Bodies, pins and pivots of the active set. Returns the least pivot over what it would be without the other rows: zero
+    /// when rows depend on each other.
+    fn factor(&mut self, frames: &[Frame]) -> f64 {
         self.bodies.clear();
         self.pins.clear();
         let mut first = None;
@@ -412,8 +420,8 @@ impl Program {
     }
 
     /// Forward elimination of the compliances at the pins, in axes along and across each joint.
-    fn eliminate(&mut self, frames: &[Frame]) -> bool {
-        let mut sound = true;
+    fn eliminate(&mut self, frames: &[Frame]) -> f64 {
+        let mut least = 1.0_f64;
         for index in 0..self.pins.len() {
             let (before, from) = self.pins.split_at_mut(index);
             let pin = &mut from[0];
@@ -456,11 +464,11 @@ impl Program {
                 own.m22 -= taken.m22;
             }
             if pin.parted {
-                sound &= own.m11 > DEPENDENCE * DEPENDENCE * free[0];
+                least = least.min(own.m11 / free[0]);
                 pin.pivot = Matrix2::new(1.0 / own.m11, 0.0, 0.0, 0.0);
             } else {
                 let determinant = own.m11 * own.m22 - own.m12 * own.m12;
-                sound &= own.m11 > 0.0 && determinant > DEPENDENCE * DEPENDENCE * free[0] * free[1];
+                least = least.min(own.m11 / free[0]).min(determinant / (own.m11 * free[1]));
                 let inverse = 1.0 / determinant;
                 pin.pivot = Matrix2::new(
                     own.m22 * inverse,
@@ -470,7 +478,7 @@ impl Program {
                 );
             }
         }
-        sound
+        least
     }
 
     /// Motions and impulses under the load and an impulse at one corner.
@@ -640,11 +648,72 @@ impl Program {
         resultant + self.change(&twist, pin.joint, loaded)
     }
 
-    /// Releases the corners that pull, the worst one of each run of neighbours. False if none does.
-    fn release(&mut self) -> bool {
+    /// Releases all corners that pull and stops all that close, again and again, while that leaves fewer of them. It
+    /// solves impacts at which many corners change in a few rounds, but may go in circles: what it leaves is for
+    /// the dual method.
+    fn exchange(
+        &mut self,
+        frames: &[Frame],
+        touching: &[Corners],
+        tolerance: f64,
+        iterations: &mut usize,
+    ) {
+        let mut fewest = usize::MAX;
+        let mut patience = EXCHANGE_PATIENCE;
+        loop {
+            let pulling = self.pull_limit();
+            self.wrong.clear();
+            for (joint, active) in self.active.iter().enumerate() {
+                for edge in 0..2 {
+                    if active[edge] && self.answer.corners[joint][edge] < pulling {
+                        self.wrong.push((joint, edge));
+                    }
+                }
+            }
+            for (pin, rates) in self.pins.iter().zip(&self.answer.rates) {
+                for edge in 0..2 {
+                    let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
+                    if free && rates[edge] < -tolerance {
+                        self.wrong.push((pin.joint, edge));
+                    }
+                }
+            }
+            if self.wrong.is_empty() {
+                return;
+            }
+            if self.wrong.len() < fewest {
+                fewest = self.wrong.len();
+                patience = EXCHANGE_PATIENCE;
+            } else if patience == 0 {
+                return;
+            } else {
+                patience -= 1;
+            }
+            for (joint, edge) in &self.wrong {
+                self.active[*joint][*edge] ^= true;
+            }
+            if !(self.factor(frames) > DEPENDENCE) {
+                for (joint, edge) in &self.wrong {
+                    self.active[*joint][*edge] ^= true;
+                }
+                self.factor(frames);
+                return;
+            }
+            self.answer_load(frames, None);
+            *iterations += 1;
+        }
+    }
+
+    /// Impulses below this pull.
+    fn pull_limit(&self) -> f64 {
         let corners = &self.answer.corners;
         let largest = corners.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let limit = -(FORCE_TOLERANCE * largest).max(self.force_floor);
+        -(FORCE_TOLERANCE * largest).max(self.force_floor)
+    }
+
+    /// Releases the corners that pull, the worst one of each run of neighbours. False if none does.
+    fn release(&mut self) -> bool {
+        let limit = self.pull_limit();
         let mut released = false;
         for edge in 0..2 {
             let mut worst: Option<usize> = None;
@@ -768,7 +837,7 @@ impl Program {
         for (active, gaps) in self.active.iter_mut().zip(placement.gaps_m()) {
             *active = gaps.map(|gap| gap == 0.0);
         }
-        if !self.factor(frames) || self.pins.is_empty() {
+        if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) || self.pins.is_empty() {
             return false;
         }
         let mut answer = std::mem::take(&mut self.answer);
