@@ -1,4 +1,5 @@
-//! Motion in time: the ground, the rocking structure, its history.
+//! Motion in time: the ground, what can be shaken, its history, and the models of motion.
+pub mod free_hinges;
 pub mod ground;
 pub mod history;
 pub mod hybrid;

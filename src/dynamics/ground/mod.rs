@@ -13,6 +13,7 @@ mod piece;
 mod pulse;
 mod record;
 mod shape;
+mod velocity;
 
 use nalgebra::Vector2;
 
@@ -21,6 +22,7 @@ pub use error::GroundError;
 use piece::Formula;
 pub use piece::Piece;
 pub use pulse::{Pulse, PulseShape, WaveTrain};
+pub use velocity::GroundVelocity;
 
 /// Ground acceleration from time zero on, zero after the last corner.
 #[derive(Clone, Debug, PartialEq)]

@@ -37,6 +37,18 @@ impl Formula {
     }
 }
 
+impl Formula {
+    /// Integral of the acceleration between two times.
+    fn integral(&self, from_s: f64, to_s: f64) -> Vector2<f64> {
+        match *self {
+            Self::Linear { at_origin, slope } => {
+                (at_origin + slope * (0.5 * (from_s + to_s))) * (to_s - from_s)
+            }
+            Self::Shaped { amplitude, shape } => amplitude * shape.integral(from_s, to_s),
+        }
+    }
+}
+
 /// A piece of ground motion: smooth, and every combination of its components monotone, from its start to
 /// its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +63,13 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// Change of the velocity of the ground from the start of the piece to a time in it, in m/s: the integral of
+    /// the acceleration.
+    pub(super) fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
+        let (from_s, to_s) = (self.start_s - self.origin_s, time_s - self.origin_s);
+        self.formula.integral(from_s, to_s)
+    }
+
     /// Acceleration in m/s2 and its rate of change in m/s3, both horizontal and vertical (positive to the
     /// right and upwards), at a time in the piece, the ends included, as the limit from inside.
     #[must_use]

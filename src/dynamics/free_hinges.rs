@@ -1,0 +1,1125 @@
+//! Motion of a row of rigid blocks whose joints open and shut anywhere, at any time.
+//!
+//! The state is the gaps of the joints ([`crate::mechanics::joints`]) and the velocities of the pieces that move
+//! as one. Steps are those of the leapfrog: a kick by gravity and the ground, after which the velocities are the nearest ones that
+//! the joints allow ([`crate::mechanics::contact`]), and a drift of the gaps. A step ends where a corner lands; there the
+//! velocity is completed with the old mechanism and then projected on what the shut corners allow, the
+//! perfectly inelastic impact of Moreau. Landings that follow each other within the shortest step are one program of one step.
+//!
+//! Pins move on arcs. What the straight drift of two bodies would part them by over the coming step is taken from their last
+//! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::ground::{GroundMotion, GroundVelocity};
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::contact::{ContactError, Corners, Load, Program};
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::field::{Twist, turned};
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::{Placement, Pose, SHUT_RATIO};
+
+/// At rest, kinetic and potential energy are below this part of weight times size.
+const REST_ENERGY_RATIO: f64 = 1e-9;
+/// A row has overturned when it is lower than at rest by this part of weight times size.
+const FALLEN_ENERGY_RATIO: f64 = 1e-3;
+/// An arch whose ends miss each other by more than this part of the thickness of a joint is in error.
+const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
+/// Below this part of the thickness of a joint the closure error is left alone.
+const CLOSURE_RATIO: f64 = 1e-13;
+/// Sways below this part of the size do not count as a change of side.
+const SWAY_RATIO: f64 = 1e-9;
+/// Passes in which the step that ends at a landing is found.
+const LANDING_PASSES: usize = 8;
+
+/// How a motion is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Longest step in seconds.
+    pub longest_step_s: f64,
+    /// Landings within this time, in seconds, are one.
+    pub shortest_step_s: f64,
+    /// When to stop at the latest, in seconds.
+    pub end_s: f64,
+    /// Time between samples in seconds; without it there are none.
+    pub output_step_s: Option<f64>,
+}
+
+impl Settings {
+    /// Steps for single histories: on a size of 10 m about 0.35 ms, and 0.01 ms for landings; with other
+    /// sizes they follow the square root of size over gravity.
+    #[must_use]
+    pub fn fine(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
+        Self::scaled(row, gravity_m_s2, end_s, [3.4e-4, 1.1e-5])
+    }
+
+    /// Steps for maps, about three times as long, and ten times for landings.
+    #[must_use]
+    pub fn coarse(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
+        Self::scaled(row, gravity_m_s2, end_s, [1.1e-3, 1.1e-4])
+    }
+
+    fn scaled(row: &Row, gravity_m_s2: f64, end_s: f64, steps: [f64; 2]) -> Self {
+        let scale = (row.size_m() / gravity_m_s2).sqrt();
+        Self {
+            longest_step_s: steps[0] * scale,
+            shortest_step_s: steps[1] * scale,
+            end_s,
+            output_step_s: None,
+        }
+    }
+
+    /// The same with all steps multiplied.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        Self {
+            longest_step_s: self.longest_step_s * factor,
+            shortest_step_s: self.shortest_step_s * factor,
+            ..*self
+        }
+    }
+}
+
+/// Why a motion could not be computed.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FreeHingeError {
+    /// A setting is out of range.
+    #[error("{name} is {value}: {allowed}")]
+    Setting {
+        /// Which one, with its unit.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        allowed: &'static str,
+    },
+    /// The initial rotations are not one finite number per block.
+    #[error("initial rotations: {given} finite numbers for {blocks} blocks")]
+    Rotations {
+        /// How many were given that are finite.
+        given: usize,
+        /// How many blocks there are.
+        blocks: usize,
+    },
+    /// The initial rotations do not close an arch.
+    #[error("with the initial rotations the ends of the arch miss each other by {error_m:.3e} m")]
+    Open {
+        /// By how much.
+        error_m: f64,
+    },
+    /// The velocities of a step were not found.
+    #[error("at {time_s} s {reason}")]
+    Contact {
+        /// When, in seconds.
+        time_s: f64,
+        /// Why.
+        reason: ContactError,
+    },
+    /// The ends of an arch parted in the computation.
+    #[error("at {time_s} s the ends of the arch miss each other by {error_m:.3e} m")]
+    Closure {
+        /// When, in seconds.
+        time_s: f64,
+        /// By how much.
+        error_m: f64,
+    },
+}
+
+/// The state at an output time.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// Time in seconds.
+    pub time_s: f64,
+    /// Rotations of the blocks in radians.
+    pub rotations_rad: &'a [f64],
+    /// Their rates in rad/s.
+    pub rates_rad_s: &'a [f64],
+    /// Gaps of the joints at intrados and extrados in metres; the larger one is an arc.
+    pub gaps_m: &'a [[f64; 2]],
+    /// Placements of the blocks.
+    pub poses: &'a [Pose],
+    /// Number of joints that are open.
+    pub open_joints: usize,
+    /// Largest ratio of tangential to normal force at a joint that is pressed, in the step before.
+    pub friction_demand: f64,
+    /// Least normal force at a joint in the step before, in newtons.
+    pub least_normal_n: f64,
+    /// Kinetic energy in joules.
+    pub kinetic_j: f64,
+    /// Potential energy above the undeformed row in joules.
+    pub potential_j: f64,
+}
+
+/// One or more corners land.
+#[derive(Clone, Copy, Debug)]
+pub struct Impact<'a> {
+    /// Time in seconds.
+    pub time_s: f64,
+    /// Joints that shut.
+    pub shut: &'a [usize],
+    /// Joints that open at once.
+    pub opened: &'a [usize],
+    /// Kinetic energy taken, in joules.
+    pub energy_taken_j: f64,
+}
+
+/// Who listens to a motion.
+pub trait Recorder {
+    /// At every output time.
+    fn sample(&mut self, _: &Sample) {}
+    /// At every impact.
+    fn impact(&mut self, _: &Impact) {}
+}
+
+/// Nobody does.
+impl Recorder for () {}
+
+/// How a motion ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// No joint opened.
+    NeverMoved,
+    /// At rest from this time on, in seconds: ground quiet for good, both energies negligible.
+    Rest {
+        /// When.
+        time_s: f64,
+    },
+    /// Overturned: lower than at rest, whose potential energy is a minimum.
+    Overturned {
+        /// To which side.
+        sway: Sway,
+        /// When the potential energy was last highest, in seconds.
+        time_s: f64,
+    },
+    /// Still rocking at the end.
+    Rocking,
+}
+
+/// From one passage of the centre of gravity through its undeformed place to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfCycle {
+    /// To which side.
+    pub sway: Sway,
+    /// When it began, in seconds.
+    pub start_s: f64,
+    /// How long it took, in seconds; of the last one, until the motion ended.
+    pub duration_s: f64,
+    /// Largest rotation of a block, in radians.
+    pub peak_rad: f64,
+    /// Energy at its end over that at its beginning; of the first and the last one unknown.
+    pub energy_ratio: Option<f64>,
+}
+
+/// What a motion has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Steps.
+    pub steps: usize,
+    /// Programs solved.
+    pub programs: usize,
+    /// Systems of pin forces solved.
+    pub iterations: usize,
+    /// How often the tolerance of a program had to be relaxed.
+    pub relaxed: usize,
+    /// Impacts that steps ended at.
+    pub impacts: usize,
+    /// Steps with more than one landing, or with landings too close to end at.
+    pub merged: usize,
+    /// Most iterations in one step.
+    pub most_iterations: usize,
+}
+
+/// A motion as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// When, in seconds.
+    pub end_s: f64,
+    /// Largest rotation of every block, in radians.
+    pub peaks_rad: Vec<f64>,
+    /// Half cycles.
+    pub half_cycles: Vec<HalfCycle>,
+    /// Least normal force at a joint outside impacts, in newtons.
+    pub least_normal_n: f64,
+    /// Largest ratio of tangential to normal force outside impacts.
+    pub friction_demand: f64,
+    /// Energy taken by impacts, in joules.
+    pub energy_taken_j: f64,
+    /// Largest error of the energy balance at impacts and samples, over weight times size.
+    pub energy_defect_ratio: f64,
+    /// Largest error of closure in metres.
+    pub closure_error_m: f64,
+    /// What it has cost.
+    pub cost: Cost,
+}
+
+/// Computes the motion of a row on moving ground, from rest or released from given rotations of its blocks
+/// (radians; hinges only).
+///
+/// # Errors
+/// When a setting is out of range, the initial rotations do not fit, or a step fails.
+pub fn simulate(
+    row: &Row,
+    ground: &GroundMotion,
+    gravity_m_s2: f64,
+    settings: &Settings,
+    initial_rad: Option<&[f64]>,
+    recorder: &mut impl Recorder,
+) -> Result<Run, FreeHingeError> {
+    check(gravity_m_s2, settings)?;
+    let mut engine = Engine::new(row, ground, gravity_m_s2, settings);
+    if let Some(rotations_rad) = initial_rad {
+        engine.release(rotations_rad)?;
+    }
+    engine.run(recorder)
+}
+
+fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {
+    let output_step_s = settings.output_step_s.unwrap_or(1.0);
+    for (name, value) in [
+        ("gravity in m/s2", gravity_m_s2),
+        ("longest step in s", settings.longest_step_s),
+        ("shortest step in s", settings.shortest_step_s),
+        ("end in s", settings.end_s),
+        ("output step in s", output_step_s),
+    ] {
+        if !(value > 0.0 && value < f64::INFINITY) {
+            let allowed = "it must be positive and finite";
+            return Err(FreeHingeError::Setting {
+                name,
+                value,
+                allowed,
+            });
+        }
+    }
+    if settings.shortest_step_s > settings.longest_step_s {
+        return Err(FreeHingeError::Setting {
+            name: "shortest step in s",
+            value: settings.shortest_step_s,
+            allowed: "it must not exceed the longest step",
+        });
+    }
+    Ok(())
+}
+
+/// Blocks that moved as one in the last drift.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    first: usize,
+    mass: f64,
+    inertia: f64,
+    centre: Vector2<f64>,
+    velocity: Vector2<f64>,
+    rate: f64,
+}
+
+impl Piece {
+    fn twist(&self, kick: Vector2<f64>) -> Twist {
+        Twist {
+            at_center: self.velocity + kick - turned(self.centre) * self.rate,
+            rate: self.rate,
+        }
+    }
+
+    /// By how much per time the arc of a point differs from its tangent over a step.
+    fn bend(&self, point: Vector2<f64>, step_s: f64) -> Vector2<f64> {
+        let (arm, turn) = (point - self.centre, step_s * self.rate);
+        arm * (-0.5 * turn * self.rate) - turned(arm) * (turn * turn * self.rate / 6.0)
+    }
+}
+
+struct Engine<'a> {
+    row: &'a Row,
+    ground: &'a GroundMotion,
+    velocity: GroundVelocity<'a>,
+    gravity: f64,
+    settings: &'a Settings,
+    /// Weight times size.
+    energy_unit: f64,
+    thinnest: f64,
+    time: f64,
+    /// The last step, zero where position and velocity belong to the same instant.
+    last_step: f64,
+    placement: Placement,
+    backup: Placement,
+    program: Program,
+    /// For what must not touch the active set.
+    auxiliary: Program,
+    pieces: Vec<Piece>,
+    next_pieces: Vec<Piece>,
+    /// Corner about which each joint turned in the last drift.
+    turning: Vec<Option<Edge>>,
+    free: Vec<Twist>,
+    jumps: Vec<Twist>,
+    /// Rates of the gaps that bring landing corners to zero within the step.
+    landing: Vec<[f64; 2]>,
+    touching: Vec<Corners>,
+    change: Vec<[f64; 2]>,
+    shares: Vec<[f64; 2]>,
+    shut: Vec<usize>,
+    opened: Vec<usize>,
+    /// Corners that touched at the beginning of the step.
+    closed: Vec<Corners>,
+    rotations: Vec<f64>,
+    rates: Vec<f64>,
+    potential: f64,
+    start_energy: f64,
+    ground_work: f64,
+    friction_demand: f64,
+    least_normal: f64,
+    cycle: Option<HalfCycle>,
+    cycle_energy: Option<f64>,
+    rising: bool,
+    highest_s: f64,
+    step_iterations: usize,
+    moved: bool,
+    run: Run,
+}
+
+impl<'a> Engine<'a> {
+    fn new(row: &'a Row, ground: &'a GroundMotion, gravity: f64, settings: &'a Settings) -> Self {
+        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let placement = Placement::new(row);
+        let program = Program::new(row);
+        let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
+        let mut engine = Self {
+            row,
+            ground,
+            velocity: GroundVelocity::new(ground),
+            gravity,
+            settings,
+            energy_unit: row.mass_kg() * gravity * row.size_m(),
+            thinnest: thicknesses.fold(f64::INFINITY, f64::min),
+            time: 0.0,
+            last_step: 0.0,
+            backup: placement.clone(),
+            placement,
+            auxiliary: program.clone(),
+            program,
+            pieces: Vec::with_capacity(blocks),
+            next_pieces: Vec::with_capacity(blocks),
+            turning: vec![None; joints],
+            free: vec![Twist::ZERO; blocks],
+            jumps: vec![Twist::ZERO; joints],
+            landing: vec![[0.0; 2]; joints],
+            touching: vec![[true; 2]; joints],
+            change: vec![[0.0; 2]; joints],
+            shares: vec![[0.0; 2]; joints],
+            shut: Vec::with_capacity(joints),
+            opened: Vec::with_capacity(joints),
+            closed: vec![[true; 2]; joints],
+            rotations: vec![0.0; blocks],
+            rates: vec![0.0; blocks],
+            potential: 0.0,
+            start_energy: 0.0,
+            ground_work: 0.0,
+            friction_demand: 0.0,
+            least_normal: f64::INFINITY,
+            cycle: None,
+            cycle_energy: None,
+            rising: false,
+            highest_s: 0.0,
+            step_iterations: 0,
+            moved: false,
+            run: Run {
+                outcome: Outcome::Rocking,
+                end_s: 0.0,
+                peaks_rad: vec![0.0; blocks],
+                half_cycles: Vec::new(),
+                least_normal_n: f64::INFINITY,
+                friction_demand: 0.0,
+                energy_taken_j: 0.0,
+                energy_defect_ratio: 0.0,
+                closure_error_m: 0.0,
+                cost: Cost::default(),
+            },
+        };
+        engine.stand_still();
+        engine
+    }
+
+    /// All blocks at rest, as one piece.
+    fn stand_still(&mut self) {
+        self.pieces.clear();
+        self.pieces.push(Piece {
+            first: 0,
+            mass: 0.0,
+            inertia: 0.0,
+            centre: Vector2::zeros(),
+            velocity: Vector2::zeros(),
+            rate: 0.0,
+        });
+        self.weigh_pieces();
+    }
+
+    /// Takes up the initial rotations, at rest.
+    fn release(&mut self, rotations_rad: &[f64]) -> Result<(), FreeHingeError> {
+        let finite = rotations_rad
+            .iter()
+            .filter(|angle| angle.is_finite())
+            .count();
+        let blocks = self.row.blocks().len();
+        if finite != blocks || rotations_rad.len() != blocks {
+            return Err(FreeHingeError::Rotations {
+                given: finite,
+                blocks,
+            });
+        }
+        self.placement.turn(rotations_rad);
+        self.close();
+        let error_m = self.placement.closure_error();
+        if error_m > LARGEST_CLOSURE_RATIO * self.thinnest {
+            return Err(FreeHingeError::Open { error_m });
+        }
+        let gaps = self.placement.gaps_m().iter();
+        let active: Vec<Corners> = gaps.map(|gaps| gaps.map(|gap| gap == 0.0)).collect();
+        let open = active
+            .iter()
+            .filter(|corners| **corners != [true; 2])
+            .count();
+        // Fewer than three hinges do not hold an arch: it needs those of the beginning.
+        if self.row.supports() == Supports::Left || open >= 3 {
+            self.program.start_from(&active);
+        }
+        self.moved = open > 0;
+        self.weigh_pieces();
+        self.potential = self.height_energy();
+        self.start_energy = self.potential;
+        self.rising = true;
+        Ok(())
+    }
+
+    fn run(mut self, recorder: &mut impl Recorder) -> Result<Run, FreeHingeError> {
+        let mut samples = 0_u32;
+        let quiet_s = self.ground.end_s();
+        loop {
+            let mark = self
+                .settings
+                .output_step_s
+                .map_or(f64::INFINITY, |step| f64::from(samples) * step);
+            if self.time >= mark - 1e-9 * self.settings.shortest_step_s {
+                samples += 1;
+                self.sample(recorder)?;
+                continue;
+            }
+            let outcome = if self.potential < -FALLEN_ENERGY_RATIO * self.energy_unit {
+                let sway = if self.sway() > 0.0 {
+                    Sway::Right
+                } else {
+                    Sway::Left
+                };
+                let time_s = self.highest_s;
+                Some(Outcome::Overturned { sway, time_s })
+            } else if self.time >= quiet_s && self.rests() {
+                Some(if self.moved {
+                    Outcome::Rest { time_s: self.time }
+                } else {
+                    Outcome::NeverMoved
+                })
+            } else if self.time >= self.settings.end_s {
+                Some(Outcome::Rocking)
+            } else {
+                None
+            };
+            if let Some(outcome) = outcome {
+                self.run.outcome = outcome;
+                break;
+            }
+            self.step(mark.min(self.settings.end_s), recorder)?;
+            self.observe();
+        }
+        self.end_cycle(None);
+        self.run.end_s = self.time;
+        Ok(self.run)
+    }
+
+    /// One step, at most to the given time.
+    fn step(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+        self.step_iterations = 0;
+        let longest = self.settings.longest_step_s;
+        let left = until - self.time;
+        let mut step = left / (left / longest - 1e-9).ceil().max(1.0);
+        let before = self.momentum();
+        self.touch_shut();
+        self.closed.copy_from_slice(&self.touching);
+        let taken_before = self.run.energy_taken_j;
+        self.landing.fill([0.0; 2]);
+        let shortest = self.settings.shortest_step_s.min(step);
+
+        // A step that ends at the first landing: its length changes the kick, and so the landing. No corner lands
+        // within `safe`, some do within `late`.
+        let (mut safe, mut late) = (0.0, step);
+        let mut earlier: Option<(f64, f64)> = None;
+        let mut merged = false;
+        for pass in 0.. {
+            self.solve_step(step)?;
+            let (fall, residual_ratio) = self.first_landing(step);
+            if residual_ratio.abs() <= 0.5 * SHUT_RATIO || (fall > step && pass == 0) {
+                break;
+            }
+            if fall > step {
+                safe = step;
+                if pass >= LANDING_PASSES {
+                    break;
+                }
+            } else {
+                late = step;
+            }
+            let miss = fall - step;
+            let secant = earlier.map_or(fall, |(other, other_miss)| {
+                step - miss * (step - other) / (miss - other_miss)
+            });
+            earlier = Some((step, miss));
+            step = if pass + 1 >= LANDING_PASSES {
+                safe
+            } else if safe < secant && secant < late {
+                secant
+            } else {
+                0.5 * (safe + late)
+            };
+            if step < shortest {
+                merged = true;
+                break;
+            }
+        }
+        if merged {
+            step = shortest;
+            self.solve_merged(step)?;
+        }
+        self.account(step, before, !merged);
+        self.drift(step)?;
+        if self.has_landed() {
+            self.impact()?;
+            self.report(taken_before, recorder);
+        }
+        let cost = &mut self.run.cost;
+        cost.steps += 1;
+        cost.merged += usize::from(merged);
+        cost.most_iterations = cost.most_iterations.max(self.step_iterations);
+        Ok(())
+    }
+    /// Corners that may not close: those that touch.
+    fn touch_shut(&mut self) {
+        for (touching, gaps) in self.touching.iter_mut().zip(self.placement.gaps_m()) {
+            *touching = gaps.map(|gap| gap == 0.0);
+        }
+    }
+
+    /// Motions of the blocks after a kick, before contact.
+    fn kick(&mut self, kick: Vector2<f64>) {
+        let blocks = self.free.len();
+        for (index, piece) in self.pieces.iter().enumerate() {
+            let end = self.pieces.get(index + 1).map_or(blocks, |next| next.first);
+            self.free[piece.first..end].fill(piece.twist(kick));
+        }
+    }
+
+    /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
+    fn impulse(&self, from_s: f64, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
+        let ground = self.velocity.at(to_s) - self.velocity.at(from_s.max(0.0));
+        (
+            -ground - Vector2::new(0.0, self.gravity * (to_s - from_s)),
+            ground,
+        )
+    }
+
+    /// The interval of the kick of a step.
+    fn kicked(&self, step: f64) -> (f64, f64) {
+        (self.time - 0.5 * self.last_step, self.time + 0.5 * step)
+    }
+
+    fn solve_step(&mut self, step: f64) -> Result<(), FreeHingeError> {
+        let (from_s, to_s) = self.kicked(step);
+        self.kick(self.impulse(from_s, to_s).0);
+        self.jump(step);
+        self.solve()
+    }
+
+    fn solve(&mut self) -> Result<(), FreeHingeError> {
+        let load = Load {
+            free: &self.free,
+            jumps: &self.jumps,
+            touching: &self.touching,
+        };
+        let effort = self.program.solve(&self.placement, &load);
+        let effort = effort.map_err(|reason| FreeHingeError::Contact {
+            time_s: self.time,
+            reason,
+        })?;
+        let cost = &mut self.run.cost;
+        cost.programs += 1;
+        cost.iterations += effort.iterations;
+        cost.relaxed += effort.relaxed;
+        self.step_iterations += effort.iterations;
+        Ok(())
+    }
+
+    /// Jumps of the velocity at the joints: what arcs need over the coming step, and what closes landing corners.
+    fn jump(&mut self, step: f64) {
+        self.jumps.fill(Twist::ZERO);
+        let count = self.pieces.len();
+        let boundaries = if self.row.supports() == Supports::Both {
+            count + 1
+        } else {
+            count
+        };
+        for index in 0..boundaries {
+            let right = self.pieces.get(index);
+            let joint = right.map_or(self.free.len(), |piece| piece.first);
+            let Some(edge) = self.turning[joint] else {
+                continue;
+            };
+            let gaps = self.placement.gaps_m()[joint];
+            let nearer = if gaps[0] < gaps[1] {
+                Edge::Intrados
+            } else if gaps[0] > gaps[1] {
+                Edge::Extrados
+            } else {
+                edge
+            };
+            let point = self.placement.frames()[joint].corner_m(nearer);
+            let bend = |piece: &Piece| piece.bend(point, step);
+            let left = index.checked_sub(1).map(|left| &self.pieces[left]);
+            let jump = left.map_or(Vector2::zeros(), bend) - right.map_or(Vector2::zeros(), bend);
+            self.jumps[joint] = Twist::translation(jump);
+        }
+        for (joint, rates) in self.landing.iter().enumerate() {
+            if *rates != [0.0; 2] {
+                let frame = &self.placement.frames()[joint];
+                let rate = self.row.handedness() * (rates[1] - rates[0]) / frame.thickness_m;
+                self.jumps[joint] = self.jumps[joint]
+                    + Twist::translation(frame.normal * rates[0])
+                    + Twist::rotation(frame.intrados_m, rate);
+            }
+        }
+    }
+
+    /// When the first open corner lands, and its gap at the end of a step over the thickness of its joint.
+    fn first_landing(&self, step: f64) -> (f64, f64) {
+        let mut first = (f64::INFINITY, f64::INFINITY);
+        for (joint, rates) in self.program.open_joints() {
+            let gaps = self.placement.gaps_m()[joint];
+            for edge in 0..2 {
+                if !self.touching[joint][edge] && rates[edge] < 0.0 {
+                    let fall = gaps[edge] / -rates[edge];
+                    if fall < first.0 {
+                        let residual = gaps[edge] + step * rates[edge];
+                        let thickness = self.placement.frames()[joint].thickness_m;
+                        first = (fall, residual / thickness);
+                    }
+                }
+            }
+        }
+        first
+    }
+
+    /// A step within which all corners that would land come to touch.
+    fn solve_merged(&mut self, step: f64) -> Result<(), FreeHingeError> {
+        self.solve_step(step)?;
+        let without = self.kinetic_of_solution();
+        loop {
+            let mut more = false;
+            for (joint, rates) in self.program.open_joints() {
+                let gaps = self.placement.gaps_m()[joint];
+                for edge in 0..2 {
+                    let rate = rates[edge] + self.landing[joint][edge];
+                    let thickness = self.placement.frames()[joint].thickness_m;
+                    let lands = gaps[edge] + step * rate < -SHUT_RATIO * thickness;
+                    if !self.touching[joint][edge] && lands {
+                        self.touching[joint][edge] = true;
+                        more = true;
+                    }
+                }
+            }
+            if !more {
+                break;
+            }
+            for (joint, touching) in self.touching.iter().enumerate() {
+                let rates = self.placement.gaps_m()[joint].map(|gap| -gap / step);
+                self.landing[joint] = match touching {
+                    [true, true] => rates,
+                    [true, false] => [rates[0]; 2],
+                    [false, true] => [rates[1]; 2],
+                    [false, false] => [0.0; 2],
+                };
+            }
+            self.solve_step(step)?;
+        }
+        self.run.energy_taken_j += without - self.kinetic_of_solution();
+        Ok(())
+    }
+
+    fn kinetic_of_solution(&mut self) -> f64 {
+        self.form_pieces();
+        kinetic(&self.next_pieces)
+    }
+
+    /// The pieces that move as one in the last solution.
+    fn form_pieces(&mut self) {
+        self.next_pieces.clear();
+        let (blocks, mut first) = (self.free.len(), 0);
+        let moments = self.program.moments();
+        for joint in 1..=blocks {
+            let ends = joint == blocks
+                || !self.program.keeps_shut(joint)
+                || self.jumps[joint] != Twist::ZERO;
+            if ends {
+                let sum = moments[joint] - moments[first];
+                let centre = sum.centroid();
+                let twist = self.program.velocities()[first];
+                self.next_pieces.push(Piece {
+                    first,
+                    mass: sum.mass,
+                    inertia: sum.central_polar(),
+                    centre,
+                    velocity: twist.at(centre),
+                    rate: twist.rate,
+                });
+                first = joint;
+            }
+        }
+    }
+
+    /// Books the work of the ground and the forces of a step that was solved, and forms its pieces.
+    fn account(&mut self, step: f64, before: Vector2<f64>, ordinary: bool) {
+        let (from_s, to_s) = self.kicked(step);
+        self.form_pieces();
+        let mean = (before + momentum(&self.next_pieces)) * 0.5;
+        self.ground_work -= self.impulse(from_s, to_s).1.dot(&mean);
+        if !ordinary {
+            return;
+        }
+        self.program
+            .joint_impulses(&self.placement, &mut self.shares);
+        let (mut least, mut demand) = (f64::INFINITY, 0.0_f64);
+        for [_, normal] in &self.shares {
+            least = least.min(*normal);
+        }
+        let most = self
+            .shares
+            .iter()
+            .fold(0.0_f64, |most, [_, n]| most.max(*n));
+        for [tangential, normal] in &self.shares {
+            if *normal > LOADED * most {
+                demand = demand.max(tangential.abs() / normal);
+            }
+        }
+        self.least_normal = least / (to_s - from_s);
+        self.friction_demand = demand;
+        self.run.least_normal_n = self.run.least_normal_n.min(self.least_normal);
+        self.run.friction_demand = self.run.friction_demand.max(demand);
+    }
+
+    /// Moves the row over a step that was solved.
+    fn drift(&mut self, step: f64) -> Result<(), FreeHingeError> {
+        for (change, rates) in self.change.iter_mut().zip(&self.landing) {
+            *change = rates.map(|rate| rate * step);
+        }
+        for (joint, rates) in self.program.open_joints() {
+            for edge in 0..2 {
+                self.change[joint][edge] += rates[edge] * step;
+            }
+        }
+        let change = &self.change;
+        self.placement.open(|joint| change[joint]);
+        self.take_pieces();
+        self.time += step;
+        self.last_step = step;
+        self.close();
+        let error_m = self.placement.closure_error();
+        self.run.closure_error_m = self.run.closure_error_m.max(error_m);
+        // Also when it is not a number.
+        if error_m <= LARGEST_CLOSURE_RATIO * self.thinnest {
+            self.weigh_pieces();
+            Ok(())
+        } else {
+            let time_s = self.time;
+            Err(FreeHingeError::Closure { time_s, error_m })
+        }
+    }
+
+    /// Makes the pieces of the solution those of the motion, and notes about which corners they turn.
+    fn take_pieces(&mut self) {
+        std::mem::swap(&mut self.pieces, &mut self.next_pieces);
+        self.turning.fill(None);
+        for (joint, _) in self.program.open_joints() {
+            self.turning[joint] = Some(match self.program.active()[joint] {
+                [false, true] => Edge::Extrados,
+                _ => Edge::Intrados,
+            });
+        }
+    }
+
+    /// Centres of the pieces in the present position.
+    fn weigh_pieces(&mut self) {
+        let blocks = self.row.blocks();
+        for index in 0..self.pieces.len() {
+            let end = self
+                .pieces
+                .get(index + 1)
+                .map_or(blocks.len(), |next| next.first);
+            let piece = &mut self.pieces[index];
+            let (mut first, mut mass) = (Vector2::zeros(), 0.0);
+            for (block, centre) in blocks[piece.first..end]
+                .iter()
+                .zip(&self.placement.centres_m()[piece.first..end])
+            {
+                first += centre * block.mass_kg;
+                mass += block.mass_kg;
+            }
+            piece.centre = first / mass;
+            piece.mass = mass;
+        }
+    }
+
+    /// Takes up the closure error by the open joints, in positions only, while that at least halves it.
+    fn close(&mut self) {
+        for _ in 0..3 {
+            let Some(closure) = self.placement.closure() else {
+                return;
+            };
+            let error = closure.error_m.norm();
+            if error <= CLOSURE_RATIO * self.thinnest || !error.is_finite() {
+                return;
+            }
+            self.free.fill(Twist::ZERO);
+            self.jumps.fill(Twist::ZERO);
+            let load = Load {
+                free: &self.free,
+                jumps: &self.jumps,
+                touching: &self.touching,
+            };
+            if !self.auxiliary.close(&self.placement, &closure, &load) {
+                return;
+            }
+            self.change.fill([0.0; 2]);
+            for (joint, rates) in self.auxiliary.open_joints() {
+                self.change[joint] = rates;
+            }
+            self.backup.copy_from(&self.placement);
+            let change = &self.change;
+            self.placement.open(|joint| change[joint]);
+            if self.placement.closure_error() > 0.5 * error || self.placement.closure().is_none() {
+                self.placement.copy_from(&self.backup);
+                return;
+            }
+        }
+    }
+
+    /// Whether a corner touches that did not at the beginning of the step.
+    fn has_landed(&self) -> bool {
+        let corners = self.placement.gaps_m().iter().zip(&self.closed);
+        corners
+            .flat_map(|(gaps, closed)| gaps.iter().zip(closed))
+            .any(|(gap, closed)| *gap == 0.0 && !closed)
+    }
+
+    /// Completes the velocity at a landing with the old mechanism, then projects it.
+    fn impact(&mut self) -> Result<(), FreeHingeError> {
+        let before = self.momentum();
+        let (impulse, ground) = self.impulse(self.time - 0.5 * self.last_step, self.time);
+        self.kick(impulse);
+        self.jumps.fill(Twist::ZERO);
+        self.landing.fill([0.0; 2]);
+        self.touch_shut();
+        for (touching, closed) in self.touching.iter_mut().zip(&self.closed) {
+            for edge in 0..2 {
+                touching[edge] &= closed[edge];
+            }
+        }
+        self.solve()?;
+        let kinetic_before = self.kinetic_of_solution();
+        let mean = (before + momentum(&self.next_pieces)) * 0.5;
+        self.ground_work -= ground.dot(&mean);
+        self.potential = self.height_energy();
+        self.audit(kinetic_before);
+        self.free.copy_from_slice(self.program.velocities());
+        self.touch_shut();
+        self.solve()?;
+        let kinetic_after = self.kinetic_of_solution();
+        self.run.energy_taken_j += kinetic_before - kinetic_after;
+        self.take_pieces();
+        self.last_step = 0.0;
+        self.run.cost.impacts += 1;
+        Ok(())
+    }
+}
+
+/// Joints that open at less than this part of the fastest rate do not count as opened by an impact.
+const LEAST_OPENING: f64 = 1e-9;
+/// Joints with less than this part of the largest normal force are not pressed.
+const LOADED: f64 = 1e-6;
+
+fn kinetic(pieces: &[Piece]) -> f64 {
+    let twice = |piece: &Piece| {
+        piece.mass * piece.velocity.norm_squared() + piece.inertia * piece.rate * piece.rate
+    };
+    0.5 * pieces.iter().map(twice).sum::<f64>()
+}
+
+fn momentum(pieces: &[Piece]) -> Vector2<f64> {
+    pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
+}
+
+impl Engine<'_> {
+    fn momentum(&self) -> Vector2<f64> {
+        momentum(&self.pieces)
+    }
+
+    /// Potential energy above the undeformed row.
+    fn height_energy(&self) -> f64 {
+        let rises = self.row.blocks().iter().zip(self.placement.centres_m());
+        let sum: f64 = rises
+            .map(|(block, centre)| block.mass_kg * (centre.y - block.centre_m.y))
+            .sum();
+        self.gravity * sum
+    }
+
+    /// Horizontal displacement of the centre of gravity times the mass.
+    fn sway(&self) -> f64 {
+        let shifts = self.row.blocks().iter().zip(self.placement.centres_m());
+        shifts
+            .map(|(block, centre)| block.mass_kg * (centre.x - block.centre_m.x))
+            .sum()
+    }
+
+    fn rests(&self) -> bool {
+        let least = REST_ENERGY_RATIO * self.energy_unit;
+        kinetic(&self.pieces) < least && self.potential.abs() < least
+    }
+
+    /// Compares the energy at an instant with its balance.
+    fn audit(&mut self, kinetic: f64) {
+        let due = self.start_energy + self.ground_work - self.run.energy_taken_j;
+        let defect = (kinetic + self.potential - due) / self.energy_unit;
+        if std::env::var("AUD").is_ok() {
+            eprintln!(
+                "aud {:.6} {:.4e} h {:.3e}",
+                self.time, defect, self.last_step
+            );
+        }
+        let worst = &mut self.run.energy_defect_ratio;
+        *worst = worst.max(defect.abs());
+    }
+
+    /// Peaks, half cycles and energy after a step.
+    fn observe(&mut self) {
+        let mut largest = 0.0_f64;
+        for (peak, pose) in self.run.peaks_rad.iter_mut().zip(self.placement.poses()) {
+            let rotation = pose.rotation_rad.abs();
+            *peak = peak.max(rotation);
+            largest = largest.max(rotation);
+        }
+        self.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
+        let before = self.potential;
+        self.potential = self.height_energy();
+        if self.potential >= before {
+            self.rising = true;
+        } else if self.rising {
+            self.rising = false;
+            self.highest_s = self.time;
+        }
+        let sway = self.sway();
+        let least = SWAY_RATIO * self.energy_unit / self.gravity;
+        if sway.abs() > least {
+            let side = if sway > 0.0 { Sway::Right } else { Sway::Left };
+            if self.cycle.is_none_or(|cycle| cycle.sway != side) {
+                self.end_cycle(Some(kinetic(&self.pieces) + self.potential));
+                self.cycle = Some(HalfCycle {
+                    sway: side,
+                    start_s: self.time,
+                    duration_s: 0.0,
+                    peak_rad: 0.0,
+                    energy_ratio: None,
+                });
+            }
+        }
+        if let Some(cycle) = &mut self.cycle {
+            cycle.peak_rad = cycle.peak_rad.max(largest);
+        }
+    }
+
+    /// Files the half cycle that ends now, with the energy that is left if it is known.
+    fn end_cycle(&mut self, energy: Option<f64>) {
+        if let Some(mut cycle) = self.cycle.take() {
+            cycle.duration_s = self.time - cycle.start_s;
+            let ratio = energy
+                .zip(self.cycle_energy)
+                .map(|(after, before)| after / before);
+            cycle.energy_ratio = ratio.filter(|ratio| ratio.is_finite());
+            self.run.half_cycles.push(cycle);
+            self.cycle_energy = energy;
+        }
+    }
+
+    fn report(&mut self, taken_before: f64, recorder: &mut impl Recorder) {
+        self.shut.clear();
+        self.opened.clear();
+        for joint in 0..self.touching.len() {
+            if self.closed[joint] != [true; 2]
+                && self.placement.is_shut(joint)
+                && self.program.keeps_shut(joint)
+            {
+                self.shut.push(joint);
+            }
+        }
+        let fastest = self
+            .program
+            .open_joints()
+            .flat_map(|(_, rates)| rates)
+            .fold(0.0, f64::max);
+        for (joint, rates) in self.program.open_joints() {
+            let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
+            if self.closed[joint] == [true; 2] && opens {
+                self.opened.push(joint);
+            }
+        }
+        recorder.impact(&Impact {
+            time_s: self.time,
+            shut: &self.shut,
+            opened: &self.opened,
+            energy_taken_j: self.run.energy_taken_j - taken_before,
+        });
+    }
+
+    fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+        let before = self.momentum();
+        let (impulse, ground) = self.impulse(self.time - 0.5 * self.last_step, self.time);
+        self.kick(impulse);
+        self.jumps.fill(Twist::ZERO);
+        self.landing.fill([0.0; 2]);
+        self.touch_shut();
+        std::mem::swap(&mut self.program, &mut self.auxiliary);
+        self.program.start_from(self.auxiliary.active());
+        let solved = self.solve();
+        let kinetic_j = self.kinetic_of_solution();
+        for (rate, twist) in self.rates.iter_mut().zip(self.program.velocities()) {
+            *rate = twist.rate;
+        }
+        std::mem::swap(&mut self.program, &mut self.auxiliary);
+        solved?;
+        let work = ground.dot(&(before + momentum(&self.next_pieces))) * 0.5;
+        self.ground_work -= work;
+        self.audit(kinetic_j);
+        self.ground_work += work;
+        for (rotation, pose) in self.rotations.iter_mut().zip(self.placement.poses()) {
+            *rotation = pose.rotation_rad;
+        }
+        let gaps_m = self.placement.gaps_m();
+        recorder.sample(&Sample {
+            time_s: self.time,
+            rotations_rad: &self.rotations,
+            rates_rad_s: &self.rates,
+            gaps_m,
+            poses: self.placement.poses(),
+            open_joints: gaps_m.iter().filter(|gaps| **gaps != [0.0; 2]).count(),
+            friction_demand: self.friction_demand,
+            least_normal_n: self.least_normal,
+            kinetic_j,
+            potential_j: self.potential,
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,518 @@
+//! A row of rigid blocks: what an arch of voussoirs and a column of drums have in common.
+//!
+//! Blocks `0..N` stand side by side, and joint `j` lies before block `j`. The first joint is on the left support. A
+//! row between [`Supports::Both`] has a joint `N` on the right support; one on [`Supports::Left`] alone is a
+//! free-standing stack, in which left and right are below and above. A joint is a plane face from its
+//! *intrados* corner to its *extrados* corner; in a stack these are the left and the right corner of a bed.
+//!
+//! Nothing here moves: [`super::joints`] places the blocks, [`super::contact`] finds their velocities.
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use crate::mechanics::geometry::ring::{Edge, MassMoments, Ring};
+
+/// The most blocks that a row may have. The work of a step grows with their number and so does the number of
+/// impacts, while thresholds hardly change beyond a few dozen voussoirs.
+pub const MAX_BLOCKS: usize = 500;
+
+/// Why blocks and joints do not make a row.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum RowError {
+    /// A number is not finite, or not in its range.
+    #[error("{name} of {part} {index} is {value}: {allowed}")]
+    Value {
+        /// What the number is, with its unit.
+        name: &'static str,
+        /// Block or joint.
+        part: &'static str,
+        /// Which one, from 0 on.
+        index: usize,
+        /// The number.
+        value: f64,
+        /// What it may be.
+        allowed: &'static str,
+    },
+    /// A dimension of the whole row is out of range.
+    #[error("{name} is {value}: it must be positive and finite")]
+    Dimension {
+        /// Which dimension, with its unit.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// No block, or too many.
+    #[error(
+        "{0} blocks: a row has 1 to {MAX_BLOCKS}, since steps get longer and shorter with their number"
+    )]
+    Count(usize),
+    /// The number of joints does not fit.
+    #[error(
+        "{joints} joints for {blocks} blocks: a row between two supports has one more, a stack as many"
+    )]
+    Joints {
+        /// Number of blocks.
+        blocks: usize,
+        /// Number of joints.
+        joints: usize,
+    },
+    /// Two neighbouring joints have a point in common.
+    #[error("joints {0} and {next} cross or touch", next = .0 + 1)]
+    Crossing(usize),
+    /// A block lies on the wrong side of one of its joints, or intrados and extrados are exchanged there.
+    #[error(
+        "block {block} is not on its side of joint {joint}: corners must be in the same order at every joint"
+    )]
+    Order {
+        /// Which block.
+        block: usize,
+        /// Which joint.
+        joint: usize,
+    },
+}
+
+/// A rigid block in the undeformed row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Mass in kg.
+    pub mass_kg: f64,
+    /// Centre of gravity in metres.
+    pub centre_m: Vector2<f64>,
+    /// Polar moment of inertia about the centre of gravity, in kg m2.
+    pub inertia_kg_m2: f64,
+}
+
+impl Block {
+    /// A prism whose outline is a simple polygon, given by its corners (m) in order, either way round. Area
+    /// moments are sums over the triangles between its sides and its first corner.
+    #[must_use]
+    pub fn prism(corners_m: &[Vector2<f64>], depth_m: f64, density_kg_m3: f64) -> Self {
+        let pole = corners_m.first().copied().unwrap_or_else(Vector2::zeros);
+        let (mut area, mut first, mut polar) = (0.0, Vector2::zeros(), 0.0);
+        let next = corners_m.iter().cycle().skip(1);
+        for (corner, next) in corners_m.iter().zip(next) {
+            let (a, b) = (corner - pole, next - pole);
+            let twice = a.perp(&b);
+            area += twice / 2.0;
+            first += (a + b) * (twice / 6.0);
+            polar += (a.norm_squared() + a.dot(&b) + b.norm_squared()) * (twice / 12.0);
+        }
+        let surface_kg_m2 = depth_m * density_kg_m3 * area.signum();
+        let centre = first / area;
+        Self {
+            mass_kg: area * surface_kg_m2,
+            centre_m: pole + centre,
+            inertia_kg_m2: (polar - area * centre.norm_squared()) * surface_kg_m2,
+        }
+    }
+
+    /// Mass, first and polar moment about the origin, when the centre of gravity is at `centre_m`.
+    #[must_use]
+    pub fn moments_at(&self, centre_m: Vector2<f64>) -> MassMoments {
+        MassMoments {
+            mass: self.mass_kg,
+            first: centre_m * self.mass_kg,
+            polar: self.inertia_kg_m2 + self.mass_kg * centre_m.norm_squared(),
+        }
+    }
+}
+
+/// A joint of the undeformed row, shut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// Corner at the intrados in metres (of a stack: left).
+    pub intrados_m: Vector2<f64>,
+    /// Corner at the extrados in metres (of a stack: right).
+    pub extrados_m: Vector2<f64>,
+}
+
+impl Joint {
+    /// Distance of the corners in metres.
+    #[must_use]
+    pub fn thickness_m(&self) -> f64 {
+        (self.extrados_m - self.intrados_m).norm()
+    }
+
+    /// Midpoint of the corners in metres.
+    #[must_use]
+    pub fn middle_m(&self) -> Vector2<f64> {
+        (self.intrados_m + self.extrados_m) * 0.5
+    }
+
+    /// Unit vector from the intrados to the extrados.
+    #[must_use]
+    pub fn along(&self) -> Vector2<f64> {
+        (self.extrados_m - self.intrados_m) / self.thickness_m()
+    }
+
+    /// Corner on the given edge, in metres.
+    #[must_use]
+    pub const fn corner_m(&self, edge: Edge) -> Vector2<f64> {
+        match edge {
+            Edge::Intrados => self.intrados_m,
+            Edge::Extrados => self.extrados_m,
+        }
+    }
+
+    /// Whether two joints have a point in common.
+    fn meets(&self, other: &Self) -> bool {
+        let side = |joint: &Self, point: Vector2<f64>| {
+            (joint.extrados_m - joint.intrados_m).perp(&(point - joint.intrados_m))
+        };
+        let parted =
+            |one: &Self, two: &Self| side(one, two.intrados_m) * side(one, two.extrados_m) > 0.0;
+        !(parted(self, other) || parted(other, self))
+    }
+}
+
+/// What carries a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Supports {
+    /// A base before the first block: a free-standing stack.
+    Left,
+    /// Abutments before the first block and after the last one: an arch.
+    Both,
+}
+
+/// A drum of a stack: a symmetric trapezium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drum {
+    /// Height in metres.
+    pub height_m: f64,
+    /// Width at its bottom in metres.
+    pub base_width_m: f64,
+    /// Width at its top in metres.
+    pub top_width_m: f64,
+}
+
+/// A row of rigid blocks in its undeformed shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    blocks: Vec<Block>,
+    joints: Vec<Joint>,
+    supports: Supports,
+    size_m: f64,
+    /// Of a joint with unit vector `e` along the face and normal `n` towards the right block: `e x n`.
+    handedness: f64,
+}
+
+impl Row {
+    /// A row of given blocks and joints. `size_m` is the length that energies and steps are measured with: the mean
+    /// radius of an arch, the half diagonal of a stack.
+    ///
+    /// # Errors
+    /// When a number is not finite or not positive where it must be, when joints cross, or when a block is not
+    /// between its joints.
+    pub fn new(
+        blocks: Vec<Block>,
+        joints: Vec<Joint>,
+        supports: Supports,
+        size_m: f64,
+    ) -> Result<Self, RowError> {
+        positive("size in m", size_m)?;
+        let count = blocks.len();
+        if !(1..=MAX_BLOCKS).contains(&count) {
+            return Err(RowError::Count(count));
+        }
+        let expected = match supports {
+            Supports::Left => count,
+            Supports::Both => count + 1,
+        };
+        if joints.len() != expected {
+            return Err(RowError::Joints {
+                blocks: count,
+                joints: joints.len(),
+            });
+        }
+        for (index, block) in blocks.iter().enumerate() {
+            let value = |name, value: f64, allowed| RowError::Value {
+                name,
+                part: "block",
+                index,
+                value,
+                allowed,
+            };
+            for (name, number) in [
+                ("mass in kg", block.mass_kg),
+                ("inertia in kg m2", block.inertia_kg_m2),
+            ] {
+                if !(number > 0.0 && number < f64::INFINITY) {
+                    return Err(value(name, number, "it must be positive and finite"));
+                }
+            }
+            for number in block.centre_m.iter().filter(|x| !x.is_finite()) {
+                return Err(value("centre in m", *number, "it must be finite"));
+            }
+        }
+        for (index, joint) in joints.iter().enumerate() {
+            let thickness_m = joint.thickness_m();
+            if !(thickness_m > 1e-9 * size_m && thickness_m < f64::INFINITY) {
+                return Err(RowError::Value {
+                    name: "thickness in m",
+                    part: "joint",
+                    index,
+                    value: thickness_m,
+                    allowed: "it must be finite, and positive beside the size of the row",
+                });
+            }
+        }
+        let side = |joint: usize, block: usize| {
+            joints[joint]
+                .along()
+                .perp(&(blocks[block].centre_m - joints[joint].intrados_m))
+        };
+        let handedness = side(0, 0).signum();
+        for joint in 0..joints.len() {
+            if joint < count && !(handedness * side(joint, joint) > 0.0) {
+                let block = joint;
+                return Err(RowError::Order { block, joint });
+            }
+            if joint > 0 && !(handedness * side(joint, joint - 1) < 0.0) {
+                let block = joint - 1;
+                return Err(RowError::Order { block, joint });
+            }
+        }
+        if let Some(first) = joints.windows(2).position(|pair| pair[0].meets(&pair[1])) {
+            return Err(RowError::Crossing(first));
+        }
+        Ok(Self {
+            blocks,
+            joints,
+            supports,
+            size_m,
+            handedness,
+        })
+    }
+
+    /// Annular voussoirs between sections of a ring (radians from the left springing, ascending, both springings
+    /// included): the exact sectors. Its mean radius is the size.
+    ///
+    /// # Errors
+    /// When a dimension is not positive and finite, or the sections are fewer than two or not ascending.
+    pub fn annular(
+        ring: &Ring,
+        sections_rad: &[f64],
+        mean_radius_m: f64,
+        depth_m: f64,
+        density_kg_m3: f64,
+    ) -> Result<Self, RowError> {
+        let surface_kg_m2 = surface_density(depth_m, density_kg_m3)?;
+        positive("mean radius in m", mean_radius_m)?;
+        let blocks = sections_rad.windows(2).map(|ends| {
+            let sector = ring.sector(ends[0], ends[1]);
+            Block {
+                mass_kg: sector.mass * surface_kg_m2 * mean_radius_m.powi(2),
+                centre_m: sector.centroid() * mean_radius_m,
+                inertia_kg_m2: sector.central_polar() * surface_kg_m2 * mean_radius_m.powi(4),
+            }
+        });
+        let joints = ring_joints(ring, sections_rad, mean_radius_m);
+        Self::new(blocks.collect(), joints, Supports::Both, mean_radius_m)
+    }
+
+    /// An arch of `voussoirs` equal annular voussoirs.
+    ///
+    /// # Errors
+    /// When a dimension is not positive and finite, or the number of voussoirs out of range.
+    pub fn arch(
+        ring: &Ring,
+        voussoirs: usize,
+        mean_radius_m: f64,
+        depth_m: f64,
+        density_kg_m3: f64,
+    ) -> Result<Self, RowError> {
+        counted(voussoirs)?;
+        let sections_rad = ring.sections(voussoirs);
+        Self::annular(ring, &sections_rad, mean_radius_m, depth_m, density_kg_m3)
+    }
+
+    /// An arch of `voussoirs` equal straight-sided voussoirs, whose corners lie on the intrados and the extrados of
+    /// the ring.
+    ///
+    /// # Errors
+    /// As [`Row::arch`].
+    pub fn straight_sided_arch(
+        ring: &Ring,
+        voussoirs: usize,
+        mean_radius_m: f64,
+        depth_m: f64,
+        density_kg_m3: f64,
+    ) -> Result<Self, RowError> {
+        counted(voussoirs)?;
+        positive("mean radius in m", mean_radius_m)?;
+        let faces = ring_joints(ring, &ring.sections(voussoirs), mean_radius_m);
+        Self::between_faces(
+            &faces,
+            Supports::Both,
+            mean_radius_m,
+            depth_m,
+            density_kg_m3,
+        )
+    }
+
+    /// Quadrilateral blocks between consecutive faces. The first face lies on the left support; the last one on
+    /// the right support, or else it is the free top of a stack.
+    ///
+    /// # Errors
+    /// As [`Row::new`].
+    pub fn between_faces(
+        faces: &[Joint],
+        supports: Supports,
+        size_m: f64,
+        depth_m: f64,
+        density_kg_m3: f64,
+    ) -> Result<Self, RowError> {
+        surface_density(depth_m, density_kg_m3)?;
+        let blocks = faces.windows(2).map(|pair| {
+            let [left, right] = [pair[0], pair[1]];
+            let outline = [
+                left.intrados_m,
+                left.extrados_m,
+                right.extrados_m,
+                right.intrados_m,
+            ];
+            Block::prism(&outline, depth_m, density_kg_m3)
+        });
+        let count = match supports {
+            Supports::Left => faces.len().saturating_sub(1),
+            Supports::Both => faces.len(),
+        };
+        Self::new(blocks.collect(), faces[..count].to_vec(), supports, size_m)
+    }
+
+    /// A free-standing stack of drums from the bottom up, all on one vertical axis. Drums of different width
+    /// touch on the narrower face. Its size is half the diagonal of its height and the width of its base.
+    ///
+    /// # Errors
+    /// When a dimension is not positive and finite, or the number of drums out of range.
+    pub fn stack(drums: &[Drum], depth_m: f64, density_kg_m3: f64) -> Result<Self, RowError> {
+        surface_density(depth_m, density_kg_m3)?;
+        counted(drums.len())?;
+        let face = |width_m: f64, y: f64| Joint {
+            intrados_m: Vector2::new(-0.5 * width_m, y),
+            extrados_m: Vector2::new(0.5 * width_m, y),
+        };
+        let (mut blocks, mut joints, mut y) = (Vec::new(), Vec::new(), 0.0);
+        let mut below_m = f64::INFINITY;
+        for drum in drums {
+            positive("height of a drum in m", drum.height_m)?;
+            positive("width of a drum in m", drum.base_width_m)?;
+            positive("width of a drum in m", drum.top_width_m)?;
+            joints.push(face(drum.base_width_m.min(below_m), y));
+            let (bottom, top) = (
+                face(drum.base_width_m, y),
+                face(drum.top_width_m, y + drum.height_m),
+            );
+            let outline = [
+                bottom.intrados_m,
+                bottom.extrados_m,
+                top.extrados_m,
+                top.intrados_m,
+            ];
+            blocks.push(Block::prism(&outline, depth_m, density_kg_m3));
+            (y, below_m) = (y + drum.height_m, drum.top_width_m);
+        }
+        let size_m = 0.5 * y.hypot(drums[0].base_width_m);
+        Self::new(blocks, joints, Supports::Left, size_m)
+    }
+
+    /// A stack of drums of given heights from the bottom up, whose width changes in a straight line from
+    /// `base_width_m` to `top_width_m`.
+    ///
+    /// # Errors
+    /// As [`Row::stack`].
+    pub fn tapered_stack(
+        heights_m: &[f64],
+        base_width_m: f64,
+        top_width_m: f64,
+        depth_m: f64,
+        density_kg_m3: f64,
+    ) -> Result<Self, RowError> {
+        let total_m: f64 = heights_m.iter().sum();
+        let width = |y: f64| base_width_m + (top_width_m - base_width_m) * (y / total_m);
+        let mut y = 0.0;
+        let drums: Vec<Drum> = heights_m
+            .iter()
+            .map(|height_m| {
+                let bottom = y;
+                y += height_m;
+                Drum {
+                    height_m: *height_m,
+                    base_width_m: width(bottom),
+                    top_width_m: width(y),
+                }
+            })
+            .collect();
+        Self::stack(&drums, depth_m, density_kg_m3)
+    }
+
+    /// The blocks from left to right.
+    #[must_use]
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// The joints from left to right.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// What carries the row.
+    #[must_use]
+    pub const fn supports(&self) -> Supports {
+        self.supports
+    }
+
+    /// The length, in metres, that energies and steps are measured with.
+    #[must_use]
+    pub const fn size_m(&self) -> f64 {
+        self.size_m
+    }
+
+    /// `e x n` of its joints: -1 in an arch, 1 in a stack.
+    #[must_use]
+    pub const fn handedness(&self) -> f64 {
+        self.handedness
+    }
+
+    /// Mass of all blocks in kg.
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.blocks.iter().map(|block| block.mass_kg).sum()
+    }
+}
+
+fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
+    if value > 0.0 && value < f64::INFINITY {
+        Ok(())
+    } else {
+        Err(RowError::Dimension { name, value })
+    }
+}
+
+/// Mass per unit of area.
+fn surface_density(depth_m: f64, density_kg_m3: f64) -> Result<f64, RowError> {
+    positive("depth in m", depth_m)?;
+    positive("density in kg/m3", density_kg_m3)?;
+    Ok(depth_m * density_kg_m3)
+}
+
+fn counted(blocks: usize) -> Result<(), RowError> {
+    if (1..=MAX_BLOCKS).contains(&blocks) {
+        Ok(())
+    } else {
+        Err(RowError::Count(blocks))
+    }
+}
+
+fn ring_joints(ring: &Ring, sections_rad: &[f64], mean_radius_m: f64) -> Vec<Joint> {
+    let corner = |angle: f64, edge| ring.point(angle, edge) * mean_radius_m;
+    sections_rad
+        .iter()
+        .map(|angle| Joint {
+            intrados_m: corner(*angle, Edge::Intrados),
+            extrados_m: corner(*angle, Edge::Extrados),
+        })
+        .collect()
+}

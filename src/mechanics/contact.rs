@@ -1,0 +1,909 @@
+//! The velocities of a row of blocks whose joints may open but neither close further nor slide.
+//!
+//! Given the velocities that the blocks would have without each other, the row takes the nearest ones, in the metric
+//! of the kinetic energy, among those that open no joint backwards: a convex quadratic program, with one solution. Its multipliers
+//! are the impulses at the corners of the joints. Both are compressive where a joint stays shut, that is, the
+//! thrust line passes between them; where it reaches a corner the joint opens about that corner. So the
+//! active constraints are the shut joints (both corners active), the hinges (one), and the parted joints (none).
+//!
+//! Shut joints make rigid bodies of the blocks between open joints. The impulses at open joints solve a
+//! block-tridiagonal system of 2x2 blocks, one per open joint; those at the shut joints follow by one running sum of
+//! the changes of momentum. The active set is found by the dual method of Goldfarb and Idnani ("A numerically stable dual
+//! method for solving strictly convex quadratic programs", Math. Programming 27, 1983), started from the last one: corners that
+//! pull are released, then the corner that closes fastest is stopped. Rows that depend on others never become active, so that
+//! rest, where the impulses are not unique, is no special case.
+
+use std::ops::Range;
+
+use nalgebra::{Matrix2, Vector2};
+use thiserror::Error;
+
+use super::blocks::{Row, Supports};
+use super::joints::{Closure, Frame, Placement};
+use crate::mechanics::geometry::field::{Momentum, Twist};
+use crate::mechanics::geometry::ring::{Edge, MassMoments};
+
+/// Corner impulses pull when they are more negative than this part of the largest one.
+const FORCE_TOLERANCE: f64 = 1e-9;
+/// The same as part of all momentum, for rows that nothing presses together.
+const MOMENTUM_TOLERANCE: f64 = 1e-14;
+/// Corners close when they do so faster than this part of the largest velocity.
+const RATE_TOLERANCE: f64 = 1e-11;
+/// To this it is relaxed, tenfold at a time, before a program counts as unsolved.
+const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
+/// A corner that a unit impulse accelerates less than this part of what it does to free bodies depends on
+/// the active ones.
+const DEPENDENCE: f64 = 1e-10;
+/// Rounds of exchanging many corners without progress after which the dual method takes over.
+const EXCHANGE_PATIENCE: usize = 6;
+/// A corner whose impulse falls by less than this part of a unit impulse elsewhere keeps it.
+const LEAST_SLOPE: f64 = 1e-12;
+
+/// The program was not solved within its number of iterations, at the loosest tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("the velocities of the blocks were not found in {iterations} iterations")]
+pub struct ContactError {
+    /// Iterations spent.
+    pub iterations: usize,
+}
+
+/// What a solution has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Systems of pin forces solved.
+    pub iterations: usize,
+    /// How often the tolerance had to be relaxed tenfold.
+    pub relaxed: usize,
+}
+
+/// Which corners of a joint, intrados and extrados, are concerned.
+pub type Corners = [bool; 2];
+
+/// What a program is about, besides the positions.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<'a> {
+    /// Motion of every block without the others (m/s at the origin, rad/s).
+    pub free: &'a [Twist],
+    /// Motion of the right block of every joint against its left one that counts as standing still.
+    pub jumps: &'a [Twist],
+    /// Corners that may not close further.
+    pub touching: &'a [Corners],
+}
+
+/// A run of blocks that move as one, with its inverse inertia; zero for one that a support holds.
+#[derive(Clone, Copy, Debug)]
+struct Body {
+    inverse_mass: f64,
+    inverse_inertia: f64,
+    centre: Vector2<f64>,
+    velocity: Vector2<f64>,
+    rate: f64,
+}
+
+impl Body {
+    /// A body whose motion is prescribed.
+    fn held(twist: Twist) -> Self {
+        Self {
+            inverse_mass: 0.0,
+            inverse_inertia: 0.0,
+            centre: Vector2::zeros(),
+            velocity: twist.at_center,
+            rate: twist.rate,
+        }
+    }
+
+    fn free(moments: &MassMoments, momentum: &Momentum) -> Self {
+        let inverse_mass = 1.0 / moments.mass;
+        let centre = moments.first * inverse_mass;
+        let inverse_inertia = 1.0 / (moments.polar - moments.first.dot(&centre));
+        Self {
+            inverse_mass,
+            inverse_inertia,
+            centre,
+            velocity: momentum.linear * inverse_mass,
+            rate: momentum.about(centre) * inverse_inertia,
+        }
+    }
+
+    fn motion(&self) -> Motion {
+        Motion {
+            centre: self.centre,
+            velocity: self.velocity,
+            rate: self.rate,
+        }
+    }
+}
+
+/// Motion of a body by the velocity of its centre.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    centre: Vector2<f64>,
+    velocity: Vector2<f64>,
+    rate: f64,
+}
+
+impl Motion {
+    fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
+        let arm = point - self.centre;
+        self.velocity + Vector2::new(-arm.y, arm.x) * self.rate
+    }
+
+    fn twist(&self) -> Twist {
+        Twist {
+            at_center: self.at(Vector2::zeros()),
+            rate: self.rate,
+        }
+    }
+
+    fn push(&mut self, body: &Body, point: Vector2<f64>, impulse: Vector2<f64>) {
+        self.velocity += impulse * body.inverse_mass;
+        self.rate += (point - self.centre).perp(&impulse) * body.inverse_inertia;
+    }
+}
+
+/// An open joint of the present active set, left of body `index + 1` and right of body `index`.
+#[derive(Clone, Copy, Debug)]
+struct Pin {
+    joint: usize,
+    point: Vector2<f64>,
+    parted: bool,
+    /// Inverse of the pivot of the elimination.
+    pivot: Matrix2<f64>,
+    /// Pivot of the joint before times the coupling with it.
+    gain: Matrix2<f64>,
+}
+
+/// Solution of a pin system: of the load, or the response to a unit impulse.
+#[derive(Clone, Debug, Default)]
+struct Answer {
+    motions: Vec<Motion>,
+    /// Impulses on the right body at the open joints, along the joint and across it.
+    pins: Vec<Vector2<f64>>,
+    /// Impulses at the corners of all joints.
+    corners: Vec<[f64; 2]>,
+    /// Rates of the gaps at the open joints.
+    rates: Vec<[f64; 2]>,
+}
+
+/// An impulse at one corner of an open joint, on both its bodies.
+#[derive(Clone, Copy, Debug)]
+struct Press {
+    pin: usize,
+    edge: usize,
+    impulse: f64,
+}
+
+const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
+
+/// The program of a row, with all the memory that it needs and the active set of the last solution.
+#[derive(Clone, Debug)]
+pub struct Program {
+    supports: Supports,
+    handedness: f64,
+    masses: Vec<(f64, f64)>,
+    active: Vec<Corners>,
+    /// Sums over the blocks before each joint.
+    moments: Vec<MassMoments>,
+    momenta: Vec<Momentum>,
+    /// Sums of the jumps up to each block.
+    datum: Vec<Twist>,
+    bodies: Vec<Body>,
+    pins: Vec<Pin>,
+    answer: Answer,
+    response: Answer,
+    velocities: Vec<Twist>,
+    force_floor: f64,
+    /// Corners that pull or close.
+    wrong: Vec<(usize, usize)>,
+}
+
+impl Program {
+    /// A program for the row that starts with all joints of a stack shut, or with an arch of three pins.
+    #[must_use]
+    pub fn new(row: &Row) -> Self {
+        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let mut program = Self {
+            supports: row.supports(),
+            handedness: row.handedness(),
+            masses: row
+                .blocks()
+                .iter()
+                .map(|b| (b.mass_kg, b.inertia_kg_m2))
+                .collect(),
+            active: vec![[true; 2]; joints],
+            moments: vec![NO_MASS; blocks + 1],
+            momenta: vec![Momentum::ZERO; blocks + 1],
+            datum: vec![Twist::ZERO; blocks + 1],
+            bodies: Vec::with_capacity(joints + 1),
+            pins: Vec::with_capacity(joints),
+            answer: Answer::with_capacity(joints),
+            response: Answer::with_capacity(joints),
+            velocities: vec![Twist::ZERO; blocks],
+            force_floor: 0.0,
+            wrong: Vec::with_capacity(2 * joints),
+        };
+        program.reset();
+        program
+    }
+
+    /// Goes back to the active set of the beginning.
+    pub fn reset(&mut self) {
+        self.active.fill([true; 2]);
+        if self.supports == Supports::Both {
+            let last = self.active.len() - 1;
+            // Three hinges, so that the impulses at rest are determined; one block has two joints only.
+            self.active[0] = [true, false];
+            self.active[last] = [last > 1, false];
+            if last > 1 {
+                self.active[last / 2] = [false, true];
+            }
+        }
+    }
+
+    /// Active corners of every joint: where the joint is pressed, in the last solution.
+    #[must_use]
+    pub fn active(&self) -> &[Corners] {
+        &self.active
+    }
+
+    /// Starts the next solution from these active corners.
+    pub fn start_from(&mut self, active: &[Corners]) {
+        self.active.copy_from_slice(active);
+    }
+
+    /// Velocities of the blocks in the last solution.
+    #[must_use]
+    pub fn velocities(&self) -> &[Twist] {
+        &self.velocities
+    }
+
+    /// Mass moments of the blocks before each joint, about the origin, in the positions of the last solution.
+    #[must_use]
+    pub fn moments(&self) -> &[MassMoments] {
+        &self.moments
+    }
+
+    /// Whether the last solution keeps a joint shut.
+    #[must_use]
+    pub fn keeps_shut(&self, joint: usize) -> bool {
+        self.active[joint] == [true; 2]
+    }
+
+    /// The joints that are open in the last solution, and the rates of their gaps in m/s, relative to the
+    /// jumps. A corner that is pressed has the rate zero.
+    pub fn open_joints(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let joints = self.pins.iter().map(|pin| pin.joint);
+        joints.zip(self.answer.rates.iter().copied())
+    }
+
+    /// Impulses in N s at the corners of every joint, intrados and extrados.
+    #[must_use]
+    pub fn corner_impulses(&self) -> &[[f64; 2]] {
+        &self.answer.corners
+    }
+
+    /// Impulses in N s on the right block of every joint: along the joint towards the extrados, and normal.
+    pub fn joint_impulses(&self, placement: &Placement, into: &mut [[f64; 2]]) {
+        let frames = placement.frames();
+        for body in 0..self.bodies.len() {
+            let start = self.start(frames, &self.answer, body, None, true);
+            let twist = self.answer.motions[body].twist();
+            for joint in self.shut_joints(body) {
+                let linear = (start - self.change(&twist, joint, true)).linear;
+                let frame = &frames[joint];
+                into[joint] = [frame.along.dot(&linear), frame.normal.dot(&linear)];
+            }
+        }
+        for (pin, impulse) in self.pins.iter().zip(&self.answer.pins) {
+            into[pin.joint] = [impulse.x, impulse.y];
+        }
+    }
+
+    /// Solves the program for a row in the given position.
+    ///
+    /// # Errors
+    /// When the active set is not found.
+    pub fn solve(&mut self, placement: &Placement, load: &Load) -> Result<Effort, ContactError> {
+        let frames = placement.frames();
+        let largest_rate = self.set_up(placement, load);
+        for (active, touching) in self.active.iter_mut().zip(load.touching) {
+            for edge in 0..2 {
+                active[edge] &= touching[edge];
+            }
+        }
+        let mut effort = Effort::default();
+        let patience = 60 + 2 * frames.len();
+        let mut tolerance = RATE_TOLERANCE;
+        // Not a number neither.
+        if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) {
+            self.active.fill([false; 2]);
+            self.factor(frames);
+        }
+        self.answer_load(frames, None);
+        effort.iterations += 1;
+        self.exchange(
+            frames,
+            load.touching,
+            tolerance * largest_rate,
+            &mut effort.iterations,
+        );
+        loop {
+            if effort.iterations > patience * (effort.relaxed + 1) {
+                tolerance *= 10.0;
+                effort.relaxed += 1;
+                if tolerance > LARGEST_RATE_TOLERANCE {
+                    let iterations = effort.iterations;
+                    return Err(ContactError { iterations });
+                }
+            }
+            if self.release() {
+                self.factor(frames);
+                self.answer_load(frames, None);
+                effort.iterations += 1;
+                continue;
+            }
+            let Some((pin, edge)) = self.fastest_closing(load.touching, tolerance * largest_rate)
+            else {
+                break;
+            };
+            let cap = patience * (effort.relaxed + 1);
+            if !self.stop(frames, pin, edge, &mut effort.iterations, cap) {
+                let iterations = effort.iterations;
+                return Err(ContactError { iterations });
+            }
+        }
+        self.set_velocities();
+        Ok(effort)
+    }
+
+    /// Sums over the blocks; returns the largest velocity.
+    fn set_up(&mut self, placement: &Placement, load: &Load) -> f64 {
+        let (mut moments, mut momentum, mut datum) = (NO_MASS, Momentum::ZERO, Twist::ZERO);
+        let (mut largest, mut total) = (0.0_f64, 0.0);
+        for block in 0..self.velocities.len() {
+            datum = datum + load.jumps[block];
+            self.datum[block] = datum;
+            let centre = placement.centres_m()[block];
+            let (mass, inertia) = self.masses[block];
+            let own = MassMoments {
+                mass,
+                first: centre * mass,
+                polar: inertia + mass * centre.norm_squared(),
+            };
+            let motion = load.free[block] - datum;
+            let added = motion.momentum(&own);
+            let (x, y) = (added.linear.x.abs(), added.linear.y.abs());
+            total += x + y;
+            largest = largest.max((x + y) / mass);
+            moments = moments + own;
+            momentum = momentum + added;
+            self.moments[block + 1] = moments;
+            self.momenta[block + 1] = momentum;
+        }
+        if self.supports == Supports::Both {
+            datum = datum + load.jumps[self.velocities.len()];
+        }
+        let count = self.velocities.len();
+        self.datum[count] = datum;
+        self.force_floor = MOMENTUM_TOLERANCE * total;
+        largest
+    }
+
+    /// Bodies, pins and pivots of the active set. Returns the least pivot over what it would be without the other rows: zero
+    /// when rows depend on each other.
+    fn factor(&mut self, frames: &[Frame]) -> f64 {
+        self.bodies.clear();
+        self.pins.clear();
+        let mut first = None;
+        let blocks = self.velocities.len();
+        for (joint, active) in self.active.iter().enumerate() {
+            let point = match active {
+                [true, true] => continue,
+                [false, true] => frames[joint].corner_m(Edge::Extrados),
+                _ => frames[joint].intrados_m,
+            };
+            self.bodies.push(match first {
+                None => Body::held(Twist::ZERO),
+                Some(first) => self.body(first, joint),
+            });
+            self.pins.push(Pin {
+                joint,
+                point,
+                parted: *active == [false; 2],
+                pivot: Matrix2::zeros(),
+                gain: Matrix2::zeros(),
+            });
+            first = Some(joint);
+        }
+        self.bodies.push(match (self.supports, first) {
+            (Supports::Left, Some(first)) => self.body(first, blocks),
+            (Supports::Left, None) => Body::held(Twist::ZERO),
+            (Supports::Both, _) => Body::held(self.datum[blocks] * -1.0),
+        });
+        self.eliminate(frames)
+    }
+
+    fn body(&self, first: usize, end: usize) -> Body {
+        let moments = self.moments[end] - self.moments[first];
+        Body::free(&moments, &(self.momenta[end] - self.momenta[first]))
+    }
+
+    /// Forward elimination of the compliances at the pins, in axes along and across each joint.
+    fn eliminate(&mut self, frames: &[Frame]) -> f64 {
+        let mut least = 1.0_f64;
+        for index in 0..self.pins.len() {
+            let (before, from) = self.pins.split_at_mut(index);
+            let pin = &mut from[0];
+            let frame = &frames[pin.joint];
+            let axes = [frame.along, frame.normal];
+            let mut own = Matrix2::<f64>::zeros();
+            for body in &self.bodies[index..=index + 1] {
+                let arm = pin.point - body.centre;
+                let turn = axes.map(|axis| arm.perp(&axis));
+                let share = body.inverse_inertia;
+                own.m11 += body.inverse_mass + share * turn[0] * turn[0];
+                own.m12 += share * turn[0] * turn[1];
+                own.m22 += body.inverse_mass + share * turn[1] * turn[1];
+            }
+            let free = [own.m11, own.m22];
+            if let Some(previous) = before.last() {
+                let body = &self.bodies[index];
+                let other = &frames[previous.joint];
+                let other_axes = [other.along, other.normal];
+                let arms = [previous.point - body.centre, pin.point - body.centre];
+                let coupling = |p: usize, q: usize| {
+                    -(body.inverse_mass * other_axes[p].dot(&axes[q])
+                        + body.inverse_inertia
+                            * arms[0].perp(&other_axes[p])
+                            * arms[1].perp(&axes[q]))
+                };
+                let mut b = Matrix2::new(
+                    coupling(0, 0),
+                    coupling(0, 1),
+                    coupling(1, 0),
+                    coupling(1, 1),
+                );
+                if previous.parted {
+                    b.m21 = 0.0;
+                    b.m22 = 0.0;
+                }
+                if pin.parted {
+                    b.m12 = 0.0;
+                    b.m22 = 0.0;
+                }
+                pin.gain = previous.pivot * b;
+                let taken = b.transpose() * pin.gain;
+                own.m11 -= taken.m11;
+                own.m12 -= taken.m12;
+                own.m22 -= taken.m22;
+            }
+            if pin.parted {
+                least = least.min(own.m11 / free[0]);
+                pin.pivot = Matrix2::new(1.0 / own.m11, 0.0, 0.0, 0.0);
+            } else {
+                let determinant = own.m11 * own.m22 - own.m12 * own.m12;
+                least = least
+                    .min(own.m11 / free[0])
+                    .min(determinant / (own.m11 * free[1]));
+                let inverse = 1.0 / determinant;
+                pin.pivot = Matrix2::new(
+                    own.m22 * inverse,
+                    -own.m12 * inverse,
+                    -own.m12 * inverse,
+                    own.m11 * inverse,
+                );
+            }
+        }
+        least
+    }
+
+    /// Motions and impulses under the load and an impulse at one corner.
+    fn answer_load(&mut self, frames: &[Frame], press: Option<Press>) {
+        let mut answer = std::mem::take(&mut self.answer);
+        answer.motions.clear();
+        answer.motions.extend(self.bodies.iter().map(Body::motion));
+        self.complete(frames, &mut answer, press, None, true);
+        self.answer = answer;
+    }
+
+    /// Motions and impulses under a unit impulse at one corner alone.
+    fn answer_unit(&mut self, frames: &[Frame], pin: usize, edge: usize) {
+        let mut response = std::mem::take(&mut self.response);
+        response.motions.clear();
+        let still = |body: &Body| Motion {
+            velocity: Vector2::zeros(),
+            rate: 0.0,
+            ..body.motion()
+        };
+        response.motions.extend(self.bodies.iter().map(still));
+        let impulse = 1.0;
+        self.complete(
+            frames,
+            &mut response,
+            Some(Press { pin, edge, impulse }),
+            None,
+            false,
+        );
+        self.response = response;
+    }
+
+    /// From motions without impulses between the bodies to those with them.
+    fn complete(
+        &self,
+        frames: &[Frame],
+        answer: &mut Answer,
+        press: Option<Press>,
+        closure: Option<&Closure>,
+        loaded: bool,
+    ) {
+        if let Some(press) = press {
+            let frame = &frames[self.pins[press.pin].joint];
+            let impulse = frame.normal * press.impulse;
+            self.push(
+                &mut answer.motions,
+                press.pin,
+                frame.corner_m(EDGES[press.edge]),
+                impulse,
+            );
+        }
+        answer.pins.clear();
+        let mut carried = Vector2::zeros();
+        for (index, pin) in self.pins.iter().enumerate() {
+            let frame = &frames[pin.joint];
+            let mut gap =
+                answer.motions[index + 1].at(pin.point) - answer.motions[index].at(pin.point);
+            if let Some(closure) = closure.filter(|closure| closure.joint == pin.joint) {
+                gap += closure.error_m;
+            }
+            let across = if pin.parted {
+                0.0
+            } else {
+                -frame.normal.dot(&gap)
+            };
+            let wanted = Vector2::new(-frame.along.dot(&gap), across);
+            carried = wanted - pin.gain.transpose() * carried;
+            answer.pins.push(carried);
+        }
+        let mut next = Vector2::zeros();
+        let mut gain = Matrix2::zeros();
+        for (pin, impulse) in self.pins.iter().zip(&mut answer.pins).rev() {
+            *impulse = pin.pivot * *impulse - gain * next;
+            (next, gain) = (*impulse, pin.gain);
+        }
+        answer.rates.clear();
+        for index in 0..self.pins.len() {
+            let frame = &frames[self.pins[index].joint];
+            let along = answer.pins[index];
+            let impulse = frame.along * along.x + frame.normal * along.y;
+            self.push(&mut answer.motions, index, self.pins[index].point, impulse);
+        }
+        for (index, pin) in self.pins.iter().enumerate() {
+            let frame = &frames[pin.joint];
+            let (left, right) = (&answer.motions[index], &answer.motions[index + 1]);
+            let opening = self.handedness * frame.thickness_m * (right.rate - left.rate);
+            answer.rates.push(match self.active[pin.joint] {
+                [true, _] => [0.0, opening],
+                [_, true] => [-opening, 0.0],
+                _ => {
+                    let gap = right.at(frame.intrados_m) - left.at(frame.intrados_m);
+                    let intrados = frame.normal.dot(&gap);
+                    [intrados, intrados + opening]
+                }
+            });
+        }
+        self.press_corners(frames, answer, press, loaded);
+    }
+
+    /// Applies an impulse to the two bodies at a pin.
+    fn push(&self, motions: &mut [Motion], pin: usize, point: Vector2<f64>, impulse: Vector2<f64>) {
+        motions[pin].push(&self.bodies[pin], point, -impulse);
+        motions[pin + 1].push(&self.bodies[pin + 1], point, impulse);
+    }
+
+    /// Impulses at the corners: at hinges those of the pins, at shut joints by the running sum.
+    fn press_corners(
+        &self,
+        frames: &[Frame],
+        answer: &mut Answer,
+        press: Option<Press>,
+        loaded: bool,
+    ) {
+        for body in 0..self.bodies.len() {
+            let start = self.start(frames, answer, body, press, loaded);
+            let twist = answer.motions[body].twist();
+            for joint in self.shut_joints(body) {
+                let resultant = start - self.change(&twist, joint, loaded);
+                let frame = &frames[joint];
+                let normal = frame.normal.dot(&resultant.linear);
+                let extrados =
+                    self.handedness * resultant.about(frame.intrados_m) / frame.thickness_m;
+                answer.corners[joint] = [normal - extrados, extrados];
+            }
+        }
+        for (pin, impulse) in self.pins.iter().zip(&answer.pins) {
+            answer.corners[pin.joint] = match self.active[pin.joint] {
+                [true, _] => [impulse.y, 0.0],
+                [_, true] => [0.0, impulse.y],
+                _ => [0.0; 2],
+            };
+        }
+    }
+
+    /// The shut joints inside a body.
+    fn shut_joints(&self, body: usize) -> Range<usize> {
+        let start = body
+            .checked_sub(1)
+            .map_or(0, |pin| self.pins[pin].joint + 1);
+        let end = self
+            .pins
+            .get(body)
+            .map_or(self.active.len(), |pin| pin.joint);
+        start..end
+    }
+
+    /// The blocks of a body.
+    fn blocks(&self, body: usize) -> Range<usize> {
+        let start = body.checked_sub(1).map_or(0, |pin| self.pins[pin].joint);
+        let end = self
+            .pins
+            .get(body)
+            .map_or(self.velocities.len(), |pin| pin.joint);
+        start..end
+    }
+
+    /// Change of momentum of the blocks before a joint, did they all move so.
+    fn change(&self, twist: &Twist, joint: usize, loaded: bool) -> Momentum {
+        let change = twist.momentum(&self.moments[joint]);
+        if loaded {
+            change - self.momenta[joint]
+        } else {
+            change
+        }
+    }
+
+    /// The resultant impulse at some joint of a body plus the change of momentum before it: what is constant along
+    /// the body. It is taken at a hinge, or at the free end.
+    fn start(
+        &self,
+        frames: &[Frame],
+        answer: &Answer,
+        body: usize,
+        press: Option<Press>,
+        loaded: bool,
+    ) -> Momentum {
+        let twist = answer.motions[body].twist();
+        let index = body.saturating_sub(1);
+        let Some(pin) = self.pins.get(index) else {
+            return self.change(&twist, self.velocities.len(), loaded);
+        };
+        let frame = &frames[pin.joint];
+        let along = answer.pins[index];
+        let impulse = frame.along * along.x + frame.normal * along.y;
+        let mut resultant = Momentum::applied_at(pin.point, impulse);
+        if let Some(press) = press.filter(|press| press.pin == index) {
+            let corner = frame.corner_m(EDGES[press.edge]);
+            resultant = resultant + Momentum::applied_at(corner, frame.normal * press.impulse);
+        }
+        resultant + self.change(&twist, pin.joint, loaded)
+    }
+
+    /// Releases all corners that pull and stops all that close, again and again, while that leaves fewer of them. It
+    /// solves impacts at which many corners change in a few rounds, but may go in circles: what it leaves is for
+    /// the dual method.
+    fn exchange(
+        &mut self,
+        frames: &[Frame],
+        touching: &[Corners],
+        tolerance: f64,
+        iterations: &mut usize,
+    ) {
+        let mut fewest = usize::MAX;
+        let mut patience = EXCHANGE_PATIENCE;
+        loop {
+            let pulling = self.pull_limit();
+            self.wrong.clear();
+            for (joint, active) in self.active.iter().enumerate() {
+                for edge in 0..2 {
+                    if active[edge] && self.answer.corners[joint][edge] < pulling {
+                        self.wrong.push((joint, edge));
+                    }
+                }
+            }
+            for (pin, rates) in self.pins.iter().zip(&self.answer.rates) {
+                for edge in 0..2 {
+                    let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
+                    if free && rates[edge] < -tolerance {
+                        self.wrong.push((pin.joint, edge));
+                    }
+                }
+            }
+            if self.wrong.is_empty() {
+                return;
+            }
+            if self.wrong.len() < fewest {
+                fewest = self.wrong.len();
+                patience = EXCHANGE_PATIENCE;
+            } else if patience == 0 {
+                return;
+            } else {
+                patience -= 1;
+            }
+            for (joint, edge) in &self.wrong {
+                self.active[*joint][*edge] ^= true;
+            }
+            if !(self.factor(frames) > DEPENDENCE) {
+                for (joint, edge) in &self.wrong {
+                    self.active[*joint][*edge] ^= true;
+                }
+                self.factor(frames);
+                return;
+            }
+            self.answer_load(frames, None);
+            *iterations += 1;
+        }
+    }
+
+    /// Impulses below this pull.
+    fn pull_limit(&self) -> f64 {
+        let corners = &self.answer.corners;
+        let largest = corners
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |most, x| most.max(x.abs()));
+        -(FORCE_TOLERANCE * largest).max(self.force_floor)
+    }
+
+    /// Releases the corners that pull, the worst one of each run of neighbours. False if none does.
+    fn release(&mut self) -> bool {
+        let limit = self.pull_limit();
+        let mut released = false;
+        for edge in 0..2 {
+            let mut worst: Option<usize> = None;
+            for joint in 0..=self.active.len() {
+                let pulls = self.active.get(joint).is_some_and(|a| a[edge])
+                    && self.answer.corners[joint][edge] < limit;
+                if pulls {
+                    let more = |other: usize| {
+                        self.answer.corners[joint][edge] < self.answer.corners[other][edge]
+                    };
+                    if worst.is_none_or(more) {
+                        worst = Some(joint);
+                    }
+                } else if let Some(joint) = worst.take() {
+                    self.active[joint][edge] = false;
+                    released = true;
+                }
+            }
+        }
+        released
+    }
+
+    /// Pin and edge of the corner that closes fastest, beyond a tolerance.
+    fn fastest_closing(&self, touching: &[Corners], tolerance: f64) -> Option<(usize, usize)> {
+        let mut fastest = None;
+        let mut least = -tolerance;
+        for (index, (pin, rates)) in self.pins.iter().zip(&self.answer.rates).enumerate() {
+            for edge in 0..2 {
+                let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
+                if free && rates[edge] < least {
+                    least = rates[edge];
+                    fastest = Some((index, edge));
+                }
+            }
+        }
+        fastest
+    }
+
+    /// Makes a closing corner active; others that would pull on the way are released. False when it is not possible
+    /// within the iterations.
+    fn stop(
+        &mut self,
+        frames: &[Frame],
+        pin: usize,
+        edge: usize,
+        iterations: &mut usize,
+        cap: usize,
+    ) -> bool {
+        let joint = self.pins[pin].joint;
+        let mut impulse = 0.0;
+        loop {
+            let Some(pin) = self.pins.iter().position(|pin| pin.joint == joint) else {
+                return false;
+            };
+            self.answer_unit(frames, pin, edge);
+            *iterations += 1;
+            let compliance = self.response.rates[pin][edge];
+            let free = self.bodies[pin].inverse_mass + self.bodies[pin + 1].inverse_mass;
+            let full = if compliance > DEPENDENCE * free {
+                (-self.answer.rates[pin][edge] / compliance).max(0.0)
+            } else {
+                f64::INFINITY
+            };
+            let (partial, blocking) = self.first_to_pull();
+            if full <= partial && full < f64::INFINITY {
+                self.active[joint][edge] = true;
+                self.factor(frames);
+                self.answer_load(frames, None);
+                *iterations += 1;
+                return true;
+            }
+            let Some((blocked, blocked_edge)) = blocking else {
+                return false;
+            };
+            impulse += partial;
+            self.active[blocked][blocked_edge] = false;
+            self.factor(frames);
+            let Some(pin) = self.pins.iter().position(|pin| pin.joint == joint) else {
+                return false;
+            };
+            self.answer_load(frames, Some(Press { pin, edge, impulse }));
+            *iterations += 1;
+            if *iterations > cap {
+                return true;
+            }
+        }
+    }
+
+    /// The impulse at which the first active corner stops pressing, and that corner.
+    fn first_to_pull(&self) -> (f64, Option<(usize, usize)>) {
+        let mut first = (f64::INFINITY, None);
+        for (joint, active) in self.active.iter().enumerate() {
+            for edge in 0..2 {
+                let slope = self.response.corners[joint][edge];
+                if active[edge] && slope < -LEAST_SLOPE {
+                    let impulse = (self.answer.corners[joint][edge] / -slope).max(0.0);
+                    if impulse < first.0 {
+                        first = (impulse, Some((joint, edge)));
+                    }
+                }
+            }
+        }
+        first
+    }
+
+    fn set_velocities(&mut self) {
+        for body in 0..self.bodies.len() {
+            let twist = self.answer.motions[body].twist();
+            for block in self.blocks(body) {
+                self.velocities[block] = twist + self.datum[block];
+            }
+        }
+    }
+
+    /// The displacement of least kinetic norm that takes up the closure error of an arch, without opening or shutting a
+    /// joint: changes of the gaps at the open joints, through [`Program::open_joints`]. False when the open joints
+    /// leave no such displacement.
+    pub fn close(&mut self, placement: &Placement, closure: &Closure, load: &Load) -> bool {
+        let frames = placement.frames();
+        self.set_up(placement, load);
+        for (active, gaps) in self.active.iter_mut().zip(placement.gaps_m()) {
+            *active = gaps.map(|gap| gap == 0.0);
+        }
+        if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) || self.pins.is_empty() {
+            return false;
+        }
+        let mut answer = std::mem::take(&mut self.answer);
+        answer.motions.clear();
+        answer.motions.extend(self.bodies.iter().map(Body::motion));
+        self.complete(frames, &mut answer, None, Some(closure), true);
+        self.answer = answer;
+        true
+    }
+}
+
+impl Answer {
+    fn with_capacity(joints: usize) -> Self {
+        Self {
+            motions: Vec::with_capacity(joints + 1),
+            pins: Vec::with_capacity(joints),
+            corners: vec![[0.0; 2]; joints],
+            rates: Vec::with_capacity(joints),
+        }
+    }
+}
+
+const NO_MASS: MassMoments = MassMoments {
+    mass: 0.0,
+    first: Vector2::new(0.0, 0.0),
+    polar: 0.0,
+};

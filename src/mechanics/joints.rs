@@ -1,0 +1,339 @@
+//! Where the blocks of a row are: positions from the gaps of its joints.
+//!
+//! A joint that neither slides nor is penetrated has two coordinates, the gaps `g_I, g_E >= 0` at its corners. With
+//! `s` the handedness of the row and `t` the thickness of the joint, the right face is turned against the left one
+//! by `s delta`, `delta = (g_E - g_I)/t`, and the smaller gap parts the nearer corners along the normal of the joint
+//! at the mean angle of its faces. A hinge, where that gap is zero, is thus an exact pin at its corner, at any rotation; the larger
+//! gap is the arc `t |delta|`, not the chord.
+//!
+//! Positions follow from the left support to the right. In an arch the blocks behind the last open joint stand
+//! where the right support has them, and the rotation of that joint closes the row; what rounding leaves
+//! between its two faces is the [`Placement::closure_error`].
+
+use nalgebra::Vector2;
+
+use super::blocks::{Joint, Row, Supports};
+use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::ring::Edge;
+
+/// A corner of a joint counts as shut when its gap is below this part of the thickness.
+pub const SHUT_RATIO: f64 = 1e-12;
+
+/// Rigid placement of a block: rotation about the origin, then displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Rotation in radians, anticlockwise.
+    pub rotation_rad: f64,
+    /// Cosine and sine of the rotation.
+    turn: Vector2<f64>,
+    /// Displacement in metres of the point that was at the origin.
+    pub shift_m: Vector2<f64>,
+}
+
+impl Pose {
+    /// Undeformed.
+    pub const UNDEFORMED: Self = Self {
+        rotation_rad: 0.0,
+        turn: Vector2::new(1.0, 0.0),
+        shift_m: Vector2::new(0.0, 0.0),
+    };
+
+    /// Where the point is that was at `point_m`.
+    #[must_use]
+    pub fn of(&self, point_m: Vector2<f64>) -> Vector2<f64> {
+        self.shift_m + self.turned(point_m)
+    }
+
+    fn turned(&self, v: Vector2<f64>) -> Vector2<f64> {
+        rotated(self.turn, v)
+    }
+}
+
+fn unit(angle_rad: f64) -> Vector2<f64> {
+    let (sin, cos) = angle_rad.sin_cos();
+    Vector2::new(cos, sin)
+}
+
+fn rotated(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
+}
+
+/// The line on which the faces of a joint press each other, in its present position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Its intrados corner: midway between the nearer corners of the faces if they are those of the intrados, else
+    /// a thickness away from them along the joint.
+    pub intrados_m: Vector2<f64>,
+    /// Unit vector to the extrados.
+    pub along: Vector2<f64>,
+    /// Unit normal towards the right block.
+    pub normal: Vector2<f64>,
+    /// Thickness in metres.
+    pub thickness_m: f64,
+}
+
+impl Frame {
+    /// Its corner on the given edge.
+    #[must_use]
+    pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
+        match edge {
+            Edge::Intrados => self.intrados_m,
+            Edge::Extrados => self.intrados_m + self.along * self.thickness_m,
+        }
+    }
+}
+
+/// Constants of a joint, so that they are not computed at each step.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    joint: Joint,
+    middle: Vector2<f64>,
+    along: Vector2<f64>,
+    thickness: f64,
+}
+
+/// The positions of all blocks and joints of a row.
+#[derive(Clone, Debug)]
+pub struct Placement {
+    faces: Vec<Face>,
+    undeformed_m: Vec<Vector2<f64>>,
+    handedness: f64,
+    supports: Supports,
+    gaps_m: Vec<[f64; 2]>,
+    poses: Vec<Pose>,
+    centres_m: Vec<Vector2<f64>>,
+    frames: Vec<Frame>,
+    closure: Option<Closure>,
+}
+
+/// What is left open between the two parts of an arch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closure {
+    /// The last open joint.
+    pub joint: usize,
+    /// From where the left part ends to where the right part begins, in metres.
+    pub error_m: Vector2<f64>,
+}
+
+impl Placement {
+    /// The undeformed row.
+    #[must_use]
+    pub fn new(row: &Row) -> Self {
+        let faces: Vec<Face> = row
+            .joints()
+            .iter()
+            .map(|joint| Face {
+                joint: *joint,
+                middle: joint.middle_m(),
+                along: joint.along(),
+                thickness: joint.thickness_m(),
+            })
+            .collect();
+        let undeformed_m: Vec<_> = row.blocks().iter().map(|block| block.centre_m).collect();
+        let nowhere = Frame {
+            intrados_m: Vector2::zeros(),
+            along: Vector2::zeros(),
+            normal: Vector2::zeros(),
+            thickness_m: 0.0,
+        };
+        let mut placement = Self {
+            handedness: row.handedness(),
+            supports: row.supports(),
+            gaps_m: vec![[0.0; 2]; faces.len()],
+            poses: vec![Pose::UNDEFORMED; undeformed_m.len()],
+            centres_m: undeformed_m.clone(),
+            frames: vec![nowhere; faces.len()],
+            closure: None,
+            faces,
+            undeformed_m,
+        };
+        placement.place();
+        placement
+    }
+
+    /// Gaps of every joint at intrados and extrados, in metres.
+    #[must_use]
+    pub fn gaps_m(&self) -> &[[f64; 2]] {
+        &self.gaps_m
+    }
+
+    /// Placements of the blocks.
+    #[must_use]
+    pub fn poses(&self) -> &[Pose] {
+        &self.poses
+    }
+
+    /// Centres of gravity of the blocks, in metres.
+    #[must_use]
+    pub fn centres_m(&self) -> &[Vector2<f64>] {
+        &self.centres_m
+    }
+
+    /// Where the joints press.
+    #[must_use]
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// What rounding leaves at the last open joint of an arch; `None` for stacks, and while all joints are shut.
+    #[must_use]
+    pub const fn closure(&self) -> Option<Closure> {
+        self.closure
+    }
+
+    /// Length of the closure error in metres.
+    #[must_use]
+    pub fn closure_error(&self) -> f64 {
+        self.closure.map_or(0.0, |closure| closure.error_m.norm())
+    }
+
+    /// Whether both corners of a joint touch.
+    #[must_use]
+    pub fn is_shut(&self, joint: usize) -> bool {
+        self.gaps_m[joint] == [0.0; 2]
+    }
+
+    /// Takes over the positions of another placement of the same row.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.gaps_m.copy_from_slice(&other.gaps_m);
+        self.poses.copy_from_slice(&other.poses);
+        self.centres_m.copy_from_slice(&other.centres_m);
+        self.frames.copy_from_slice(&other.frames);
+        self.closure = other.closure;
+    }
+
+    /// Gaps of hinges that turn the blocks by the given rotations in radians; no joint parts altogether.
+    pub fn turn(&mut self, rotations_rad: &[f64]) {
+        for joint in 0..self.faces.len() {
+            let at = |block: Option<usize>| block.and_then(|b| rotations_rad.get(b)).copied();
+            let left = at(joint.checked_sub(1)).unwrap_or(0.0);
+            let opening = self.handedness * (at(Some(joint)).unwrap_or(0.0) - left);
+            self.gaps_m[joint] = hinged(opening * self.faces[joint].thickness, 0.0);
+        }
+        self.place();
+    }
+
+    /// Adds to the gaps, shuts what is below [`SHUT_RATIO`], and places the blocks anew.
+    pub fn open(&mut self, change_m: impl Fn(usize) -> [f64; 2]) {
+        for joint in 0..self.faces.len() {
+            let least = SHUT_RATIO * self.faces[joint].thickness;
+            let change = change_m(joint);
+            for (gap, change) in self.gaps_m[joint].iter_mut().zip(change) {
+                *gap += change;
+                if *gap < least {
+                    *gap = 0.0;
+                }
+            }
+        }
+        self.place();
+    }
+
+    /// Positions from the gaps, left to right.
+    fn place(&mut self) {
+        let last_open = match self.supports {
+            Supports::Left => None,
+            Supports::Both => self.gaps_m.iter().rposition(|gaps| *gaps != [0.0; 2]),
+        };
+        self.closure = None;
+        let mut left = Pose::UNDEFORMED;
+        for joint in 0..self.faces.len() {
+            let face = &self.faces[joint];
+            let closing = last_open == Some(joint);
+            let right = if closing {
+                self.gaps_m[joint] = closed_gaps(
+                    &self.gaps_m[joint],
+                    left.rotation_rad,
+                    face,
+                    self.handedness,
+                );
+                Pose::UNDEFORMED
+            } else if self.gaps_m[joint] == [0.0; 2] {
+                left
+            } else {
+                let opening = (self.gaps_m[joint][1] - self.gaps_m[joint][0]) / face.thickness;
+                let rotation_rad = left.rotation_rad + self.handedness * opening;
+                Pose {
+                    rotation_rad,
+                    turn: unit(rotation_rad),
+                    shift_m: Vector2::zeros(),
+                }
+            };
+            let right = self.frame(joint, &left, right, closing);
+            if let Some(pose) = self.poses.get_mut(joint) {
+                *pose = right;
+                self.centres_m[joint] = right.of(self.undeformed_m[joint]);
+            }
+            left = right;
+        }
+    }
+
+    /// Sets the frame of a joint and completes the placement of its right block, whose rotation is given.
+    fn frame(&mut self, joint: usize, left: &Pose, mut right: Pose, closing: bool) -> Pose {
+        let face = &self.faces[joint];
+        let s = self.handedness;
+        let gaps = self.gaps_m[joint];
+        if gaps == [0.0; 2] {
+            let along = left.turned(face.along);
+            self.frames[joint] = Frame {
+                intrados_m: left.of(face.joint.intrados_m),
+                along,
+                normal: turned(along) * s,
+                thickness_m: face.thickness,
+            };
+            return right;
+        }
+        let opening = (gaps[1] - gaps[0]) / face.thickness;
+        let along = rotated(unit(left.rotation_rad + 0.5 * s * opening), face.along);
+        let normal = turned(along) * s;
+        let chord = face.thickness * (0.5 * opening.abs()).sin();
+        let nearer = gaps[0].min(gaps[1]);
+        let start = left.of(face.middle) + normal * (nearer + chord);
+        if closing {
+            let mut error_m = face.middle - start;
+            // A joint that is parted takes the error across it as a change of its gap.
+            if nearer > 0.0 {
+                let change = normal.dot(&error_m).max(-nearer);
+                self.gaps_m[joint] = gaps.map(|gap| gap + change);
+                error_m -= normal * change;
+            }
+            self.closure = Some(Closure { joint, error_m });
+        } else {
+            right.shift_m = start - right.turned(face.middle);
+        }
+        let gaps = self.gaps_m[joint];
+        let (edge, offset) = if gaps[0] <= gaps[1] {
+            (Edge::Intrados, 0.0)
+        } else {
+            (Edge::Extrados, face.thickness)
+        };
+        let nearer_corner =
+            left.of(face.joint.corner_m(edge)) + normal * (0.5 * gaps[0].min(gaps[1]));
+        self.frames[joint] = Frame {
+            intrados_m: nearer_corner - along * offset,
+            along,
+            normal,
+            thickness_m: face.thickness,
+        };
+        right
+    }
+}
+
+/// Gaps of a joint that is open by `width_m` at the extrados (if negative, at the intrados), and parted by `nearer_m`.
+fn hinged(width_m: f64, nearer_m: f64) -> [f64; 2] {
+    [nearer_m + (-width_m).max(0.0), nearer_m + width_m.max(0.0)]
+}
+
+/// Gaps of the last open joint: its rotation is what brings the row back to zero.
+fn closed_gaps(gaps: &[f64; 2], rotation_rad: f64, face: &Face, handedness: f64) -> [f64; 2] {
+    let gaps = hinged(
+        -handedness * rotation_rad * face.thickness,
+        gaps[0].min(gaps[1]),
+    );
+    gaps.map(|gap| {
+        if gap < SHUT_RATIO * face.thickness {
+            0.0
+        } else {
+            gap
+        }
+    })
+}

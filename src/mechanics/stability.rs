@@ -1,0 +1,155 @@
+//! Whether a row stands, and the push that starts it, by limit analysis with any number of hinges.
+//!
+//! The row gives way under a load per unit mass when the velocities nearest to that load, among those that its joints
+//! allow, are not zero ([`super::contact`]); what they are then is a mechanism, and the load at which that one just does no work
+//! is an upper bound of the strength. Under that load the row either stands, and the bound is the strength, or another
+//! mechanism lowers it. There are finitely many, and the bounds fall fast (Dinkelbach, "On nonlinear fractional
+//! programming", Management Science 13, 1967): a few programs are enough.
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::blocks::Row;
+use super::contact::{ContactError, Load, Program};
+use super::joints::Placement;
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::field::Twist;
+use crate::mechanics::geometry::ring::Edge;
+
+/// Velocities below this part of those without contact are none.
+const STANDSTILL: f64 = 1e-9;
+
+/// A joint that opens in a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opening {
+    /// Which joint.
+    pub joint: usize,
+    /// The corner about which it opens; `None` where it parts altogether.
+    pub hinge: Option<Edge>,
+    /// Rates of the gaps at intrados and extrados, up to a common factor.
+    pub rates: [f64; 2],
+}
+
+/// The push that starts a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowOnset {
+    /// Ground acceleration, without its sign, in units of gravity.
+    pub acceleration_g: f64,
+    /// The mechanism that starts, from left to right.
+    pub openings: Vec<Opening>,
+}
+
+/// Why a row has no onset.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum StabilityError {
+    /// It does not carry its own weight.
+    #[error("the row cannot carry its own weight")]
+    CannotStand(Vec<Opening>),
+    /// The velocities of a trial were not found.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+}
+
+/// The mechanism in which a row falls under its own weight; `None` when it stands.
+///
+/// # Errors
+/// When the velocities under the weight are not found.
+pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
+    let mut trial = Trial::new(row);
+    Ok(trial
+        .moves(Vector2::new(0.0, -1.0))?
+        .map(|_| trial.openings()))
+}
+
+/// The least horizontal ground acceleration that starts the row swaying to a side; `None` when no push moves
+/// it without sliding.
+///
+/// # Errors
+/// When the row does not stand, or the velocities of a trial are not found.
+pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> {
+    let mut trial = Trial::new(row);
+    if trial.moves(Vector2::new(0.0, -1.0))?.is_some() {
+        return Err(StabilityError::CannotStand(trial.openings()));
+    }
+    let mut load = Vector2::new(sway.sign(), 0.0);
+    let mut found: Option<RowOnset> = None;
+    while let Some(work) = trial.moves(load)? {
+        let acceleration_g = work.y / (sway.sign() * work.x);
+        // The bounds fall; below rounding they do not.
+        if found
+            .as_ref()
+            .is_some_and(|found| acceleration_g >= found.acceleration_g * (1.0 - 1e-14))
+        {
+            break;
+        }
+        found = Some(RowOnset {
+            acceleration_g,
+            openings: trial.openings(),
+        });
+        load = Vector2::new(sway.sign() * acceleration_g, -1.0);
+    }
+    Ok(found)
+}
+
+/// The undeformed row under loads.
+struct Trial<'a> {
+    row: &'a Row,
+    placement: Placement,
+    program: Program,
+    free: Vec<Twist>,
+    jumps: Vec<Twist>,
+    touching: Vec<[bool; 2]>,
+}
+
+impl<'a> Trial<'a> {
+    fn new(row: &'a Row) -> Self {
+        let joints = row.joints().len();
+        Self {
+            row,
+            placement: Placement::new(row),
+            program: Program::new(row),
+            free: vec![Twist::ZERO; row.blocks().len()],
+            jumps: vec![Twist::ZERO; joints],
+            touching: vec![[true; 2]; joints],
+        }
+    }
+
+    /// Integral of the velocities over the masses, if the row moves under a load per unit mass.
+    fn moves(&mut self, load: Vector2<f64>) -> Result<Option<Vector2<f64>>, ContactError> {
+        self.free.fill(Twist::translation(load));
+        let load_case = Load {
+            free: &self.free,
+            jumps: &self.jumps,
+            touching: &self.touching,
+        };
+        self.program.solve(&self.placement, &load_case)?;
+        let blocks = self.row.blocks().iter().zip(self.program.velocities());
+        let mut work = Vector2::zeros();
+        let mut fastest = 0.0_f64;
+        for (block, twist) in blocks {
+            let velocity = twist.at(block.centre_m);
+            work += velocity * block.mass_kg;
+            fastest = fastest
+                .max(velocity.norm())
+                .max(twist.rate.abs() * self.row.size_m());
+        }
+        Ok((fastest > STANDSTILL * load.norm()).then_some(work))
+    }
+
+    fn openings(&self) -> Vec<Opening> {
+        let rates = || self.program.open_joints();
+        let most = rates().flat_map(|(_, rates)| rates).fold(0.0, f64::max);
+        let opens = rates().filter(|(_, rates)| rates.iter().any(|rate| *rate > 1e-9 * most));
+        opens
+            .map(|(joint, rates)| Opening {
+                joint,
+                hinge: match self.program.active()[joint] {
+                    [true, _] => Some(Edge::Intrados),
+                    [_, true] => Some(Edge::Extrados),
+                    _ => None,
+                },
+                rates,
+            })
+            .collect()
+    }
+}
