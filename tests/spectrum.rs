@@ -392,7 +392,7 @@ fn errors_have_a_place_and_a_remedy() {
     assert!(long.to_string().starts_with(words), "{long}");
     assert!(
         long.to_string()
-            .ends_with("above 0.0 and at most 1000000.0"),
+            .ends_with("at least 1e-6 and at most 1000000.0"),
         "{long}"
     );
 }
