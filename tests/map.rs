@@ -12,9 +12,11 @@ use std::process::{Child, Command, Output};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use archrock::scenario::{Boundary, Cell, Cells};
-use archrock::studies::specimen::Verdict;
-use archrock::{GroundMotion, Model as _, Outcome, Pulse, Scenario};
+use archrock::studies::boundary::{Boundary, ImpactFreeBoundary};
+use archrock::studies::ending::Ending;
+use archrock::studies::map::{CellResult, OverturningMap};
+use archrock::studies::runner::Study as _;
+use archrock::{GroundMotion, Outcome, Pulse, Scenario};
 use common::{GRAVITY, request, seven_voussoirs};
 use program::command;
 
@@ -25,17 +27,19 @@ fn parse(text: &str) -> Scenario {
     Scenario::parse(text, "s.toml").unwrap()
 }
 
-fn shaken(cells: &Cells<'_>, index: usize) -> Verdict {
-    match cells.cell(index) {
-        Cell::Shaken(verdict) => verdict,
+fn ending(map: &OverturningMap<'_>, index: usize) -> Ending {
+    match map.row(index).result {
+        CellResult::Ended(ending) => ending,
         other => panic!("cell {index}: {other:?}"),
     }
 }
 
-fn boundaries(cells: &Cells<'_>) -> Vec<Boundary> {
-    let along_x = 0..cells.values()[0].len();
-    along_x
-        .map(|x| cells.boundary(x).unwrap().unwrap())
+/// The boundaries with their x.
+fn boundaries(map: &OverturningMap<'_>) -> Vec<(f64, Boundary)> {
+    let boundary = ImpactFreeBoundary::new(map).unwrap();
+    (0..boundary.count())
+        .map(|x| boundary.row(x))
+        .map(|row| (row.x, row.result.unwrap().unwrap()))
         .collect()
 }
 
@@ -46,15 +50,15 @@ fn a_cell_is_the_history_of_its_scenario() {
          [ground.one_cosine]\namplitude_g = 0.3\nduration_s = 0.4\n\
          [map]\nmean_radius_m = [2.0, 10.0]\namplitude_g = [-0.8, 0.2, 1.5]",
     );
-    let cells = Cells::new(&scenario).unwrap();
+    let cells = OverturningMap::new(&scenario).unwrap();
     assert_eq!(cells.count(), 6);
     for index in 0..6 {
         let [mean_radius_m, amplitude_g] = cells.coordinates(index);
         let arch = seven_voussoirs().with_mean_radius_m(mean_radius_m).unwrap();
         let ground =
             GroundMotion::pulse(Pulse::OneCosine, amplitude_g * GRAVITY, 0.4, 0.0).unwrap();
-        let summary = arch.simulate(&ground, &request(10.0), None).unwrap();
-        assert_eq!(shaken(&cells, index), Verdict::from(summary));
+        let expected = Ending::of(&arch, &ground, &request(10.0)).unwrap();
+        assert_eq!(ending(&cells, index), expected);
     }
 }
 
@@ -66,11 +70,11 @@ fn the_frequency_is_the_inverse_of_the_duration() {
     let by_duration = parse(&text("duration_s = [0.25, 0.5]\namplitude_g = [0.4, 0.9]"));
     let by_frequency = parse(&text("frequency_hz = [2.0, 4.0]\namplitude_g = [0.4, 0.9]"));
     let (by_duration, by_frequency) = (
-        Cells::new(&by_duration).unwrap(),
-        Cells::new(&by_frequency).unwrap(),
+        OverturningMap::new(&by_duration).unwrap(),
+        OverturningMap::new(&by_frequency).unwrap(),
     );
     for (index, other) in [(0, 2), (1, 3), (2, 0), (3, 1)] {
-        assert_eq!(shaken(&by_duration, index), shaken(&by_frequency, other));
+        assert_eq!(ending(&by_duration, index), ending(&by_frequency, other));
     }
 }
 
@@ -87,24 +91,24 @@ fn maps_have_the_symmetries_of_the_mechanics() {
     let mirrored = parse(&text(
         "duration_s = [0.6, 0.8, 1.2]\namplitude_g = [-2.0, -0.5, -0.2, 0.2, 0.5, 2.0]",
     ));
-    let cells = Cells::new(&mirrored).unwrap();
+    let cells = OverturningMap::new(&mirrored).unwrap();
     for (column, row) in (0..3).flat_map(|column| (0..3).map(move |row| (column, row))) {
-        let left = shaken(&cells, column * 6 + row);
-        let right = shaken(&cells, column * 6 + 5 - row);
+        let left = ending(&cells, column * 6 + row);
+        let right = ending(&cells, column * 6 + 5 - row);
         let outcome = match left.outcome {
             Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
             other => other,
         };
-        assert_eq!(Verdict { outcome, ..left }, right);
+        assert_eq!(Ending { outcome, ..left }, right);
     }
     let scaled = parse(&text("mean_radius_m = [2.0, 8.0]\nduration_s = [0.4, 0.8]"));
-    let cells = Cells::new(&scaled).unwrap();
+    let cells = OverturningMap::new(&scaled).unwrap();
     assert_eq!(
         cells.axes().map(|axis| axis.quantity.name()),
         ["duration_s", "mean_radius_m"]
     );
     // Cells 0 and 3: 0.4 s at 2 m, 0.8 s at 8 m.
-    let (small, large) = (shaken(&cells, 0), shaken(&cells, 3));
+    let (small, large) = (ending(&cells, 0), ending(&cells, 3));
     assert_eq!(
         (small.outcome, small.impacts),
         (large.outcome, large.impacts)
@@ -120,18 +124,18 @@ fn shapes_that_are_no_four_link_arches_have_no_history() {
         "{SEMICIRCLE}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.2\n\
          [map]\nthickness_ratio = [0.1, 0.15, 0.4]\nembrace_deg = [90.0, 180.0]"
     ));
-    let cells = Cells::new(&scenario).unwrap();
-    let found: Vec<_> = (0..6).map(|index| cells.cell(index)).collect();
+    let cells = OverturningMap::new(&scenario).unwrap();
+    let found: Vec<_> = (0..6).map(|index| cells.row(index).result).collect();
     assert!(
-        matches!(found[1], Cell::NoArch(_)),
+        matches!(found[1], CellResult::CannotStand),
         "0.10 at 180 degrees is too thin"
     );
     assert!(
-        matches!(found[3], Cell::Shaken(_)),
+        matches!(found[3], CellResult::Ended(_)),
         "0.15 at 180 degrees stands"
     );
     assert!(
-        matches!(found[4], Cell::NoArch(_)),
+        matches!(found[4], CellResult::NotFourLinks),
         "0.40 at 90 degrees has no four links"
     );
 }
@@ -148,23 +152,23 @@ fn the_impact_free_boundary_of_a_slender_column_is_the_closed_form() {
          [map]\nduration_s = {{ from = 0.05, to = 5.0, count = 9, spacing = \"logarithmic\" }}\n\
          amplitude_g = {{ from = 0.0105, to = 0.3, count = 12, spacing = \"logarithmic\" }}"
     ));
-    let cells = Cells::new(&scenario).unwrap();
+    let cells = OverturningMap::new(&scenario).unwrap();
     let p = (0.75 * GRAVITY / (0.5 * height_m.hypot(width_m))).sqrt();
-    for (column, boundary) in boundaries(&cells).into_iter().enumerate() {
+    for (column, (x, boundary)) in boundaries(&cells).into_iter().enumerate() {
         // x (x - 1) = 1 / (2 (cosh(p t) - 1))
-        let product = 0.5 / ((p * boundary.x).cosh() - 1.0);
+        let product = 0.5 / ((p * x).cosh() - 1.0);
         let expected = 0.5 + (0.25 + product).sqrt();
         let found_g = boundary.impact_free_g.unwrap();
         let found = found_g / boundary.incipient_g;
         assert!(
             (found / expected - 1.0).abs() < 2e-4,
             "{}: {found} {expected}",
-            boundary.x
+            x
         );
         // The sampled cells agree with the boundary.
         for row in 0..12 {
             let index = column * 12 + row;
-            let verdict = shaken(&cells, index);
+            let verdict = ending(&cells, index);
             let at_once = matches!(verdict.outcome, Outcome::Overturned(_)) && verdict.impacts == 0;
             assert_eq!(
                 at_once,
@@ -183,8 +187,8 @@ fn the_impact_free_boundary_of_seven_voussoirs_under_a_step_pair() {
          [ground.step_pair]\namplitude_g = 1.0\nduration_s = 0.5\n\
          [map]\nduration_s = [0.2, 0.5, 1.0]\namplitude_g = [0.4, 4.0]",
     );
-    let cells = Cells::new(&scenario).unwrap();
-    for (boundary, expected_g) in boundaries(&cells).into_iter().zip([3.066, 0.820, 0.465]) {
+    let cells = OverturningMap::new(&scenario).unwrap();
+    for ((_, boundary), expected_g) in boundaries(&cells).into_iter().zip([3.066, 0.820, 0.465]) {
         let found_g = boundary.impact_free_g.unwrap();
         assert!(
             (found_g / expected_g - 1.0).abs() < 1e-3,
@@ -219,8 +223,8 @@ fn the_impact_free_boundary_sees_narrow_windows() {
             "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.{pulse}]\namplitude_g = 1\nduration_s = 1\n\
              [simulation]\nduration_s = 60\n[map]\nduration_s = [{duration_s}]\namplitude_g = [20]"
         ));
-        let cells = Cells::new(&scenario).unwrap();
-        let found_g = boundaries(&cells)[0].impact_free_g.unwrap();
+        let cells = OverturningMap::new(&scenario).unwrap();
+        let found_g = boundaries(&cells)[0].1.impact_free_g.unwrap();
         assert!(low_g < found_g && found_g < high_g, "{pulse}: {found_g}");
     }
 }
@@ -258,11 +262,11 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
              [map]\nduration_s = [0.8]\n\
              amplitude_g = {{ from = 0.2, to = 2.0, count = 37 }}"
         ));
-        let cells = Cells::new(&scenario).unwrap();
-        let free_g = boundaries(&cells)[0].impact_free_g.unwrap();
+        let cells = OverturningMap::new(&scenario).unwrap();
+        let free_g = boundaries(&cells)[0].1.impact_free_g.unwrap();
         let found: Vec<_> = (0..cells.count())
             .map(|index| {
-                let verdict = shaken(&cells, index);
+                let verdict = ending(&cells, index);
                 let overturns = matches!(verdict.outcome, Outcome::Overturned(_));
                 (cells.coordinates(index)[1], overturns, verdict.impacts)
             })
@@ -449,13 +453,13 @@ fn parts_that_do_not_belong_together_are_refused() {
     refuse(
         path,
         &["merge", one, "short.part"],
-        &["7 of its 8 cases", "--shard 2/2 --resume"],
+        &["9 of its 10 cases", "--shard 2/2 --resume"],
     );
     fs::write(path.join("twice.part"), format!("{part}{}\n", lines[3])).unwrap();
     refuse(
         path,
         &["merge", one, "twice.part"],
-        &["line 10", "second time"],
+        &["line 12", "second time"],
     );
     let other = fs::read_to_string(path.join(one)).unwrap();
     let alien = other.lines().last().unwrap();
@@ -463,7 +467,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     refuse(
         path,
         &["merge", one, "alien.part"],
-        &["line 10", "does not belong"],
+        &["line 12", "does not belong"],
     );
     // Whatever is edited in a row.
     let row = lines[4];
@@ -811,7 +815,7 @@ fn a_map_reads_back_as_it_is_written() {
              [impact]\nmodel = 'prescribed'\nrestitution = 0.5\n[map]\n{map}"
         ));
         assert_eq!(parse(&scenario.to_toml()), scenario);
-        for axis in Cells::new(&scenario).unwrap().values() {
+        for axis in OverturningMap::new(&scenario).unwrap().values() {
             assert!(axis.is_sorted_by(|earlier, later| earlier < later));
         }
     }

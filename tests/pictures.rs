@@ -8,9 +8,10 @@ use std::process::Command;
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::output::part::Rows;
 use archrock::output::{map, pictures};
-use archrock::scenario::Cells;
+use archrock::studies::boundary::ImpactFreeBoundary;
+use archrock::studies::map::OverturningMap;
+use archrock::studies::runner::Study as _;
 use archrock::studies::survey::shape_result;
 use archrock::{Arch, FourLinkArch, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
@@ -449,13 +450,10 @@ fn the_map_shows_every_cell_and_the_boundaries() {
                 [simulation]\nduration_s = 60\n[map]\nduration_s = [0.2, 0.3, 0.6]\n\
                 amplitude_g = { from = 0.1, to = 1.6, count = 5, spacing = 'logarithmic' }";
     let scenario = Scenario::parse(text, "s.toml").unwrap();
-    let cells = Cells::new(&scenario).unwrap();
-    let rows: Rows = (0..cells.count())
-        .map(|index| (index, map::row(&cells, index).unwrap()))
-        .collect();
-    let boundaries: Vec<_> = (0..3)
-        .map(|x| cells.boundary(x).unwrap().unwrap())
-        .collect();
+    let cells = OverturningMap::new(&scenario).unwrap();
+    let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
+    let boundary = ImpactFreeBoundary::new(&cells).unwrap();
+    let boundaries: Vec<_> = (0..3).map(|x| boundary.row(x)).collect();
     let picture = map::draw("a < b", &cells, &rows, &boundaries);
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));
@@ -480,8 +478,8 @@ fn the_map_shows_every_cell_and_the_boundaries() {
                     .unwrap()
             };
             for row in at(b)..at(t) {
-                let row = &rows[&(column * 5 + row as usize)];
-                assert_eq!(map::outcome(row), outcome);
+                let row = &rows[column * 5 + row as usize];
+                assert_eq!(map::outcome(&row.result), outcome);
                 shown += 1;
             }
         }
@@ -494,9 +492,10 @@ fn the_map_shows_every_cell_and_the_boundaries() {
             .all(|point| (point.y - y_of(0.2)).abs() < PIXEL)
     );
     let free = curve_of(&document, "no-impact");
-    for (point, boundary) in free.iter().zip(&boundaries) {
+    for (point, row) in free.iter().zip(&boundaries) {
+        let boundary = row.result.as_ref().unwrap().unwrap();
         assert!((point.y - y_of(boundary.impact_free_g.unwrap())).abs() < PIXEL);
-        assert!((point.x - (left + width * (boundary.x - 0.15) / 0.6)).abs() < PIXEL);
+        assert!((point.x - (left + width * (row.x - 0.15) / 0.6)).abs() < PIXEL);
     }
     assert_eq!(free.len(), 3);
 }

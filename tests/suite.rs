@@ -9,9 +9,12 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use archrock::output::part::Rows;
-use archrock::output::suite::Results;
-use archrock::scenario::{Layout, Scenario};
+use archrock::dynamics::history::Outcome;
+use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::output::suite::{Heading, draw, to_json, write_fragility};
+use archrock::scenario::{Layout, Measure, Scenario};
+use archrock::studies::ending::Ending;
+use archrock::studies::suite::{CaseRow, SuiteFragility};
 use program::{archrock, scenarios, stderr};
 use serde_json::Value;
 
@@ -414,8 +417,7 @@ fn parts_make_the_same_files_where_the_records_are_not() {
 
     merge.push("--no-impact");
     assert!(refused(folder, &merge).contains("--no-impact is about maps"));
-    let damaged =
-        read(&folder.join(&parts[0])).replace("records/wave-1.at2,1,", "records/wave-1.at2,");
+    let damaged = read(&folder.join(&parts[0])).replace("\"mirrored\":false", "\"mirrored\":true");
     write(folder, &parts[0], &damaged);
     merge.pop();
     assert!(refused(folder, &merge).contains("not as this program wrote it"));
@@ -522,33 +524,44 @@ fn without_a_curve_the_reason_is_said() {
     }
 }
 
-/// Results of rows given by record, level and outcome.
-fn results(rows: &[(&str, f64, &str)]) -> Results {
-    let scenario = "[suite]\nscales = [1.0, 2.0]\n";
-    let rows: Rows = (0..)
-        .zip(rows)
-        .map(|(index, (record, scale, outcome))| {
-            (
-                index,
-                format!("{record},1,{scale:?},{:?},{outcome},,,,,,", 0.3 * scale),
-            )
-        })
-        .collect();
-    Results::of(scenario, &rows).unwrap()
+/// Results of rows given by record, level and outcome, if there is one.
+fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
+    let rows = rows.iter().map(|(record, scale, outcome)| CaseRow {
+        record: (*record).to_owned(),
+        mirrored: false,
+        scale: *scale,
+        peak_g: 0.3 * scale,
+        result: outcome.ok_or("it broke".to_owned()).map(|outcome| Ending {
+            outcome,
+            outcome_time_s: 1.0,
+            impacts: 0,
+            peak_over_critical: 0.5,
+            energy_defect_ratio: 0.0,
+        }),
+    });
+    SuiteFragility::new(Measure::Scale, rows.collect())
 }
+
+/// The heading of a suite with linear levels.
+fn heading() -> Heading {
+    Heading::of_resolved("[suite]\nscales = [1.0, 2.0]\n").unwrap()
+}
+
+const FAILED: Option<Outcome> = None;
+const OVERTURNED: Option<Outcome> = Some(Outcome::Overturned(Sway::Left));
 
 #[test]
 fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
     let results = results(&[
-        ("\"a, b.at2\"", 1.0, "failed"),
-        ("\"a, b.at2\"", 2.0, "overturned"),
-        ("c.at2", 1.0, "still_rocking"),
-        ("c.at2", 2.0, "failed"),
-        ("d.at2", 1.0, "failed"),
-        ("d.at2", 2.0, "failed"),
-        ("e.at2", 1.0, "overturned"),
-        ("e.at2", 2.0, "rest"),
-        ("e.at2", 2.0, "overturned"),
+        ("a, b.at2", 1.0, FAILED),
+        ("a, b.at2", 2.0, OVERTURNED),
+        ("c.at2", 1.0, Some(Outcome::StillRocking)),
+        ("c.at2", 2.0, FAILED),
+        ("d.at2", 1.0, FAILED),
+        ("d.at2", 2.0, FAILED),
+        ("e.at2", 1.0, OVERTURNED),
+        ("e.at2", 2.0, Some(Outcome::Rest)),
+        ("e.at2", 2.0, OVERTURNED),
     ]);
     let counts: Vec<_> = results
         .levels
@@ -564,7 +577,7 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         })
         .collect();
     assert_eq!(counts, [(1.0, 2, 1, 1, 2), (2.0, 3, 2, 0, 2)]);
-    let json = results.to_json().unwrap();
+    let json = to_json(&heading(), &results).unwrap();
     assert_eq!(json["cases"], 5);
     assert_eq!(json["records"], 4);
     assert_eq!(json["failed_left_out"], 4);
@@ -578,7 +591,11 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         json["records_that_never_overturn"],
         serde_json::json!(["c.at2"])
     );
-    assert_eq!(results.first_failed().unwrap(), "a, b.at2, scale 1.0");
+    let (first, reason) = results.first_failed().unwrap();
+    assert_eq!(
+        (&*first.record, first.scale, reason),
+        ("a, b.at2", 1.0, "it broke")
+    );
     // Two levels fit exactly: Phi(-ln(m)/b) = 1/2 at 1 and Phi(ln(2/m)/b) = 2/3 at 2.
     let fit = results.fit.unwrap();
     assert!((fit.median - 1.0).abs() < 1e-9);
@@ -587,17 +604,22 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
 
 #[test]
 fn a_level_of_which_all_failed_has_no_fraction() {
-    let results = results(&[("a.at2", 1.0, "failed"), ("a.at2", 2.0, "overturned")]);
+    let results = results(&[("a.at2", 1.0, FAILED), ("a.at2", 2.0, OVERTURNED)]);
     let mut levels = Vec::new();
-    results.write_levels(&mut levels).unwrap();
+    write_fragility(&mut levels, &results).unwrap();
     let levels = String::from_utf8(levels).unwrap();
     assert!(
         levels.contains("\n1.0,0,0,0,1,,,,\n2.0,1,1,0,0,1.0,,,\n"),
         "{levels}"
     );
-    let json = results.to_json().unwrap();
+    let json = to_json(&heading(), &results).unwrap();
     assert!(json["no_fit"].as_str().unwrap().starts_with("all 1 cases"));
-    assert_eq!(results.draw().matches("data-name=\"fraction\"").count(), 1);
+    assert_eq!(
+        draw(&heading(), &results)
+            .matches("data-name=\"fraction\"")
+            .count(),
+        1
+    );
 }
 
 #[test]

@@ -6,8 +6,7 @@ use std::path::PathBuf;
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::output::chart;
 use archrock::scenario::{Scenario, Structure};
-use archrock::studies::survey::shape_result;
-use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+use archrock::studies::survey::shape_results;
 
 use super::study::say;
 use super::{Failure, commands, open_folder, results_folder};
@@ -59,12 +58,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             thicknesses(least, largest).map(move |thickness_ratio| (embrace_deg, thickness_ratio))
         })
         .collect();
-    let results: Vec<_> = shapes
-        .par_iter()
-        .filter_map(|(embrace_deg, thickness_ratio)| {
-            shape_result(*embrace_deg, *thickness_ratio, sites, scenario.impact)
-        })
-        .collect();
+    let results = shape_results(&shapes, sites, scenario.impact);
     chart::write_table(folder.file(TABLE), &results)?;
     folder
         .file(PICTURE)

@@ -81,7 +81,9 @@ fn finish(
 /// How many points came to what, and what is not certain about them.
 fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
     let count = |wanted: fn(Option<usize>) -> bool| {
-        let impacts = rows.iter().map(|row| row.least.map(|least| least.impacts));
+        let impacts = rows
+            .iter()
+            .map(|row| row.minimum.map(|least| least.impacts));
         impacts.filter(|impacts| wanted(*impacts)).count()
     };
     let mut text = format!(

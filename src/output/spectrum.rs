@@ -44,22 +44,22 @@ fn fields(row: &PointRow) -> Result<[String; 9], OutputError> {
         p_t,
         duration_s,
         no_impact_over_incipient,
-        least,
+        minimum,
         still_rocking,
         failures,
     } = row;
     finite(WHAT, &[*p_t, *duration_s])?;
     finite(WHAT, no_impact_over_incipient.as_slice())?;
-    finite(WHAT, least.map(|one| one.over_incipient).as_slice())?;
+    finite(WHAT, minimum.map(|one| one.over_incipient).as_slice())?;
     let optional = |value: Option<f64>| value.map_or(String::new(), number);
     Ok([
         structure.name().to_owned(),
         number(*p_t),
         number(*duration_s),
         optional(*no_impact_over_incipient),
-        optional(least.map(|one| one.over_incipient)),
-        least.map_or(String::new(), |one| one.impacts.to_string()),
-        least.map_or(String::new(), |one| one.sway.name().to_owned()),
+        optional(minimum.map(|one| one.over_incipient)),
+        minimum.map_or(String::new(), |one| one.impacts.to_string()),
+        minimum.map_or(String::new(), |one| one.sway.name().to_owned()),
         still_rocking.to_string(),
         failures.len().to_string(),
     ])
@@ -127,7 +127,7 @@ pub fn draw(title: &str, spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) 
         let y = 54.0 + 22.0 * index as f64;
         let text = format!("{called}, without impact");
         drawing.legend(Vector2::new(85.0, y), 0.0, [(text.as_str(), look.line)]);
-        if rows.iter().any(|row| row.least_after_impacts().is_some()) {
+        if rows.iter().any(|row| row.minimum_after_impacts().is_some()) {
             drawing.circle("", Vector2::new(415.0, y), RADIUS_PX, look.point);
             let text = format!("{called}, less after impacts (of those tried)");
             drawing.label(Vector2::new(430.0, y + 4.5), Anchor::Start, 0.0, &text);
@@ -143,7 +143,7 @@ fn heights(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> Vec<f64> {
     let last = tried[tried.len() - 1];
     let results: Vec<f64> = rows
         .iter()
-        .flat_map(|row| [row.no_impact_over_incipient, row.least_after_impacts()])
+        .flat_map(|row| [row.no_impact_over_incipient, row.minimum_after_impacts()])
         .flatten()
         .collect();
     let least = results.iter().copied().fold(f64::INFINITY, f64::min);
@@ -175,7 +175,7 @@ fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[PointRow]) {
         }
     }
     for row in rows {
-        if let Some(least) = row.least_after_impacts() {
+        if let Some(least) = row.minimum_after_impacts() {
             let name = format!("{} least", look.name);
             drawing.circle(&name, axes.place(row.p_t, least), RADIUS_PX, look.point);
         }

@@ -54,7 +54,7 @@ impl<'m> ImpactFreeBoundary<'m> {
         let found = self
             .map
             .pulse(index)
-            .least_without_impact(&*model, &request, &tried_g)
+            .minimum_without_impact(&*model, &request, &tried_g)
             .map_err(|error| error.to_string())?;
         let incipient_g = model
             .incipient_acceleration_g(Sway::Right)

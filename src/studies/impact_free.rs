@@ -63,7 +63,7 @@ impl ScalablePulse {
     ///
     /// # Errors
     /// When the integration fails.
-    pub fn least_without_impact(
+    pub fn minimum_without_impact(
         &self,
         model: &dyn MechanismModel,
         request: &Request,
@@ -86,7 +86,7 @@ impl ScalablePulse {
             .filter(|amplitude_g| *amplitude_g <= LARGEST_G)
             .collect();
         ascending_g.sort_by(f64::total_cmp);
-        let least_g = least_amplitude(ascending_g, |amplitude_g| {
+        let least_g = minimum_amplitude(ascending_g, |amplitude_g| {
             overturns(amplitude_g).map(|sway| sway.is_some())
         })?;
         let Some(least_g) = least_g else {
@@ -109,7 +109,7 @@ fn strides(one_sided: bool, from: f64, to: f64) -> impl Iterator<Item = f64> {
 ///
 /// # Errors
 /// Those of the function.
-fn least_amplitude<E>(
+fn minimum_amplitude<E>(
     ascending: impl IntoIterator<Item = f64>,
     overturns: impl Fn(f64) -> Result<bool, E>,
 ) -> Result<Option<f64>, E> {

@@ -72,7 +72,7 @@ pub struct PointRow {
     pub no_impact_over_incipient: Option<f64>,
     /// The least that overturns at all: the least of those tried, or the one without impact where that is less.
     /// `None` if it is larger than all that are tried.
-    pub least: Option<Overturning>,
+    pub minimum: Option<Overturning>,
     /// How many of the accelerations tried left the structure rocking at the end. They count as survived.
     pub still_rocking: usize,
     /// Why histories could not be computed, for each of them. They count as survived.
@@ -82,8 +82,8 @@ pub struct PointRow {
 impl PointRow {
     /// The least that overturns, where it does so after impacts and is less than what overturns without.
     #[must_use]
-    pub fn least_after_impacts(&self) -> Option<f64> {
-        let least = self.least?.over_incipient;
+    pub fn minimum_after_impacts(&self) -> Option<f64> {
+        let least = self.minimum?.over_incipient;
         let edge = self.no_impact_over_incipient;
         edge.is_none_or(|edge| least < edge).then_some(least)
     }
@@ -213,7 +213,7 @@ impl Study for OverturningSpectrum<'_> {
             p_t,
             duration_s,
             no_impact_over_incipient: None,
-            least: None,
+            minimum: None,
             still_rocking: 0,
             failures: Vec::new(),
         };
@@ -224,7 +224,7 @@ impl Study for OverturningSpectrum<'_> {
             .map(|over_incipient| over_incipient * incipient_g)
             .filter(|amplitude_g| *amplitude_g <= LARGEST_G)
             .collect();
-        let edge = pulse.least_without_impact(&**model, &self.request, &tried_g);
+        let edge = pulse.minimum_without_impact(&**model, &self.request, &tried_g);
         let edge = edge.map_err(|error| error.to_string()).and_then(|edge| {
             let edge = edge.map(|(edge_g, sway)| (edge_g, edge_g / incipient_g, sway));
             check_finite(edge.map(|edge| edge.1).as_slice()).map(|()| edge)
@@ -235,7 +235,7 @@ impl Study for OverturningSpectrum<'_> {
                 row.no_impact_over_incipient = Some(over_incipient);
                 if tried_g.last().is_some_and(|last_g| edge_g <= *last_g) {
                     below_g = edge_g;
-                    row.least = Some(Overturning {
+                    row.minimum = Some(Overturning {
                         over_incipient,
                         impacts: 0,
                         sway,
@@ -256,7 +256,7 @@ impl Study for OverturningSpectrum<'_> {
                     impacts,
                     ..
                 }) => {
-                    row.least = Some(Overturning {
+                    row.minimum = Some(Overturning {
                         over_incipient,
                         impacts,
                         sway,

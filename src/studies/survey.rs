@@ -1,5 +1,7 @@
 //! Arches of many shapes compared: onset, first impact, and what impacts tend to.
 
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+
 use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -62,4 +64,20 @@ pub fn shape_result(
         first_restitution: restitution(1),
         last_restitution: last,
     })
+}
+
+/// The results of shapes, given by embrace angle in degrees and thickness over mean radius, in their order and on all
+/// processors; those of which no four-link mechanism starts are left out.
+#[must_use]
+pub fn shape_results(
+    shapes: &[(f64, f64)],
+    sites: HingeSites,
+    model: ImpactModel,
+) -> Vec<ShapeResult> {
+    shapes
+        .par_iter()
+        .filter_map(|(embrace_deg, thickness_ratio)| {
+            shape_result(*embrace_deg, *thickness_ratio, sites, model)
+        })
+        .collect()
 }
