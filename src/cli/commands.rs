@@ -10,6 +10,7 @@ use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::equivalent::Block;
 use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::mechanics::geometry::ring::Edge;
 use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
 
@@ -145,6 +146,10 @@ fn hinge_list(hinges: &[Hinge]) -> String {
                 edge.name()
             ),
             Hinge::Toe(side) => writeln!(text, "  the {} toe", side.name()),
+            Hinge::Joint { joint, edge } => {
+                let edge = edge.map_or("parted", Edge::name);
+                writeln!(text, "  joint {joint}, {edge}")
+            }
         };
     }
     text

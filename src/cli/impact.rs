@@ -280,6 +280,7 @@ fn chain_text(scenario: &Scenario, model: &dyn MechanismModel, count: usize) -> 
                     write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge))
                 }
                 Hinge::Toe(side) => write!(text, "{:>12}", format!("{} toe", side.name())),
+                Hinge::Joint { joint, .. } => write!(text, "{:>12}", format!("joint {joint}")),
             };
         }
         text.push('\n');

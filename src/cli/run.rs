@@ -194,13 +194,19 @@ fn human_summary(
     if history.outcome != Outcome::NeverMoved {
         let _ = writeln!(
             text,
-            "  peak rotation in rad: {}\n  largest rotation {:.4} of that at the unstable equilibrium of the \
-             mechanism that moved\n  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
+            "  peak rotation in rad: {}",
             commands::by_body(&model.bodies(), &history.peak_rotations_rad),
-            history.peak_over_critical,
-            history.energy_defect_ratio,
-            history.cost.steps,
-            history.cost.evaluations
+        );
+        if let Some(peak) = history.peak_over_critical {
+            let _ = writeln!(
+                text,
+                "  largest rotation {peak:.4} of that at the unstable equilibrium of the mechanism that moved"
+            );
+        }
+        let _ = writeln!(
+            text,
+            "  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
+            history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
         );
     }
     let incipient_g = model

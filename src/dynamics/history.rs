@@ -103,11 +103,16 @@ pub struct Sample {
     pub hinges: Vec<OpenHinge>,
     /// What the internal forces ask of the sections.
     pub demand: Demand,
-    /// Kinetic and potential energy over the energy barrier of the mechanism that moves.
-    pub energy_ratio: f64,
+    /// Kinetic and potential energy, in J.
+    pub energy_j: f64,
+    /// The same over the energy barrier of the mechanism that moves; `None` where no barrier is known.
+    pub energy_ratio: Option<f64>,
     /// Rotation of the body that carries the coordinate over that at the unstable equilibrium of the mechanism
-    /// that moves, anticlockwise: below -1 or above 1 gravity overturns the structure.
-    pub rotation_over_critical: f64,
+    /// that moves, anticlockwise: below -1 or above 1 gravity overturns the structure. `None` where it is not
+    /// known.
+    pub rotation_over_critical: Option<f64>,
+    /// Gaps of the joints at intrados and extrados, in m, of a row of blocks; else none.
+    pub gaps_m: Vec<[f64; 2]>,
 }
 
 named! {
@@ -194,8 +199,8 @@ pub struct Summary {
     /// Largest magnitudes of the rotations of the bodies.
     pub peak_rotations_rad: Vec<f64>,
     /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity
-    /// alone overturns.
-    pub peak_over_critical: f64,
+    /// alone overturns. `None` where it is not known.
+    pub peak_over_critical: Option<f64>,
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus what the impacts took, over the energy barrier of the first mechanism.
     pub energy_defect_ratio: f64,
@@ -259,10 +264,14 @@ pub struct Samples {
     pub first_hinge: Vec<usize>,
     /// What the internal forces ask of the sections.
     pub demand: Vec<Demand>,
-    /// Energies over the barrier of the mechanism that moves.
-    pub energy_ratio: Vec<f64>,
-    /// Rotations over the critical ones.
-    pub rotation_over_critical: Vec<f64>,
+    /// Kinetic and potential energies, in J.
+    pub energy_j: Vec<f64>,
+    /// Energies over the barrier of the mechanism that moves, where it is known.
+    pub energy_ratio: Vec<Option<f64>>,
+    /// Rotations over the critical ones, where these are known.
+    pub rotation_over_critical: Vec<Option<f64>>,
+    /// Gaps of the joints of a row of blocks at intrados and extrados, in m, joint by joint; else none.
+    pub gaps_m: Vec<[f64; 2]>,
 }
 
 impl Samples {
@@ -293,7 +302,9 @@ impl Samples {
         self.first_hinge.push(self.hinges.len());
         self.hinges.extend(&sample.hinges);
         self.demand.push(sample.demand);
+        self.energy_j.push(sample.energy_j);
         self.energy_ratio.push(sample.energy_ratio);
+        self.gaps_m.extend(&sample.gaps_m);
         self.rotation_over_critical
             .push(sample.rotation_over_critical);
     }
@@ -304,6 +315,8 @@ impl Samples {
         let time_s = *self.time_s.get(index)?;
         let bodies = self.rotations_rad.len() / self.len();
         let by_body = index * bodies..(index + 1) * bodies;
+        let joints = self.gaps_m.len() / self.len();
+        let by_joint = index * joints..(index + 1) * joints;
         let hinges_end = self.first_hinge.get(index + 1).copied();
         let hinges = *self.first_hinge.get(index)?..hinges_end.unwrap_or(self.hinges.len());
         Some(Sample {
@@ -317,8 +330,10 @@ impl Samples {
             poses: self.poses.get(by_body)?.to_vec(),
             hinges: self.hinges.get(hinges)?.to_vec(),
             demand: *self.demand.get(index)?,
+            energy_j: *self.energy_j.get(index)?,
             energy_ratio: *self.energy_ratio.get(index)?,
             rotation_over_critical: *self.rotation_over_critical.get(index)?,
+            gaps_m: self.gaps_m.get(by_joint)?.to_vec(),
         })
     }
 

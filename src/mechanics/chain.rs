@@ -101,6 +101,13 @@ pub enum Hinge {
     },
     /// At a toe of the base of a column, on this side.
     Toe(Sway),
+    /// At a joint of a row of blocks.
+    Joint {
+        /// The joint, from 0 at the left springing or the base.
+        joint: usize,
+        /// The edge about which it opens; `None` where it parts altogether.
+        edge: Option<Edge>,
+    },
 }
 
 impl<M: Mechanism> Link<M> {

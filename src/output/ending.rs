@@ -30,10 +30,8 @@ pub(super) fn fields(ending: &Ending) -> Result<[String; 7], OutputError> {
         peak_over_critical,
         energy_defect_ratio,
     } = *ending;
-    finite(
-        "of a history",
-        &[outcome_time_s, peak_over_critical, energy_defect_ratio],
-    )?;
+    finite("of a history", &[outcome_time_s, energy_defect_ratio])?;
+    finite("of a history", peak_over_critical.as_slice())?;
     let (sway, before) = match outcome {
         Outcome::Overturned(sway) => (sway.name().to_owned(), impacts.to_string()),
         _ => (String::new(), String::new()),
@@ -44,7 +42,7 @@ pub(super) fn fields(ending: &Ending) -> Result<[String; 7], OutputError> {
         impacts.to_string(),
         before,
         number(outcome_time_s),
-        number(peak_over_critical),
+        peak_over_critical.map_or(String::new(), number),
         number(energy_defect_ratio),
     ])
 }

@@ -6,6 +6,7 @@ use crate::dynamics::model::MechanismModel;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Block;
 use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::ring::Edge;
 
 /// Hinges from left to right: `{angle_deg, edge}`, the angle from the left springing, for an arch,
 /// `{toe}` for a column.
@@ -18,6 +19,9 @@ pub fn hinges(hinges: &[Hinge]) -> Value {
                 json!({ "angle_deg": angle_rad.to_degrees(), "edge": edge.name() })
             }
             Hinge::Toe(side) => json!({ "toe": side.name() }),
+            Hinge::Joint { joint, edge } => {
+                json!({ "joint": joint, "edge": edge.map(Edge::name) })
+            }
         })
         .collect()
 }

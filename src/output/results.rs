@@ -139,7 +139,7 @@ pub fn write_impacts(
 fn sections_deg(hinges: &[Hinge]) -> Vec<Option<f64>> {
     let sections = hinges.iter().filter_map(|hinge| match hinge {
         Hinge::Section { angle_rad, .. } => Some(Some(angle_rad.to_degrees())),
-        Hinge::Toe(_) => None,
+        Hinge::Toe(_) | Hinge::Joint { .. } => None,
     });
     sections.collect()
 }
@@ -189,7 +189,10 @@ pub fn summary(
     let more = summary.as_object_mut().expect("the summary is an object");
     let keys = columns(&model.bodies(), "peak_rotation", "rad");
     more.extend(keys.into_iter().zip(peaks.iter().map(|peak| json!(peak))));
-    finite("peak_rotation_over_critical", &[history.peak_over_critical])?;
+    finite(
+        "peak_rotation_over_critical",
+        history.peak_over_critical.as_slice(),
+    )?;
     more.insert(
         "peak_rotation_over_critical".to_owned(),
         json!(history.peak_over_critical),

@@ -117,7 +117,7 @@ impl<W: Write> RotationsWriter<W> {
             [
                 sample.time_s * scales.frequency_rad_s,
                 sample.ground_acceleration_m_s2 / scales.incipient_m_s2,
-                sample.rotation_over_critical,
+                sample.rotation_over_critical.unwrap_or(0.0),
             ]
         });
         let further = further.as_ref().map_or(&[][..], |values| values.as_slice());

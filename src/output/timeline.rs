@@ -133,7 +133,8 @@ impl Timeline {
         }
         let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
         self.excess_ratio.push(time_s, excess_ratio);
-        self.energy_ratio.push(time_s, sample.energy_ratio);
+        self.energy_ratio
+            .push(time_s, sample.energy_ratio.unwrap_or(0.0));
     }
 
     /// The picture, with all events of the history.

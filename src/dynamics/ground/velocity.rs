@@ -82,7 +82,7 @@ mod tests {
         // -1/2 * 1/2 and -3/2 * 1/2.
         assert!((velocity.at(1.25).x + 0.25).abs() < 1e-15);
         assert!((velocity.at(9.0).x + 0.625).abs() < 1e-15);
-        let cut = ground.cut_at(&[0.9, 1.4]);
+        let cut = ground.cut_at(&[0.9, 1.4]).unwrap();
         let miss = GroundVelocity::new(&cut).at(1.6) - velocity.at(1.6);
         assert!(miss.norm() < 1e-15);
     }

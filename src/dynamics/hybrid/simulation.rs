@@ -86,7 +86,7 @@ impl<C: MechanismChain> Model for C {
             end_s: finish.time_s,
             impacts: tally.impacts,
             peak_rotations_rad: tally.peak_rotations_rad.as_ref().to_vec(),
-            peak_over_critical: tally.peak_over_critical,
+            peak_over_critical: Some(tally.peak_over_critical),
             energy_defect_ratio: tally.largest_defect / rocking.barrier(),
             thrust: sampler.map(|sampler| match outcome {
                 Outcome::Overturned(_) => sampler.thrust_before_critical,
@@ -482,7 +482,10 @@ impl<'r> Sampler<'r> {
     fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
         let moving = sample.state != State::Rest;
         self.thrust.note(sample.time_s, moving, &sample.demand);
-        if sample.rotation_over_critical.abs() < 1.0 {
+        if sample
+            .rotation_over_critical
+            .is_some_and(|rotation| rotation.abs() < 1.0)
+        {
             self.thrust_before_critical = self.thrust;
         }
         self.recorder.sample(sample)
@@ -512,11 +515,11 @@ impl<'r> Sampler<'r> {
         rates_rad_s.clear();
         rates_rad_s.extend(rates.as_ref());
         hinges.clear();
-        let (rotation_over_critical, energy_ratio) = match mode {
+        let (rotation_over_critical, energy, barrier) = match mode {
             Mode::Rest => {
                 poses.clear();
                 poses.resize(C::Mechanism::BODIES.len(), Pose::UNDEFORMED);
-                (0.0, 0.0)
+                (0.0, 0.0, 1.0)
             }
             Mode::Rocking {
                 sway,
@@ -553,7 +556,8 @@ impl<'r> Sampler<'r> {
                 (
                     // Adding zero makes a negative zero positive.
                     -sway.sign() * state[0] / link.critical_rad + 0.0,
-                    rocking.energy(link, state) / rocking.barrier_of(link),
+                    rocking.energy(link, state),
+                    rocking.barrier_of(link),
                 )
             }
         };
@@ -568,8 +572,10 @@ impl<'r> Sampler<'r> {
             poses,
             hinges,
             demand: rocking.demand(mode, piece, time_s, state),
-            energy_ratio,
-            rotation_over_critical,
+            energy_j: energy * rocking.chain().joules_per_unit(),
+            energy_ratio: Some(energy / barrier),
+            rotation_over_critical: Some(rotation_over_critical),
+            gaps_m: Vec::new(),
         }
     }
 
