@@ -290,13 +290,57 @@ fn bad_input_is_refused_with_its_place() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_said_before_the_work() {
+fn a_place_that_cannot_be_written_is_said_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
     scenario(folder.path(), ARCH);
-    let output = archrock(folder.path(), &["run", "s.toml", "--out", "s.toml/results"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("s.toml/results") && stderr(&output).contains("--out"));
-    assert_eq!(entries(folder.path()), ["s.toml"]);
+    // A file is no folder, not even for those who may write anywhere.
+    for (command, option) in [
+        ("run", "--out"),
+        ("chart", "--out"),
+        ("limit", "--plot"),
+        ("impact", "--plot"),
+        ("impact", "--line"),
+    ] {
+        let output = archrock(
+            folder.path(),
+            &[command, "s.toml", option, "s.toml/results"],
+        );
+        assert_eq!(output.status.code(), Some(2), "{command}");
+        let message = stderr(&output);
+        assert!(
+            message.contains("s.toml") && message.contains(option),
+            "{message}"
+        );
+        assert!(output.stdout.is_empty());
+        assert_eq!(entries(folder.path()), ["s.toml"]);
+    }
+}
+
+#[test]
+fn numbers_too_small_for_anything_are_refused() {
+    let pulse = "[ground.ricker]\namplitude_g = 0.3\nduration_s = 1e-320\n";
+    for (text, word) in [
+        (
+            ARCH.replace("0.15", "1e-320"),
+            "at least 1e-6 and below 2.0",
+        ),
+        (
+            ARCH.replace("ratio = 0.15", "m = 1e-320"),
+            "a millionth of the mean radius",
+        ),
+        (
+            ARCH.replace("180.0", "1e-320"),
+            "at least 1.0 and at most 180.0",
+        ),
+        (format!("{ARCH}{pulse}"), "at least 1e-6"),
+        (
+            format!("{ARCH}[simulation]\nduration_s = 1e-320\n"),
+            "at least 1e-6",
+        ),
+    ] {
+        let message = refused(text.as_bytes());
+        assert!(message.contains(word), "{message}");
+    }
 }
 
 #[test]

@@ -12,7 +12,14 @@ use archrock::mechanics::four_link::limit::{
 };
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use archrock::mechanics::four_link::self_weight::carries_its_weight;
+use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::geometry::ring::Ring;
+use archrock::scenario::Scenario;
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus,
+};
 use common::{Random, assert_hinges, climb, ring};
 use proptest::prelude::*;
 
@@ -232,6 +239,96 @@ fn the_least_thickness_of_a_semicircle_is_milankovitchs() {
     );
 }
 
+/// By how much the moments of the best thrust line under gravity are on the right side of all edge points: a linear
+/// programme over the three components of the reaction at the left springing. Not above one; `None` when the solver fails.
+fn room_for_a_line(ring: &Ring, sections: &[f64]) -> Option<f64> {
+    let (mut rows, mut bounds) = (vec![[0.0, 0.0, 0.0, 1.0]], vec![1.0]);
+    for &section in sections {
+        let weight = ring.moments_to(section);
+        for (edge, side) in [(Edge::Extrados, 1.0), (Edge::Intrados, -1.0)] {
+            // The moment about the point, times its side, is not less than the room.
+            let point = ring.point(section, edge);
+            let of_weight = point.x * weight.mass - weight.first.x;
+            rows.push([-side * point.y, side * point.x, -side, 1.0]);
+            bounds.push(side * of_weight);
+        }
+    }
+    let settings = DefaultSettings {
+        verbose: false,
+        ..DefaultSettings::default()
+    };
+    let mut solver = DefaultSolver::new(
+        &CscMatrix::zeros((4, 4)),
+        &[0.0, 0.0, 0.0, -1.0],
+        &CscMatrix::from(&rows),
+        &bounds,
+        &[NonnegativeConeT(bounds.len())],
+        settings,
+    )
+    .unwrap();
+    solver.solve();
+    (solver.solution.status == SolverStatus::Solved).then(|| solver.solution.x[3])
+}
+
+#[test]
+fn arches_that_stand_are_not_said_to_fall() {
+    // The search for mechanisms alone took both for arches that cannot stand, or for ones with no thickness that does.
+    let found = incipient(&ring(0.05, 141.8), HingeSites::Anywhere).unwrap();
+    assert!((found.acceleration_g - 0.047_379).abs() < 1e-6);
+    let least = least_thickness_ratio(141.8_f64.to_radians(), HingeSites::Anywhere, 1e-6).unwrap();
+    assert!((least - 0.043_325).abs() < 2e-6, "{least}");
+    for (t, embrace) in [(1.269_78, 155.812), (1.0, 141.8), (1.0, 142.0)] {
+        let ring = ring(t, embrace);
+        assert!(carries_its_weight(&ring, HingeSites::Anywhere));
+        assert!(room_for_a_line(&ring, &even_sections(&ring, 360)).unwrap() > 0.1);
+        let error = incipient(&ring, HingeSites::Anywhere).unwrap_err();
+        let LimitError::OtherMechanism { acceleration_g } = error else {
+            panic!("{t} {embrace}: {error}");
+        };
+        assert!(acceleration_g > 1.0, "{acceleration_g}");
+        assert!(error.to_string().contains("stands, but does not start"));
+    }
+}
+
+#[test]
+fn rings_of_hardly_any_thickness_fall_in_finite_time() {
+    for t in [1e-320, 1e-100, 1e-17] {
+        let error = incipient(&ring(t, 180.0), HingeSites::Anywhere).unwrap_err();
+        assert_eq!(error, LimitError::CannotStand);
+    }
+    assert!(least_thickness_ratio(4.0, HingeSites::Anywhere, 1e-6).is_err());
+    assert!(least_thickness_ratio(f64::NAN, HingeSites::Anywhere, 1e-6).is_err());
+}
+
+#[test]
+fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
+    for embrace in [
+        10.0, 12.5, 20.0, 45.0, 90.0, 120.0, 141.8, 142.0, 157.5, 170.0, 180.0,
+    ] {
+        for voussoirs in ["", "voussoirs = 4\n", "voussoirs = 7\n", "voussoirs = 60\n"] {
+            let read = |thickness: &str| {
+                let text = format!(
+                    "[arch]\nmean_radius_m = 5.0\nembrace_deg = {embrace:?}\n{voussoirs}\
+                     thickness_ratio = {thickness}\n"
+                );
+                Scenario::parse(&text, "s.toml")
+            };
+            let Err(errors) = read("1e-6") else {
+                // Four voussoirs of 10 degrees.
+                assert!(embrace == 10.0);
+                continue;
+            };
+            let message = errors.to_string();
+            let (_, advice) = message.split_once("of at least ").expect(&message);
+            let (advised, _) = advice.split_once(' ').unwrap();
+            assert!(read(advised).is_ok(), "{message}");
+            // And no more than the digits said are to spare.
+            let less = advised.parse::<f64>().unwrap() * (1.0 - 2e-3);
+            assert!(read(&format!("{less:?}")).is_err(), "{message}");
+        }
+    }
+}
+
 #[test]
 fn thick_shallow_rings_are_out_of_scope() {
     // With its hinges A and B kept apart by 0.001 rad the best four-link mechanism needs 9.6828 and 7.4102 g.
@@ -360,6 +457,44 @@ proptest! {
             Err(LimitError::NoPush) => {
                 // Thin rings always move; few joints make a thick one of a shallow ring earlier.
                 prop_assert!(t > 0.05);
+            }
+        }
+    }
+
+    /// Who stands, by a programme over all three components of the reaction, without use of symmetry.
+    #[test]
+    fn rings_stand_if_a_thrust_line_fits_into_them(
+        log_t in -3.0_f64..0.6, embrace in 30.0_f64..180.0, voussoirs in 0_usize..40,
+    ) {
+        let ring = ring(log_t.exp(), embrace);
+        let (sites, sections) = if voussoirs < 3 {
+            (HingeSites::Anywhere, even_sections(&ring, 1440))
+        } else {
+            let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
+            (HingeSites::Voussoirs(voussoirs), joints)
+        };
+        let Some(room) = room_for_a_line(&ring, &sections) else { return Ok(()) };
+        // What the line may leave the ring by between sections, or the solver leaves over.
+        if room.abs() > 1e-5 {
+            prop_assert_eq!(carries_its_weight(&ring, sites), room > 0.0, "{}", room);
+        }
+        // A ring as thick, or thicker, than one that stands.
+        let thicker = common::ring(1.3 * log_t.exp().min(1.5), embrace);
+        if log_t.exp() < 1.5 && carries_its_weight(&ring, sites) {
+            prop_assert!(carries_its_weight(&thicker, sites));
+        }
+    }
+
+    /// The least thickness is where a thrust line just fits.
+    #[test]
+    fn at_the_least_thickness_a_line_just_fits(embrace in 60.0_f64..180.0, voussoirs in 4_usize..40) {
+        let sites = HingeSites::Voussoirs(voussoirs);
+        let least = least_thickness_ratio(embrace.to_radians(), sites, 1e-9).unwrap();
+        for (factor, stands) in [(1.0 - 1e-3, false), (1.0 + 1e-3, true)] {
+            let ring = ring(least * factor, embrace);
+            let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
+            if let Some(room) = room_for_a_line(&ring, &joints) {
+                prop_assert_eq!(room > 0.0, stands, "{}", room);
             }
         }
     }

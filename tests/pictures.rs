@@ -218,6 +218,43 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
     assert!(hinges[1].x - hinges[0].x > scale * (points[1].x - points[0].x));
 }
 
+/// The mechanism after the second impact sways right again: nothing is drawn in a mirror.
+#[test]
+fn the_second_impact_has_a_picture_of_its_own() {
+    let arch = arch(0.15, 180.0);
+    let chain = arch.chain();
+    let picture = pictures::impact(chain, 2).unwrap();
+    let document = Document::parse(&picture).unwrap();
+    check_hinges(&document, chain, 2, Sway::Right);
+    let title = &texts(&document)[0];
+    assert!(
+        title.contains("Impact 2: ") && title.contains("r = 0.737099"),
+        "{title}"
+    );
+    // Bodies from the left, as at the first impact.
+    let left = |name: &str| {
+        let bodies = named(&document, name);
+        corners(&bodies[0])
+            .iter()
+            .map(|corner| corner.x)
+            .fold(f64::INFINITY, f64::min)
+    };
+    assert!(left("body 1") < left("body 2") && left("body 2") < left("body 3"));
+    assert!(pictures::impact(chain, 0).is_none());
+
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    archrock(
+        &["impact", "s.toml", "--link", "2", "--plot", "2.svg"],
+        folder.path(),
+    );
+    assert_eq!(
+        fs::read_to_string(folder.path().join("2.svg")).unwrap(),
+        picture
+    );
+}
+
 /// Fig. 10 and Eq. (3) of the paper: for the semicircle, whose last hinges share the right springing, the
 /// seventh body is empty.
 #[test]
@@ -227,7 +264,9 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     let picture = pictures::impact(chain, 1).unwrap();
     let document = Document::parse(&picture).unwrap();
     let sheet = check_hinges(&document, chain, 1, Sway::Left);
-    assert!(texts(&document)[0].contains("r = 0.681186"));
+    assert!(
+        texts(&document)[0].contains("Impact 1: ") && texts(&document)[0].contains("r = 0.681186")
+    );
     let angles: [f64; 7] = [
         0.0, 24.01353, 76.37611, 81.78741, 133.81620, 139.56130, 180.0,
     ];

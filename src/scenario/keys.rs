@@ -22,9 +22,8 @@ use crate::mechanics::four_link::mechanism::Sway;
 pub(super) const MAGNITUDE: Number = Number(Included(1e-3), Included(1e6));
 const DEPTH_M: f64 = 1.0;
 const DENSITY_KG_M3: f64 = 2000.0;
-/// A structure as thick as its diameter has no hole. Much thinner ones than a millionth are lost in rounding.
-pub(super) const THICKNESS_RATIO: Number = Number(Included(LEAST_THICKNESS_RATIO), Excluded(2.0));
-const LEAST_THICKNESS_RATIO: f64 = 1e-6;
+/// A structure as thick as its diameter has no hole; one much thinner than a millionth is lost in rounding.
+pub(super) const THICKNESS_RATIO: Number = Number(Included(1e-6), Excluded(2.0));
 const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
 /// Below one degree every ring but the thinnest has room for a straight line, and no push moves it.
 pub(super) const EMBRACE_DEG: Number = Number(Included(1.0), Included(180.0));
@@ -206,9 +205,8 @@ impl Arch {
             Ok(Some(ratio))
         } else {
             let wrong = format!(
-                "is out of range: {ratio:?} mean radii; allowed is a number of at least {:?} and below \
-                 {:?}, a millionth of the mean radius and twice the mean radius",
-                LEAST_THICKNESS_RATIO * mean_radius_m,
+                "is out of range: {ratio:?} mean radii; allowed is a number below {:?}, twice the mean \
+                 radius, and not below a millionth of the mean radius",
                 2.0 * mean_radius_m
             );
             Err(table.wrong("thickness_m", wrong))

@@ -268,12 +268,12 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
         .fold(known, |demand, (_, sample)| demand.max(*sample));
     for i in 0..samples.len() {
         let least = demand.excess_ratio.max(ROUNDING);
-        if let Some(excess_ratio) = top_near(i, &samples, least, at, |d| d.excess_ratio) {
-            demand.excess_ratio = demand.excess_ratio.max(excess_ratio);
-        }
-        if let Some(friction) = top_near(i, &samples, demand.friction, at, |d| d.friction) {
-            demand.friction = demand.friction.max(friction);
-        }
+        let excess_ratio = top_near(i, &samples, least, at, |d| d.excess_ratio);
+        let friction = top_near(i, &samples, demand.friction, at, |d| d.friction);
+        demand = demand.max(Demand {
+            excess_ratio: excess_ratio.unwrap_or(0.0),
+            friction: friction.unwrap_or(0.0),
+        });
     }
     demand
 }
