@@ -121,7 +121,7 @@ impl<'a> Rows<'a> {
             .delimiter(delimiter)
             .terminator(Terminator::Any(b'\n'))
             .comment(Some(b'#'))
-            .from_reader(text.as_bytes().chain(b"\n"));
+            .from_reader(text.as_bytes().chain(&b"\n"[..]));
         Self { text, reader }
     }
 

@@ -678,6 +678,15 @@ mod tests {
                 columns(name("t"), name("a")),
             ),
             ("a,t\n1,0\n-2,.5\n", columns(number(2), number(1))),
+            // Quotation marks hold delimiters, line breaks and their like together.
+            (
+                "\"x; \"\"raw\"\"\",t,\"a\"\n\"1,5\",0,1\n;,\"0.5\", \"-2\" \n",
+                columns(name("t"), name("a")),
+            ),
+            (
+                "t;\"acceleration\nin g\"\r\n\r\n  # x\r\n0;\"1\"\r\n0.5;-2\r\n",
+                columns(name("t"), name("acceleration\nin g")),
+            ),
         ] {
             assert_eq!(
                 parse(text, &layout),
@@ -696,6 +705,13 @@ mod tests {
         fault("t,a,a\n0,1", 1, "two columns named `a`");
         fault("t,a\n0,1\n# x\n1\n", 4, "no column 2 in `1`");
         fault("t,a\n0,1\n\n1,x\n", 4, "`x` is not a finite number");
+        fault(
+            "t,\"a\"\n\n0,\"1\"\r\n\n1,\"x\"",
+            5,
+            "`x` is not a finite number",
+        );
+        fault("t,a\n0,1\n1,\"2\n3\"\n", 4, "`2` is not a finite number");
+        fault("t,a\n0,1\n1,\"2\n", 4, "`2` is not a finite number");
         fault("t,a\n0,1\n1,inf\n", 3, "`inf` is not a finite number");
         fault(
             "t,a\n0,1\n1,2\n1,3\n",
