@@ -44,12 +44,12 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
     let mut folder = open_folder(&path, &[PICTURE, TABLE])?;
     let mut embraces_deg = EMBRACES_DEG.to_vec();
-    if !embraces_deg.contains(&arch.embrace_deg) {
-        embraces_deg.push(arch.embrace_deg);
+    if !embraces_deg.contains(&arch.embrace_deg()) {
+        embraces_deg.push(arch.embrace_deg());
         embraces_deg.sort_by(|a, b| b.total_cmp(a));
     }
     let sites = arch.sites();
-    let largest = LARGEST_THICKNESS_RATIO.max(arch.thickness_ratio);
+    let largest = LARGEST_THICKNESS_RATIO.max(arch.thickness_ratio());
     let shapes: Vec<(f64, f64)> = embraces_deg
         .into_iter()
         .flat_map(|embrace_deg| {

@@ -43,8 +43,7 @@ pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Fai
 /// The arch of a scenario, for what `does` with arches only.
 pub fn arch(scenario: &Scenario, does: &str) -> Result<FourLinkArch, Failure> {
     match &scenario.structure {
-        Structure::Arch(arch) => arch
-            .build(scenario.impact)
+        Structure::Arch(arch) => FourLinkArch::new(arch.clone(), scenario.impact)
             .map_err(|error| Failure::Input(error.to_string())),
         Structure::Column(_) => Err(Failure::Input(format!(
             "{does} arches only, and this is a column: leave it out"

@@ -43,6 +43,7 @@ const SUMMARY: &str = "summary.json";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
+    scenario.check_for_run().map_err(Failure::Input)?;
     let model = commands::model(&scenario)?;
     let ground = scenario.ground_motion();
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;

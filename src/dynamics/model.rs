@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 use std::ops::ControlFlow;
 
+use serde::Serialize;
 use thiserror::Error;
 
 use super::ground::GroundMotion;
@@ -106,7 +107,7 @@ pub struct Request {
 }
 
 /// A rotated position from which a structure is released at no velocity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Initial {
     /// The side to which it has swayed.
     pub sway: Sway,

@@ -1,18 +1,36 @@
 //! The circular masonry arch: its shape, its size and its material.
 
+use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
-use crate::argument::{ArgumentError, above, within};
+use serde::Serialize;
+
+use crate::argument::{ArgumentError, within};
 use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
-use crate::mechanics::geometry::ring::{Ring, RingError};
+use crate::mechanics::geometry::ring::Ring;
 
 /// Lengths in metres, and densities in kg/m3: so wide that only slips of the pen are outside, and so that no
 /// product of them leaves the range of an `f64`.
-const MAGNITUDE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
+pub(crate) const MAGNITUDE: RangeInclusive<f64> = 1e-3..=1e6;
+
+/// An arch much thinner than a millionth of its radius is lost in rounding.
+pub(crate) const MIN_THICKNESS_RATIO: f64 = 1e-6;
+
+/// An arch as thick as its diameter has no hole.
+pub(crate) const THICKNESS_RATIO_BOUND: f64 = 2.0;
+
+/// Below one degree every ring but the thinnest has room for a straight line, and no push moves it.
+pub(crate) const EMBRACE_DEG: RangeInclusive<f64> = 1.0..=180.0;
 
 /// Voussoirs: a mechanism has four hinges, and three voussoirs have four joints.
-const VOUSSOIRS: std::ops::RangeInclusive<usize> = 3..=200;
+pub(crate) const VOUSSOIRS: RangeInclusive<usize> = 3..=200;
+
+/// Depth where none is given.
+pub(crate) const DEPTH_M: f64 = 1.0;
+
+/// Density where none is given.
+pub(crate) const DENSITY_KG_M3: f64 = 2000.0;
 
 /// A circular arch of constant thickness.
 ///
@@ -24,16 +42,18 @@ const VOUSSOIRS: std::ops::RangeInclusive<usize> = 3..=200;
 /// assert!((arch.incipient()?.acceleration_g - 0.370009738).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Arch {
     mean_radius_m: f64,
     thickness_ratio: f64,
     embrace_deg: f64,
     depth_m: f64,
     density_kg_m3: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
     voussoirs: Option<usize>,
     /// Onset of rocking, found when first asked for. It depends on the shape alone, and arches of one shape
     /// share it.
+    #[serde(skip)]
     incipient: Arc<OnceLock<Result<Incipient, LimitError>>>,
 }
 
@@ -58,7 +78,7 @@ impl Arch {
     /// An arch whose hinges may open at any section, 1 m deep, of 2000 kg/m3.
     ///
     /// `mean_radius_m` is the radius of its middle line (0.001 to 1e6 m), `thickness_ratio` its thickness over
-    /// that (above 0, below 2) and `embrace_deg` the angle from springing to springing (above 0, at most 180).
+    /// that (from 1e-6, below 2) and `embrace_deg` the angle from springing to springing (1 to 180).
     /// Whether it stands is told by [`Arch::incipient`].
     ///
     /// # Errors
@@ -71,9 +91,9 @@ impl Arch {
         let arch = Self {
             mean_radius_m: within("mean_radius_m", mean_radius_m, MAGNITUDE)?,
             thickness_ratio,
-            embrace_deg: above("embrace_deg", embrace_deg, 0.0, 180.0)?,
-            depth_m: 1.0,
-            density_kg_m3: 2000.0,
+            embrace_deg: within("embrace_deg", embrace_deg, EMBRACE_DEG)?,
+            depth_m: DEPTH_M,
+            density_kg_m3: DENSITY_KG_M3,
             voussoirs: None,
             incipient: Arc::default(),
         };
@@ -82,22 +102,21 @@ impl Arch {
 
     /// With a shape of its own; says why it is none.
     fn reshaped(self) -> Result<Self, ArgumentError> {
-        match Ring::new(self.thickness_ratio, self.embrace_deg.to_radians()) {
-            Ok(_) => Ok(Self {
-                incipient: Arc::default(),
-                ..self
-            }),
-            Err(RingError::Thickness(value)) => Err(ArgumentError {
+        let allowed = MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND;
+        if !allowed.contains(&self.thickness_ratio) {
+            return Err(ArgumentError {
                 argument: "thickness_ratio",
-                value,
-                allowed: "a number above 0.0 and below 2.0".to_owned(),
-            }),
-            Err(RingError::Embrace(_)) => Err(ArgumentError {
-                argument: "embrace_deg",
-                value: self.embrace_deg,
-                allowed: "a number above 0.0 and at most 180.0".to_owned(),
-            }),
+                value: self.thickness_ratio,
+                allowed: format!(
+                    "a number from {:?} to below {:?}",
+                    allowed.start, allowed.end
+                ),
+            });
         }
+        Ok(Self {
+            incipient: Arc::default(),
+            ..self
+        })
     }
 
     /// The same arch with another mean radius, in metres: its thickness grows with it.
@@ -114,7 +133,7 @@ impl Arch {
     /// The same arch with another thickness, in mean radii.
     ///
     /// # Errors
-    /// When it is not above 0 and below 2.
+    /// When it is not from 1e-6 to below 2.
     pub fn with_thickness_ratio(self, thickness_ratio: f64) -> Result<Self, ArgumentError> {
         Self {
             thickness_ratio,
@@ -126,10 +145,10 @@ impl Arch {
     /// The same arch with another embrace angle, in degrees.
     ///
     /// # Errors
-    /// When it is not above 0 and at most 180.
+    /// When it is outside 1 to 180.
     pub fn with_embrace_deg(self, embrace_deg: f64) -> Result<Self, ArgumentError> {
         Self {
-            embrace_deg,
+            embrace_deg: within("embrace_deg", embrace_deg, EMBRACE_DEG)?,
             ..self
         }
         .reshaped()
@@ -252,7 +271,7 @@ mod tests {
             "`mean_radius_m = NaN` is not allowed: it must be a number from 0.001 to 1000000.0"
         );
         assert!(message(Arch::new(5.0, 2.0, 180.0)).starts_with("`thickness_ratio = 2.0`"));
-        assert!(message(arch().with_embrace_deg(180.1)).contains("at most 180.0"));
+        assert!(message(arch().with_embrace_deg(180.1)).contains("from 1.0 to 180.0"));
         assert!(message(arch().with_voussoirs(2)).contains("from 3 to 200"));
         assert!(arch().with_depth_m(f64::INFINITY).is_err());
         assert!(arch().with_density_kg_m3(0.0).is_err());

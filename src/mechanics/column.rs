@@ -17,6 +17,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector2;
+use serde::Serialize;
 
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use crate::argument::{ArgumentError, within};
@@ -96,7 +97,7 @@ const MAGNITUDE: std::ops::RangeInclusive<f64> = 1e-9..=1e12;
 ///
 /// It may have any proportions. A column wider than `sqrt(2)` times its height stops at its first impact;
 /// and one that starts to rock from rest needs a friction coefficient of its width over its height.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
     height_m: f64,
     width_m: f64,

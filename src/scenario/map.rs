@@ -8,11 +8,13 @@
 //!
 //! Two quantities of the scenario vary; all else stays as it is.
 
-use super::keys::{
-    AMPLITUDE_G, DURATION_S, EMBRACE_DEG, FREQUENCY_HZ, MAGNITUDE, RESTITUTION, THICKNESS_RATIO,
-};
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
+
+use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ};
+use super::impact::RESTITUTION;
 use super::sequence::Sequence;
-use super::table::{Number, Reading, Table, Writer};
+use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
+use super::table::{Number, Reading, Table};
 use super::{Ground, PulseGround, Simulation, Structure};
 use crate::mechanics::four_link::impact::ImpactModel;
 
@@ -70,7 +72,7 @@ pub struct Map {
 }
 
 /// Cells of a map: more would not fit into a picture, nor their rows into memory.
-const MOST_CELLS: usize = 1_000_000;
+const MAX_CELLS: usize = 1_000_000;
 
 impl Map {
     /// Reads `[map]`; whether it suits what stands and how it is shaken is told where they are known.
@@ -104,9 +106,9 @@ impl Map {
             return Err(table.wrong("frequency_hz", wrong));
         }
         let cells = x.sequence.values().len() * y.sequence.values().len();
-        if cells > MOST_CELLS {
+        if cells > MAX_CELLS {
             return Err(table.wrong_itself(format!(
-                "has {cells} cells; allowed are at most {MOST_CELLS}"
+                "has {cells} cells; allowed are at most {MAX_CELLS}"
             )));
         }
         Ground::check_pulse(table, ground)?;
@@ -146,12 +148,16 @@ impl Map {
             simulation.duration_s
         )))
     }
+}
 
-    pub(super) fn write(&self, out: &mut Writer) {
-        out.table("map");
+impl Serialize for Map {
+    /// The two sequences, named by what varies.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(2))?;
         for axis in [&self.x, &self.y] {
-            axis.sequence.write(axis.quantity.name(), out);
+            map.serialize_entry(axis.quantity.name(), &axis.sequence)?;
         }
+        map.end()
     }
 }
 

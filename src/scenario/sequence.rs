@@ -1,8 +1,9 @@
 //! Increasing numbers: a list, or a range and how many.
 
+use serde::Serialize;
 use toml::de::DeValue;
 
-use super::table::{Count, List, Number, OneOf, Reading, Rule, Table, Writer};
+use super::table::{Count, List, Number, OneOf, Reading, Rule, Table};
 
 named! {
     /// How the numbers of a range are spaced.
@@ -15,7 +16,8 @@ named! {
 }
 
 /// Increasing numbers, each another case of a study.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Sequence {
     /// `{ from = 0.1, to = 2.0, count = 20, spacing = "logarithmic" }`: ends included, linear by default.
     Range {
@@ -140,26 +142,6 @@ impl Sequence {
         } else {
             let wrong = "is more than there are numbers between; allowed are fewer";
             Err(table.wrong("count", wrong))
-        }
-    }
-
-    pub(super) fn write(&self, key: &str, out: &mut Writer) {
-        match self {
-            Self::List(values) => out.numbers(key, values),
-            Self::Range {
-                from,
-                to,
-                count,
-                spacing,
-            } => out.inline(
-                key,
-                &[
-                    ("from", format!("{from:?}")),
-                    ("to", format!("{to:?}")),
-                    ("count", count.to_string()),
-                    ("spacing", format!("{:?}", spacing.name())),
-                ],
-            ),
         }
     }
 }

@@ -14,16 +14,18 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use super::keys::DURATION_S;
+use serde::Serialize;
+
+use super::ground::DURATION_S;
 use super::sequence::{Sequence, Spacing};
-use super::table::{Number, Reading, Rule as _, Table, Writer};
+use super::table::{Number, Reading, Rule as _, Table};
 use super::{Ground, Structure};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::equivalent::{Block, Equivalent};
 use crate::mechanics::four_link::impact::ImpactModel;
 
 /// What is tried for a spectrum.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Spectrum {
     /// The sizes `p t_p`.
     pub p_t: Sequence,
@@ -89,16 +91,6 @@ impl Spectrum {
             }
         }
         Ok(spectrum)
-    }
-
-    pub(super) fn write(&self, out: &mut Writer) {
-        let Self {
-            p_t,
-            acceleration_over_incipient,
-        } = self;
-        out.table("spectrum");
-        p_t.write("p_t", out);
-        acceleration_over_incipient.write("acceleration_over_incipient", out);
     }
 }
 

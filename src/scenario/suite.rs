@@ -18,10 +18,11 @@ use std::ops::Bound::{Excluded, Included};
 use std::path::{Component as PathPart, Path, PathBuf};
 
 use glob::MatchOptions;
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
 use super::record::{self, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
-use super::table::{Number, OneOrMore, Reading, Switch, Table, Text, Writer};
+use super::table::{Number, OneOrMore, Reading, Switch, Table, Text};
 use super::{Component, Simulation};
 
 named! {
@@ -35,8 +36,8 @@ named! {
 }
 
 /// As far as records are scaled; what is beyond is a slip of the pen, or of the unit.
-const MOST_SCALE: f64 = 1e6;
-const SCALE: Number = Number(Excluded(0.0), Included(MOST_SCALE));
+const MAX_SCALE: f64 = 1e6;
+const SCALE: Number = Number(Excluded(0.0), Included(MAX_SCALE));
 
 impl Measure {
     /// What a single level may be.
@@ -78,7 +79,7 @@ pub struct Suite {
 }
 
 /// Cases of a suite: their rows must fit into memory.
-const MOST_CASES: usize = 1_000_000;
+const MAX_CASES: usize = 1_000_000;
 
 /// A file that the key `records` names.
 struct Listed {
@@ -125,9 +126,9 @@ impl Suite {
             (listed?, layout?, levels?, both_signs?);
         let values = levels.values();
         let cases = listed.len() * (1 + usize::from(both_signs)) * values.len();
-        if cases > MOST_CASES {
+        if cases > MAX_CASES {
             return Err(table.wrong_itself(format!(
-                "has {cases} cases, {} records at {} levels; allowed are at most {MOST_CASES}",
+                "has {cases} cases, {} records at {} levels; allowed are at most {MAX_CASES}",
                 listed.len(),
                 values.len()
             )));
@@ -173,28 +174,29 @@ impl Suite {
             start_s: start_s(series),
         }
     }
+}
 
-    pub(super) fn write(&self, out: &mut Writer) {
-        let Self {
-            records,
-            measure,
-            levels,
-            both_signs,
-        } = self;
-        out.table("suite");
-        out.texts(RECORDS, records.iter().map(|series| series.file.as_str()));
-        let layouts = || records.iter().map(|series| &series.layout);
+impl Serialize for Suite {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        let files: Vec<_> = self.records.iter().map(|series| &series.file).collect();
+        map.serialize_entry(RECORDS, &files)?;
+        let layouts = || self.records.iter().map(|series| &series.layout);
         // Files of both formats were told apart by their endings.
         if let Some(first) = layouts().next()
             && layouts().all(|layout| layout.format() == first.format())
         {
-            out.text("format", first.format().name());
+            map.serialize_entry("format", &first.format())?;
         }
-        if let Some(table) = layouts().find(|layout| layout.format() == Format::Csv) {
-            table.write_columns(out);
+        if let Some((time_column, acceleration_column, unit)) = layouts().find_map(Layout::columns)
+        {
+            map.serialize_entry("time_column", time_column)?;
+            map.serialize_entry("acceleration_column", acceleration_column)?;
+            map.serialize_entry("unit", &unit)?;
         }
-        levels.write(measure.name(), out);
-        out.switch("both_signs", *both_signs);
+        map.serialize_entry(self.measure.name(), &self.levels)?;
+        map.serialize_entry("both_signs", &self.both_signs)?;
+        map.end()
     }
 }
 
@@ -219,10 +221,10 @@ fn suits(
         return Err("is zero throughout: it shakes nothing".to_owned());
     }
     if let Scaling::PeakG(peak_g) = strongest
-        && peak_g / own_g > MOST_SCALE
+        && peak_g / own_g > MAX_SCALE
     {
         return Err(format!(
-            "has a peak of {own_g:?} g, which no factor up to {MOST_SCALE:?} brings to {peak_g:?} g"
+            "has a peak of {own_g:?} g, which no factor up to {MAX_SCALE:?} brings to {peak_g:?} g"
         ));
     }
     series.scaled(strongest).check_strength(gravity_m_s2)?;
@@ -321,7 +323,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
         case_sensitive: true,
     };
     let matches = glob::glob_with(&absolute.to_string_lossy(), options)
-        .map_err(|error| format!("is no pattern of files: {}", error.msg))?;
+        .map_err(|error| format!("is not a pattern of files: {}", error.msg))?;
     let mut files = Vec::new();
     for path in matches {
         let path = path.map_err(|error| format!("cannot be looked for: {}", error.error()))?;

@@ -1,6 +1,6 @@
 //! Reading the tables of a TOML text so that every error is found and keeps its place.
 //!
-//! Nothing here knows the keys of a scenario; those are in `keys.rs`.
+//! Nothing here knows the keys of a scenario; each table is read in the file of its subject.
 
 use std::fmt;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
@@ -67,14 +67,14 @@ struct Legible {
 impl Legible {
     fn of(text: &str) -> Self {
         // Each takes a pass over the text, so there must be an end.
-        const MOST_SYNTAX_FAULTS: usize = 20;
+        const MAX_SYNTAX_FAULTS: usize = 20;
         let mut legible = Self {
             text: text.to_owned(),
             unread: String::new(),
             is_toml: false,
             faults: Vec::new(),
         };
-        while legible.faults.len() < MOST_SYNTAX_FAULTS {
+        while legible.faults.len() < MAX_SYNTAX_FAULTS {
             let (_, errors) = DeTable::parse_recoverable(&legible.text);
             // An error without a place is the parser's refusal of deeply nested keys.
             let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
@@ -269,7 +269,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that an element of the array which the file gives for `key` is wrong; the first is at 0. A
-    /// value that is no array stands for its only element.
+    /// value that is not an array stands for its only element.
     pub(super) fn wrong_element(
         &mut self,
         key: &'static str,
@@ -561,74 +561,4 @@ fn did_you_mean(name: &str, known: &[&str]) -> String {
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
         .map(|(_, known)| format!(", did you mean `{known}`?"))
         .unwrap_or_default()
-}
-
-/// Writes tables and keys as TOML text.
-#[derive(Default)]
-pub(super) struct Writer(String);
-
-impl Writer {
-    pub(super) fn table(&mut self, name: &str) {
-        if !self.0.is_empty() {
-            self.0.push('\n');
-        }
-        self.0 += &format!("[{name}]\n");
-    }
-
-    /// The shortest digits that read back as the same number.
-    pub(super) fn number(&mut self, key: &str, x: f64) {
-        self.0 += &format!("{key} = {x:?}\n");
-    }
-
-    pub(super) fn count(&mut self, key: &str, n: usize) {
-        self.0 += &format!("{key} = {n}\n");
-    }
-
-    /// A table within a line, of values as TOML writes them.
-    pub(super) fn inline(&mut self, key: &str, values: &[(&str, String)]) {
-        let values: Vec<_> = values
-            .iter()
-            .map(|(key, value)| format!("{key} = {value}"))
-            .collect();
-        self.0 += &format!("{key} = {{ {} }}\n", values.join(", "));
-    }
-
-    pub(super) fn numbers(&mut self, key: &str, numbers: &[f64]) {
-        self.0 += &format!("{key} = {numbers:?}\n");
-    }
-
-    pub(super) fn switch(&mut self, key: &str, value: bool) {
-        self.0 += &format!("{key} = {value}\n");
-    }
-
-    pub(super) fn text(&mut self, key: &str, text: &str) {
-        self.0 += &format!("{key} = {}\n", quoted(text));
-    }
-
-    /// An array, an element a line.
-    pub(super) fn texts<'a>(&mut self, key: &str, texts: impl IntoIterator<Item = &'a str>) {
-        self.0 += &format!("{key} = [\n");
-        for text in texts {
-            self.0 += &format!("    {},\n", quoted(text));
-        }
-        self.0 += "]\n";
-    }
-
-    pub(super) fn finish(self) -> String {
-        self.0
-    }
-}
-
-/// A string as TOML writes it.
-fn quoted(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => quoted += &format!("\\u{:04x}", u32::from(c)),
-            c => quoted.push(c),
-        }
-    }
-    quoted.push('"');
-    quoted
 }

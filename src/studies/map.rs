@@ -188,21 +188,29 @@ impl<'a> OverturningMap<'a> {
 
     /// The same, but for its size.
     fn make_standing(&self, index: usize) -> Result<Standing, FourLinkError> {
-        let value = |quantity, otherwise| self.value(index, quantity).unwrap_or(otherwise);
         let impact = match self.scenario.impact {
             ImpactModel::Prescribed { restitution } => ImpactModel::Prescribed {
-                restitution: value(Quantity::Restitution, restitution),
+                restitution: self
+                    .value(index, Quantity::Restitution)
+                    .unwrap_or(restitution),
             },
             impact => impact,
         };
         match &self.scenario.structure {
             Structure::Arch(arch) => {
                 let mut arch = arch.clone();
-                arch.thickness_ratio = value(Quantity::ThicknessRatio, arch.thickness_ratio);
-                arch.embrace_deg = value(Quantity::Embrace, arch.embrace_deg);
-                arch.build(impact).map(Standing::Arch)
+                // Arches of one shape share their limit analysis.
+                if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
+                    arch = arch.with_thickness_ratio(thickness_ratio)?;
+                }
+                if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
+                    arch = arch.with_embrace_deg(embrace_deg)?;
+                }
+                FourLinkArch::new(arch, impact).map(Standing::Arch)
             }
-            Structure::Column(column) => column.build(impact).map(Standing::Column),
+            Structure::Column(column) => {
+                Ok(RockingColumn::new(column, impact).map(Standing::Column)?)
+            }
         }
     }
 

@@ -128,8 +128,8 @@ impl<'a> OverturningSpectrum<'a> {
                 let (sin, cos) = slenderness_rad.sin_cos();
                 let diagonal_m = 2.0 * block.half_diagonal_m;
                 let column = Column::new(diagonal_m * cos, diagonal_m * sin)
-                    .and_then(|column| column.with_depth_m(arch.depth_m))
-                    .and_then(|column| column.with_density_kg_m3(arch.density_kg_m3))
+                    .and_then(|column| column.with_depth_m(arch.depth_m()))
+                    .and_then(|column| column.with_density_kg_m3(arch.density_kg_m3()))
                     .and_then(|column| RockingColumn::new(&column, scenario.impact))
                     .map_err(FourLinkError::from)?;
                 vec![(Shaken::Arch, model), (Shaken::Column, Box::new(column))]

@@ -4,7 +4,7 @@
 //! many wordings, and then the accelerations in units of gravity, as Fortran wrote them: several to a
 //! line, of fixed width, so that a minus sign may be all that parts two of them.
 
-use super::{LEAST_STEP_S, LONGEST_S, LineFault, MOST_SAMPLES, Samples, number};
+use super::{LONGEST_S, LineFault, MAX_SAMPLES, MIN_STEP_S, Samples, number};
 use crate::scenario::error::excerpt;
 
 /// Lines among which the number of samples is looked for.
@@ -143,16 +143,16 @@ impl Header {
     }
 
     fn checked(line: usize, count: f64, step_s: f64) -> Result<Self, String> {
-        if !(step_s.is_finite() && step_s >= LEAST_STEP_S) {
+        if !(step_s.is_finite() && step_s >= MIN_STEP_S) {
             return Err(format!(
-                "DT is {step_s:?} s; allowed is at least {LEAST_STEP_S:?} s"
+                "DT is {step_s:?} s; allowed is at least {MIN_STEP_S:?} s"
             ));
         }
         #[expect(clippy::cast_precision_loss, reason = "the bound is below 2^53")]
-        let most = MOST_SAMPLES as f64;
+        let most = MAX_SAMPLES as f64;
         if !(count.fract() == 0.0 && (2.0..=most).contains(&count)) {
             return Err(format!(
-                "NPTS is {count:?}; allowed is a whole number from 2 to {MOST_SAMPLES}"
+                "NPTS is {count:?}; allowed is a whole number from 2 to {MAX_SAMPLES}"
             ));
         }
         if (count - 1.0) * step_s > LONGEST_S {

@@ -1,9 +1,11 @@
 //! Tables of times and accelerations: comma-separated values, or parted by semicolons or tabs.
-//!
-//! Read line by line, so that every fault has its line: numbers contain no line breaks.
+
+use std::io::Read as _;
+
+use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
 use super::{
-    COLUMN_NUMBER, LEAST_STEP_S, LONGEST_S, LineFault, MOST_SAMPLES, Samples, TableColumn, number,
+    COLUMN_NUMBER, LONGEST_S, LineFault, MAX_SAMPLES, MIN_STEP_S, Samples, TableColumn, number,
 };
 use crate::scenario::error::excerpt;
 
@@ -16,30 +18,16 @@ pub(super) fn parse(
     time: &TableColumn,
     acceleration: &TableColumn,
 ) -> Result<Samples, LineFault> {
-    let mut rows = text
-        .lines()
-        .enumerate()
-        .map(|(index, line)| (index + 1, line.trim()))
-        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
-        .peekable();
-    let Some(&(first_line, first)) = rows.peek() else {
+    let mut rows = Rows::new(text);
+    let Some(first) = rows.next()? else {
         return Err(LineFault {
             line: 1,
             message: "there are no samples".to_owned(),
         });
     };
-    let delimiter = [';', '\t']
-        .into_iter()
-        .find(|c| first.contains(*c))
-        .unwrap_or(',');
-    let most_columns = *COLUMN_NUMBER.range.end();
-    let names: Vec<_> = cells(first, delimiter).take(most_columns).collect();
-    let column = |column: &TableColumn| {
-        column.index(&names).map_err(|message| LineFault {
-            line: first_line,
-            message,
-        })
-    };
+    let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.range.end()).collect();
+    let column =
+        |column: &TableColumn| column.index(&names).map_err(|message| first.fault(message));
     let columns = [column(time)?, column(acceleration)?];
     let by_name = [time, acceleration]
         .iter()
@@ -48,22 +36,21 @@ pub(super) fn parse(
         let mut cells = columns.iter().filter_map(|index| names.get(*index));
         cells.all(|cell| number(cell).is_err())
     };
-    if by_name || no_numbers() {
-        rows.next();
-    }
+    let is_header = by_name || no_numbers();
 
     let mut samples: Samples = Vec::new();
-    let mut last_line = first_line;
-    for (line, row) in rows {
-        last_line = line;
-        let fault = |message: String| LineFault { line, message };
+    let mut last_line = first.line;
+    let mut next = if is_header { rows.next()? } else { Some(first) };
+    while let Some(row) = next {
+        last_line = row.line;
+        let fault = |message| row.fault(message);
         let mut values = [0.0; 2];
         for (value, index) in values.iter_mut().zip(columns) {
-            let cell = cells(row, delimiter).nth(index).ok_or_else(|| {
+            let cell = row.cells().nth(index).ok_or_else(|| {
+                let place = index + 1;
                 fault(format!(
-                    "there is no column {} in `{}`",
-                    index + 1,
-                    excerpt(row)
+                    "there is no column {place} in `{}`",
+                    excerpt(row.text)
                 ))
             })?;
             *value = number(cell).map_err(fault)?;
@@ -75,19 +62,20 @@ pub(super) fn parse(
             )));
         }
         if let Some((before_s, _)) = samples.last()
-            && time_s - before_s < LEAST_STEP_S
+            && time_s - before_s < MIN_STEP_S
         {
             return Err(fault(format!(
                 "the time does not increase: {time_s:?} s follows {before_s:?} s; allowed are steps of at \
-                 least {LEAST_STEP_S:?} s"
+                 least {MIN_STEP_S:?} s"
             )));
         }
-        if samples.len() == MOST_SAMPLES {
+        if samples.len() == MAX_SAMPLES {
             return Err(fault(format!(
-                "more than {MOST_SAMPLES} samples, too many for a record"
+                "more than {MAX_SAMPLES} samples, too many for a record"
             )));
         }
         samples.push((time_s, acceleration));
+        next = rows.next()?;
     }
     if samples.len() < 2 {
         return Err(LineFault {
@@ -101,10 +89,79 @@ pub(super) fn parse(
     Ok(samples)
 }
 
-/// The cells of a row, without blanks and quotation marks around them.
-fn cells(row: &str, delimiter: char) -> impl Iterator<Item = &str> {
-    row.split(delimiter)
-        .map(|cell| cell.trim().trim_matches('"').trim())
+/// The rows of a table that are neither blank nor comments.
+struct Rows<'a> {
+    text: &'a str,
+    reader: ::csv::Reader<std::io::Chain<&'a [u8], &'static [u8]>>,
+}
+
+struct Row<'a> {
+    /// Line on which it ends, from 1.
+    line: usize,
+    /// That line.
+    text: &'a str,
+    record: StringRecord,
+}
+
+impl<'a> Rows<'a> {
+    fn new(text: &'a str) -> Self {
+        let is_row = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
+        let first = text.lines().find(is_row).unwrap_or_default();
+        // What stands in quotation marks does not part cells.
+        let parted_by = |c: char| first.split('"').step_by(2).any(|part| part.contains(c));
+        let delimiter = match (parted_by(';'), parted_by('\t')) {
+            (true, _) => b';',
+            (false, true) => b'\t',
+            (false, false) => b',',
+        };
+        // With an end to the last line, the line number after a row is that of the next line.
+        let reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .delimiter(delimiter)
+            .terminator(Terminator::Any(b'\n'))
+            .comment(Some(b'#'))
+            .from_reader(text.as_bytes().chain(&b"\n"[..]));
+        Self { text, reader }
+    }
+
+    fn next(&mut self) -> Result<Option<Row<'a>>, LineFault> {
+        let mut record = StringRecord::new();
+        loop {
+            let read = self.reader.read_record(&mut record);
+            let end = self.reader.position();
+            let line = usize::try_from(end.line() - 1).unwrap_or(usize::MAX);
+            let fault = |error: ::csv::Error| LineFault {
+                line,
+                message: error.to_string(),
+            };
+            if !read.map_err(fault)? {
+                return Ok(None);
+            }
+            let end = usize::try_from(end.byte()).unwrap_or(usize::MAX);
+            let read = &self.text[..end.min(self.text.len())];
+            let text = read.lines().next_back().unwrap_or_default().trim();
+            if !text.is_empty() && !text.starts_with('#') {
+                return Ok(Some(Row { line, text, record }));
+            }
+        }
+    }
+}
+
+impl Row<'_> {
+    /// The cells, without blanks around them. A quotation mark that follows a blank does not quote, but surely was
+    /// meant to.
+    fn cells(&self) -> impl Iterator<Item = &str> {
+        let cells = self.record.iter();
+        cells.map(|cell| cell.trim().trim_matches('"').trim())
+    }
+
+    fn fault(&self, message: String) -> LineFault {
+        LineFault {
+            line: self.line,
+            message,
+        }
+    }
 }
 
 impl TableColumn {

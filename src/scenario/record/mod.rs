@@ -30,24 +30,25 @@ use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
 use std::sync::Arc;
 
+use serde::Serialize;
 use toml::de::DeValue;
 
 use super::error::excerpt;
-use super::keys::LARGEST_G;
-use super::table::{Count, Number, OneOf, Reading, Rule, Table, Text, Writer};
+use super::ground::{LARGEST_G, free_fall};
+use super::table::{Count, Number, OneOf, Reading, Rule, Table, Text};
 use crate::dynamics::ground::GroundMotion;
 
 /// Times in s and accelerations.
 type Samples = Vec<(f64, f64)>;
 
 /// Largest file.
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 /// Largest number of samples: an hour at 500 Hz.
-const MOST_SAMPLES: usize = 1_800_000;
+const MAX_SAMPLES: usize = 1_800_000;
 /// Times of a record are at most this far from zero.
 const LONGEST_S: f64 = 1e6;
 /// Samples that are closer are a slip of the pen; what jumps may jump in a microsecond.
-const LEAST_STEP_S: f64 = 1e-6;
+const MIN_STEP_S: f64 = 1e-6;
 
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
 pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(LARGEST_G));
@@ -100,7 +101,8 @@ named! {
 }
 
 /// A column of a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
 pub enum TableColumn {
     /// By its number, from 1.
     Number(usize),
@@ -109,7 +111,8 @@ pub enum TableColumn {
 }
 
 /// How a file is read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "format", rename_all = "snake_case")]
 pub enum Layout {
     /// As an AT2 file.
     At2,
@@ -125,51 +128,49 @@ pub enum Layout {
 }
 
 /// What the accelerations of a file are multiplied by.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Scaling {
     /// This factor.
+    #[serde(rename = "scale")]
     Factor(f64),
     /// The factor of the same sign that makes their largest magnitude so large, in units of gravity.
+    #[serde(rename = "peak_g")]
     PeakG(f64),
 }
 
 /// Accelerations along one direction, from a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
     /// The file, relative to that of the scenario.
     pub file: String,
     /// How it is read.
+    #[serde(flatten)]
     pub layout: Layout,
     /// How strong it is.
+    #[serde(flatten)]
     pub scaling: Scaling,
     /// Times in s, increasing, and accelerations as in the file.
+    #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
 }
 
 /// Ground motion from one or two files.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Record {
+    /// The one record, or that of the horizontal component.
+    #[serde(flatten)]
+    pub main: Series,
     /// Where the accelerations of `main` point.
     pub component: Component,
-    /// The one record, or that of the horizontal component.
-    pub main: Series,
-    /// The record of the vertical component, where `main` is the horizontal one.
-    pub vertical: Option<Series>,
     /// Time of the simulation at time zero of the files, in 0 to 1e6.
     pub start_s: f64,
+    /// The record of the vertical component, where `main` is the horizontal one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vertical: Option<Series>,
 }
 
 /// Why the samples of a file make a ground motion.
 const READ: &str = "what was read and checked is a ground motion";
-
-/// What a series is read for.
-struct Purpose<'a> {
-    /// Folder of the scenario.
-    folder: &'a Path,
-    component: Component,
-    start_s: f64,
-    gravity_m_s2: f64,
-}
 
 impl Record {
     /// The ground motion under the given gravity.
@@ -187,57 +188,46 @@ impl Record {
         .expect(READ)
     }
 
+    /// Reads `[ground.record]` and builds its motion.
     pub(super) fn read(
         table: &mut Table<'_>,
         folder: &Path,
         gravity_m_s2: Reading<f64>,
-    ) -> Reading<Self> {
+    ) -> Reading<(Self, GroundMotion)> {
         let components = OneOf {
             all: Component::ALL,
             name: Component::name,
         };
         let component = table.or("component", &components, Component::Horizontal);
         let start_s = table.or("start_s", &START_S, 0.0);
-        let purpose = |component| {
-            Ok(Purpose {
-                folder,
-                component,
-                start_s: start_s?,
-                gravity_m_s2: gravity_m_s2?,
-            })
-        };
-        let main = Series::read(table, component.and_then(purpose));
+        let main = Series::read(table, folder, start_s, gravity_m_s2);
         let vertical = table.table("vertical", |table| {
-            Series::read(table, purpose(Component::Vertical))
+            Series::read(table, folder, start_s, gravity_m_s2)
         });
         if let (Ok(Component::Vertical), Ok(Some(_))) = (&component, &vertical) {
             let wrong =
                 "stands beside `component = \"vertical\"`; allowed is one record for a direction";
             return Err(table.wrong("vertical", wrong));
         }
-        Ok(Self {
-            component: component?,
-            main: main?,
-            vertical: vertical?,
-            start_s: start_s?,
-        })
-    }
-
-    pub(super) fn write(&self, out: &mut Writer) {
-        let Self {
-            component,
-            main,
-            vertical,
-            start_s,
-        } = self;
-        out.table("ground.record");
-        main.write(out);
-        out.text("component", component.name());
-        out.number("start_s", *start_s);
-        if let Some(vertical) = vertical {
-            out.table("ground.record.vertical");
-            vertical.write(out);
+        let (record, gravity_m_s2) = (
+            Self {
+                main: main?,
+                component: component?,
+                start_s: start_s?,
+                vertical: vertical?,
+            },
+            gravity_m_s2?,
+        );
+        let motion = record.motion(gravity_m_s2);
+        if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
+            let key = if record.vertical.is_some() {
+                "vertical"
+            } else {
+                "file"
+            };
+            return Err(table.wrong(key, free_fall(time_s)));
         }
+        Ok((record, motion))
     }
 }
 
@@ -324,7 +314,12 @@ impl Series {
         self.samples.iter().map(|s| s.1.abs()).fold(0.0, f64::max)
     }
 
-    fn read(table: &mut Table<'_>, purpose: Reading<Purpose<'_>>) -> Reading<Self> {
+    fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        start_s: Reading<f64>,
+        gravity_m_s2: Reading<f64>,
+    ) -> Reading<Self> {
         let file = table.required("file", &Text);
         let format = Format::read(table);
         let scaling = Scaling::read(table);
@@ -334,17 +329,16 @@ impl Series {
             (Err(reported), None) => Err(*reported),
         };
         let layout = Layout::read(table, format);
-        let (file, scaling, layout, purpose) = (file?, scaling?, layout?, purpose?);
-        let series = Self::of_file(purpose.folder, file, layout)
+        let (file, scaling, layout) = (file?, scaling?, layout?);
+        let series = Self::of_file(folder, file, layout)
             .map_err(|wrong| table.wrong("file", wrong))?
             .scaled(scaling);
-        series.check(table, &purpose)?;
+        series.check(table, start_s?, gravity_m_s2?)?;
         Ok(series)
     }
 
     /// Checks that the ground can move like that.
-    fn check(&self, table: &mut Table<'_>, purpose: &Purpose<'_>) -> Reading<()> {
-        let gravity_m_s2 = purpose.gravity_m_s2;
+    fn check(&self, table: &mut Table<'_>, start_s: f64, gravity_m_s2: f64) -> Reading<()> {
         if let Scaling::PeakG(_) = self.scaling
             && self.peak() == 0.0
         {
@@ -353,7 +347,7 @@ impl Series {
         self.check_strength(gravity_m_s2)
             .map_err(|wrong| table.wrong("file", wrong))?;
         let first_s = self.first_s();
-        if purpose.start_s + first_s < 0.0 {
+        if start_s + first_s < 0.0 {
             let wrong = format!(
                 "begins at {first_s:?} s; allowed is a `start_s` of at least {:?}, so that it does not \
                  begin before time zero",
@@ -361,29 +355,7 @@ impl Series {
             );
             return Err(table.wrong("file", wrong));
         }
-        if purpose.component == Component::Vertical {
-            let samples = self.accelerations_m_s2(gravity_m_s2);
-            let motion = GroundMotion::record(&[], &samples, purpose.start_s).expect(READ);
-            if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
-                return Err(table.wrong("file", super::free_fall(time_s)));
-            }
-        }
         Ok(())
-    }
-
-    fn write(&self, out: &mut Writer) {
-        let Self {
-            file,
-            layout,
-            scaling,
-            samples: _,
-        } = self;
-        out.text("file", file);
-        layout.write(out);
-        match *scaling {
-            Scaling::Factor(factor) => out.number("scale", factor),
-            Scaling::PeakG(peak_g) => out.number("peak_g", peak_g),
-        }
     }
 }
 
@@ -473,29 +445,15 @@ impl Layout {
         }
     }
 
-    fn write(&self, out: &mut Writer) {
-        out.text("format", self.format().name());
-        self.write_columns(out);
-    }
-
-    /// What there is to say of a table besides.
-    pub(super) fn write_columns(&self, out: &mut Writer) {
-        if let Self::Csv {
-            time_column,
-            acceleration_column,
-            unit,
-        } = self
-        {
-            for (key, column) in [
-                ("time_column", time_column),
-                ("acceleration_column", acceleration_column),
-            ] {
-                match column {
-                    TableColumn::Number(number) => out.count(key, *number),
-                    TableColumn::Name(name) => out.text(key, name),
-                }
-            }
-            out.text("unit", unit.name());
+    /// The columns of a table, times first, and the unit.
+    pub(super) const fn columns(&self) -> Option<(&TableColumn, &TableColumn, Unit)> {
+        match self {
+            Self::At2 => None,
+            Self::Csv {
+                time_column,
+                acceleration_column,
+                unit,
+            } => Some((time_column, acceleration_column, *unit)),
         }
     }
 }
@@ -544,9 +502,9 @@ fn read_samples(path: &Path, layout: &Layout) -> Result<Samples, String> {
     }
     let mut bytes = Vec::new();
     fs::File::open(path)
-        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
+        .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
         .map_err(unreadable)?;
-    if bytes.len() as u64 > MOST_BYTES {
+    if bytes.len() as u64 > MAX_BYTES {
         return Err("is larger than 64 MiB, too large for a record".to_owned());
     }
     layout.samples(&bytes).map_err(|fault| {
@@ -720,6 +678,15 @@ mod tests {
                 columns(name("t"), name("a")),
             ),
             ("a,t\n1,0\n-2,.5\n", columns(number(2), number(1))),
+            // Quotation marks hold delimiters, line breaks and their like together.
+            (
+                "\"x; \"\"raw\"\"\",t,\"a\"\n\"1,5\",0,1\n;,\"0.5\", \"-2\" \n",
+                columns(name("t"), name("a")),
+            ),
+            (
+                "t;\"acceleration\nin g\"\r\n\r\n  # x\r\n0;\"1\"\r\n0.5;-2\r\n",
+                columns(name("t"), name("acceleration\nin g")),
+            ),
         ] {
             assert_eq!(
                 parse(text, &layout),
@@ -738,6 +705,13 @@ mod tests {
         fault("t,a,a\n0,1", 1, "two columns named `a`");
         fault("t,a\n0,1\n# x\n1\n", 4, "no column 2 in `1`");
         fault("t,a\n0,1\n\n1,x\n", 4, "`x` is not a finite number");
+        fault(
+            "t,\"a\"\n\n0,\"1\"\r\n\n1,\"x\"",
+            5,
+            "`x` is not a finite number",
+        );
+        fault("t,a\n0,1\n1,\"2\n3\"\n", 4, "`2` is not a finite number");
+        fault("t,a\n0,1\n1,\"2\n", 4, "`2` is not a finite number");
         fault("t,a\n0,1\n1,inf\n", 3, "`inf` is not a finite number");
         fault(
             "t,a\n0,1\n1,2\n1,3\n",

@@ -1,0 +1,189 @@
+//! How the ground moves: `[ground.<kind>]`.
+
+use std::ops::Bound::{Excluded, Included};
+use std::path::Path;
+
+use nalgebra::Vector2;
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
+
+use super::Record;
+use super::table::{Number, Reading, Table};
+use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
+
+/// Ground that moves more strongly than this is a slip of the pen.
+pub(crate) const LARGEST_G: f64 = 1e3;
+pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
+pub(super) const DURATION_S: Number = Number(Included(1e-6), Included(1e6));
+/// Inverses of durations.
+pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
+/// At one the envelope of the velocity pulse is as long as a period; far beyond nothing is a pulse.
+const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
+const CYCLES: Number = Number(Included(1.0), Included(100.0));
+const PHASE_DEG: Number = Number(Included(-360.0), Included(360.0));
+/// Why the keys make a ground motion.
+const IN_RANGE: &str = "the ranges of the keys are those of a ground motion";
+/// The kind of ground motion that is read from files.
+const RECORD: &str = "record";
+const START_S: Number = Number(Included(0.0), Included(1e6));
+
+/// How the ground moves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ground {
+    /// As a single pulse.
+    Pulse(PulseGround),
+    /// As recorded, from `[ground.record]`.
+    Record(Record),
+}
+
+impl Ground {
+    /// Reads `[ground]`, which holds one table, named by its kind (an inner key for the kind would not keep the keys
+    /// of different kinds apart), and builds the motion.
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        gravity_m_s2: Reading<f64>,
+    ) -> Reading<(Self, GroundMotion)> {
+        let mut kinds: Vec<_> = Pulse::ALL
+            .iter()
+            .map(|&kind| {
+                let pulse = table.table(kind.name(), |table| {
+                    let (pulse, motion) = PulseGround::read(table, kind, gravity_m_s2)?;
+                    Ok((Self::Pulse(pulse), motion))
+                });
+                (kind.name(), pulse)
+            })
+            .collect();
+        let record = table.table(RECORD, |table| {
+            let (record, motion) = Record::read(table, folder, gravity_m_s2)?;
+            Ok((Self::Record(record), motion))
+        });
+        kinds.push((RECORD, record));
+        table.exactly_one("tables", kinds)
+    }
+
+    /// Refuses the table of a study that is about pulses where there is no pulse; `None`: not known.
+    pub(super) fn check_pulse(table: &mut Table<'_>, ground: Option<&Option<Self>>) -> Reading<()> {
+        match ground {
+            Some(None | Some(Self::Record(_))) => Err(table.wrong_itself(
+                "needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]",
+            )),
+            Some(Some(Self::Pulse(_))) | None => Ok(()),
+        }
+    }
+}
+
+impl Serialize for Ground {
+    /// A table named by the kind.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(1))?;
+        match self {
+            Self::Pulse(pulse) => map.serialize_entry(pulse.kind.name(), pulse)?,
+            Self::Record(record) => map.serialize_entry(RECORD, record)?,
+        }
+        map.end()
+    }
+}
+
+/// A pulse of ground acceleration; before and after it the ground moves uniformly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PulseGround {
+    /// Shape of the pulse.
+    pub kind: Pulse,
+    /// Peak acceleration, positive to the right, in -1000 to 1000.
+    pub amplitude_g: f64,
+    /// Peak of the vertical acceleration, positive upwards, with the same shape at the same time, in -1000
+    /// to 1000; the ground must not fall as fast as a free body.
+    pub vertical_amplitude_g: f64,
+    /// Length of the part of the pulse that its kind names, in 1e-6 to 1e6.
+    pub duration_s: f64,
+    /// When the pulse starts, in 0 to 1e6.
+    pub start_s: f64,
+    /// Length of a wave train in periods, from `gamma` (above 1 and at most 100) or `cycles` (1 to 100).
+    pub cycles: f64,
+    /// Phase of a wave train, in -360 to 360.
+    pub phase_deg: f64,
+}
+
+/// The key for the length of a wave train, as its source calls it, and its range.
+const fn cycles_key(kind: Pulse) -> (&'static str, &'static Number) {
+    match kind {
+        Pulse::WindowedSine => ("cycles", &CYCLES),
+        _ => ("gamma", &GAMMA),
+    }
+}
+
+impl PulseGround {
+    /// The pulse without its amplitudes.
+    #[must_use]
+    pub fn shape(&self) -> PulseShape {
+        let train = WaveTrain {
+            cycles: self.cycles,
+            phase_rad: self.phase_deg.to_radians(),
+        };
+        PulseShape::new(self.kind, self.duration_s, self.start_s, train).expect(IN_RANGE)
+    }
+
+    /// The ground motion under the given gravity.
+    pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+        let amplitude_g = Vector2::new(self.amplitude_g, self.vertical_amplitude_g);
+        self.shape()
+            .motion(amplitude_g * gravity_m_s2)
+            .expect(IN_RANGE)
+    }
+
+    fn read(
+        table: &mut Table<'_>,
+        kind: Pulse,
+        gravity_m_s2: Reading<f64>,
+    ) -> Reading<(Self, GroundMotion)> {
+        let amplitude_g = table.required("amplitude_g", &AMPLITUDE_G);
+        let vertical_amplitude_g = table.or("vertical_amplitude_g", &AMPLITUDE_G, 0.0);
+        let duration_s = table.required("duration_s", &DURATION_S);
+        let start_s = table.or("start_s", &START_S, 0.0);
+        let (mut cycles, mut phase_deg) = (Ok(WaveTrain::default().cycles), Ok(0.0));
+        if kind.is_wave_train() {
+            let (key, range) = cycles_key(kind);
+            cycles = table.or(key, range, WaveTrain::default().cycles);
+            phase_deg = table.or("phase_deg", &PHASE_DEG, 0.0);
+        }
+        let pulse = Self {
+            kind,
+            amplitude_g: amplitude_g?,
+            vertical_amplitude_g: vertical_amplitude_g?,
+            duration_s: duration_s?,
+            start_s: start_s?,
+            cycles: cycles?,
+            phase_deg: phase_deg?,
+        };
+        // Whether the ground falls does not depend on gravity, which may be faulty.
+        let gravity_m_s2 = gravity_m_s2.unwrap_or(1.0);
+        let motion = pulse.motion(gravity_m_s2);
+        match motion.free_fall_s(gravity_m_s2) {
+            None => Ok((pulse, motion)),
+            Some(time_s) => Err(table.wrong("vertical_amplitude_g", free_fall(time_s))),
+        }
+    }
+}
+
+impl Serialize for PulseGround {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("amplitude_g", &self.amplitude_g)?;
+        map.serialize_entry("vertical_amplitude_g", &self.vertical_amplitude_g)?;
+        map.serialize_entry("duration_s", &self.duration_s)?;
+        map.serialize_entry("start_s", &self.start_s)?;
+        if self.kind.is_wave_train() {
+            map.serialize_entry(cycles_key(self.kind).0, &self.cycles)?;
+            map.serialize_entry("phase_deg", &self.phase_deg)?;
+        }
+        map.end()
+    }
+}
+
+/// Says that a vertical acceleration is impossible for a structure that rests on the ground.
+pub(super) fn free_fall(time_s: f64) -> String {
+    format!(
+        "lets the ground fall as fast as a free body at {time_s:?} s, so that nothing presses the \
+         structure on it; allowed are vertical accelerations above -1 g"
+    )
+}

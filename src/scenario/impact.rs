@@ -1,0 +1,56 @@
+//! What happens when hinges close: `[impact]`.
+
+use std::ops::Bound::Included;
+
+use serde::ser::{SerializeMap as _, Serializer};
+
+use super::table::{Number, OneOf, Reading, Table};
+use crate::mechanics::four_link::impact::ImpactModel;
+
+pub(super) const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
+
+/// Reads `[impact]`.
+pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactModel> {
+    // The name alone decides here; the restitution is filled in below.
+    let all = [
+        ImpactModel::MaxRestitution,
+        ImpactModel::SameSections,
+        ImpactModel::Mirrored,
+        ImpactModel::Prescribed { restitution: 0.0 },
+    ];
+    let names = OneOf {
+        all: &all,
+        name: |model| model.name(),
+    };
+    let model = table.or("model", &names, ImpactModel::MaxRestitution);
+    let restitution = table.optional("restitution", &RESTITUTION);
+    match (model?, restitution?) {
+        (ImpactModel::Prescribed { .. }, Some(restitution)) => {
+            Ok(ImpactModel::Prescribed { restitution })
+        }
+        (ImpactModel::Prescribed { .. }, None) => Ok(ImpactModel::Prescribed {
+            restitution: table.required("restitution", &RESTITUTION)?,
+        }),
+        (model, None) => Ok(model),
+        (model, Some(_)) => {
+            let wrong = format!(
+                "goes with model = \"prescribed\" only; the model here is {:?}",
+                model.name()
+            );
+            Err(table.wrong("restitution", wrong))
+        }
+    }
+}
+
+/// Writes `[impact]`.
+pub(super) fn serialize<S: Serializer>(
+    model: &ImpactModel,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(None)?;
+    map.serialize_entry("model", model.name())?;
+    if let ImpactModel::Prescribed { restitution } = model {
+        map.serialize_entry("restitution", restitution)?;
+    }
+    map.end()
+}

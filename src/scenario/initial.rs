@@ -1,0 +1,39 @@
+//! Where the motion starts from: `[initial]`.
+
+use std::f64::consts::PI;
+use std::ops::Bound::Excluded;
+
+use super::Structure;
+use super::table::{Number, OneOf, Reading, Table};
+use crate::dynamics::model::Initial;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::mechanism::Sway;
+
+const ROTATION_RAD: Number = Number(Excluded(0.0), Excluded(PI));
+
+impl Initial {
+    pub(super) fn read(table: &mut Table<'_>, structure: Option<&Structure>) -> Reading<Self> {
+        let sways = OneOf {
+            all: Sway::ALL,
+            name: Sway::name,
+        };
+        let sway = table.required("sway", &sways);
+        let rotation_rad = table.required("rotation_rad", &ROTATION_RAD);
+        if let (Some(structure), Ok(rotation_rad)) = (structure, &rotation_rad) {
+            // The limit position does not depend on the impact model.
+            let model = structure.model(ImpactModel::MaxRestitution);
+            let limit_rad = model.map_or(0.0, |model| model.limit_rad());
+            if *rotation_rad >= limit_rad {
+                let wrong = format!(
+                    "is beyond the limit position of the mechanism; allowed is a number above 0.0 and \
+                     below {limit_rad:?}"
+                );
+                return Err(table.wrong("rotation_rad", wrong));
+            }
+        }
+        Ok(Self {
+            sway: sway?,
+            rotation_rad: rotation_rad?,
+        })
+    }
+}

@@ -1,0 +1,81 @@
+//! How the motion is computed: `[simulation]`.
+
+use std::ops::Bound::Included;
+
+use serde::Serialize;
+
+use super::ground::DURATION_S;
+use super::table::{Number, Reading, Table};
+
+const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
+const RELATIVE_TOLERANCE: Number = Number(Included(1e-13), Included(1e-3));
+const REST_ENERGY_RATIO: Number = Number(Included(1e-16), Included(0.1));
+/// Rows of output that a run may write: about a gigabyte.
+const MAX_ROWS: f64 = 1e7;
+
+/// How the motion is computed.
+///
+/// The output has at least one step and at most 1e7 of them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Simulation {
+    /// Longest time to simulate, in 1e-6 to 1e6.
+    pub duration_s: f64,
+    /// Time between rows of the output, at least 1e-6 and at most `duration_s`.
+    pub output_step_s: f64,
+    /// Error that the integrator may make, relative to the state, in 1e-13 to 1e-3.
+    pub relative_tolerance: f64,
+    /// Energy over energy barrier below which the structure is at rest, in 1e-16 to 0.1.
+    pub rest_energy_ratio: f64,
+    /// Acceleration of gravity, in 0.001 to 1000.
+    pub gravity_m_s2: f64,
+}
+
+impl Simulation {
+    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let duration_s = table.or("duration_s", &DURATION_S, 10.0);
+        let output_step_s = table.or("output_step_s", &DURATION_S, 0.005);
+        let rows = Self::check_rows(table, duration_s, output_step_s);
+        let relative_tolerance = table.or("relative_tolerance", &RELATIVE_TOLERANCE, 1e-9);
+        let rest_energy_ratio = table.or("rest_energy_ratio", &REST_ENERGY_RATIO, 1e-8);
+        let gravity_m_s2 = table.or("gravity_m_s2", &GRAVITY_M_S2, 9.81);
+        rows?;
+        Ok(Self {
+            duration_s: duration_s?,
+            output_step_s: output_step_s?,
+            relative_tolerance: relative_tolerance?,
+            rest_energy_ratio: rest_energy_ratio?,
+            gravity_m_s2: gravity_m_s2?,
+        })
+    }
+
+    /// Checks that the output has a row, and not more than a disk would like.
+    fn check_rows(
+        table: &mut Table<'_>,
+        duration_s: Reading<f64>,
+        output_step_s: Reading<f64>,
+    ) -> Reading<()> {
+        let (duration_s, step_s) = (duration_s?, output_step_s?);
+        let rows = duration_s / step_s;
+        let wrong = if rows < 1.0 {
+            format!(
+                "makes the output step of {step_s:?} s longer than the run of {duration_s:?} s; \
+                 allowed is a step of at most the run"
+            )
+        } else if rows > MAX_ROWS {
+            format!(
+                "makes {rows:.0} rows of output, every {step_s:?} s for {duration_s:?} s; allowed \
+                 are at most {MAX_ROWS:.0}"
+            )
+        } else {
+            return Ok(());
+        };
+        // The defaults agree, so one of the two is given; the step is the one that is easily
+        // changed.
+        let culprit = if table.gives("output_step_s") {
+            "output_step_s"
+        } else {
+            "duration_s"
+        };
+        Err(table.wrong(culprit, wrong))
+    }
+}

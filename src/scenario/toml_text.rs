@@ -1,0 +1,68 @@
+//! TOML text of the resolved scenario, from the form that it is serialized to.
+
+use serde_json::{Map, Value};
+
+/// The text of a table and of all that are in it. A range, which is a table with the key `from`, stands in one line.
+pub(super) fn toml_text(table: &Map<String, Value>) -> String {
+    let mut text = String::new();
+    write_table(&mut text, "", table);
+    text
+}
+
+fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
+    let (tables, keys): (Vec<_>, Vec<_>) = table
+        .iter()
+        .partition(|(_, value)| value.as_object().is_some_and(|it| !it.contains_key("from")));
+    if !name.is_empty() && !keys.is_empty() {
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        *text += &format!("[{name}]\n");
+    }
+    for (key, value) in keys {
+        *text += &format!("{key} = {}\n", inline(value));
+    }
+    for (key, value) in tables {
+        let name = match name {
+            "" => key.clone(),
+            parent => format!("{parent}.{key}"),
+        };
+        write_table(text, &name, value.as_object().unwrap_or(&Map::new()));
+    }
+}
+
+fn inline(value: &Value) -> String {
+    let all = |values: &[Value]| values.iter().map(inline).collect::<Vec<_>>();
+    match value {
+        Value::String(text) => quoted(text),
+        Value::Array(values) if values.iter().any(Value::is_string) => {
+            format!("[\n    {},\n]", all(values).join(",\n    "))
+        }
+        Value::Array(values) => format!("[{}]", all(values).join(", ")),
+        Value::Object(table) => {
+            let pairs = table
+                .iter()
+                .map(|(key, value)| format!("{key} = {}", inline(value)));
+            format!("{{ {} }}", pairs.collect::<Vec<_>>().join(", "))
+        }
+        // The shortest digits that read back as the same number; TOML libraries write 1e-9 with all its zeros.
+        Value::Number(number) if number.is_f64() => {
+            format!("{:?}", number.as_f64().unwrap_or(f64::NAN))
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) => value.to_string(),
+    }
+}
+
+/// A string as TOML writes it.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => quoted += &format!("\\u{:04x}", u32::from(c)),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}

@@ -1,0 +1,659 @@
+//! Scenario files: what is read, what is refused and where, and how it is written back.
+#![allow(clippy::unwrap_used)]
+
+use archrock::scenario::{Column, Ground, Place, Scenario, ScenarioErrors, Simulation, Structure};
+use archrock::{GroundMotion, ImpactModel, Pulse, Sway};
+use proptest::prelude::*;
+
+const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+
+const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+
+fn parse(text: &str) -> Result<Scenario, ScenarioErrors> {
+    Scenario::parse(text, "s.toml")
+}
+
+/// Asserts that the text has these errors and no other: line, column and words of the message.
+#[track_caller]
+fn assert_errors(text: &str, expected: &[(usize, usize, &[&str])]) {
+    let errors = parse(text).expect_err("the text is faulty");
+    assert_eq!(errors.as_slice().len(), expected.len(), "{errors}");
+    for (error, &(line, column, words)) in errors.as_slice().iter().zip(expected) {
+        assert_eq!(error.place, Some(Place { line, column }), "{error}");
+        for word in words {
+            assert!(error.message.contains(word), "{word:?} is not in: {error}");
+        }
+    }
+}
+
+/// As `assert_errors`, for lines that follow a valid `[arch]`, counted from 1.
+#[track_caller]
+fn assert_error_after_arch(lines: &str, (line, column): (usize, usize), words: &[&str]) {
+    let before = ARCH.lines().count();
+    assert_errors(&format!("{ARCH}{lines}"), &[(before + line, column, words)]);
+}
+
+#[test]
+fn defaults() {
+    let scenario = parse(ARCH).unwrap();
+    let Structure::Arch(arch) = &scenario.structure else {
+        panic!("an arch")
+    };
+    assert_eq!(
+        [arch.mean_radius_m, arch.thickness_ratio, arch.embrace_deg],
+        [5.0, 0.15, 180.0]
+    );
+    assert_eq!([arch.depth_m, arch.density_kg_m3], [1.0, 2000.0]);
+    assert_eq!(arch.voussoirs, None);
+    assert_eq!(
+        scenario.simulation,
+        Simulation {
+            duration_s: 10.0,
+            output_step_s: 0.005,
+            relative_tolerance: 1e-9,
+            rest_energy_ratio: 1e-8,
+            gravity_m_s2: 9.81,
+        }
+    );
+    assert_eq!(scenario.impact, ImpactModel::MaxRestitution);
+    assert!(scenario.title.is_none() && scenario.ground.is_none() && scenario.initial.is_none());
+    assert!(scenario.map.is_none() && scenario.spectrum.is_none() && scenario.suite.is_none());
+    assert_eq!(scenario.ground_motion(), &GroundMotion::still());
+}
+
+/// Every key of a history, as it is read and as it is written back.
+#[test]
+fn every_key() {
+    let scenario = parse(
+        r#"
+        title = "all of it"
+        arch = { mean_radius_m = 10, thickness_m = 1.5, embrace_deg = 157.5, depth_m = 2, density_kg_m3 = 0x7d0, voussoirs = 7 }
+        [ground.mavroeidis_papageorgiou]
+        amplitude_g = -1_000
+        duration_s = 0.5
+        start_s = 1
+        gamma = 3
+        phase_deg = 90
+        [impact]
+        model = "prescribed"
+        restitution = 1
+        [initial]
+        sway = "left"
+        rotation_rad = 0.02
+        [simulation]
+        duration_s = 20
+        output_step_s = 20
+        relative_tolerance = 1e-6
+        rest_energy_ratio = 0.1
+        gravity_m_s2 = 1.62
+        [map]
+        duration_s = { from = 0.1, to = 1, count = 3 }
+        amplitude_g = [1, 2]
+        [spectrum]
+        p_t = [1]
+        "#,
+    )
+    .unwrap();
+    assert_eq!(
+        scenario.to_toml(),
+        r#"title = "all of it"
+
+[arch]
+mean_radius_m = 10.0
+thickness_ratio = 0.15
+embrace_deg = 157.5
+depth_m = 2.0
+density_kg_m3 = 2000.0
+voussoirs = 7
+
+[ground.mavroeidis_papageorgiou]
+amplitude_g = -1000.0
+vertical_amplitude_g = 0.0
+duration_s = 0.5
+start_s = 1.0
+gamma = 3.0
+phase_deg = 90.0
+
+[impact]
+model = "prescribed"
+restitution = 1.0
+
+[initial]
+sway = "left"
+rotation_rad = 0.02
+
+[simulation]
+duration_s = 20.0
+output_step_s = 20.0
+relative_tolerance = 1e-6
+rest_energy_ratio = 0.1
+gravity_m_s2 = 1.62
+
+[map]
+duration_s = { from = 0.1, to = 1.0, count = 3, spacing = "linear" }
+amplitude_g = [1.0, 2.0]
+
+[spectrum]
+p_t = [1.0]
+acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "logarithmic" }
+"#
+    );
+    let Some(Ground::Pulse(pulse)) = &scenario.ground else {
+        panic!("a pulse")
+    };
+    assert_eq!(pulse.kind, Pulse::MavroeidisPapageorgiou);
+    assert_eq!(
+        [pulse.amplitude_g, pulse.cycles, pulse.phase_deg],
+        [-1000.0, 3.0, 90.0]
+    );
+    assert_eq!(
+        scenario.impact,
+        ImpactModel::Prescribed { restitution: 1.0 }
+    );
+    let initial = scenario.initial.as_ref().unwrap();
+    assert_eq!((initial.sway, initial.rotation_rad), (Sway::Left, 0.02));
+}
+
+/// What moves nothing is said to, with the tables that are missing and the command that may be meant.
+#[test]
+fn a_run_needs_something_that_moves() {
+    let says = |more: &str| parse(&format!("{ARCH}{more}")).unwrap().check_for_run();
+    let nothing = says("").unwrap_err();
+    assert_eq!(
+        nothing,
+        "nothing moves the structure: give a table [ground.<kind>], such as [ground.rectangular], or [initial]"
+    );
+    assert_eq!(
+        says("[ground.ricker]\namplitude_g = 0\nduration_s = 1"),
+        Ok(())
+    );
+    assert_eq!(
+        says("[initial]\nsway = 'left'\nrotation_rad = 0.01"),
+        Ok(())
+    );
+}
+
+#[test]
+fn nothing_given() {
+    for text in ["", "\n \n# nothing\n"] {
+        assert_errors(text, &[(1, 1, &["needs exactly one of", "arch, column"])]);
+    }
+}
+
+#[test]
+fn all_errors_in_one_go_in_the_order_of_the_file() {
+    let text = r#"
+title = 3
+[simulation]
+gravity_m_s2 = 0
+duration_s = 1.0
+output_step_s = 2.0
+[impact]
+model = "miror"
+[arch]
+mean_radius = 5.0
+embrace_deg 180
+thickness_ratio = "thin"
+[ground.half_sine]
+amplitude_g = 0.3
+[ground.ricker]
+amplitude_g = nan
+duration_s = 1.0
+"#;
+    assert_errors(
+        text,
+        &[
+            (2, 9, &["`title = 3`", "a whole number", "a string"]),
+            (
+                4,
+                16,
+                &["`gravity_m_s2 = 0`", "at least 0.001 and at most 1000.0"],
+            ),
+            (
+                6,
+                17,
+                &["`output_step_s = 2.0`", "longer than the run of 1.0 s"],
+            ),
+            (
+                8,
+                9,
+                &["`model = \"miror\"`", "mirrored", "max_restitution"],
+            ),
+            (9, 1, &["[arch] lacks `mean_radius_m`", "at least 0.001"]),
+            (10, 1, &["`mean_radius`", "did you mean `mean_radius_m`?"]),
+            (11, 13, &["embrace_deg 180", "expected `=`"]),
+            (
+                12,
+                19,
+                &["`thickness_ratio = \"thin\"` is a string", "below 2.0"],
+            ),
+            (
+                13,
+                1,
+                &["[ground.half_sine] lacks `duration_s`", "at least 1e-6"],
+            ),
+            (
+                15,
+                1,
+                &["`ricker` stands beside `half_sine`", "exactly one"],
+            ),
+            (
+                16,
+                15,
+                &["`amplitude_g = nan` is not finite", "at most 1000.0"],
+            ),
+        ],
+    );
+}
+
+#[test]
+fn errors_display_as_file_line_column_message() {
+    let errors = parse(&format!("titel = 'é'\n{ARCH}voussoirs = 2\n")).expect_err("two errors");
+    assert_eq!(
+        errors.to_string(),
+        "s.toml:1:1: unknown key `titel` in the scenario, did you mean `title`?; allowed are \
+         title, arch, column, simulation, ground, impact, initial, map, spectrum, suite\n\
+         s.toml:6:13: `voussoirs = 2` is out of range; allowed is a whole number from 3 (four \
+         hinges need four joints) to 200"
+    );
+}
+
+#[test]
+fn columns_count_characters() {
+    assert_errors(
+        &format!("initial = {{ sway = 'é', rotation_rad = 9 }}\r\n{ARCH}"),
+        &[
+            (1, 20, &["`sway = 'é'` is unknown", "\"right\", \"left\""]),
+            (1, 40, &["`rotation_rad = 9`", "below 3.14159"]),
+        ],
+    );
+}
+
+#[test]
+fn structures() {
+    let beside: &[&str] = &["`column` stands beside `arch`", "exactly one"];
+    assert_errors(&format!("{ARCH}{COLUMN}"), &[(5, 1, beside)]);
+    assert_errors(
+        "arch = 5",
+        &[(1, 8, &["`arch = 5`", "a whole number", "a table"])],
+    );
+    assert_errors("[[arch]]\n", &[(1, 1, &["an array", "a table"])]);
+}
+
+#[test]
+fn columns() {
+    let scenario = parse(COLUMN).unwrap();
+    let expected = Column {
+        height_m: 4.0,
+        width_m: 0.8,
+        depth_m: 1.0,
+        density_kg_m3: 2000.0,
+    };
+    assert_eq!(scenario.structure, Structure::Column(expected));
+    assert_errors(
+        "[column]\nheight = 4\nwidth_m = -0.8\nmean_radius_m = 5\n",
+        &[
+            (1, 1, &["[column] lacks `height_m`", "at least 0.001"]),
+            (2, 1, &["`height` in [column], did you mean `height_m`?"]),
+            (
+                3,
+                11,
+                &["`width_m = -0.8` is out of range", "at most 1000000.0"],
+            ),
+            (
+                4,
+                1,
+                &["`mean_radius_m` in [column]", "height_m, width_m, depth_m"],
+            ),
+        ],
+    );
+    let released = |rotation: &str| {
+        parse(&format!(
+            "{COLUMN}[initial]\nsway = 'left'\nrotation_rad = {rotation}"
+        ))
+    };
+    assert!(released("1.57").is_ok());
+    let flat = released("1.571").expect_err("lies on its side");
+    let words = "s.toml:6:16: `rotation_rad = 1.571` is beyond the limit position";
+    assert!(flat.to_string().starts_with(words), "{flat}");
+    assert!(
+        flat.to_string().ends_with("below 1.5707963267948966"),
+        "{flat}"
+    );
+}
+
+#[test]
+fn thickness() {
+    let arch =
+        |thickness: &str| format!("[arch]\nmean_radius_m = 5\nembrace_deg = 180\n{thickness}");
+    let one = "exactly one of the keys thickness_ratio, thickness_m";
+    assert_errors(&arch(""), &[(1, 1, &["[arch] needs", one])]);
+    assert_errors(
+        &arch("thickness_m = 0.75\nthickness_ratio = 0.15"),
+        &[(
+            5,
+            19,
+            &["`thickness_ratio` stands beside `thickness_m`", one],
+        )],
+    );
+    assert_errors(
+        &arch("thickness_m = 10"),
+        &[(
+            4,
+            15,
+            &["`thickness_m = 10`", "2.0 mean radii", "below 10.0"],
+        )],
+    );
+    assert_errors(
+        &arch("thickness_ratio = 0.0"),
+        &[(
+            4,
+            19,
+            &["`thickness_ratio = 0.0`", "at least 1e-6 and below 2.0"],
+        )],
+    );
+}
+
+#[test]
+fn numbers() {
+    for (value, words) in [
+        ("0", "`depth_m = 0` is out of range"),
+        ("+inf", "`depth_m = +inf` is not finite"),
+        ("1e999", "`depth_m = 1e999` is not finite"),
+        (
+            "99999999999999999999999999999999999999999",
+            "is out of range",
+        ),
+        ("true", "`depth_m = true` is a boolean"),
+        ("1979-05-27", "is a date or time"),
+        ("[1, 2]", "`depth_m = [1, 2]` is an array"),
+    ] {
+        assert_error_after_arch(&format!("depth_m = {value}"), (1, 11), &[words]);
+    }
+    for value in ["7.0", "-7", "201", "99999999999999999999999"] {
+        assert_error_after_arch(&format!("voussoirs = {value}"), (1, 13), &[value, "to 200"]);
+    }
+}
+
+#[test]
+fn grounds() {
+    for kind in Pulse::ALL {
+        let name = kind.name();
+        let text = format!("{ARCH}[ground.{name}]\namplitude_g = 1\nduration_s = 1");
+        let ground = parse(&text).unwrap().ground.unwrap();
+        let Ground::Pulse(ground) = ground else {
+            panic!("{name} is a pulse")
+        };
+        assert_eq!(ground.kind, *kind);
+    }
+    assert_error_after_arch(
+        "[ground]",
+        (1, 1),
+        &["[ground] needs exactly one", "ricker"],
+    );
+    assert_errors(
+        &format!("{ARCH}[ground.halfsine]"),
+        &[
+            (5, 2, &["[ground] needs exactly one"]),
+            (
+                5,
+                9,
+                &[
+                    "`halfsine` in [ground], did you mean `half_sine`?",
+                    "record",
+                ],
+            ),
+        ],
+    );
+}
+
+#[test]
+fn restitutions() {
+    let other = "[impact]\nrestitution = 0.8";
+    assert_error_after_arch(other, (2, 15), &["prescribed", "\"max_restitution\""]);
+    let none = "[impact]\nmodel = 'prescribed'";
+    assert_error_after_arch(
+        none,
+        (1, 1),
+        &["[impact] lacks `restitution`", "at most 1.0"],
+    );
+    let high = "[impact]\nmodel = 'prescribed'\nrestitution = 1.5";
+    assert_error_after_arch(high, (3, 15), &["`restitution = 1.5`", "at most 1.0"]);
+}
+
+#[test]
+fn output_steps_point_at_the_key_that_is_given() {
+    let short = "[simulation]\nduration_s = 0.001";
+    assert_error_after_arch(short, (2, 14), &["`duration_s = 0.001`", "step of 0.005 s"]);
+    let long = "[simulation]\nduration_s = 1e5";
+    assert_error_after_arch(long, (2, 14), &["20000000 rows", "at most 10000000"]);
+    let fine = "[simulation]\noutput_step_s = 2e-6\nduration_s = 100";
+    assert_error_after_arch(fine, (2, 17), &["50000000 rows"]);
+}
+
+#[test]
+fn syntax_errors_hide_nothing_and_breed_nothing() {
+    // The key that is on a faulty line is not missing, and the default does not stand for it.
+    assert_error_after_arch(
+        "[simulation]\nduration_s = 60 s\noutput_step_s = 20",
+        (2, 14),
+        &["`duration_s = 60 s`"],
+    );
+    assert_errors(&ARCH.replace("0.15", "0,15"), &[(3, 20, &["0,15"])]);
+    // The keys under a faulty header are not those of the table before.
+    assert_error_after_arch("[initial\nsway = 'right'\n", (1, 9), &["expected `]`"]);
+    let twice = format!("{ARCH}[impact]\n{ARCH}title = 1");
+    assert_errors(&twice, &[(6, 2, &["duplicate key"])]);
+    assert_errors(
+        &format!("title = \"\"\"\n{ARCH}"),
+        &[(6, 1, &["multi-line"])],
+    );
+}
+
+#[test]
+fn messages_carry_no_control_characters_and_no_books() {
+    let errors = parse(&format!("\"\\u001b[2J{}\" = 1", "x".repeat(500))).expect_err("unknown");
+    assert!(errors.to_string().lines().all(|line| line.len() < 300));
+    assert!(!errors.to_string().contains('\u{1b}'));
+}
+
+#[test]
+fn hostile_nesting_does_not_overflow_the_stack() {
+    let dotted = format!("{}a = 1", "a.".repeat(79));
+    let inline = format!(
+        "a = {}1{}",
+        format!("{{{}a=", "a.".repeat(79)).repeat(79),
+        "}".repeat(79)
+    );
+    for text in [
+        "[".repeat(100_000),
+        format!("a = {}", "[".repeat(100_000)),
+        format!("a = {}{}", "[".repeat(100_000), "]".repeat(100_000)),
+        format!("a = {}", "{a=".repeat(100_000)),
+        format!("{}a = 1", "a.".repeat(100_000)),
+        format!("[{}a]", "a.".repeat(100_000)),
+        "[[a]]\n".repeat(100_000),
+        "a\n".repeat(100_000),
+        dotted,
+        inline,
+    ] {
+        let errors = parse(&text).expect_err("hostile");
+        assert!(errors.as_slice().len() <= 40);
+    }
+}
+
+#[test]
+fn many_errors_take_linear_time() {
+    // Quadratic work would be 1e11 steps here.
+    let keys: Vec<_> = (0..50_000).map(|i| format!("k{i}=1")).collect();
+    let errors = parse(&format!("arch = {{ {} }}", keys.join(", "))).expect_err("unknown keys");
+    assert!(errors.as_slice().len() > 50_000);
+}
+
+#[test]
+fn files() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        Scenario::read(&path)
+    };
+    let message = |result: Result<Scenario, ScenarioErrors>| {
+        let errors = result.expect_err("unreadable");
+        assert_eq!(errors.as_slice().len(), 1, "{errors}");
+        errors.to_string()
+    };
+
+    assert_eq!(read("good.toml", ARCH.as_bytes()), parse(ARCH));
+    let latin = message(read("latin.toml", b"title = 'a'\n# \xe9t\xe9\n"));
+    assert!(
+        latin.ends_with("latin.toml:2:3: not UTF-8 text from here"),
+        "{latin}"
+    );
+    let large = message(read("large.toml", &vec![b'#'; (1 << 20) + 1]));
+    assert!(large.ends_with("large.toml: is larger than 1 MiB, too large for a scenario"));
+    let none = message(Scenario::read(&folder.path().join("none.toml")));
+    assert!(none.contains("none.toml: cannot be read: "), "{none}");
+    let dir = message(Scenario::read(folder.path()));
+    assert!(dir.ends_with(": is a folder, not a scenario file"), "{dir}");
+}
+
+/// A number in `low..high` with a random exponent, so that all ways of writing it occur.
+fn magnitude(low: f64, high: f64) -> impl Strategy<Value = f64> {
+    (low.ln()..high.ln()).prop_map(move |x| x.exp().clamp(low, high))
+}
+
+fn any_column() -> impl Strategy<Value = String> {
+    let size = || magnitude(1e-3, 1e6);
+    (size(), size(), size(), size()).prop_map(|(height_m, width_m, depth_m, density_kg_m3)| {
+        format!(
+            "[column]\nheight_m = {height_m:?}\nwidth_m = {width_m:?}\ndepth_m = {depth_m:?}\n\
+             density_kg_m3 = {density_kg_m3:?}\n"
+        )
+    })
+}
+
+/// Arches that stand and start as four-link mechanisms.
+fn any_arch() -> impl Strategy<Value = String> {
+    let size = || magnitude(1e-3, 1e6);
+    let voussoirs = proptest::option::of(3..=20_usize);
+    (size(), 0.13..0.3, 140.0..180.0, size(), size(), voussoirs)
+        .prop_map(|(mean_radius_m, thickness_ratio, embrace_deg, depth_m, density_kg_m3, voussoirs)| {
+            let voussoirs = voussoirs.map_or(String::new(), |count| format!("voussoirs = {count}\n"));
+            format!(
+                "[arch]\nmean_radius_m = {mean_radius_m:?}\nthickness_ratio = {thickness_ratio:?}\n\
+                 embrace_deg = {embrace_deg:?}\ndepth_m = {depth_m:?}\ndensity_kg_m3 = {density_kg_m3:?}\n\
+                 {voussoirs}"
+            )
+        })
+        .prop_filter("stands", |arch| parse(arch).is_ok())
+}
+
+fn any_ground() -> impl Strategy<Value = String> {
+    let kind = proptest::sample::select(Pulse::ALL);
+    let train = (1.0001..100.0, -360.0..360.0_f64);
+    let amplitudes = (-1e3..1e3, -0.9..0.9);
+    (kind, amplitudes, magnitude(1e-6, 1e6), 0.0..1e6, train).prop_map(
+        |(kind, (amplitude_g, vertical_g), duration_s, start_s, (cycles, phase_deg))| {
+            let train = match kind {
+                Pulse::WindowedSine => format!("cycles = {cycles:?}\nphase_deg = {phase_deg:?}\n"),
+                _ if kind.is_wave_train() => format!("gamma = {cycles:?}\nphase_deg = {phase_deg:?}\n"),
+                _ => String::new(),
+            };
+            format!(
+                "[ground.{}]\namplitude_g = {amplitude_g:?}\nvertical_amplitude_g = {vertical_g:?}\n\
+                 duration_s = {duration_s:?}\nstart_s = {start_s:?}\n{train}",
+                kind.name()
+            )
+        },
+    )
+}
+
+fn any_impact() -> impl Strategy<Value = String> {
+    let plain = proptest::sample::select(vec!["max_restitution", "same_sections", "mirrored"]);
+    prop_oneof![
+        plain.prop_map(|model| format!("[impact]\nmodel = '{model}'\n")),
+        (0.0..=1.0).prop_map(|restitution| {
+            format!("[impact]\nmodel = 'prescribed'\nrestitution = {restitution:?}\n")
+        }),
+    ]
+}
+
+fn any_initial() -> impl Strategy<Value = String> {
+    (proptest::sample::select(Sway::ALL), magnitude(1e-9, 0.05)).prop_map(|(sway, rotation_rad)| {
+        format!(
+            "[initial]\nsway = '{}'\nrotation_rad = {rotation_rad:?}\n",
+            sway.name()
+        )
+    })
+}
+
+fn any_simulation() -> impl Strategy<Value = String> {
+    (
+        magnitude(1e-5, 1e6),
+        magnitude(2e-7, 1.0),
+        magnitude(1e-13, 1e-3),
+        magnitude(1e-16, 0.1),
+        magnitude(1e-3, 1e3),
+    )
+        .prop_map(
+            |(duration_s, step, tolerance, rest_energy_ratio, gravity_m_s2)| {
+                let step_s = (duration_s * step).max(1e-6);
+                format!(
+                    "[simulation]\nduration_s = {duration_s:?}\noutput_step_s = {step_s:?}\n\
+                 relative_tolerance = {tolerance:?}\nrest_energy_ratio = {rest_energy_ratio:?}\n\
+                 gravity_m_s2 = {gravity_m_s2:?}\n"
+                )
+            },
+        )
+}
+
+proptest! {
+    /// What is written reads back as the same scenario, and says the same in TOML as in JSON.
+    #[test]
+    fn to_toml_reads_back_the_same(
+        title in proptest::option::of(any::<String>()),
+        structure in prop_oneof![any_arch(), any_column()],
+        ground in proptest::option::of(any_ground()),
+        impact in any_impact(),
+        initial in proptest::option::of(any_initial()),
+        simulation in any_simulation(),
+    ) {
+        // JSON escapes what TOML does, but for one character.
+        let title = title.map_or(String::new(), |title| {
+            format!("title = {}\n", serde_json::Value::from(title.replace('\u{7f}', "")))
+        });
+        let (ground, initial) = (ground.unwrap_or_default(), initial.unwrap_or_default());
+        let scenario = parse(&[title, structure, ground, impact, initial, simulation].concat()).unwrap();
+        let text = scenario.to_toml();
+        let json: serde_json::Value = toml::from_str(&text).unwrap();
+        prop_assert_eq!(json, scenario.to_json());
+        prop_assert_eq!(parse(&text), Ok(scenario));
+    }
+
+    #[test]
+    fn noise_is_read_or_said_to_be_wrong(text in any::<String>()) {
+        prop_assert!(parse(&text).map_or_else(|errors| !errors.as_slice().is_empty(), |_| true));
+    }
+
+    /// Damage to a valid text gets further into the reader than noise does.
+    #[test]
+    fn damage_is_read_or_said_to_be_wrong(
+        damage in proptest::collection::vec((0..200_usize, proptest::sample::select(DAMAGE)), 1..8),
+    ) {
+        let mut text = format!(
+            "title = 'a'\n{ARCH}[ground.ricker]\namplitude_g = 1.0\nduration_s = 1\n[initial]\n"
+        );
+        for (at, piece) in damage {
+            if text.is_char_boundary(at) {
+                text.insert_str(at, piece);
+            }
+        }
+        prop_assert!(parse(&text).map_or_else(|errors| !errors.as_slice().is_empty(), |_| true));
+    }
+}
+
+const DAMAGE: &[&str] = &[
+    "[", "]", "\"", "'", "\"\"\"", "=", "\n", "\r", ".", ",", "{", "}", "#", "é", "\\u12",
+    "\u{feff}",
+];
