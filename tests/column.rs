@@ -376,10 +376,10 @@ impl Observer<Rocking<'_, RockingColumn>, 3> for Nobody {}
 fn too_many_events_are_an_error_that_says_what_to_change() {
     let (column, still) = (column(0.2), GroundMotion::still());
     let rocking = Rocking::new(&column, &still, GRAVITY_M_S2, 1e-8);
-    let settings = |most_transitions| Settings {
+    let settings = |max_transitions| Settings {
         end_s: 60.0,
         relative_tolerance: 1e-9,
-        most_transitions,
+        max_transitions,
     };
     let start = RockingState::new(0.1, 0.0, 0.0);
     let result = |most| {

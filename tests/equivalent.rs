@@ -72,7 +72,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
             };
             let history = arch.history(&still, &request).unwrap();
             let (time_s, impact) = history.impacts().next().unwrap();
-            let deceleration = GRAVITY_M_S2 / 3.0 * at_zero.rise / at_zero.inertia.sqrt();
+            let deceleration = GRAVITY_M_S2 / 3.0 * at_zero.s_y / at_zero.inertia.sqrt();
             // The right body carries the coordinate of a sway to the left.
             let straight_s = -impact.rates_before_rad_s[2] * at_zero.inertia.sqrt() / deceleration;
             (time_s / straight_s - 1.0) * 3.0 / (straight_s * straight_s)

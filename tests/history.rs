@@ -277,7 +277,7 @@ fn it_starts_where_the_push_passes_the_incipient_acceleration() {
     let link = arch.link(0).unwrap();
     let coefficients = link.mechanism.coefficients(0.0);
     let jerk = 2.0 * arch.incipient_g() * GRAVITY / 0.4;
-    let growth = jerk * coefficients.sway / (arch.length_m() * coefficients.inertia);
+    let growth = jerk * coefficients.s_x / (arch.length_m() * coefficients.inertia);
     let near = samples.iter().find(|s| s.time_s > 0.2095).unwrap();
     let since: f64 = near.time_s - 0.2;
     let expected = growth * since.powi(3) / 6.0;
@@ -408,9 +408,9 @@ fn a_very_short_blow_gives_its_momentum() {
             let end_s = start_s + 2.0 * duration_s;
             let (_, samples) = run_sampled(&arch, &ground, &request(end_s));
             let rate = -samples.last().unwrap().rates_rad_s[0];
-            let expected = velocity_m_s * at_zero.sway / (at_zero.inertia * arch.length_m());
+            let expected = velocity_m_s * at_zero.s_x / (at_zero.inertia * arch.length_m());
             // Of first order in the duration, with the acceleration of gravity as its measure.
-            let relative = 2.0 * GRAVITY * at_zero.rise / at_zero.sway * duration_s / velocity_m_s;
+            let relative = 2.0 * GRAVITY * at_zero.s_y / at_zero.s_x * duration_s / velocity_m_s;
             assert!(
                 ((rate / expected) - 1.0).abs() < 2.0 * relative + 1e-8,
                 "{rate} {expected}"

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use archrock::dynamics::hybrid::engine::{
-    EngineError, Finish, HybridSystem, Level, Observer, Settings, Transition, simulate,
+    EngineError, Finish, GuardValue, HybridSystem, Observer, Settings, Transition, simulate,
 };
 use archrock::dynamics::hybrid::integrator::{self, Cost, IntegratorError, State, Step, Task};
 
@@ -245,8 +245,8 @@ impl HybridSystem<2> for Ball {
         if lies { &[] } else { &[()] }
     }
 
-    fn level(&self, (): (), _: bool, _: usize, _: f64, state: &State<2>) -> Level {
-        Level {
+    fn guard_value(&self, (): (), _: bool, _: usize, _: f64, state: &State<2>) -> GuardValue {
+        GuardValue {
             value: state[0],
             rate: state[1],
         }
@@ -316,7 +316,7 @@ fn throw_and_log(
     let settings = Settings {
         end_s,
         relative_tolerance: 1e-10,
-        most_transitions: 200,
+        max_transitions: 200,
     };
     simulate(ball, false, state, &settings, log)
 }

@@ -16,7 +16,7 @@ use common::{
 /// `q''` at the start, by the equation of motion written out; a ground acceleration pushes it.
 fn acceleration_at_zero(arch: &FourLinkArch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
     let c = link.mechanism.coefficients(0.0);
-    -(GRAVITY * c.rise + ground_m_s2 * c.sway) / (arch.length_m() * c.inertia)
+    -(GRAVITY * c.s_y + ground_m_s2 * c.s_x) / (arch.length_m() * c.inertia)
 }
 
 #[test]
@@ -24,12 +24,12 @@ fn at_rest_the_equation_of_motion_gives_the_incipient_acceleration() {
     for arch in [semicircle(), seven_voussoirs()] {
         let link = arch.link(0).unwrap();
         let c = link.mechanism.coefficients(0.0);
-        assert!((c.rise / c.sway - arch.incipient_g()).abs() < 1e-12);
+        assert!((c.s_y / c.s_x - arch.incipient_g()).abs() < 1e-12);
         assert!(acceleration_at_zero(&arch, link, -arch.incipient_g() * GRAVITY).abs() < 1e-12);
         // Every later link of the chain needs more push than the first.
         for index in 1..6 {
             let c = arch.link(index).unwrap().mechanism.coefficients(0.0);
-            assert!(c.rise / c.sway >= arch.incipient_g() - 1e-12);
+            assert!(c.s_y / c.s_x >= arch.incipient_g() - 1e-12);
         }
     }
 }
@@ -288,7 +288,7 @@ fn the_critical_rotation_is_where_it_turns_over() {
     for offset in [-1e-3, 1e-3] {
         assert!(link.mechanism.displacement(link.critical_rad + offset).y < top);
     }
-    assert!(link.mechanism.coefficients(link.critical_rad).rise.abs() < 1e-14);
+    assert!(link.mechanism.coefficients(link.critical_rad).s_y.abs() < 1e-14);
     assert!(link.limit_rad > link.critical_rad);
     // Energy decides: a blow that gives just less or just more than the barrier.
     let c = link.mechanism.coefficients(0.0);
@@ -296,7 +296,7 @@ fn the_critical_rotation_is_where_it_turns_over() {
     let duration_s = 1e-7;
     for (factor, lost) in [(0.999, false), (1.001, true)] {
         let rate = factor * (2.0 * barrier / c.inertia).sqrt();
-        let velocity = rate * c.inertia * arch.length_m() / c.sway;
+        let velocity = rate * c.inertia * arch.length_m() / c.s_x;
         let ground =
             GroundMotion::pulse(Pulse::Rectangular, -velocity / duration_s, duration_s, 0.0)
                 .unwrap();

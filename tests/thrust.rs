@@ -24,7 +24,7 @@ fn arches() -> [FourLinkArch; 4] {
 /// A motion that obeys the equation of motion, in the units of [`Motion`].
 fn motion(linkage: &Linkage, q_rad: f64, rate: f64, push_g: f64) -> Motion {
     let coefficients = linkage.coefficients(q_rad);
-    let force = push_g * coefficients.sway - coefficients.rise;
+    let force = push_g * coefficients.s_x - coefficients.s_y;
     Motion {
         q_rad,
         rate,

@@ -113,7 +113,7 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
     let wave = |t: f64| (2.0 * std::f64::consts::PI * t / period).sin() * f64::from(t < period);
     let bend = |t: f64, q: f64, rate: f64| {
         let c = linkage.coefficients(q);
-        let force = (G + vertical * wave(t)) * c.rise + horizontal * wave(t) * c.sway;
+        let force = (G + vertical * wave(t)) * c.s_y + horizontal * wave(t) * c.s_x;
         -(force / 5.0 + 0.5 * c.inertia_slope * rate * rate) / c.inertia
     };
     let h = 2.5e-5;

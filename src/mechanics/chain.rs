@@ -20,9 +20,9 @@ pub struct Coefficients {
     /// `M'`: derivative of the generalised mass with respect to `q`.
     pub inertia_slope: f64,
     /// `S_x`: sum of the masses times the derivatives of their horizontal positions.
-    pub sway: f64,
+    pub s_x: f64,
     /// `S_y`: sum of the masses times the derivatives of their vertical positions.
-    pub rise: f64,
+    pub s_y: f64,
 }
 
 /// A mechanism at an instant, in its own frame, with the length of the structure and gravity as units.
@@ -178,7 +178,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
 /// the potential energy, falls to zero; the limit itself if there is none.
 #[must_use]
 pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
-    let rise = |q| mechanism.coefficients(q).rise;
+    let rise = |q| mechanism.coefficients(q).s_y;
     // The potential has one top before the limit; the scan only brackets it.
     let steps = 64;
     let at = |step: i32| limit_rad * f64::from(step) / f64::from(steps);

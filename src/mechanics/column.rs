@@ -59,8 +59,8 @@ impl Mechanism for Tilting {
         Coefficients {
             inertia: 4.0 / 3.0 * self.mass,
             inertia_slope: 0.0,
-            sway: self.mass * cos,
-            rise: self.mass * sin,
+            s_x: self.mass * cos,
+            s_y: self.mass * sin,
         }
     }
 
@@ -340,7 +340,7 @@ mod tests {
             let h = 1e-5;
             let slope = (gravity_center(q + h) - gravity_center(q - h)) / (2.0 * h);
             let exact = tilting.coefficients(q);
-            prop_assert!((slope - Vector2::new(exact.sway, exact.rise)).norm() < 1e-9);
+            prop_assert!((slope - Vector2::new(exact.s_x, exact.s_y)).norm() < 1e-9);
         }
     }
 

@@ -60,7 +60,7 @@ pub fn equivalent<C: MechanismChain>(structure: &C, gravity_m_s2: f64) -> Option
 
 /// `n^2` for unit gravity and length.
 fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
-    let rise = |q| link.mechanism.coefficients(q).rise;
+    let rise = |q| link.mechanism.coefficients(q).s_y;
     // Central difference over five points. Its error is the fourth power of a thousandth, far below what
     // a mechanism changes over its way to q_c, and as much again by rounding.
     let step = 1e-3 * link.critical_rad;
@@ -68,7 +68,7 @@ fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
     let far = rise(q_rad + 2.0 * step) - rise(q_rad - 2.0 * step);
     let stiffness = (8.0 * near - far) / (12.0 * step);
     let here = link.mechanism.coefficients(q_rad);
-    (0.5 * here.rise * here.inertia_slope / here.inertia - stiffness) / here.inertia
+    (0.5 * here.s_y * here.inertia_slope / here.inertia - stiffness) / here.inertia
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use super::integrator::{Cost, IntegratorError, State, Step, Task, integrate};
 
 /// Value of a guard, positive until the event, and its rate of change.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
+pub struct GuardValue {
     /// The guard's value.
     pub value: f64,
     /// Its rate of change, per second.
@@ -59,15 +59,15 @@ pub trait HybridSystem<const N: usize> {
     /// The guards of a mode.
     fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
 
-    /// Level of a guard. It fires when it falls below zero.
-    fn level(
+    /// GuardValue of a guard. It fires when it falls below zero.
+    fn guard_value(
         &self,
         guard: Self::Guard,
         mode: Self::Mode,
         piece: usize,
         time_s: f64,
         state: &State<N>,
-    ) -> Level;
+    ) -> GuardValue;
 
     /// The guard that has fired already where a piece begins or a mode is entered, if any.
     fn fired_at_once(
@@ -157,7 +157,7 @@ pub struct Settings {
     /// Error allowed in a step, relative to the state's components or to their scales.
     pub relative_tolerance: f64,
     /// More transitions than this are an error.
-    pub most_transitions: usize,
+    pub max_transitions: usize,
 }
 
 /// Final state and cost of a simulation.
@@ -232,10 +232,10 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
         }
         if let Advanced::Fired(guard) = advanced {
             transitions += 1;
-            if transitions > settings.most_transitions {
+            if transitions > settings.max_transitions {
                 return Err(EngineError::TooManyTransitions {
                     time_s: now.time_s,
-                    most: settings.most_transitions,
+                    most: settings.max_transitions,
                 });
             }
             let (to, after) = system.reset(guard, now.mode, piece, now.time_s, &now.state);
@@ -405,8 +405,8 @@ fn land<S: HybridSystem<N>, const N: usize>(
         ControlFlow::Continue(())
     };
     integrate(&again, slope, watch, cost)?;
-    let level = system.level(guard, mode, piece, time_s, &landed.end);
-    let rest_s = -level.value / level.rate;
+    let guard = system.guard_value(guard, mode, piece, time_s, &landed.end);
+    let rest_s = -guard.value / guard.rate;
     if rest_s.abs() < CLOSED_BY_TANGENT * span_s {
         landed.end_s += rest_s;
         landed.end += landed.end_slope * rest_s;
@@ -421,11 +421,11 @@ const INTERPOLATED: f64 = 2e-4;
 /// Largest part of a step that may be closed along the tangent on landing.
 const CLOSED_BY_TANGENT: f64 = 1e-4;
 
-/// A guard's level at an instant.
+/// A guard's guard at an instant.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     time_s: f64,
-    level: Level,
+    guard: GuardValue,
 }
 
 /// The first guard to fire within a step, and when.
@@ -439,7 +439,7 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
     for guard in system.guards(mode) {
         let point = |time_s: f64, state: &State<N>| Point {
             time_s,
-            level: system.level(*guard, mode, piece, time_s, state),
+            guard: system.guard_value(*guard, mode, piece, time_s, state),
         };
         let (start, end) = (
             point(step.start_s, &step.start),
@@ -459,12 +459,12 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
 /// goes unseen.
 const HALVINGS: u32 = 20;
 
-/// The first instant after `start`, up to `end`, at which a level falls below zero.
+/// The first instant after `start`, up to `end`, at which a guard falls below zero.
 ///
-/// Between two points the level is taken for the cubic with their values and rates. It lies within the
+/// Between two points the guard is taken for the cubic with their values and rates. It lies within the
 /// range of its Bernstein coefficients, and is monotone if they are; so they mostly show that nothing
-/// happens, or that the level falls and no more. Where they show neither, the interval is halved. A
-/// level that is negative at the start cannot fall below zero before it has risen above.
+/// happens, or that the guard falls and no more. Where they show neither, the interval is halved. A
+/// guard that is negative at the start cannot fall below zero before it has risen above.
 fn first_crossing(
     start: Point,
     end: Point,
@@ -473,10 +473,10 @@ fn first_crossing(
 ) -> Option<f64> {
     let third_s = (end.time_s - start.time_s) / 3.0;
     let bernstein = [
-        start.level.value,
-        start.level.value + third_s * start.level.rate,
-        end.level.value - third_s * end.level.rate,
-        end.level.value,
+        start.guard.value,
+        start.guard.value + third_s * start.guard.rate,
+        end.guard.value - third_s * end.guard.rate,
+        end.guard.value,
     ];
     let never_negative = bernstein.iter().all(|value| *value >= 0.0);
     if never_negative || bernstein.is_sorted() {
@@ -484,21 +484,21 @@ fn first_crossing(
     }
     let falls = bernstein.is_sorted_by(|earlier, later| earlier >= later);
     if falls || halvings == 0 {
-        let crosses = start.level.value >= 0.0 && end.level.value < 0.0;
-        return crosses.then(|| falling_root(start.time_s, end.time_s, |time_s| at(time_s).level));
+        let crosses = start.guard.value >= 0.0 && end.guard.value < 0.0;
+        return crosses.then(|| falling_root(start.time_s, end.time_s, |time_s| at(time_s).guard));
     }
     let middle = at(0.5 * (start.time_s + end.time_s));
     first_crossing(start, middle, halvings - 1, at)
         .or_else(|| first_crossing(middle, end, halvings - 1, at))
 }
 
-/// Where a falling level that is not negative at the start but at the end is zero: Newton's method from
+/// Where a falling guard that is not negative at the start but at the end is zero: Newton's method from
 /// the end, kept inside the bracket by bisection.
-pub(crate) fn falling_root(start_s: f64, end_s: f64, level: impl Fn(f64) -> Level) -> f64 {
+pub(crate) fn falling_root(start_s: f64, end_s: f64, guard: impl Fn(f64) -> GuardValue) -> f64 {
     let (mut positive_s, mut negative_s) = (start_s, end_s);
     let mut guess_s = end_s;
     for _ in 0..200 {
-        let at_guess = level(guess_s);
+        let at_guess = guard(guess_s);
         if at_guess.value < 0.0 {
             negative_s = guess_s;
         } else {
@@ -522,12 +522,12 @@ pub(crate) fn falling_root(start_s: f64, end_s: f64, level: impl Fn(f64) -> Leve
 mod tests {
     use super::*;
 
-    fn crossing(end_s: f64, level: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+    fn crossing(end_s: f64, guard: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         let at = |time_s: f64| {
-            let (value, rate) = level(time_s);
+            let (value, rate) = guard(time_s);
             Point {
                 time_s,
-                level: Level { value, rate },
+                guard: GuardValue { value, rate },
             }
         };
         first_crossing(at(0.0), at(end_s), HALVINGS, &at)

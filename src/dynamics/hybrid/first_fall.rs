@@ -24,7 +24,7 @@ pub fn overturns<C: MechanismChain>(
         end_s: rocking.ground().end_s() + AFTER_S,
         relative_tolerance,
         // Leaving the rest, and what ends that.
-        most_transitions: 2,
+        max_transitions: 2,
     };
     let state = RockingState::zeros();
     let finish = simulate(rocking, Mode::Rest, state, &settings, &mut FirstFall)?;

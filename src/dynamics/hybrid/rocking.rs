@@ -10,7 +10,7 @@
 
 use nalgebra::Vector2;
 
-use super::engine::{HybridSystem, Level};
+use super::engine::{GuardValue, HybridSystem};
 use super::integrator::{State, Step};
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::dynamics::history::State as Doing;
@@ -121,7 +121,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         };
         if let Some(first) = chain.link(0) {
             rocking.barrier = rocking.barrier_of(first);
-            let opening_g = first.at_zero.rise / first.at_zero.sway;
+            let opening_g = first.at_zero.s_y / first.at_zero.s_x;
             rocking.uplift_g = rocking.uplift_g.max(OPENING_FACTOR * opening_g);
         }
         rocking
@@ -194,8 +194,8 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         rate: f64,
         ground_m_s2: Vector2<f64>,
     ) -> f64 {
-        let force = (self.gravity_m_s2 + ground_m_s2.y) * coefficients.rise
-            + ground_m_s2.x * coefficients.sway;
+        let force = (self.gravity_m_s2 + ground_m_s2.y) * coefficients.s_y
+            + ground_m_s2.x * coefficients.s_x;
         let length_m = self.chain.length_m();
         let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
         -(force + length_m * inertial) / (length_m * coefficients.inertia)
@@ -237,7 +237,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
 
     /// Slope of the potential energy at `q = 0`.
     fn weight(&self, link: &Link<C::Mechanism>) -> f64 {
-        self.gravity_m_s2 * link.at_zero.rise / self.chain.length_m()
+        self.gravity_m_s2 * link.at_zero.s_y / self.chain.length_m()
     }
 
     /// Largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the
@@ -290,7 +290,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
         let (q, rate) = (state[0], state[1]);
         let coefficients = link.mechanism.coefficients(q);
-        let push = ground_m_s2.x * coefficients.sway + ground_m_s2.y * coefficients.rise;
+        let push = ground_m_s2.x * coefficients.s_x + ground_m_s2.y * coefficients.s_y;
         let work = -push * rate / self.chain.length_m();
         RockingState::new(
             rate,
@@ -381,37 +381,37 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         }
     }
 
-    fn level(
+    fn guard_value(
         &self,
         guard: Guard,
         mode: Self::Mode,
         piece: usize,
         time_s: f64,
         state: &RockingState,
-    ) -> Level {
+    ) -> GuardValue {
         let piece = self.piece(piece);
         match (guard, mode) {
             (Guard::Uplift(sway), _) => {
                 let (acceleration, jerk) = piece.at(time_s);
                 let tilt = Vector2::new(sway.sign(), self.uplift_g);
-                Level {
+                GuardValue {
                     value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
                     rate: tilt.dot(&jerk),
                 }
             }
-            (Guard::Closing, _) => Level {
+            (Guard::Closing, _) => GuardValue {
                 value: state[0],
                 rate: state[1],
             },
-            (Guard::Critical, Mode::Rocking { link, .. }) if piece.stays_still() => Level {
+            (Guard::Critical, Mode::Rocking { link, .. }) if piece.stays_still() => GuardValue {
                 value: link.critical_rad - state[0],
                 rate: -state[1],
             },
-            (Guard::Limit, Mode::Rocking { link, .. }) => Level {
+            (Guard::Limit, Mode::Rocking { link, .. }) => GuardValue {
                 value: link.limit_rad - state[0],
                 rate: -state[1],
             },
-            (Guard::Critical | Guard::Limit, _) => Level {
+            (Guard::Critical | Guard::Limit, _) => GuardValue {
                 value: 1.0,
                 rate: 0.0,
             },
@@ -427,7 +427,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
     ) -> Option<Guard> {
         match mode {
             Mode::Rest => self.guards(mode).iter().copied().find(|guard| {
-                let level = self.level(*guard, mode, piece, time_s, state);
+                let level = self.guard_value(*guard, mode, piece, time_s, state);
                 level.value < 0.0
             }),
             Mode::Rocking { link, .. } => {

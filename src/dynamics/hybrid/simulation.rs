@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 
-use super::engine::{HybridSystem, Level, Observer, Settings, Transition, falling_root, simulate};
+use super::engine::{
+    GuardValue, HybridSystem, Observer, Settings, Transition, falling_root, simulate,
+};
 use super::integrator::Step;
 use super::rocking::{Guard, Mode, Rocking, RockingState};
 use crate::argument::ArgumentError;
@@ -49,7 +51,7 @@ impl<C: MechanismChain> Model for C {
         let settings = Settings {
             end_s: request.end_s,
             relative_tolerance: request.relative_tolerance,
-            most_transitions: MAX_TRANSITIONS,
+            max_transitions: MAX_TRANSITIONS,
         };
         let mut tally = Tally::new(&rocking, mode, &state);
         let mut sampler = recorder.map(|recorder| Sampler::new(request.output_step_s, recorder));
@@ -357,7 +359,7 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
         // It may turn round in the very step in which it leaves the rest, at no rate.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
             let bend = step.end_slope[1] - step.start_slope[1];
-            let turn_s = falling_root(step.start_s, step.end_s, |time_s| Level {
+            let turn_s = falling_root(step.start_s, step.end_s, |time_s| GuardValue {
                 value: rocking.between(step, time_s)[1],
                 rate: step.start_slope[1]
                     + bend * (time_s - step.start_s) / (step.end_s - step.start_s),
@@ -368,7 +370,7 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
         if step.start[0] < link.critical_rad && step.end[0] >= link.critical_rad {
             let passage_s = falling_root(step.start_s, step.end_s, |time_s| {
                 let state = rocking.between(step, time_s);
-                Level {
+                GuardValue {
                     value: link.critical_rad - state[0],
                     rate: -state[1],
                 }

@@ -273,8 +273,8 @@ impl Mechanism for Linkage {
                 * ((self.middle.polar * middle_rate - coupling) * middle_slope
                     + self.right.polar * right_rate * right_slope
                     - coupling_slope * middle_rate),
-            sway: path.x,
-            rise: path.y,
+            s_x: path.x,
+            s_y: path.y,
         }
     }
 
@@ -356,7 +356,7 @@ mod tests {
             let h = 1e-5;
             let exact = linkage.coefficients(q);
             let slope = (linkage.displacement(q + h) - linkage.displacement(q - h)) / (2.0 * h);
-            prop_assert!((slope - Vector2::new(exact.sway, exact.rise)).norm() < 1e-8);
+            prop_assert!((slope - Vector2::new(exact.s_x, exact.s_y)).norm() < 1e-8);
             let inertia = |q| linkage.coefficients(q).inertia;
             let slope = (inertia(q + h) - inertia(q - h)) / (2.0 * h);
             prop_assert!((slope - exact.inertia_slope).abs() < 1e-6 * (1.0 + slope.abs()));
@@ -385,7 +385,7 @@ mod tests {
         let field = mechanism.field();
         let coefficients = linkage.coefficients(0.0);
         assert!((coefficients.inertia - field.product(&field, &ring)).abs() < 1e-14);
-        let ratio = coefficients.rise / coefficients.sway;
+        let ratio = coefficients.s_y / coefficients.s_x;
         assert!(
             (ratio - crate::mechanics::four_link::limit::acceleration_g(&mechanism, &ring)).abs()
                 < 1e-12
