@@ -1,7 +1,8 @@
 //! Scenario files: what is read, what is refused and where, and how it is written back.
 #![allow(clippy::unwrap_used)]
 
-use archrock::scenario::{Column, Ground, Place, Scenario, ScenarioErrors, Simulation, Structure};
+use archrock::Column;
+use archrock::scenario::{Ground, Place, Scenario, ScenarioErrors, Simulation, Structure};
 use archrock::{GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
 
@@ -40,11 +41,15 @@ fn defaults() {
         panic!("an arch")
     };
     assert_eq!(
-        [arch.mean_radius_m, arch.thickness_ratio, arch.embrace_deg],
+        [
+            arch.mean_radius_m(),
+            arch.thickness_ratio(),
+            arch.embrace_deg()
+        ],
         [5.0, 0.15, 180.0]
     );
-    assert_eq!([arch.depth_m, arch.density_kg_m3], [1.0, 2000.0]);
-    assert_eq!(arch.voussoirs, None);
+    assert_eq!([arch.depth_m(), arch.density_kg_m3()], [1.0, 2000.0]);
+    assert_eq!(arch.voussoirs(), None);
     assert_eq!(
         scenario.simulation,
         Simulation {
@@ -283,12 +288,10 @@ fn structures() {
 #[test]
 fn columns() {
     let scenario = parse(COLUMN).unwrap();
-    let expected = Column {
-        height_m: 4.0,
-        width_m: 0.8,
-        depth_m: 1.0,
-        density_kg_m3: 2000.0,
-    };
+    let expected = Column::new(4.0, 0.8)
+        .and_then(|column| column.with_depth_m(1.0))
+        .and_then(|column| column.with_density_kg_m3(2000.0))
+        .unwrap();
     assert_eq!(scenario.structure, Structure::Column(expected));
     assert_errors(
         "[column]\nheight = 4\nwidth_m = -0.8\nmean_radius_m = 5\n",
