@@ -464,11 +464,12 @@ impl Program {
                 own.m22 -= taken.m22;
             }
             if pin.parted {
-                least = least.min(own.m11 / free[0]);
+                least = lower(least, own.m11 / free[0]);
                 pin.pivot = Matrix2::new(1.0 / own.m11, 0.0, 0.0, 0.0);
             } else {
                 let determinant = own.m11 * own.m22 - own.m12 * own.m12;
-                least = least.min(own.m11 / free[0]).min(determinant / (own.m11 * free[1]));
+                least = lower(least, own.m11 / free[0]);
+                least = lower(least, determinant / (own.m11 * free[1]));
                 let inverse = 1.0 / determinant;
                 pin.pivot = Matrix2::new(
                     own.m22 * inverse,
@@ -847,6 +848,11 @@ impl Program {
         self.answer = answer;
         true
     }
+}
+
+/// The lower of two numbers, or what is not a number.
+fn lower(one: f64, other: f64) -> f64 {
+    if one <= other { one } else { other }
 }
 
 impl Answer {
