@@ -287,7 +287,11 @@ fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {
     ] {
         if !(value > 0.0 && value < f64::INFINITY) {
             let allowed = "it must be positive and finite";
-            return Err(FreeHingeError::Setting { name, value, allowed });
+            return Err(FreeHingeError::Setting {
+                name,
+                value,
+                allowed,
+            });
         }
     }
     if settings.shortest_step_s > settings.longest_step_s {
@@ -450,10 +454,16 @@ impl<'a> Engine<'a> {
 
     /// Takes up the initial rotations, at rest.
     fn release(&mut self, rotations_rad: &[f64]) -> Result<(), FreeHingeError> {
-        let finite = rotations_rad.iter().filter(|angle| angle.is_finite()).count();
+        let finite = rotations_rad
+            .iter()
+            .filter(|angle| angle.is_finite())
+            .count();
         let blocks = self.row.blocks().len();
         if finite != blocks || rotations_rad.len() != blocks {
-            return Err(FreeHingeError::Rotations { given: finite, blocks });
+            return Err(FreeHingeError::Rotations {
+                given: finite,
+                blocks,
+            });
         }
         self.placement.turn(rotations_rad);
         self.close();
@@ -463,7 +473,10 @@ impl<'a> Engine<'a> {
         }
         let gaps = self.placement.gaps_m().iter();
         let active: Vec<Corners> = gaps.map(|gaps| gaps.map(|gap| gap == 0.0)).collect();
-        let open = active.iter().filter(|corners| **corners != [true; 2]).count();
+        let open = active
+            .iter()
+            .filter(|corners| **corners != [true; 2])
+            .count();
         // Fewer than three hinges do not hold an arch: it needs those of the beginning.
         if self.row.supports() == Supports::Left || open >= 3 {
             self.program.start_from(&active);
@@ -480,16 +493,21 @@ impl<'a> Engine<'a> {
         let mut samples = 0_u32;
         let quiet_s = self.ground.end_s();
         loop {
-            let mark = self.settings.output_step_s.map_or(f64::INFINITY, |step| {
-                f64::from(samples) * step
-            });
+            let mark = self
+                .settings
+                .output_step_s
+                .map_or(f64::INFINITY, |step| f64::from(samples) * step);
             if self.time >= mark - 1e-9 * self.settings.shortest_step_s {
                 samples += 1;
                 self.sample(recorder)?;
                 continue;
             }
             let outcome = if self.potential < -FALLEN_ENERGY_RATIO * self.energy_unit {
-                let sway = if self.sway() > 0.0 { Sway::Right } else { Sway::Left };
+                let sway = if self.sway() > 0.0 {
+                    Sway::Right
+                } else {
+                    Sway::Left
+                };
                 let time_s = self.highest_s;
                 Some(Outcome::Overturned { sway, time_s })
             } else if self.time >= quiet_s && self.rests() {
@@ -598,9 +616,11 @@ impl<'a> Engine<'a> {
 
     /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
     fn impulse(&self, from_s: f64, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
-        let ground =
-            self.ground.velocity_m_s(to_s) - self.ground.velocity_m_s(from_s.max(0.0));
-        (-ground - Vector2::new(0.0, self.gravity * (to_s - from_s)), ground)
+        let ground = self.ground.velocity_m_s(to_s) - self.ground.velocity_m_s(from_s.max(0.0));
+        (
+            -ground - Vector2::new(0.0, self.gravity * (to_s - from_s)),
+            ground,
+        )
     }
 
     /// The interval of the kick of a step.
@@ -769,12 +789,16 @@ impl<'a> Engine<'a> {
         if !ordinary {
             return;
         }
-        self.program.joint_impulses(&self.placement, &mut self.shares);
+        self.program
+            .joint_impulses(&self.placement, &mut self.shares);
         let (mut least, mut demand) = (f64::INFINITY, 0.0_f64);
         for [_, normal] in &self.shares {
             least = least.min(*normal);
         }
-        let most = self.shares.iter().fold(0.0_f64, |most, [_, n]| most.max(*n));
+        let most = self
+            .shares
+            .iter()
+            .fold(0.0_f64, |most, [_, n]| most.max(*n));
         for [tangential, normal] in &self.shares {
             if *normal > LOADED * most {
                 demand = demand.max(tangential.abs() / normal);
@@ -830,7 +854,10 @@ impl<'a> Engine<'a> {
     fn weigh_pieces(&mut self) {
         let blocks = self.row.blocks();
         for index in 0..self.pieces.len() {
-            let end = self.pieces.get(index + 1).map_or(blocks.len(), |next| next.first);
+            let end = self
+                .pieces
+                .get(index + 1)
+                .map_or(blocks.len(), |next| next.first);
             let piece = &mut self.pieces[index];
             let (mut first, mut mass) = (Vector2::zeros(), 0.0);
             for (block, centre) in blocks[piece.first..end]
@@ -965,7 +992,6 @@ impl Engine<'_> {
     fn audit(&mut self, kinetic: f64) {
         let due = self.start_energy + self.ground_work - self.run.energy_taken_j;
         let defect = (kinetic + self.potential - due) / self.energy_unit;
-        if std::env::var("AUD").is_ok() {eprintln!("aud {:.6} {:.4e} h {:.3e}",self.time,defect,self.last_step);}
         let worst = &mut self.run.energy_defect_ratio;
         *worst = worst.max(defect.abs());
     }
@@ -1011,7 +1037,9 @@ impl Engine<'_> {
     fn end_cycle(&mut self, energy: Option<f64>) {
         if let Some(mut cycle) = self.cycle.take() {
             cycle.duration_s = self.time - cycle.start_s;
-            let ratio = energy.zip(self.cycle_energy).map(|(after, before)| after / before);
+            let ratio = energy
+                .zip(self.cycle_energy)
+                .map(|(after, before)| after / before);
             cycle.energy_ratio = ratio.filter(|ratio| ratio.is_finite());
             self.run.half_cycles.push(cycle);
             self.cycle_energy = energy;
@@ -1022,11 +1050,18 @@ impl Engine<'_> {
         self.shut.clear();
         self.opened.clear();
         for joint in 0..self.touching.len() {
-            if self.closed[joint] != [true; 2] && self.placement.is_shut(joint) && self.program.keeps_shut(joint) {
+            if self.closed[joint] != [true; 2]
+                && self.placement.is_shut(joint)
+                && self.program.keeps_shut(joint)
+            {
                 self.shut.push(joint);
             }
         }
-        let fastest = self.program.open_joints().flat_map(|(_, rates)| rates).fold(0.0, f64::max);
+        let fastest = self
+            .program
+            .open_joints()
+            .flat_map(|(_, rates)| rates)
+            .fold(0.0, f64::max);
         for (joint, rates) in self.program.open_joints() {
             let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
             if self.closed[joint] == [true; 2] && opens {

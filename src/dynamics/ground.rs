@@ -227,7 +227,8 @@ impl Shape {
                         .iter()
                         .map(|(node, weight)| {
                             let offset_s = 0.5 * quarter_s * node;
-                            weight * (self.at(middle_s - offset_s).0 + self.at(middle_s + offset_s).0)
+                            weight
+                                * (self.at(middle_s - offset_s).0 + self.at(middle_s + offset_s).0)
                         })
                         .sum::<f64>()
                 };

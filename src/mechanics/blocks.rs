@@ -42,10 +42,14 @@ pub enum RowError {
         value: f64,
     },
     /// No block, or too many.
-    #[error("{0} blocks: a row has 1 to {MAX_BLOCKS}, since steps get longer and shorter with their number")]
+    #[error(
+        "{0} blocks: a row has 1 to {MAX_BLOCKS}, since steps get longer and shorter with their number"
+    )]
     Count(usize),
     /// The number of joints does not fit.
-    #[error("{joints} joints for {blocks} blocks: a row between two supports has one more, a stack as many")]
+    #[error(
+        "{joints} joints for {blocks} blocks: a row between two supports has one more, a stack as many"
+    )]
     Joints {
         /// Number of blocks.
         blocks: usize,
@@ -56,7 +60,9 @@ pub enum RowError {
     #[error("joints {0} and {next} cross or touch", next = .0 + 1)]
     Crossing(usize),
     /// A block lies on the wrong side of one of its joints, or intrados and extrados are exchanged there.
-    #[error("block {block} is not on its side of joint {joint}: corners must be in the same order at every joint")]
+    #[error(
+        "block {block} is not on its side of joint {joint}: corners must be in the same order at every joint"
+    )]
     Order {
         /// Which block.
         block: usize,
@@ -153,9 +159,8 @@ impl Joint {
         let side = |joint: &Self, point: Vector2<f64>| {
             (joint.extrados_m - joint.intrados_m).perp(&(point - joint.intrados_m))
         };
-        let parted = |one: &Self, two: &Self| {
-            side(one, two.intrados_m) * side(one, two.extrados_m) > 0.0
-        };
+        let parted =
+            |one: &Self, two: &Self| side(one, two.intrados_m) * side(one, two.extrados_m) > 0.0;
         !(parted(self, other) || parted(other, self))
     }
 }
@@ -336,7 +341,13 @@ impl Row {
         counted(voussoirs)?;
         positive("mean radius in m", mean_radius_m)?;
         let faces = ring_joints(ring, &ring.sections(voussoirs), mean_radius_m);
-        Self::between_faces(&faces, Supports::Both, mean_radius_m, depth_m, density_kg_m3)
+        Self::between_faces(
+            &faces,
+            Supports::Both,
+            mean_radius_m,
+            depth_m,
+            density_kg_m3,
+        )
     }
 
     /// Quadrilateral blocks between consecutive faces. The first face lies on the left support; the last one on
@@ -354,7 +365,12 @@ impl Row {
         surface_density(depth_m, density_kg_m3)?;
         let blocks = faces.windows(2).map(|pair| {
             let [left, right] = [pair[0], pair[1]];
-            let outline = [left.intrados_m, left.extrados_m, right.extrados_m, right.intrados_m];
+            let outline = [
+                left.intrados_m,
+                left.extrados_m,
+                right.extrados_m,
+                right.intrados_m,
+            ];
             Block::prism(&outline, depth_m, density_kg_m3)
         });
         let count = match supports {
@@ -383,8 +399,16 @@ impl Row {
             positive("width of a drum in m", drum.base_width_m)?;
             positive("width of a drum in m", drum.top_width_m)?;
             joints.push(face(drum.base_width_m.min(below_m), y));
-            let (bottom, top) = (face(drum.base_width_m, y), face(drum.top_width_m, y + drum.height_m));
-            let outline = [bottom.intrados_m, bottom.extrados_m, top.extrados_m, top.intrados_m];
+            let (bottom, top) = (
+                face(drum.base_width_m, y),
+                face(drum.top_width_m, y + drum.height_m),
+            );
+            let outline = [
+                bottom.intrados_m,
+                bottom.extrados_m,
+                top.extrados_m,
+                top.intrados_m,
+            ];
             blocks.push(Block::prism(&outline, depth_m, density_kg_m3));
             (y, below_m) = (y + drum.height_m, drum.top_width_m);
         }

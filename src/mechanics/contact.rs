@@ -205,7 +205,11 @@ impl Program {
         let mut program = Self {
             supports: row.supports(),
             handedness: row.handedness(),
-            masses: row.blocks().iter().map(|b| (b.mass_kg, b.inertia_kg_m2)).collect(),
+            masses: row
+                .blocks()
+                .iter()
+                .map(|b| (b.mass_kg, b.inertia_kg_m2))
+                .collect(),
             active: vec![[true; 2]; joints],
             moments: vec![NO_MASS; blocks + 1],
             momenta: vec![Momentum::ZERO; blocks + 1],
@@ -310,14 +314,19 @@ impl Program {
         let mut effort = Effort::default();
         let patience = 60 + 2 * frames.len();
         let mut tolerance = RATE_TOLERANCE;
-        // Not a number neither.
+        // Written so that it also fails when the pivot is not a number.
         if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) {
             self.active.fill([false; 2]);
             self.factor(frames);
         }
         self.answer_load(frames, None);
         effort.iterations += 1;
-        self.exchange(frames, load.touching, tolerance * largest_rate, &mut effort.iterations);
+        self.exchange(
+            frames,
+            load.touching,
+            tolerance * largest_rate,
+            &mut effort.iterations,
+        );
         loop {
             if effort.iterations > patience * (effort.relaxed + 1) {
                 tolerance *= 10.0;
@@ -448,7 +457,12 @@ impl Program {
                             * arms[0].perp(&other_axes[p])
                             * arms[1].perp(&axes[q]))
                 };
-                let mut b = Matrix2::new(coupling(0, 0), coupling(0, 1), coupling(1, 0), coupling(1, 1));
+                let mut b = Matrix2::new(
+                    coupling(0, 0),
+                    coupling(0, 1),
+                    coupling(1, 0),
+                    coupling(1, 1),
+                );
                 if previous.parted {
                     b.m21 = 0.0;
                     b.m22 = 0.0;
@@ -502,7 +516,13 @@ impl Program {
         };
         response.motions.extend(self.bodies.iter().map(still));
         let impulse = 1.0;
-        self.complete(frames, &mut response, Some(Press { pin, edge, impulse }), None, false);
+        self.complete(
+            frames,
+            &mut response,
+            Some(Press { pin, edge, impulse }),
+            None,
+            false,
+        );
         self.response = response;
     }
 
@@ -518,7 +538,12 @@ impl Program {
         if let Some(press) = press {
             let frame = &frames[self.pins[press.pin].joint];
             let impulse = frame.normal * press.impulse;
-            self.push(&mut answer.motions, press.pin, frame.corner_m(EDGES[press.edge]), impulse);
+            self.push(
+                &mut answer.motions,
+                press.pin,
+                frame.corner_m(EDGES[press.edge]),
+                impulse,
+            );
         }
         answer.pins.clear();
         let mut carried = Vector2::zeros();
@@ -529,7 +554,11 @@ impl Program {
             if let Some(closure) = closure.filter(|closure| closure.joint == pin.joint) {
                 gap += closure.error_m;
             }
-            let across = if pin.parted { 0.0 } else { -frame.normal.dot(&gap) };
+            let across = if pin.parted {
+                0.0
+            } else {
+                -frame.normal.dot(&gap)
+            };
             let wanted = Vector2::new(-frame.along.dot(&gap), across);
             carried = wanted - pin.gain.transpose() * carried;
             answer.pins.push(carried);
@@ -601,15 +630,23 @@ impl Program {
 
     /// The shut joints inside a body.
     fn shut_joints(&self, body: usize) -> Range<usize> {
-        let start = body.checked_sub(1).map_or(0, |pin| self.pins[pin].joint + 1);
-        let end = self.pins.get(body).map_or(self.active.len(), |pin| pin.joint);
+        let start = body
+            .checked_sub(1)
+            .map_or(0, |pin| self.pins[pin].joint + 1);
+        let end = self
+            .pins
+            .get(body)
+            .map_or(self.active.len(), |pin| pin.joint);
         start..end
     }
 
     /// The blocks of a body.
     fn blocks(&self, body: usize) -> Range<usize> {
         let start = body.checked_sub(1).map_or(0, |pin| self.pins[pin].joint);
-        let end = self.pins.get(body).map_or(self.velocities.len(), |pin| pin.joint);
+        let end = self
+            .pins
+            .get(body)
+            .map_or(self.velocities.len(), |pin| pin.joint);
         start..end
     }
 
@@ -708,7 +745,10 @@ impl Program {
     /// Impulses below this pull.
     fn pull_limit(&self) -> f64 {
         let corners = &self.answer.corners;
-        let largest = corners.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let largest = corners
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |most, x| most.max(x.abs()));
         -(FORCE_TOLERANCE * largest).max(self.force_floor)
     }
 

@@ -240,7 +240,12 @@ impl Placement {
             let face = &self.faces[joint];
             let closing = last_open == Some(joint);
             let right = if closing {
-                self.gaps_m[joint] = closed_gaps(&self.gaps_m[joint], left.rotation_rad, face, self.handedness);
+                self.gaps_m[joint] = closed_gaps(
+                    &self.gaps_m[joint],
+                    left.rotation_rad,
+                    face,
+                    self.handedness,
+                );
                 Pose::UNDEFORMED
             } else if self.gaps_m[joint] == [0.0; 2] {
                 left
@@ -301,7 +306,8 @@ impl Placement {
         } else {
             (Edge::Extrados, face.thickness)
         };
-        let nearer_corner = left.of(face.joint.corner_m(edge)) + normal * (0.5 * gaps[0].min(gaps[1]));
+        let nearer_corner =
+            left.of(face.joint.corner_m(edge)) + normal * (0.5 * gaps[0].min(gaps[1]));
         self.frames[joint] = Frame {
             intrados_m: nearer_corner - along * offset,
             along,
@@ -319,6 +325,15 @@ fn hinged(width_m: f64, nearer_m: f64) -> [f64; 2] {
 
 /// Gaps of the last open joint: its rotation is what brings the row back to zero.
 fn closed_gaps(gaps: &[f64; 2], rotation_rad: f64, face: &Face, handedness: f64) -> [f64; 2] {
-    let gaps = hinged(-handedness * rotation_rad * face.thickness, gaps[0].min(gaps[1]));
-    gaps.map(|gap| if gap < SHUT_RATIO * face.thickness { 0.0 } else { gap })
+    let gaps = hinged(
+        -handedness * rotation_rad * face.thickness,
+        gaps[0].min(gaps[1]),
+    );
+    gaps.map(|gap| {
+        if gap < SHUT_RATIO * face.thickness {
+            0.0
+        } else {
+            gap
+        }
+    })
 }

@@ -56,7 +56,9 @@ pub enum StabilityError {
 /// When the velocities under the weight are not found.
 pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
     let mut trial = Trial::new(row);
-    Ok(trial.moves(Vector2::new(0.0, -1.0))?.map(|_| trial.openings()))
+    Ok(trial
+        .moves(Vector2::new(0.0, -1.0))?
+        .map(|_| trial.openings()))
 }
 
 /// The least horizontal ground acceleration that starts the row swaying to a side; `None` when no push moves
@@ -74,7 +76,10 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
     while let Some(work) = trial.moves(load)? {
         let acceleration_g = work.y / (sway.sign() * work.x);
         // The bounds fall; below rounding they do not.
-        if found.as_ref().is_some_and(|found| acceleration_g >= found.acceleration_g * (1.0 - 1e-14)) {
+        if found
+            .as_ref()
+            .is_some_and(|found| acceleration_g >= found.acceleration_g * (1.0 - 1e-14))
+        {
             break;
         }
         found = Some(RowOnset {
@@ -124,7 +129,9 @@ impl<'a> Trial<'a> {
         for (block, twist) in blocks {
             let velocity = twist.at(block.centre_m);
             work += velocity * block.mass_kg;
-            fastest = fastest.max(velocity.norm()).max(twist.rate.abs() * self.row.size_m());
+            fastest = fastest
+                .max(velocity.norm())
+                .max(twist.rate.abs() * self.row.size_m());
         }
         Ok((fastest > STANDSTILL * load.norm()).then_some(work))
     }
