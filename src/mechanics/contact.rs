@@ -19,8 +19,8 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use super::blocks::{Row, Supports};
-use super::joints::{Closure, Frame, Placement};
 use crate::mechanics::geometry::field::{Momentum, Twist};
+use super::joints::{Closure, Frame, Placement};
 use crate::mechanics::geometry::ring::{Edge, MassMoments};
 
 /// Corner impulses pull when they are more negative than this part of the largest one.
@@ -314,7 +314,7 @@ impl Program {
         let mut effort = Effort::default();
         let patience = 60 + 2 * frames.len();
         let mut tolerance = RATE_TOLERANCE;
-        // Not a number neither.
+        // Written so that it also fails when the pivot is not a number.
         if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) {
             self.active.fill([false; 2]);
             self.factor(frames);
@@ -478,13 +478,12 @@ impl Program {
                 own.m22 -= taken.m22;
             }
             if pin.parted {
-                least = least.min(own.m11 / free[0]);
+                least = lower(least, own.m11 / free[0]);
                 pin.pivot = Matrix2::new(1.0 / own.m11, 0.0, 0.0, 0.0);
             } else {
                 let determinant = own.m11 * own.m22 - own.m12 * own.m12;
-                least = least
-                    .min(own.m11 / free[0])
-                    .min(determinant / (own.m11 * free[1]));
+                least = lower(least, own.m11 / free[0]);
+                least = lower(least, determinant / (own.m11 * free[1]));
                 let inverse = 1.0 / determinant;
                 pin.pivot = Matrix2::new(
                     own.m22 * inverse,
@@ -889,6 +888,11 @@ impl Program {
         self.answer = answer;
         true
     }
+}
+
+/// The lower of two numbers, or what is not a number.
+fn lower(one: f64, other: f64) -> f64 {
+    if one <= other { one } else { other }
 }
 
 impl Answer {

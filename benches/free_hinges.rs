@@ -1,0 +1,122 @@
+//! How fast free hinges are: steps over a record, a history to rest, maps, the worst step of a long row.
+//!
+//! Run with `cargo bench --bench free_hinges`.
+
+use std::f64::consts::PI;
+
+use archrock::dynamics::free_hinges::{Settings, simulate};
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::mechanics::blocks::Row;
+use archrock::mechanics::contact::{Load, Program};
+use archrock::mechanics::geometry::field::{Side, Twist};
+use archrock::mechanics::joints::Placement;
+use archrock::mechanics::four_link::limit::incipient;
+use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::geometry::ring::Ring;
+use divan::Bencher;
+use divan::counter::ItemsCount;
+
+const GRAVITY_M_S2: f64 = 9.81;
+
+fn main() {
+    divan::main();
+}
+
+fn arch(embrace_deg: f64, voussoirs: usize, radius_m: f64) -> Row {
+    let ring = Ring::new(0.15, embrace_deg / 180.0 * PI).expect("a ring");
+    Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).expect("an arch")
+}
+
+/// Broadband noise of 25 s under an envelope, with half as much vertically: the same numbers on every machine.
+fn record(peak_g: f64) -> GroundMotion {
+    let mut state = 1_u64;
+    let mut noise = |peak: f64| -> Vec<(f64, f64)> {
+        let samples = (0..1250_u32).map(|i| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let part = f64::from(u32::try_from(state >> 33).unwrap_or(0)) / f64::from(1_u32 << 31);
+            let time_s = 0.02 * f64::from(i);
+            let envelope = (PI * time_s / 25.0).sin();
+            (time_s, (2.0 * part - 1.0) * peak * envelope * GRAVITY_M_S2)
+        });
+        samples.collect()
+    };
+    let (horizontal, vertical) = (noise(peak_g), noise(0.5 * peak_g));
+    GroundMotion::record(&horizontal, &vertical, 0.0)
+}
+
+/// Mean time of a step, with fixed steps of 0.1 ms over a record of 25 s.
+#[divan::bench(args = [7, 36, 144], sample_count = 3, sample_size = 1)]
+fn step_over_a_record(bencher: Bencher, voussoirs: usize) {
+    let row = arch(157.5, voussoirs, 10.0);
+    let ground = record(0.6);
+    let settings = Settings {
+        longest_step_s: 1e-4,
+        shortest_step_s: 1e-4,
+        end_s: 25.0,
+        output_step_s: None,
+    };
+    let steps = simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ())
+        .map_or(1, |run| run.cost.steps);
+    bencher
+        .counter(ItemsCount::new(steps))
+        .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ()).map(|r| r.end_s));
+}
+
+/// A pulse, and all that follows until rest.
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn history_of_the_semicircle(bencher: Bencher) {
+    let row = arch(180.0, 36, 5.0);
+    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.25 * GRAVITY_M_S2, 0.2, 0.0);
+    let settings = Settings::fine(&row, GRAVITY_M_S2, 60.0);
+    bencher
+        .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ()).map(|r| r.end_s));
+}
+
+/// A grid of 6 x 6 pulses.
+#[divan::bench(args = [7, 36], sample_count = 2, sample_size = 1)]
+fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
+    let row = arch(180.0, voussoirs, 5.0);
+    let settings = Settings::coarse(&row, GRAVITY_M_S2, 30.0);
+    bencher.counter(ItemsCount::new(36_usize)).bench(|| {
+        let cells = (0..36).map(|cell| (f64::from(cell / 6), f64::from(cell % 6)));
+        let runs = cells.map(|(x, y)| {
+            let amplitude = -(0.15 + 0.1 * x) * GRAVITY_M_S2;
+            let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude, 0.1 + 0.08 * y, 0.0);
+            simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ())
+                .map_or(0, |r| r.cost.steps)
+        });
+        runs.sum::<usize>()
+    });
+}
+
+/// All four hinges of a long arch shut at once, from the active set of the motion before: the worst that a step does.
+#[divan::bench(args = [36, 200])]
+fn full_closure(bencher: Bencher, voussoirs: usize) {
+    let ring = Ring::new(0.15, PI).expect("a ring");
+    let row = Row::arch(&ring, voussoirs, 1.0, 1.0, 1.0).expect("an arch");
+    let onset = incipient(&ring, HingeSites::Voussoirs(voussoirs)).expect("it stands");
+    let closing = onset.mechanism.field().scaled(-1.0);
+    let at = |angle_rad: f64| closing.at(angle_rad, Side::After);
+    let sections = ring.sections(voussoirs);
+    let free: Vec<Twist> = sections
+        .windows(2)
+        .map(|ends| at(0.5 * (ends[0] + ends[1])))
+        .collect();
+    let placement = Placement::new(&row);
+    let jumps = vec![Twist::ZERO; voussoirs + 1];
+    let touching = vec![[true; 2]; voussoirs + 1];
+    let mut program = Program::new(&row);
+    bencher.bench_local(|| {
+        program.reset();
+        let load = Load {
+            free: &free,
+            jumps: &jumps,
+            touching: &touching,
+        };
+        program
+            .solve(&placement, &load)
+            .map(|effort| effort.iterations)
+    });
+}
