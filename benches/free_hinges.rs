@@ -8,11 +8,11 @@ use archrock::dynamics::free_hinges::{Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::contact::{Load, Program};
-use archrock::mechanics::geometry::field::{Side, Twist};
-use archrock::mechanics::joints::Placement;
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::joints::Placement;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 

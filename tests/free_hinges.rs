@@ -12,18 +12,18 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Request, history};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, Supports};
-use archrock::mechanics::four_link::certificate;
+use archrock::mechanics::chain::Mechanism as _;
 use archrock::mechanics::column::Column;
 use archrock::mechanics::contact::{Load, Program};
-use archrock::mechanics::geometry::field::{Side, Twist};
+use archrock::mechanics::four_link::certificate;
 use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::joints::Placement;
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
+use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::mechanics::joints::Placement;
 use archrock::mechanics::stability::{StabilityError, falls, onset};
-use archrock::mechanics::chain::Mechanism as _;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,

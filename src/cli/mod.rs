@@ -100,7 +100,9 @@ impl From<SimulationError> for Failure {
             SimulationError::Argument(_) | SimulationError::FreeFall { .. } => {
                 Self::Input(error.to_string())
             }
-            SimulationError::Engine(_) => Self::Work(error.to_string()),
+            SimulationError::Engine(_) | SimulationError::FreeHinges(_) => {
+                Self::Work(error.to_string())
+            }
         }
     }
 }

@@ -9,16 +9,22 @@
 //! Pins move on arcs. What the straight drift of two bodies would part them by over the coming step is taken from their last
 //! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
 
+mod model;
+
+use std::ops::ControlFlow;
+
 use nalgebra::Vector2;
 use thiserror::Error;
+
+pub use model::{FreeHinges, FreeHingesError, Steps};
 
 use super::ground::{GroundMotion, GroundVelocity};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::contact::{ContactError, Corners, Load, Program};
-use crate::mechanics::geometry::field::{Twist, turned};
-use crate::mechanics::joints::{Placement, Pose, SHUT_RATIO};
 use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::{Frame, Placement, Pose, SHUT_RATIO};
 
 /// At rest, kinetic and potential energy are below this part of weight times size.
 const REST_ENERGY_RATIO: f64 = 1e-9;
@@ -139,6 +145,8 @@ pub struct Sample<'a> {
     pub gaps_m: &'a [[f64; 2]],
     /// Placements of the blocks.
     pub poses: &'a [Pose],
+    /// Where the joints are.
+    pub frames: &'a [Frame],
     /// Number of joints that are open.
     pub open_joints: usize,
     /// Largest ratio of tangential to normal force at a joint that is pressed, in the step before.
@@ -160,16 +168,30 @@ pub struct Impact<'a> {
     pub shut: &'a [usize],
     /// Joints that open at once.
     pub opened: &'a [usize],
+    /// Kinetic energy before, in joules.
+    pub energy_before_j: f64,
     /// Kinetic energy taken, in joules.
     pub energy_taken_j: f64,
+    /// Rotations of the blocks in radians.
+    pub rotations_rad: &'a [f64],
+    /// Rotation rates of the blocks after the impact, in rad/s.
+    pub rates_after_rad_s: &'a [f64],
+    /// Potential energy above the undeformed row in joules.
+    pub potential_j: f64,
+    /// Placements of the blocks.
+    pub poses: &'a [Pose],
 }
 
 /// Who listens to a motion.
 pub trait Recorder {
-    /// At every output time.
-    fn sample(&mut self, _: &Sample) {}
-    /// At every impact.
-    fn impact(&mut self, _: &Impact) {}
+    /// At every output time, and at the end. To break ends the motion.
+    fn sample(&mut self, _: &Sample) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// At every impact. To break ends the motion.
+    fn impact(&mut self, _: &Impact) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// Nobody does.
@@ -276,6 +298,11 @@ pub fn simulate(
     engine.run(recorder)
 }
 
+/// Potential energy below which a row has overturned, in joules.
+fn fallen_energy_j(row: &Row, gravity_m_s2: f64) -> f64 {
+    -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m()
+}
+
 fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {
     let output_step_s = settings.output_step_s.unwrap_or(1.0);
     for (name, value) in [
@@ -338,6 +365,8 @@ struct Engine<'a> {
     settings: &'a Settings,
     /// Weight times size.
     energy_unit: f64,
+    /// Potential energy below which the row has overturned.
+    fallen: f64,
     thinnest: f64,
     time: f64,
     /// The last step, zero where position and velocity belong to the same instant.
@@ -375,6 +404,8 @@ struct Engine<'a> {
     highest_s: f64,
     step_iterations: usize,
     moved: bool,
+    /// Whether the recorder broke.
+    stopped: bool,
     run: Run,
 }
 
@@ -391,6 +422,7 @@ impl<'a> Engine<'a> {
             gravity,
             settings,
             energy_unit: row.mass_kg() * gravity * row.size_m(),
+            fallen: fallen_energy_j(row, gravity),
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
             time: 0.0,
             last_step: 0.0,
@@ -423,6 +455,7 @@ impl<'a> Engine<'a> {
             highest_s: 0.0,
             step_iterations: 0,
             moved: false,
+            stopped: false,
             run: Run {
                 outcome: Outcome::Rocking,
                 end_s: 0.0,
@@ -493,6 +526,7 @@ impl<'a> Engine<'a> {
 
     fn run(mut self, recorder: &mut impl Recorder) -> Result<Run, FreeHingeError> {
         let mut samples = 0_u32;
+        let mut sampled_s = None;
         let quiet_s = self.ground.end_s();
         loop {
             let mark = self
@@ -502,9 +536,12 @@ impl<'a> Engine<'a> {
             if self.time >= mark - 1e-9 * self.settings.shortest_step_s {
                 samples += 1;
                 self.sample(recorder)?;
+                sampled_s = Some(self.time);
                 continue;
             }
-            let outcome = if self.potential < -FALLEN_ENERGY_RATIO * self.energy_unit {
+            let outcome = if self.stopped {
+                Some(Outcome::Rocking)
+            } else if self.potential < self.fallen {
                 let sway = if self.sway() > 0.0 {
                     Sway::Right
                 } else {
@@ -529,6 +566,9 @@ impl<'a> Engine<'a> {
             }
             self.step(mark.min(self.settings.end_s), recorder)?;
             self.observe();
+        }
+        if self.settings.output_step_s.is_some() && sampled_s != Some(self.time) && !self.stopped {
+            self.sample(recorder)?;
         }
         self.end_cycle(None);
         self.run.end_s = self.time;
@@ -1070,12 +1110,29 @@ impl Engine<'_> {
                 self.opened.push(joint);
             }
         }
-        recorder.impact(&Impact {
+        self.note_rotations();
+        for (rate, twist) in self.rates.iter_mut().zip(self.program.velocities()) {
+            *rate = twist.rate;
+        }
+        let energy_taken_j = self.run.energy_taken_j - taken_before;
+        let flow = recorder.impact(&Impact {
             time_s: self.time,
             shut: &self.shut,
             opened: &self.opened,
-            energy_taken_j: self.run.energy_taken_j - taken_before,
+            energy_before_j: kinetic(&self.pieces) + energy_taken_j,
+            energy_taken_j,
+            rotations_rad: &self.rotations,
+            rates_after_rad_s: &self.rates,
+            potential_j: self.potential,
+            poses: self.placement.poses(),
         });
+        self.stopped |= flow.is_break();
+    }
+
+    fn note_rotations(&mut self) {
+        for (rotation, pose) in self.rotations.iter_mut().zip(self.placement.poses()) {
+            *rotation = pose.rotation_rad;
+        }
     }
 
     fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
@@ -1098,22 +1155,22 @@ impl Engine<'_> {
         self.ground_work -= work;
         self.audit(kinetic_j);
         self.ground_work += work;
-        for (rotation, pose) in self.rotations.iter_mut().zip(self.placement.poses()) {
-            *rotation = pose.rotation_rad;
-        }
+        self.note_rotations();
         let gaps_m = self.placement.gaps_m();
-        recorder.sample(&Sample {
+        let flow = recorder.sample(&Sample {
             time_s: self.time,
             rotations_rad: &self.rotations,
             rates_rad_s: &self.rates,
             gaps_m,
             poses: self.placement.poses(),
+            frames: self.placement.frames(),
             open_joints: gaps_m.iter().filter(|gaps| **gaps != [0.0; 2]).count(),
             friction_demand: self.friction_demand,
             least_normal_n: self.least_normal,
             kinetic_j,
             potential_j: self.potential,
         });
+        self.stopped |= flow.is_break();
         Ok(())
     }
 }

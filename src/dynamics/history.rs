@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 
+use super::free_hinges::Run;
 use super::hybrid::integrator::Cost;
 use super::model::Recorder;
 use super::thrust::ThrustRecord;
@@ -207,8 +208,10 @@ pub struct Summary {
     /// The demands over all samples, if any were made; of a structure that overturns, over those before
     /// it passes the unstable equilibrium for the last time.
     pub thrust: Option<ThrustRecord>,
-    /// Work done by the integrator.
+    /// Work done by the integrator: of a row of blocks, its systems of equations, and its steps.
     pub cost: Cost,
+    /// What only a row of blocks can tell.
+    pub free_hinges: Option<Box<Run>>,
 }
 
 /// A history with all that was recorded of it.

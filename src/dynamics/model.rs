@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 use thiserror::Error;
 
+use super::free_hinges::FreeHingeError;
 use super::ground::GroundMotion;
 use super::history::{Event, History, Recording, Sample, Summary};
 use super::hybrid::engine::EngineError;
@@ -168,6 +169,9 @@ pub enum SimulationError {
     /// The integration failed.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The motion of a row of blocks could not be computed.
+    #[error(transparent)]
+    FreeHinges(#[from] FreeHingeError),
 }
 
 /// Takes what happens in a history. To break ends the history there.

@@ -15,10 +15,13 @@
 //! [`ImpactModel::Mirrored`]) are the same: Housner's.
 
 use std::f64::consts::FRAC_PI_2;
+use std::ops::RangeInclusive;
 
 use nalgebra::Vector2;
 use serde::Serialize;
 
+use super::arch::{DENSITY_KG_M3, DEPTH_M};
+use super::blocks::MAX_BLOCKS;
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -91,18 +94,25 @@ impl Mechanism for Tilting {
 
 /// Sizes in metres, and densities in kg/m3: positive, and so that no product of them leaves the range of an
 /// `f64`.
-const MAGNITUDE: std::ops::RangeInclusive<f64> = 1e-9..=1e12;
+const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 
 /// A free-standing column: a rectangular block on rigid ground, which does not slide.
 ///
 /// It may have any proportions. A column wider than `sqrt(2)` times its height stops at its first impact;
 /// and one that starts to rock from rest needs a friction coefficient of its width over its height.
+///
+/// It is one block unless it is cut into drums, and as wide at the top as at the base unless it is tapered. Housner's
+/// model is of one prismatic block; the others are simulated with free hinges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
     height_m: f64,
     width_m: f64,
     depth_m: f64,
     density_kg_m3: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drum_heights_m: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    top_width_m: Option<f64>,
 }
 
 impl Column {
@@ -114,9 +124,77 @@ impl Column {
         Ok(Self {
             height_m: within("height_m", height_m, MAGNITUDE)?,
             width_m: within("width_m", width_m, MAGNITUDE)?,
-            depth_m: 1.0,
-            density_kg_m3: 2000.0,
+            depth_m: DEPTH_M,
+            density_kg_m3: DENSITY_KG_M3,
+            drum_heights_m: None,
+            top_width_m: None,
         })
+    }
+
+    /// The same column cut into equal drums.
+    ///
+    /// # Errors
+    /// When there is none, or more than a row of blocks may have.
+    pub fn with_drums(self, drums: usize) -> Result<Self, ArgumentError> {
+        #[expect(clippy::cast_precision_loss, reason = "counts of drums are small")]
+        let count = drums as f64;
+        #[expect(clippy::cast_precision_loss, reason = "the limit is small")]
+        within("drums", count, 1.0..=MAX_BLOCKS as f64)?;
+        let heights_m = vec![self.height_m / count; drums];
+        Ok(Self {
+            drum_heights_m: Some(heights_m),
+            ..self
+        })
+    }
+
+    /// The same column cut into drums of these heights in metres, from the base up.
+    ///
+    /// # Errors
+    /// When a height is outside 1e-9 to 1e12, they do not add up to the height of the column (to a millionth), or
+    /// there are none or too many.
+    pub fn with_drum_heights_m(self, heights_m: Vec<f64>) -> Result<Self, ArgumentError> {
+        #[expect(clippy::cast_precision_loss, reason = "counts of drums are small")]
+        within("drums", heights_m.len() as f64, 1.0..=MAX_BLOCKS as f64)?;
+        for height_m in &heights_m {
+            within("drum_heights_m", *height_m, MAGNITUDE)?;
+        }
+        let sum_m: f64 = heights_m.iter().sum();
+        if (sum_m - self.height_m).abs() > 1e-6 * self.height_m {
+            return Err(ArgumentError {
+                argument: "sum of drum_heights_m",
+                value: sum_m,
+                allowed: format!("the height of the column, {:?}", self.height_m),
+            });
+        }
+        Ok(Self {
+            drum_heights_m: Some(heights_m),
+            ..self
+        })
+    }
+
+    /// The same column with another width at the top, in metres: it changes in a straight line.
+    ///
+    /// # Errors
+    /// When it is outside 1e-9 to 1e12.
+    pub fn with_top_width_m(self, top_width_m: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            top_width_m: Some(within("top_width_m", top_width_m, MAGNITUDE)?),
+            ..self
+        })
+    }
+
+    /// Heights of its drums from the base up, in metres; its own height where it is one block.
+    #[must_use]
+    pub fn drum_heights_m(&self) -> Vec<f64> {
+        self.drum_heights_m
+            .clone()
+            .unwrap_or_else(|| vec![self.height_m])
+    }
+
+    /// Width at the top, in metres.
+    #[must_use]
+    pub fn top_width_m(&self) -> f64 {
+        self.top_width_m.unwrap_or(self.width_m)
     }
 
     /// The same column with another depth out of plane, in metres.
@@ -187,9 +265,25 @@ impl RockingColumn {
     /// The column under an impact model.
     ///
     /// # Errors
-    /// When a prescribed restitution coefficient is not in 0 to 1.
+    /// When a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block.
     pub fn new(column: &Column, model: ImpactModel) -> Result<Self, ArgumentError> {
         model.check()?;
+        let drums = column.drum_heights_m().len();
+        if drums > 1 {
+            #[expect(clippy::cast_precision_loss, reason = "counts of drums are small")]
+            return Err(ArgumentError {
+                argument: "drums",
+                value: drums as f64,
+                allowed: "1 in Housner's model: a column of drums needs free hinges".to_owned(),
+            });
+        }
+        if column.top_width_m() != column.width_m {
+            return Err(ArgumentError {
+                argument: "top_width_m",
+                value: column.top_width_m(),
+                allowed: "the width in Housner's model: a taper needs free hinges".to_owned(),
+            });
+        }
         let diagonal_m = column.height_m.hypot(column.width_m);
         let half_diagonal_m = 0.5 * diagonal_m;
         let (sin, cos) = (column.width_m / diagonal_m, column.height_m / diagonal_m);

@@ -19,8 +19,8 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use super::blocks::{Row, Supports};
-use crate::mechanics::geometry::field::{Momentum, Twist};
 use super::joints::{Closure, Frame, Placement};
+use crate::mechanics::geometry::field::{Momentum, Twist};
 use crate::mechanics::geometry::ring::{Edge, MassMoments};
 
 /// Corner impulses pull when they are more negative than this part of the largest one.

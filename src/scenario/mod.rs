@@ -26,6 +26,7 @@
 //! Field names are the keys of the file, units included.
 
 mod error;
+mod free_hinges;
 mod ground;
 mod impact;
 mod initial;
@@ -47,6 +48,7 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::dynamics::free_hinges::Steps;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, Request};
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -79,10 +81,13 @@ pub struct Scenario {
     /// What stands on the ground.
     #[serde(flatten)]
     pub structure: Structure,
+    /// Steps of the model whose joints open and shut anywhere; `None`: four links.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub free_hinges: Option<Steps>,
     /// How the ground moves; `None`: it stays still.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
-    /// What happens when the hinges close.
+    /// What happens when the hinges of four links close; nothing that is asked of free hinges.
     #[serde(serialize_with = "impact::serialize")]
     pub impact: ImpactModel,
     /// Where the motion starts from; `None`: from rest.
@@ -159,7 +164,8 @@ impl Scenario {
     /// Reads a scenario whose files are relative to `folder`.
     fn read_table(table: &mut Table<'_>, folder: &Path) -> Reading<Self> {
         let title = table.optional("title", &Text);
-        let structure = Structure::read(table);
+        let free_hinges = table.table("free_hinges", free_hinges::read);
+        let structure = Structure::read(table, table.gives_table("free_hinges"));
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let gravity_m_s2 = match &simulation {
             Ok(simulation) => Ok(simulation.gravity_m_s2),
@@ -171,6 +177,10 @@ impl Scenario {
             Ok(None) => (Ok(None), GroundMotion::still()),
             Err(reported) => (Err(reported), GroundMotion::still()),
         };
+        if table.gives("free_hinges") && table.gives("impact") {
+            let wrong = "stands beside [free_hinges], where impacts follow from the blocks; allowed is one of them";
+            return Err(table.wrong("impact", wrong));
+        }
         let impact = table.table_or_defaults("impact", impact::read);
         let initial = table.table("initial", |table| {
             Initial::read(table, structure.as_ref().ok())
@@ -190,6 +200,7 @@ impl Scenario {
         Ok(Self {
             title: title?,
             structure: structure?,
+            free_hinges: free_hinges?,
             ground: ground?,
             impact: impact?,
             initial: initial?,

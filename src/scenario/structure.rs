@@ -4,9 +4,11 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 
 use serde::Serialize;
 
-use super::table::{Count, Number, Reading, Table};
+use super::table::{Count, List, Number, Reading, Table};
+use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, Steps};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::arch::{self, Arch};
+use crate::mechanics::blocks::MAX_BLOCKS;
 use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -42,10 +44,14 @@ pub enum Structure {
 }
 
 impl Structure {
-    /// Reads `[arch]` or `[column]`.
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let arch = table.table("arch", |table| read_arch(table).map(Self::Arch));
-        let column = table.table("column", |table| read_column(table).map(Self::Column));
+    /// Reads `[arch]` or `[column]`, to be simulated with free hinges or not.
+    pub(super) fn read(table: &mut Table<'_>, free_hinges: bool) -> Reading<Self> {
+        let arch = table.table("arch", |table| {
+            read_arch(table, free_hinges).map(Self::Arch)
+        });
+        let column = table.table("column", |table| {
+            read_column(table, free_hinges).map(Self::Column)
+        });
         table.exactly_one("tables", vec![("arch", arch), ("column", column)])
     }
 
@@ -59,9 +65,22 @@ impl Structure {
             Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
         })
     }
+
+    /// The model of its motion as a row of blocks whose joints open and shut.
+    ///
+    /// # Errors
+    /// When it is an arch without voussoirs, or cannot stand.
+    pub fn free_hinges(&self, steps: Steps) -> Result<FreeHinges, FreeHingesError> {
+        let model = match self {
+            Self::Arch(arch) => FreeHinges::of_arch(arch)?,
+            Self::Column(column) => FreeHinges::of_column(column)?,
+        };
+        Ok(model.with_steps(steps)?)
+    }
 }
 
-fn read_arch(table: &mut Table<'_>) -> Reading<Arch> {
+/// Reads `[arch]`. It must start as four links, unless its hinges are free: then it must have voussoirs and stand.
+fn read_arch(table: &mut Table<'_>, free_hinges: bool) -> Reading<Arch> {
     let mean_radius_m = table.required("mean_radius_m", &MAGNITUDE);
     let ratio = table.optional("thickness_ratio", &THICKNESS_RATIO);
     let from_m = read_thickness_m(table, mean_radius_m);
@@ -82,8 +101,14 @@ fn read_arch(table: &mut Table<'_>) -> Reading<Arch> {
             None => Ok(arch),
         })
         .expect("the ranges of the keys are those of an arch");
+    if free_hinges && voussoirs.is_none() {
+        return Err(table.wrong_itself(
+            "has no `voussoirs`: the hinges of [free_hinges] open at joints; give their number",
+        ));
+    }
     match arch.incipient() {
         Ok(_) => Ok(arch),
+        Err(LimitError::OtherMechanism { .. } | LimitError::NoPush) if free_hinges => Ok(arch),
         Err(error) => {
             let key = if table.gives("thickness_m") {
                 "thickness_m"
@@ -140,15 +165,54 @@ fn rounded_up(x: f64) -> f64 {
     (x * unit).ceil() / unit
 }
 
-fn read_column(table: &mut Table<'_>) -> Reading<Column> {
+const DRUMS: Count = Count {
+    range: 1..=MAX_BLOCKS,
+    why: "each is a block",
+};
+
+/// Reads `[column]`; drums and a taper go with free hinges only.
+fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);
+    let drums = table.optional("drums", &DRUMS);
+    let drum_heights_m = table.optional("drum_heights_m", &List(&MAGNITUDE));
+    let top_width_m = table.optional("top_width_m", &MAGNITUDE);
+    if !free_hinges {
+        for key in ["drums", "drum_heights_m", "top_width_m"] {
+            if table.gives(key) {
+                let wrong =
+                    "goes with a table [free_hinges]: Housner's model is of one prismatic block";
+                return Err(table.wrong(key, wrong));
+            }
+        }
+    }
+    if table.gives("drums") && table.gives("drum_heights_m") {
+        let wrong = "stands beside `drums`; allowed is one of them";
+        return Err(table.wrong("drum_heights_m", wrong));
+    }
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let (height_m, width_m, depth_m, density_kg_m3) =
         (height_m?, width_m?, depth_m?, density_kg_m3?);
-    let column = Column::new(height_m, width_m)
+    let (drums, drum_heights_m, top_width_m) = (drums?, drum_heights_m?, top_width_m?);
+    let mut column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
-        .and_then(|column| column.with_density_kg_m3(density_kg_m3));
-    Ok(column.expect("the ranges of the keys are within those of a column"))
+        .and_then(|column| column.with_density_kg_m3(density_kg_m3))
+        .expect("the ranges of the keys are within those of a column");
+    if let Some(drums) = drums {
+        column = column
+            .with_drums(drums)
+            .expect("the count is within that of a column");
+    }
+    if let Some(top_width_m) = top_width_m {
+        column = column
+            .with_top_width_m(top_width_m)
+            .expect("the range of the key is within that of a column");
+    }
+    match drum_heights_m {
+        Some(heights_m) => column
+            .with_drum_heights_m(heights_m)
+            .map_err(|error| table.wrong("drum_heights_m", format!("does not fit: {error}"))),
+        None => Ok(column),
+    }
 }

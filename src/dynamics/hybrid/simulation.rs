@@ -95,6 +95,7 @@ impl<C: MechanismChain> Model for C {
                 _ => sampler.thrust,
             }),
             cost: finish.cost,
+            free_hinges: None,
         })
     }
 }

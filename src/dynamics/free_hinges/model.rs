@@ -1,0 +1,530 @@
+//! A row of blocks with free hinges as a model of motion.
+
+use std::ops::ControlFlow;
+
+use serde::Serialize;
+
+use super::{
+    Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder, Sample as RowSample,
+    Settings,
+};
+use crate::argument::{ArgumentError, above};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::{
+    Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
+};
+use crate::dynamics::hybrid::integrator::Cost;
+use crate::dynamics::model::{Initial, Model, Recorder, Request, SimulationError};
+use crate::dynamics::thrust::ThrustRecord;
+use crate::mechanics::arch::Arch;
+use crate::mechanics::blocks::{Row, RowError};
+use crate::mechanics::chain::{Demand, Hinge, Mechanism, MechanismChain};
+use crate::mechanics::column::Column;
+use crate::mechanics::four_link::arch::FourLinkArch;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::Pose as RowPose;
+use crate::mechanics::stability::{StabilityError, onset};
+
+/// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
+///
+/// Joints carry no tension and do not slide; impacts are perfectly inelastic. Nothing is asked of it but the
+/// blocks: which hinges open, and what an impact leaves, follow.
+#[derive(Clone, Debug)]
+pub struct FreeHinges {
+    row: Row,
+    /// The push that starts it to the right and to the left, in units of gravity.
+    incipient_g: [Option<f64>; 2],
+    /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
+    first: Option<FirstMechanism>,
+    steps_s: Steps,
+}
+
+/// Steps that were asked for; without one, it follows the size of the row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Steps {
+    /// The longest, in seconds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longest_step_s: Option<f64>,
+    /// Landings within this time, in seconds, are one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shortest_step_s: Option<f64>,
+}
+
+impl Steps {
+    /// Refuses steps that are none.
+    pub(crate) fn checked(self) -> Result<Self, ArgumentError> {
+        for (argument, value) in [
+            ("longest_step_s", self.longest_step_s),
+            ("shortest_step_s", self.shortest_step_s),
+        ] {
+            if let Some(value) = value {
+                above(argument, value, 0.0, 1e9)?;
+            }
+        }
+        if let (Some(longest_s), Some(shortest_s)) = (self.longest_step_s, self.shortest_step_s)
+            && longest_s < shortest_s
+        {
+            return Err(ArgumentError {
+                argument: "longest_step_s",
+                value: longest_s,
+                allowed: format!("at least the shortest step, {shortest_s:?}"),
+            });
+        }
+        Ok(self)
+    }
+}
+
+/// What the motion of the first mechanism is known by.
+#[derive(Clone, Debug)]
+enum FirstMechanism {
+    /// Four links at the joints of an arch of so many voussoirs.
+    FourLinks(FourLinkArch, usize),
+    /// A stack turns about an edge of its base.
+    Base,
+}
+
+/// Why there is no such model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FreeHingesError {
+    /// The blocks are none, or make no row.
+    #[error(transparent)]
+    Row(#[from] RowError),
+    /// The row does not stand, or that could not be told.
+    #[error(transparent)]
+    Stability(#[from] StabilityError),
+    /// An argument is not allowed.
+    #[error(transparent)]
+    Argument(#[from] ArgumentError),
+}
+
+impl FreeHinges {
+    /// Any row that stands. It cannot be released from a rotated position unless it is a stack.
+    ///
+    /// # Errors
+    /// When the row cannot carry its own weight.
+    pub fn new(row: Row) -> Result<Self, FreeHingesError> {
+        let incipient_g = [
+            onset(&row, Sway::Right)?.map(|onset| onset.acceleration_g),
+            onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
+        ];
+        let first = (row.joints().len() == row.blocks().len()).then_some(FirstMechanism::Base);
+        Ok(Self {
+            row,
+            incipient_g,
+            first,
+            steps_s: Steps::default(),
+        })
+    }
+
+    /// The voussoirs of an arch.
+    ///
+    /// # Errors
+    /// When the arch has no voussoirs, or cannot carry its own weight.
+    pub fn of_arch(arch: &Arch) -> Result<Self, FreeHingesError> {
+        let voussoirs = arch.voussoirs().ok_or(ArgumentError {
+            argument: "voussoirs",
+            value: 0.0,
+            allowed: "given: free hinges open at joints".to_owned(),
+        })?;
+        let row = Row::arch(
+            &arch.ring(),
+            voussoirs,
+            arch.mean_radius_m(),
+            arch.depth_m(),
+            arch.density_kg_m3(),
+        )?;
+        let four_links = FourLinkArch::new(arch.clone(), ImpactModel::MaxRestitution);
+        Ok(Self {
+            first: four_links
+                .ok()
+                .map(|arch| FirstMechanism::FourLinks(arch, voussoirs)),
+            ..Self::new(row)?
+        })
+    }
+
+    /// The drums of a column.
+    ///
+    /// # Errors
+    /// When the drums make no row, or the column cannot carry its own weight.
+    pub fn of_column(column: &Column) -> Result<Self, FreeHingesError> {
+        Self::new(Row::tapered_stack(
+            &column.drum_heights_m(),
+            column.width_m(),
+            column.top_width_m(),
+            column.depth_m(),
+            column.density_kg_m3(),
+        )?)
+    }
+
+    /// The same with other steps.
+    ///
+    /// # Errors
+    /// When a step is not positive and finite, or the longest is shorter than the shortest.
+    pub fn with_steps(self, steps_s: Steps) -> Result<Self, ArgumentError> {
+        let steps_s = steps_s.checked()?;
+        Ok(Self { steps_s, ..self })
+    }
+
+    /// The same with all steps so many times as long, to see what depends on them.
+    #[must_use]
+    pub fn with_steps_times(&self, factor: f64, request: &Request) -> Self {
+        let settings = self.settings(request, true).times(factor);
+        Self {
+            steps_s: Steps {
+                longest_step_s: Some(settings.longest_step_s),
+                shortest_step_s: Some(settings.shortest_step_s),
+            },
+            ..self.clone()
+        }
+    }
+
+    /// The blocks.
+    #[must_use]
+    pub const fn row(&self) -> &Row {
+        &self.row
+    }
+
+    /// Energy that the first mechanism has to gain to overturn, in J, where it is known.
+    #[must_use]
+    pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+        match &self.first {
+            Some(FirstMechanism::FourLinks(arch, _)) => {
+                let barrier = arch.link(0)?.barrier;
+                Some(gravity_m_s2 * barrier * arch.mass_unit_kg() * arch.length_m())
+            }
+            Some(FirstMechanism::Base) | None => match (self.row.blocks(), self.row.joints()) {
+                // One block turns about the nearer edge of its base, up to where its centre is above that.
+                ([block], [base]) => {
+                    let rise = |edge: Edge| {
+                        let arm_m = block.centre_m - base.corner_m(edge);
+                        arm_m.norm() - arm_m.y
+                    };
+                    let rise_m = rise(Edge::Intrados).min(rise(Edge::Extrados));
+                    Some(block.mass_kg * gravity_m_s2 * rise_m)
+                }
+                _ => None,
+            },
+        }
+    }
+
+    /// Steps for samples, or, ten times as coarse at landings, for the outcome alone.
+    fn settings(&self, request: &Request, with_samples: bool) -> Settings {
+        let (row, gravity_m_s2, end_s) = (&self.row, request.gravity_m_s2, request.end_s);
+        let mut settings = if with_samples {
+            Settings::fine(row, gravity_m_s2, end_s)
+        } else {
+            Settings::coarse(row, gravity_m_s2, end_s)
+        };
+        if let Some(longest_s) = self.steps_s.longest_step_s {
+            settings.longest_step_s = longest_s;
+            settings.shortest_step_s = settings.shortest_step_s.min(longest_s);
+        }
+        if let Some(shortest_s) = self.steps_s.shortest_step_s {
+            settings.shortest_step_s = shortest_s;
+            settings.longest_step_s = settings.longest_step_s.max(shortest_s);
+        }
+        settings.output_step_s = with_samples.then_some(request.output_step_s);
+        settings
+    }
+
+    /// Rotations of the blocks when the first mechanism is open so far.
+    fn released(&self, initial: Initial) -> Result<Vec<f64>, SimulationError> {
+        let refused = |allowed: String| {
+            SimulationError::Argument(ArgumentError {
+                argument: "rotation_rad",
+                value: initial.rotation_rad,
+                allowed,
+            })
+        };
+        let blocks = self.row.blocks().len();
+        let mut rotations_rad = match &self.first {
+            Some(FirstMechanism::Base) => vec![-initial.rotation_rad; blocks],
+            Some(FirstMechanism::FourLinks(arch, voussoirs)) => {
+                let (chain, link) = (arch.chain(), arch.link(0));
+                let link = link.expect("an arch that starts as four links has its first mechanism");
+                if initial.rotation_rad >= link.limit_rad {
+                    let limit_rad = link.limit_rad;
+                    return Err(refused(format!(
+                        "below {limit_rad:?}, the limit position of the first mechanism"
+                    )));
+                }
+                let hinges_rad = chain.incipient().mechanism.hinges_rad();
+                let bodies_rad = link.mechanism.rotations(initial.rotation_rad);
+                let sections_rad = chain.ring().sections(*voussoirs);
+                let body = |middle_rad: f64| {
+                    let before = hinges_rad
+                        .iter()
+                        .filter(|hinge| **hinge < middle_rad)
+                        .count();
+                    before.checked_sub(1).and_then(|body| bodies_rad.get(body))
+                };
+                sections_rad
+                    .windows(2)
+                    .map(|ends| body(0.5 * (ends[0] + ends[1])).copied().unwrap_or(0.0))
+                    .collect()
+            }
+            None => {
+                return Err(refused(
+                    "left out: this row starts as no mechanism that it could be released in"
+                        .to_owned(),
+                ));
+            }
+        };
+        if initial.sway == Sway::Left {
+            if matches!(self.first, Some(FirstMechanism::FourLinks(..))) {
+                rotations_rad.reverse();
+            }
+            for rotation in &mut rotations_rad {
+                *rotation = -*rotation;
+            }
+        }
+        Ok(rotations_rad)
+    }
+}
+
+impl Model for FreeHinges {
+    fn bodies(&self) -> Vec<String> {
+        (1..=self.row.blocks().len())
+            .map(|block| block.to_string())
+            .collect()
+    }
+
+    fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
+        match sway {
+            Sway::Right => self.incipient_g[0],
+            Sway::Left => self.incipient_g[1],
+        }
+    }
+
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+        recorder: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError> {
+        request.check()?;
+        let settings = self.settings(request, recorder.is_some());
+        let initial_rad = request
+            .initial
+            .map(|initial| self.released(initial))
+            .transpose()?;
+        let simulate = |recorder: &mut Relay<'_, '_>| {
+            super::simulate(
+                &self.row,
+                ground,
+                request.gravity_m_s2,
+                &settings,
+                initial_rad.as_deref(),
+                recorder,
+            )
+        };
+        let mut relay = Relay {
+            model: self,
+            ground,
+            barrier_j: self.barrier_j(request.gravity_m_s2),
+            fallen_j: super::fallen_energy_j(&self.row, request.gravity_m_s2),
+            phase: 0,
+            thrust: ThrustRecord::default(),
+            sample: undeformed(self.row.blocks().len()),
+            recorder,
+        };
+        let run = simulate(&mut relay)?;
+        let (outcome, outcome_time_s) = match run.outcome {
+            RowOutcome::NeverMoved => (Outcome::NeverMoved, run.end_s),
+            RowOutcome::Rest { time_s } => (Outcome::Rest, time_s),
+            RowOutcome::Overturned { sway, time_s } => (Outcome::Overturned(sway), time_s),
+            RowOutcome::Rocking => (Outcome::StillRocking, run.end_s),
+        };
+        relay.end(outcome, run.end_s);
+        Ok(Summary {
+            outcome,
+            outcome_time_s,
+            end_s: run.end_s,
+            impacts: run.cost.impacts,
+            peak_rotations_rad: run.peaks_rad.clone(),
+            peak_over_critical: None,
+            energy_defect_ratio: run.energy_defect_ratio,
+            thrust: relay.recorder.is_some().then_some(relay.thrust),
+            cost: Cost {
+                evaluations: run.cost.iterations as u64,
+                steps: run.cost.steps as u64,
+            },
+            free_hinges: Some(Box::new(run)),
+        })
+    }
+}
+
+/// Hands on what happens to a row in the words of any model.
+struct Relay<'r, 'k> {
+    model: &'r FreeHinges,
+    ground: &'r GroundMotion,
+    barrier_j: Option<f64>,
+    /// Potential energy below which the row has overturned.
+    fallen_j: f64,
+    phase: usize,
+    thrust: ThrustRecord,
+    /// The sample that is made, again and again.
+    sample: Sample,
+    recorder: Option<&'k mut dyn Recorder>,
+}
+
+impl Relay<'_, '_> {
+    /// What the row does where its blocks are at the given poses.
+    fn doing(&self, poses: &[RowPose], potential_j: f64) -> State {
+        if poses.iter().all(|pose| pose.rotation_rad == 0.0) {
+            return State::Rest;
+        }
+        let blocks = self.model.row.blocks().iter().zip(poses);
+        let shift: f64 = blocks
+            .map(|(block, pose)| block.mass_kg * (pose.of(block.centre_m) - block.centre_m).x)
+            .sum();
+        let sway = if shift > 0.0 { Sway::Right } else { Sway::Left };
+        if potential_j < self.fallen_j {
+            State::Overturned(sway)
+        } else {
+            State::Rocking(sway)
+        }
+    }
+
+    /// Tells of the end, if it is one.
+    fn end(&mut self, outcome: Outcome, end_s: f64) {
+        let (kind, state) = match outcome {
+            Outcome::Rest => (EventKind::Rest, State::Rest),
+            Outcome::Overturned(sway) => (EventKind::Overturned, State::Overturned(sway)),
+            Outcome::NeverMoved | Outcome::StillRocking => return,
+        };
+        if let Some(recorder) = &mut self.recorder {
+            // It ends here anyway.
+            let _ = recorder.event(&Event {
+                time_s: end_s,
+                kind,
+                state,
+                mechanism: None,
+                rotations_rad: self.sample.rotations_rad.clone(),
+                rates_rad_s: self.sample.rates_rad_s.clone(),
+                energy_j: self.sample.energy_j,
+                impact: None,
+            });
+        }
+    }
+}
+
+impl RowRecorder for Relay<'_, '_> {
+    fn sample(&mut self, sample: &RowSample<'_>) -> ControlFlow<()> {
+        let state = self.doing(sample.poses, sample.potential_j);
+        let pieces = self.ground.pieces();
+        let piece = pieces.partition_point(|piece| piece.start_s <= sample.time_s) - 1;
+        let (ground_m_s2, _) = pieces[piece].at(sample.time_s);
+        let demand = Demand {
+            excess_ratio: 0.0,
+            friction: sample.friction_demand,
+        };
+        let next = &mut self.sample;
+        next.time_s = sample.time_s;
+        // Adding zero makes a negative zero positive.
+        next.ground_acceleration_m_s2 = ground_m_s2.x + 0.0;
+        next.vertical_acceleration_m_s2 = ground_m_s2.y + 0.0;
+        next.phase = self.phase;
+        next.state = state;
+        next.rotations_rad.clear();
+        next.rotations_rad.extend(sample.rotations_rad);
+        next.rates_rad_s.clear();
+        next.rates_rad_s.extend(sample.rates_rad_s);
+        next.poses.clear();
+        next.poses.extend(sample.poses.iter().map(|pose| Pose {
+            rotation_rad: pose.rotation_rad,
+            translation: pose.shift_m,
+        }));
+        next.hinges.clear();
+        for (joint, (gaps, frame)) in sample.gaps_m.iter().zip(sample.frames).enumerate() {
+            let edge = match gaps {
+                [0.0, 0.0] => continue,
+                [0.0, _] => Some(Edge::Intrados),
+                [_, 0.0] => Some(Edge::Extrados),
+                _ => None,
+            };
+            next.hinges.push(OpenHinge {
+                hinge: Hinge::Joint { joint, edge },
+                position_m: frame.corner_m(edge.unwrap_or(Edge::Intrados)),
+            });
+        }
+        next.demand = demand;
+        next.energy_j = sample.kinetic_j + sample.potential_j;
+        next.energy_ratio = self.barrier_j.map(|barrier_j| next.energy_j / barrier_j);
+        next.gaps_m.clear();
+        next.gaps_m.extend(sample.gaps_m);
+        self.thrust
+            .note(sample.time_s, state != State::Rest, &demand);
+        match &mut self.recorder {
+            Some(recorder) => recorder.sample(&self.sample),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    fn impact(&mut self, landing: &Landing<'_>) -> ControlFlow<()> {
+        self.phase += 1;
+        let state = self.doing(landing.poses, landing.potential_j);
+        let Some(recorder) = &mut self.recorder else {
+            return ControlFlow::Continue(());
+        };
+        let hinges = |joints: &[usize]| {
+            let joints = joints.iter();
+            joints
+                .map(|joint| Hinge::Joint {
+                    joint: *joint,
+                    edge: None,
+                })
+                .collect()
+        };
+        let energy_after_j = (landing.energy_before_j - landing.energy_taken_j).max(0.0);
+        let restitution = if landing.energy_before_j > 0.0 {
+            energy_after_j / landing.energy_before_j
+        } else {
+            0.0
+        };
+        let sway = state.sway().unwrap_or(Sway::Right);
+        recorder.event(&Event {
+            time_s: landing.time_s,
+            kind: EventKind::Impact,
+            state,
+            mechanism: None,
+            rotations_rad: landing.rotations_rad.to_vec(),
+            rates_rad_s: landing.rates_after_rad_s.to_vec(),
+            energy_j: energy_after_j + landing.potential_j,
+            impact: Some(Impact {
+                sway_before: sway,
+                restitution,
+                energy_before_j: landing.energy_before_j,
+                energy_after_j,
+                rates_before_rad_s: Vec::new(),
+                rates_after_rad_s: landing.rates_after_rad_s.to_vec(),
+                closed: hinges(landing.shut),
+                opened: hinges(landing.opened),
+                impulses_n_s: Vec::new(),
+            }),
+        })
+    }
+}
+
+/// A sample to begin with.
+fn undeformed(blocks: usize) -> Sample {
+    Sample {
+        time_s: 0.0,
+        ground_acceleration_m_s2: 0.0,
+        vertical_acceleration_m_s2: 0.0,
+        phase: 0,
+        state: State::Rest,
+        rotations_rad: vec![0.0; blocks],
+        rates_rad_s: vec![0.0; blocks],
+        poses: Vec::new(),
+        hinges: Vec::new(),
+        demand: Demand::NONE,
+        energy_j: 0.0,
+        energy_ratio: None,
+        rotation_over_critical: None,
+        gaps_m: Vec::new(),
+    }
+}
