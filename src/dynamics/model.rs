@@ -90,6 +90,12 @@ pub trait MechanismModel: Model {
     ) -> Result<Option<Sway>, SimulationError>;
 }
 
+/// The least rotation that a structure can be released from: the energy of a lesser one may vanish in rounding.
+pub(crate) const MIN_RELEASE_RAD: f64 = 1e-100;
+
+/// Samples that a history may have, as in a scenario.
+const MAX_SAMPLES: f64 = 1e7;
+
 /// What is to be simulated, and how exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
@@ -97,7 +103,7 @@ pub struct Request {
     pub gravity_m_s2: f64,
     /// Upper bound of the time: a history ends earlier at rest on ground that is quiet for good, or overturned.
     pub end_s: f64,
-    /// Interval of the samples.
+    /// Interval of the samples: where they are recorded, at least a ten-millionth of `end_s`.
     pub output_step_s: f64,
     /// Where the motion starts from; `None`: from rest.
     pub initial: Option<Initial>,
@@ -132,6 +138,21 @@ impl Default for Request {
 }
 
 impl Request {
+    /// Refuses more samples than a history may have.
+    pub(crate) fn check_samples(&self) -> Result<(), ArgumentError> {
+        if self.end_s / self.output_step_s <= MAX_SAMPLES {
+            return Ok(());
+        }
+        Err(ArgumentError {
+            argument: "output_step_s",
+            value: self.output_step_s,
+            allowed: format!(
+                "at least {:?}, for ten million samples",
+                self.end_s / MAX_SAMPLES
+            ),
+        })
+    }
+
     /// Refuses numbers that no simulation can work with.
     pub(crate) fn check(&self) -> Result<(), ArgumentError> {
         within("gravity_m_s2", self.gravity_m_s2, 1e-3..=1e3)?;
@@ -140,11 +161,10 @@ impl Request {
         within("relative_tolerance", self.relative_tolerance, 1e-14..=1e-2)?;
         within("rest_energy_ratio", self.rest_energy_ratio, 1e-18..=0.5)?;
         if let Some(initial) = self.initial {
-            above(
+            within(
                 "rotation_rad",
                 initial.rotation_rad,
-                0.0,
-                std::f64::consts::PI,
+                MIN_RELEASE_RAD..=std::f64::consts::PI,
             )?;
         }
         Ok(())

@@ -1,15 +1,15 @@
 //! Where the motion starts from: `[initial]`.
 
 use std::f64::consts::PI;
-use std::ops::Bound::Excluded;
+use std::ops::Bound::{Excluded, Included};
 
 use super::Structure;
 use super::table::{Number, OneOf, Reading, Table};
-use crate::dynamics::model::Initial;
+use crate::dynamics::model::{Initial, MIN_RELEASE_RAD};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::mechanism::Sway;
 
-const ROTATION_RAD: Number = Number(Excluded(0.0), Excluded(PI));
+const ROTATION_RAD: Number = Number(Included(MIN_RELEASE_RAD), Excluded(PI));
 
 impl Initial {
     pub(super) fn read(table: &mut Table<'_>, structure: Option<&Structure>) -> Reading<Self> {

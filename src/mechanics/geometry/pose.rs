@@ -24,7 +24,8 @@ impl Pose {
     #[must_use]
     pub fn about(pole: Vector2<f64>, moved: Vector2<f64>, rotation_rad: f64) -> Self {
         Self {
-            rotation_rad,
+            // Adding zero makes a negative zero positive.
+            rotation_rad: rotation_rad + 0.0,
             translation: moved - Rotation2::new(rotation_rad) * pole,
         }
     }

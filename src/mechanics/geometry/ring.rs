@@ -35,10 +35,10 @@ impl Edge {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RingError {
     /// The thickness must leave a hole: `0 < t/R < 2`.
-    #[error("thickness ratio {0} is outside (0, 2)")]
+    #[error("thickness ratio {0:?} is outside (0, 2)")]
     Thickness(f64),
     /// The embrace angle must be in `(0, pi]`.
-    #[error("embrace angle {0} rad is outside (0, pi]")]
+    #[error("embrace angle {0:?} rad is outside (0, pi]")]
     Embrace(f64),
 }
 
