@@ -198,6 +198,7 @@ fn scales_units_and_starts() {
         scenario(folder.path(), &[("a.csv", table)], &keys)
             .unwrap()
             .ground_motion()
+            .clone()
     };
     let expected = |factor: f64, start: f64| {
         GroundMotion::record(

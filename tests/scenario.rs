@@ -168,6 +168,13 @@ fn a_run_needs_something_that_moves() {
         nothing,
         "nothing moves the structure: give a table [ground.<kind>], such as [ground.rectangular], or [initial]"
     );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.csv"), "0,1\n1,0\n").unwrap();
+    let path = folder.path().join("s.toml");
+    let suite = "[suite]\nrecords = 'a.csv'\nunit = 'g'\nscales = [1]\n";
+    std::fs::write(&path, format!("{ARCH}{suite}")).unwrap();
+    let of_suite = Scenario::read(&path).unwrap().check_for_run().unwrap_err();
+    assert!(of_suite.ends_with("the records of [suite] are run by `archrock suite`"));
     assert_eq!(
         says("[ground.ricker]\namplitude_g = 0\nduration_s = 1"),
         Ok(())
