@@ -292,8 +292,9 @@ fn bad_input_is_refused_with_its_place() {
 #[test]
 fn a_place_that_cannot_be_written_is_said_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
-    scenario(folder.path(), ARCH);
-    // A file is no folder, not even for those who may write anywhere.
+    let pulse = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.2\n";
+    scenario(folder.path(), &format!("{ARCH}{pulse}"));
+    // A file is not a folder, not even for those who may write anywhere.
     for (command, option) in [
         ("run", "--out"),
         ("chart", "--out"),
@@ -341,6 +342,17 @@ fn numbers_too_small_for_anything_are_refused() {
         let message = refused(text.as_bytes());
         assert!(message.contains(word), "{message}");
     }
+}
+
+/// What nothing moves is bad input: there is no history to draw.
+#[test]
+fn a_run_that_nothing_moves_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    scenario(folder.path(), ARCH);
+    let output = archrock(folder.path(), &["run", "s.toml", "--out", "o"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("[ground.<kind>]") && stderr(&output).contains("[initial]"));
+    assert_eq!(entries(folder.path()), ["s.toml"]);
 }
 
 #[test]

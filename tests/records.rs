@@ -251,7 +251,11 @@ fn faulty_records_are_input_errors() {
             "6:8",
             "is not a file",
         ),
-        ("file = 'x.txt'", "6:8", "tells no format: give `format`"),
+        (
+            "file = 'x.txt'",
+            "6:8",
+            "does not tell the format: give `format`",
+        ),
         (
             "scale = 1.0\nformat = 'at2'",
             "5:1",

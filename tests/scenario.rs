@@ -1,9 +1,8 @@
 //! Scenario files: what is read, what is refused and where, and how it is written back.
 #![allow(clippy::unwrap_used)]
 
-use archrock::Column;
 use archrock::scenario::{Ground, Place, Scenario, ScenarioErrors, Simulation, Structure};
-use archrock::{GroundMotion, ImpactModel, Pulse, Sway};
+use archrock::{Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
@@ -168,6 +167,13 @@ fn a_run_needs_something_that_moves() {
         nothing,
         "nothing moves the structure: give a table [ground.<kind>], such as [ground.rectangular], or [initial]"
     );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.csv"), "0,1\n1,0\n").unwrap();
+    let path = folder.path().join("s.toml");
+    let suite = "[suite]\nrecords = 'a.csv'\nunit = 'g'\nscales = [1]\n";
+    std::fs::write(&path, format!("{ARCH}{suite}")).unwrap();
+    let of_suite = Scenario::read(&path).unwrap().check_for_run().unwrap_err();
+    assert!(of_suite.ends_with("the records of [suite] are run by `archrock suite`"));
     assert_eq!(
         says("[ground.ricker]\namplitude_g = 0\nduration_s = 1"),
         Ok(())
@@ -288,10 +294,7 @@ fn structures() {
 #[test]
 fn columns() {
     let scenario = parse(COLUMN).unwrap();
-    let expected = Column::new(4.0, 0.8)
-        .and_then(|column| column.with_depth_m(1.0))
-        .and_then(|column| column.with_density_kg_m3(2000.0))
-        .unwrap();
+    let expected = Column::new(4.0, 0.8).unwrap();
     assert_eq!(scenario.structure, Structure::Column(expected));
     assert_errors(
         "[column]\nheight = 4\nwidth_m = -0.8\nmean_radius_m = 5\n",

@@ -713,7 +713,7 @@ fn faults_of_the_table_have_places() {
                 1,
                 43,
                 &[
-                    "`'none.at2'` in `records` is not there",
+                    "`'none.at2'` in `records` does not exist",
                     "a file or a pattern",
                 ],
             ),
@@ -835,7 +835,7 @@ fn faults_of_records_name_the_file() {
         &[(
             1,
             11,
-            &["names fine.dat, which has an ending that tells no format"],
+            &["names fine.dat, which has an ending that does not tell the format"],
         )],
     );
     write(

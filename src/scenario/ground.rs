@@ -183,7 +183,7 @@ impl Serialize for PulseGround {
 /// Says that a vertical acceleration is impossible for a structure that rests on the ground.
 pub(super) fn free_fall(time_s: f64) -> String {
     format!(
-        "lets the ground fall as fast as a free body at {time_s:?} s, so that nothing presses the \
-         structure on it; allowed are vertical accelerations above -1 g"
+        "makes the ground fall as fast as a free body at {time_s:?} s, so that it no longer carries the \
+         structure; allowed are vertical accelerations above -1 g"
     )
 }

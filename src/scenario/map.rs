@@ -143,8 +143,8 @@ impl Map {
             return Ok(());
         }
         Err(table.wrong_itself(format!(
-            "has pulses that last until {end_s:?} s and would be cut off; allowed is a `duration_s` in [simulation] \
-             of at least that, and here it is {:?}",
+            "has pulses that last until {end_s:?} s and would be cut off at {:?} s; give a longer `duration_s` in \
+             [simulation]",
             simulation.duration_s
         )))
     }

@@ -125,7 +125,7 @@ impl Sequence {
             return Err(table.wrong("to", wrong));
         }
         if spacing == Spacing::Logarithmic && from <= 0.0 && to >= 0.0 {
-            let wrong = "goes with numbers of one sign; allowed is \"linear\" between these";
+            let wrong = "needs numbers of one sign; allowed here is \"linear\"";
             return Err(table.wrong("spacing", wrong));
         }
         let range = Self::Range {
@@ -140,7 +140,8 @@ impl Sequence {
         {
             Ok(range)
         } else {
-            let wrong = "is more than there are numbers between; allowed are fewer";
+            let wrong =
+                "is more than there are floating-point numbers in the range; allowed are fewer";
             Err(table.wrong("count", wrong))
         }
     }

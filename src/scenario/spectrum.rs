@@ -83,7 +83,7 @@ impl Spectrum {
             let longest_s = largest / block.frequency_rad_s;
             if !DURATION_S.contains(longest_s) {
                 let wrong = format!(
-                    "makes a pulse of {longest_s:?} s, as p is {:?} rad/s; the duration is to be {}",
+                    "makes a pulse of {longest_s:?} s, as p is {:?} rad/s; allowed as a duration is {}",
                     block.frequency_rad_s,
                     DURATION_S.allowed()
                 );

@@ -218,21 +218,20 @@ fn suits(
     };
     let own_g = series.peak_g(gravity_m_s2);
     if own_g == 0.0 {
-        return Err("is zero throughout: it shakes nothing".to_owned());
+        return Err("is zero throughout".to_owned());
     }
     if let Scaling::PeakG(peak_g) = strongest
         && peak_g / own_g > MAX_SCALE
     {
         return Err(format!(
-            "has a peak of {own_g:?} g, which no factor up to {MAX_SCALE:?} brings to {peak_g:?} g"
+            "has a peak of {own_g:?} g, which cannot be scaled to {peak_g:?} g: factors are at most {MAX_SCALE:?}"
         ));
     }
     series.scaled(strongest).check_strength(gravity_m_s2)?;
     let lasts_s = start_s(series) + series.last_s();
     if lasts_s > duration_s {
         return Err(format!(
-            "lasts {lasts_s:?} s and would be cut off; allowed is a `duration_s` in [simulation] of at least \
-             that, and here it is {duration_s:?}"
+            "lasts {lasts_s:?} s and would be cut off at {duration_s:?} s; give a longer `duration_s` in [simulation]"
         ));
     }
     Ok(())
@@ -251,7 +250,7 @@ fn list(
     format: Option<Format>,
 ) -> Reading<Vec<Listed>> {
     let mut found = BTreeMap::new();
-    // The same file under another name is no further evidence.
+    // The same file under another name counts once.
     let mut seen = BTreeSet::new();
     let mut all_well = Ok(());
     for (element, pattern) in patterns.iter().enumerate() {
@@ -301,7 +300,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     }
     if !pattern.contains(['*', '?', '[']) {
         return Err(
-            "is not there; allowed is a file or a pattern such as \"folder/*.at2\"".to_owned(),
+            "does not exist; allowed is a file or a pattern such as \"folder/*.at2\"".to_owned(),
         );
     }
     let folder = if folder.as_os_str().is_empty() {
@@ -312,9 +311,10 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     // Patterns say nothing of what they are relative to.
     let folder =
         std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
-    let escaped = folder.to_str().map(glob::Pattern::escape).ok_or(
-        "is relative to a folder whose name is not UTF-8 text; allowed are files one by one",
-    )?;
+    let escaped = folder
+        .to_str()
+        .map(glob::Pattern::escape)
+        .ok_or("is relative to a folder whose name is not UTF-8 text; name the files one by one")?;
     let absolute = Path::new(&escaped).join(pattern);
     let options = MatchOptions {
         // As in a shell: hidden files are of other programs.
@@ -326,7 +326,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
         .map_err(|error| format!("is not a pattern of files: {}", error.msg))?;
     let mut files = Vec::new();
     for path in matches {
-        let path = path.map_err(|error| format!("cannot be looked for: {}", error.error()))?;
+        let path = path.map_err(|error| format!("cannot be searched: {}", error.error()))?;
         if path.is_file() {
             files.push(file_name(path.strip_prefix(&folder).unwrap_or(&path))?);
         }

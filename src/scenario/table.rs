@@ -58,8 +58,8 @@ struct Legible {
     text: String,
     /// What was blanked out. A key that is named here may be given, so it is not called missing.
     unread: String,
-    /// Whether `text` is TOML by now; not so when an error is no matter of single lines, as an
-    /// unclosed bracket, or when there are too many.
+    /// Whether `text` is TOML by now; not so when an error is not confined to a line, such as
+    /// an unclosed bracket, or when there are too many.
     is_toml: bool,
     faults: Vec<Fault>,
 }

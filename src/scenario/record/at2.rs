@@ -248,3 +248,108 @@ fn wrong_quantity(line: &str) -> Option<String> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::scenario::record::tests::assert_fault;
+    use crate::scenario::record::{Layout, parse};
+
+    #[test]
+    fn headers_of_all_wordings_are_read() {
+        for header in [
+            "NPTS=     3, DT=   .0050 SEC",
+            "NPTS=3, DT= .00500 SEC, 5E15.7",
+            "NPTS=  3 , DT= 0.0050 SEC,",
+            "NPTS 3 DT 0.005",
+            "npts: 3; dt: 5.0E-3 sec",
+            "    3   0.0050   NPTS, DT",
+            "   3    0.0050  NPTS, DT, 8 VALUES TO A LINE",
+            "NPTS, DT = 3, .005",
+            "DT, NPTS = .005 3",
+            "3 NPTS, .005SEC DT",
+            "DT= .0050SEC  NPTS= 3",
+            "NPTS= 3.  DT= .5D-02",
+            "NPTS= 3\nDT= .005 SEC",
+        ] {
+            for end in ["\n", "\r\n"] {
+                let text = format!(
+                    "\u{feff}PEER STRONG MOTION DATABASE RECORD\nSYNTHETIC 1, 0\n\
+                     ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz\n{header}\n 0.1 -.2E-01\n 3.D-1\n"
+                );
+                let samples = parse(&text.replace('\n', end), &Layout::At2).expect(header);
+                assert_eq!(
+                    samples,
+                    [(0.0, 0.1), (0.005, -0.02), (0.01, 0.3)],
+                    "{header}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn fixed_width_values_may_touch() {
+        let values = |line: &str| {
+            let count = 4;
+            let text = format!("NPTS= {count}, DT= .01\n{line}\n");
+            parse(&text, &Layout::At2)
+                .map(|samples| samples.into_iter().map(|s| s.1).collect::<Vec<_>>())
+        };
+        assert_eq!(
+            values("-.1234E-03-.5678E-03+.1E+01-0.2").unwrap(),
+            [-0.000_123_4, -0.000_567_8, 1.0, -0.2]
+        );
+        assert_eq!(
+            values("1,-2-3\n\n 4\r\n\u{1a}").unwrap(),
+            [1.0, -2.0, -3.0, 4.0]
+        );
+        // Where not even a sign parts them nothing is guessed.
+        for line in [
+            "0.12340.5678 0 0 0",
+            ".12E-03.56E-03 0 0",
+            "1--2 3",
+            "1 2 3 4-",
+        ] {
+            assert!(values(line).is_err(), "{line}");
+        }
+    }
+
+    #[test]
+    fn faults_of_at2_files_have_lines() {
+        let fault = |text: &str, line, words| assert_fault(text, &Layout::At2, line, words);
+        let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
+        fault(&format!("{head}1 2\n3 4\n"), 6, "`4` is one value too many");
+        fault(&format!("{head}1 2\n3\n\n.5\n"), 8, "line 4 announces 3");
+        fault(
+            &format!("{head}1 2\n"),
+            5,
+            "ends after 2 values: line 4 announces 3",
+        );
+        fault(head, 4, "ends after 0 values");
+        fault(&format!("{head}1\nabc"), 6, "`abc` is not a finite number");
+        for word in ["nan", "inf", "1e999", "****", "-", "1.2.3"] {
+            fault(&format!("{head}1\n{word}"), 6, "is not a finite number");
+        }
+        fault("", 1, "no NPTS");
+        fault("1 2 3", 1, "no NPTS");
+        fault("A\nNPTS= 3\n1 2 3", 3, "no DT");
+        fault("A\nNPTS= 3", 2, "no DT");
+        fault("NPTS, DT\n1 2", 1, "no numbers");
+        fault("NPTS= 3.5, DT= .1", 1, "NPTS is 3.5");
+        fault("NPTS= 1, DT= .1", 1, "NPTS is 1.0");
+        fault("NPTS= 99999999999, DT= .1", 1, "from 2 to 1800000");
+        fault("NPTS= -5, DT= .1", 1, "NPTS is -5.0");
+        fault("NPTS= 5, DT= 0", 1, "DT is 0.0 s");
+        fault("NPTS= 5, DT= -.1", 1, "DT is -0.1 s");
+        fault("NPTS= 5, DT= 1e6", 1, "record of 4000000.0 s");
+        fault(
+            "A\nVELOCITY TIME HISTORY IN UNITS OF CM/S",
+            2,
+            "a velocity history",
+        );
+        fault(
+            "A\nUNITS OF CM/SEC/SEC\nNPTS 2 DT 1",
+            2,
+            "unit is CM/SEC/SEC",
+        );
+    }
+}

@@ -186,3 +186,80 @@ impl TableColumn {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::scenario::record::tests::{assert_fault, csv_layout};
+    use crate::scenario::record::{Layout, TableColumn, Unit, parse};
+
+    #[test]
+    fn tables_of_all_kinds_are_read() {
+        let columns = |time, acceleration| Layout::Csv {
+            time_column: time,
+            acceleration_column: acceleration,
+            unit: Unit::Gravity,
+        };
+        let name = |name: &str| TableColumn::Name(name.to_owned());
+        let number = TableColumn::Number;
+        for (text, layout) in [
+            ("t,a\n0,1\n0.5,-2\n", csv_layout()),
+            ("# made by hand\n\nt;a\r\n0;1\r\n0.5;-2", csv_layout()),
+            ("t\tb\ta\n0\t\t1\n\n0.5\t\t-2\n", csv_layout()),
+            ("0,1\n0.5,-2\n", columns(number(1), number(2))),
+            (
+                "x,t,\"a\"\n9, 0.0 ,1e0\n9,\"0.5\",-2D0\n",
+                columns(name("t"), name("a")),
+            ),
+            ("a,t\n1,0\n-2,.5\n", columns(number(2), number(1))),
+            // Quotation marks hold delimiters, line breaks and their like together.
+            (
+                "\"x; \"\"raw\"\"\",t,\"a\"\n\"1,5\",0,1\n;,\"0.5\", \"-2\" \n",
+                columns(name("t"), name("a")),
+            ),
+            (
+                "t;\"acceleration\nin g\"\r\n\r\n  # x\r\n0;\"1\"\r\n0.5;-2\r\n",
+                columns(name("t"), name("acceleration\nin g")),
+            ),
+        ] {
+            assert_eq!(
+                parse(text, &layout),
+                Ok(vec![(0.0, 1.0), (0.5, -2.0)]),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn faults_of_tables_have_lines() {
+        let fault = |text: &str, line, words| assert_fault(text, &csv_layout(), line, words);
+        fault("", 1, "no samples");
+        fault("# x\n\n", 1, "no samples");
+        fault("t,b\n0,1", 1, "no column named `a` in `t, b`");
+        fault("t,a,a\n0,1", 1, "two columns named `a`");
+        fault("t,a\n0,1\n# x\n1\n", 4, "no column 2 in `1`");
+        fault("t,a\n0,1\n\n1,x\n", 4, "`x` is not a finite number");
+        fault(
+            "t,\"a\"\n\n0,\"1\"\r\n\n1,\"x\"",
+            5,
+            "`x` is not a finite number",
+        );
+        fault("t,a\n0,1\n1,\"2\n3\"\n", 4, "`2` is not a finite number");
+        fault("t,a\n0,1\n1,\"2\n", 4, "`2` is not a finite number");
+        fault("t,a\n0,1\n1,inf\n", 3, "`inf` is not a finite number");
+        fault(
+            "t,a\n0,1\n1,2\n1,3\n",
+            4,
+            "does not increase: 1.0 s follows 1.0 s",
+        );
+        fault("t,a\n0,1\n-1,2\n", 3, "does not increase");
+        fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
+        fault("t,a\n0,1\n", 2, "number of samples is 1");
+        // A first row that is half a number is not a header.
+        let numbered = Layout::Csv {
+            time_column: TableColumn::Number(1),
+            acceleration_column: TableColumn::Number(2),
+            unit: Unit::Gravity,
+        };
+        assert_fault("0,1x\n1,2\n", &numbered, 1, "`1x`");
+    }
+}
