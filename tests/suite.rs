@@ -535,7 +535,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
             outcome,
             outcome_time_s: 1.0,
             impacts: 0,
-            peak_over_critical: 0.5,
+            peak_over_critical: Some(0.5),
             energy_defect_ratio: 0.0,
         }),
     });
