@@ -858,8 +858,8 @@ impl<'a> Engine<'a> {
             *change = rates.map(|rate| rate * step);
         }
         for (joint, rates) in self.program.open_joints() {
-            for edge in 0..2 {
-                self.change[joint][edge] += rates[edge] * step;
+            for (change, rate) in self.change[joint].iter_mut().zip(rates) {
+                *change += rate * step;
             }
         }
         let change = &self.change;

@@ -240,7 +240,7 @@ impl Row {
                     return Err(value(name, number, "it must be positive and finite"));
                 }
             }
-            for number in block.centre_m.iter().filter(|x| !x.is_finite()) {
+            if let Some(number) = block.centre_m.iter().find(|x| !x.is_finite()) {
                 return Err(value("centre in m", *number, "it must be finite"));
             }
         }
@@ -263,11 +263,11 @@ impl Row {
         };
         let handedness = side(0, 0).signum();
         for joint in 0..joints.len() {
-            if joint < count && !(handedness * side(joint, joint) > 0.0) {
+            if joint < count && !positive_side(handedness * side(joint, joint)) {
                 let block = joint;
                 return Err(RowError::Order { block, joint });
             }
-            if joint > 0 && !(handedness * side(joint, joint - 1) < 0.0) {
+            if joint > 0 && !positive_side(-handedness * side(joint, joint - 1)) {
                 let block = joint - 1;
                 return Err(RowError::Order { block, joint });
             }
@@ -481,6 +481,11 @@ impl Row {
     pub fn mass_kg(&self) -> f64 {
         self.blocks.iter().map(|block| block.mass_kg).sum()
     }
+}
+
+/// False also for what is not a number.
+fn positive_side(distance: f64) -> bool {
+    distance > 0.0
 }
 
 fn positive(name: &'static str, value: f64) -> Result<(), RowError> {

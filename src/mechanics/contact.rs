@@ -314,8 +314,7 @@ impl Program {
         let mut effort = Effort::default();
         let patience = 60 + 2 * frames.len();
         let mut tolerance = RATE_TOLERANCE;
-        // Written so that it also fails when the pivot is not a number.
-        if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) {
+        if !exceeds(self.factor(frames), DEPENDENCE * DEPENDENCE) {
             self.active.fill([false; 2]);
             self.factor(frames);
         }
@@ -702,8 +701,8 @@ impl Program {
             let pulling = self.pull_limit();
             self.wrong.clear();
             for (joint, active) in self.active.iter().enumerate() {
-                for edge in 0..2 {
-                    if active[edge] && self.answer.corners[joint][edge] < pulling {
+                for (edge, active) in active.iter().enumerate() {
+                    if *active && self.answer.corners[joint][edge] < pulling {
                         self.wrong.push((joint, edge));
                     }
                 }
@@ -730,7 +729,7 @@ impl Program {
             for (joint, edge) in &self.wrong {
                 self.active[*joint][*edge] ^= true;
             }
-            if !(self.factor(frames) > DEPENDENCE) {
+            if !exceeds(self.factor(frames), DEPENDENCE) {
                 for (joint, edge) in &self.wrong {
                     self.active[*joint][*edge] ^= true;
                 }
@@ -847,9 +846,9 @@ impl Program {
     fn first_to_pull(&self) -> (f64, Option<(usize, usize)>) {
         let mut first = (f64::INFINITY, None);
         for (joint, active) in self.active.iter().enumerate() {
-            for edge in 0..2 {
+            for (edge, active) in active.iter().enumerate() {
                 let slope = self.response.corners[joint][edge];
-                if active[edge] && slope < -LEAST_SLOPE {
+                if *active && slope < -LEAST_SLOPE {
                     let impulse = (self.answer.corners[joint][edge] / -slope).max(0.0);
                     if impulse < first.0 {
                         first = (impulse, Some((joint, edge)));
@@ -878,7 +877,7 @@ impl Program {
         for (active, gaps) in self.active.iter_mut().zip(placement.gaps_m()) {
             *active = gaps.map(|gap| gap == 0.0);
         }
-        if !(self.factor(frames) > DEPENDENCE * DEPENDENCE) || self.pins.is_empty() {
+        if !exceeds(self.factor(frames), DEPENDENCE * DEPENDENCE) || self.pins.is_empty() {
             return false;
         }
         let mut answer = std::mem::take(&mut self.answer);
@@ -888,6 +887,11 @@ impl Program {
         self.answer = answer;
         true
     }
+}
+
+/// False also for a pivot that is not a number.
+fn exceeds(pivot: f64, least: f64) -> bool {
+    pivot > least
 }
 
 /// The lower of two numbers, or what is not a number.
