@@ -352,7 +352,13 @@ impl Program {
             }
         }
         self.set_velocities();
-        Ok(effort)
+        let moves = |twist: &Twist| twist.rate + twist.at_center.x + twist.at_center.y;
+        if self.velocities.iter().map(moves).all(f64::is_finite) {
+            Ok(effort)
+        } else {
+            let iterations = effort.iterations;
+            Err(ContactError { iterations })
+        }
     }
 
     /// Sums over the blocks; returns the largest velocity.
@@ -419,6 +425,10 @@ impl Program {
             (Supports::Left, None) => Body::held(Twist::ZERO),
             (Supports::Both, _) => Body::held(self.datum[blocks] * -1.0),
         });
+        // An arch without any hinge is held twice.
+        if self.supports == Supports::Both && self.pins.is_empty() {
+            return 0.0;
+        }
         self.eliminate(frames)
     }
 
@@ -820,10 +830,14 @@ impl Program {
             let (partial, blocking) = self.first_to_pull();
             if full <= partial && full < f64::INFINITY {
                 self.active[joint][edge] = true;
+                if exceeds(self.factor(frames), DEPENDENCE) {
+                    self.answer_load(frames, None);
+                    *iterations += 1;
+                    return true;
+                }
+                // It depends on the others all the same.
+                self.active[joint][edge] = false;
                 self.factor(frames);
-                self.answer_load(frames, None);
-                *iterations += 1;
-                return true;
             }
             let Some((blocked, blocked_edge)) = blocking else {
                 return false;
