@@ -43,7 +43,7 @@ fn record(peak_g: f64) -> GroundMotion {
         samples.collect()
     };
     let (horizontal, vertical) = (noise(peak_g), noise(0.5 * peak_g));
-    GroundMotion::record(&horizontal, &vertical, 0.0)
+    GroundMotion::record(&horizontal, &vertical, 0.0).expect("a record")
 }
 
 /// Mean time of a step, with fixed steps of 0.1 ms over a record of 25 s.
@@ -68,7 +68,8 @@ fn step_over_a_record(bencher: Bencher, voussoirs: usize) {
 #[divan::bench(sample_count = 3, sample_size = 1)]
 fn history_of_the_semicircle(bencher: Bencher) {
     let row = arch(180.0, 36, 5.0);
-    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.25 * GRAVITY_M_S2, 0.2, 0.0);
+    let ground =
+        GroundMotion::pulse(Pulse::Rectangular, -0.25 * GRAVITY_M_S2, 0.2, 0.0).expect("a pulse");
     let settings = Settings::fine(&row, GRAVITY_M_S2, 60.0);
     bencher
         .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ()).map(|r| r.end_s));
@@ -83,7 +84,8 @@ fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
         let cells = (0..36).map(|cell| (f64::from(cell / 6), f64::from(cell % 6)));
         let runs = cells.map(|(x, y)| {
             let amplitude = -(0.15 + 0.1 * x) * GRAVITY_M_S2;
-            let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude, 0.1 + 0.08 * y, 0.0);
+            let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude, 0.1 + 0.08 * y, 0.0)
+                .expect("a pulse");
             simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ())
                 .map_or(0, |r| r.cost.steps)
         });

@@ -40,7 +40,7 @@ fn an_arch_leaves_its_unstable_equilibrium_at_the_rate_of_the_block() {
             ..Request::default()
         };
         for sample in arch.history(&still, &request).unwrap().samples.iter() {
-            let left = 1.0 + sample.rotation_over_critical;
+            let left = 1.0 + sample.rotation_over_critical.unwrap();
             let expected = distance * (p_c * sample.time_s).cosh();
             assert!((left / expected - 1.0).abs() < 1e-3, "{left} {expected}");
         }
@@ -114,7 +114,7 @@ fn dimensionless(
         [
             sample.time_s * p,
             sample.ground_acceleration_m_s2 / scales.incipient_m_s2,
-            sample.rotation_over_critical,
+            sample.rotation_over_critical.unwrap(),
         ]
     });
     let impacts = history.impacts().map(|(time_s, _)| time_s * p);

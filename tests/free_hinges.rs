@@ -9,11 +9,8 @@ use archrock::dynamics::free_hinges::{
     FreeHingeError, Impact, Outcome, Recorder, Run, Sample, Settings, simulate,
 };
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Request, history};
-use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, Supports};
 use archrock::mechanics::chain::Mechanism as _;
-use archrock::mechanics::column::Column;
 use archrock::mechanics::contact::{Load, Program};
 use archrock::mechanics::four_link::certificate;
 use archrock::mechanics::four_link::impact::ImpactModel;
@@ -24,6 +21,7 @@ use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::joints::Placement;
 use archrock::mechanics::stability::{StabilityError, falls, onset};
+use archrock::{Column, Model, Request, RockingColumn};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
@@ -47,7 +45,7 @@ fn column(drums: usize) -> Row {
 
 /// A rectangular pulse that pushes to the right.
 fn push(amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(Pulse::Rectangular, -amplitude_g * GRAVITY, duration_s, 0.0)
+    GroundMotion::pulse(Pulse::Rectangular, -amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
 }
 
 fn run(row: &Row, ground: &GroundMotion, settings: &Settings) -> Run {
@@ -322,21 +320,20 @@ fn the_restitution_of_a_block_is_housners() {
 /// A block is Housner's column, which the hybrid engine follows with an integrator of eighth order.
 #[test]
 fn a_block_moves_like_the_column() {
-    let column_model = Column::new(4.0, 0.8, 1.0, 2000.0, ImpactModel::MaxRestitution);
-    let ground = GroundMotion::pulse(Pulse::OneSine, 0.4 * GRAVITY, 0.5, 0.0);
+    let block = Column::new(4.0, 0.8).unwrap();
+    let block = RockingColumn::new(&block, ImpactModel::MaxRestitution).unwrap();
+    let ground = GroundMotion::pulse(Pulse::OneSine, 0.4 * GRAVITY, 0.5, 0.0).unwrap();
     let request = Request {
         end_s: 4.0,
+        output_step_s: 0.001,
         relative_tolerance: 1e-11,
-        initial: None,
-        output_step_s: Some(0.001),
+        ..Request::default()
     };
-    let rocking = Rocking::new(&column_model, &ground, GRAVITY, 1e-8);
-    let mut rotations = Vec::new();
-    history(&rocking, &request, |sample| {
-        rotations.push(sample.rotations_rad[0]);
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+    let rotations = block
+        .history(&ground, &request)
+        .unwrap()
+        .samples
+        .rotations_rad;
     let row = column(1);
     let settings = Settings::fine(&row, GRAVITY, 4.0).times(0.5);
     let ours = run(&row, &ground, &settings);
@@ -442,7 +439,7 @@ fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
     for (duration_s, threshold_g) in [(0.2, 1.4615), (0.3, 0.8750), (0.4, 0.2980), (0.5, 0.2517)] {
         for (factor, falls) in [(1.001, true), (0.999, false)] {
             let amplitude = -factor * threshold_g * GRAVITY;
-            let ground = GroundMotion::pulse(Pulse::StepPair, amplitude, duration_s, 0.0);
+            let ground = GroundMotion::pulse(Pulse::StepPair, amplitude, duration_s, 0.0).unwrap();
             let settings =
                 Settings::coarse(&row, GRAVITY, if falls { 60.0 } else { 6.0 }).times(0.5);
             let run = run(&row, &ground, &settings);
@@ -457,7 +454,7 @@ fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
 fn linkage_at(linkage: &Linkage, start_rad: f64, gravity: f64, times_s: &[f64]) -> Vec<[f64; 3]> {
     let slope = |state: Vector2<f64>| {
         let c = linkage.coefficients(state.x);
-        let force = -gravity * c.rise - 0.5 * c.inertia_slope * state.y * state.y;
+        let force = -gravity * c.s_y - 0.5 * c.inertia_slope * state.y * state.y;
         Vector2::new(state.y, force / c.inertia)
     };
     let mut state = Vector2::new(start_rad, 0.0);
@@ -487,13 +484,15 @@ struct Kept {
 }
 
 impl Recorder for Kept {
-    fn sample(&mut self, sample: &Sample) {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self.rotations.push(sample.rotations_rad.to_vec());
         self.rates.push(sample.rates_rad_s.to_vec());
+        ControlFlow::Continue(())
     }
 
-    fn impact(&mut self, impact: &Impact) {
+    fn impact(&mut self, impact: &Impact) -> ControlFlow<()> {
         self.impacts.push(impact.energy_taken_j);
+        ControlFlow::Continue(())
     }
 }
 
@@ -587,7 +586,7 @@ fn size_density_and_depth_scale_as_they_should() {
 #[test]
 fn energy_does_not_grow() {
     let row = arch(157.5, 0.15, 14, 10.0);
-    let ground = GroundMotion::pulse(Pulse::OneSine, 0.5 * GRAVITY, 0.4, 0.1);
+    let ground = GroundMotion::pulse(Pulse::OneSine, 0.5 * GRAVITY, 0.4, 0.1).unwrap();
     for (factor, bound) in [(1.0, 2e-6), (0.25, 5e-7)] {
         let settings = Settings {
             output_step_s: Some(0.01),
@@ -637,7 +636,7 @@ fn noise(random: &mut Random, peak_g: [f64; 2], length_s: f64) -> GroundMotion {
             .collect()
     };
     let (horizontal, vertical) = (record(peak_g[0]), record(peak_g[1]));
-    GroundMotion::record(&horizontal, &vertical, 0.0)
+    GroundMotion::record(&horizontal, &vertical, 0.0).unwrap()
 }
 
 fn torture(random: &mut Random, most: usize, length_s: f64) -> Result<Run, FreeHingeError> {
@@ -652,7 +651,7 @@ fn torture(random: &mut Random, most: usize, length_s: f64) -> Result<Run, FreeH
         let kind = Pulse::ALL[(random.next() * Pulse::ALL.len() as f64) as usize];
         let amplitude = Vector2::new(strength_g, random.next() - 0.5) * GRAVITY;
         let duration_s = 0.05 + random.next();
-        GroundMotion::pulse_along(kind, amplitude, duration_s, 0.1, Default::default())
+        GroundMotion::pulse_along(kind, amplitude, duration_s, 0.1, Default::default()).unwrap()
     } else {
         let vertical_g = random.next() * 1.0;
         noise(random, [2.0 * strength_g, 2.0 * vertical_g], length_s)

@@ -1276,7 +1276,8 @@ mod tests {
             (arch(179.0, 12, 5.0), 0.5, 0.03),
             (column, 1.0, 0.1),
         ] {
-            let ground = GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0);
+            let ground =
+                GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
             let settings = Settings::coarse(&row, 9.81, 60.0);
             let mut engine = Engine::new(&row, &ground, 9.81, &settings);
             let mut fastest = 0.0_f64;

@@ -9,7 +9,7 @@ use crate::argument::{ArgumentError, within};
 const MIN_STEP_S: f64 = 1e-12;
 const MAX_TIME_S: f64 = 1e9;
 /// Magnitudes of accelerations, in m/s2.
-const MAX_ACCELERATION_M_S2: f64 = 1e9;
+const MAX_ACCELERATION_M_S2: f64 = 1e12;
 
 /// Why there is no such ground motion.
 #[derive(Clone, Debug, PartialEq, Error)]

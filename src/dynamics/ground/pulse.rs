@@ -92,7 +92,7 @@ impl Default for WaveTrain {
 
 impl GroundMotion {
     /// A single horizontal pulse that starts at `start_s` (0 to 1e9), with peak acceleration `amplitude_m_s2`
-    /// (at most 1e9 in magnitude) and length `duration_s` (1e-12 to 1e9). A wave train has [`WaveTrain::default`].
+    /// (at most 1e12 in magnitude) and length `duration_s` (1e-12 to 1e9). A wave train has [`WaveTrain::default`].
     ///
     /// # Errors
     /// When an argument is outside its range.
@@ -170,7 +170,7 @@ impl PulseShape {
         })
     }
 
-    /// The ground motion with these horizontal and vertical peak accelerations (at most 1e9 in magnitude), of one
+    /// The ground motion with these horizontal and vertical peak accelerations (at most 1e12 in magnitude), of one
     /// common shape.
     ///
     /// # Errors
