@@ -271,7 +271,13 @@ impl Scenario {
     /// The scenario as JSON, every default written out, with the keys of the file.
     #[must_use]
     pub fn to_json(&self) -> Value {
-        serde_json::to_value(self).expect("a scenario consists of tables of numbers and texts")
+        let mut table =
+            serde_json::to_value(self).expect("a scenario consists of tables of numbers and texts");
+        // Beside free hinges there is no `[impact]`.
+        if let (Some(_), Some(table)) = (self.free_hinges, table.as_object_mut()) {
+            table.shift_remove("impact");
+        }
+        table
     }
 }
 

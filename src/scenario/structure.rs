@@ -177,6 +177,8 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let drums = table.optional("drums", &DRUMS);
     let drum_heights_m = table.optional("drum_heights_m", &List(&MAGNITUDE));
     let top_width_m = table.optional("top_width_m", &MAGNITUDE);
+    let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
+    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     if !free_hinges {
         for key in ["drums", "drum_heights_m", "top_width_m"] {
             if table.gives(key) {
@@ -190,8 +192,6 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
         let wrong = "stands beside `drums`; allowed is one of them";
         return Err(table.wrong("drum_heights_m", wrong));
     }
-    let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
-    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let (height_m, width_m, depth_m, density_kg_m3) =
         (height_m?, width_m?, depth_m?, density_kg_m3?);
     let (drums, drum_heights_m, top_width_m) = (drums?, drum_heights_m?, top_width_m?);

@@ -13,7 +13,8 @@ fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
     let (tables, keys): (Vec<_>, Vec<_>) = table
         .iter()
         .partition(|(_, value)| value.as_object().is_some_and(|it| !it.contains_key("from")));
-    if !name.is_empty() && !keys.is_empty() {
+    // An empty table says something by being there.
+    if !name.is_empty() && (!keys.is_empty() || tables.is_empty()) {
         if !text.is_empty() {
             text.push('\n');
         }
