@@ -263,7 +263,7 @@ fn errors_display_as_file_line_column_message() {
     assert_eq!(
         errors.to_string(),
         "s.toml:1:1: unknown key `titel` in the scenario, did you mean `title`?; allowed are \
-         title, arch, column, simulation, ground, impact, initial, map, spectrum, suite\n\
+         title, free_hinges, arch, column, simulation, ground, impact, initial, map, spectrum, suite\n\
          s.toml:6:13: `voussoirs = 2` is out of range; allowed is a whole number from 3 (four \
          hinges need four joints) to 200"
     );
@@ -309,7 +309,7 @@ fn columns() {
             (
                 4,
                 1,
-                &["`mean_radius_m` in [column]", "height_m, width_m, depth_m"],
+                &["`mean_radius_m` in [column]", "height_m, width_m"],
             ),
         ],
     );

@@ -114,14 +114,15 @@ impl<'a> Rows<'a> {
             (false, true) => b'\t',
             (false, false) => b',',
         };
-        // With an end to the last line, the line number after a row is that of the next line.
+        // Where the last line has an end, the line number after a row is that of the next line.
+        let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
         let reader = ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
             .delimiter(delimiter)
             .terminator(Terminator::Any(b'\n'))
             .comment(Some(b'#'))
-            .from_reader(text.as_bytes().chain(&b"\n"[..]));
+            .from_reader(text.as_bytes().chain(end));
         Self { text, reader }
     }
 
@@ -244,7 +245,9 @@ mod tests {
             "`x` is not a finite number",
         );
         fault("t,a\n0,1\n1,\"2\n3\"\n", 4, "`2` is not a finite number");
-        fault("t,a\n0,1\n1,\"2\n", 4, "`2` is not a finite number");
+        // A mark that is not closed quotes all that follows.
+        fault("t,a\n0,1\n1,\"2\n2,3\n", 4, "`2` is not a finite number");
+        fault("t,a\n0,1\n1,\"2\n2,3", 4, "`2` is not a finite number");
         fault("t,a\n0,1\n1,inf\n", 3, "`inf` is not a finite number");
         fault(
             "t,a\n0,1\n1,2\n1,3\n",

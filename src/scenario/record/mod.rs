@@ -571,10 +571,17 @@ mod tests {
             let text = format!("t,a\n{damaged}");
             for text in [&noise, &damaged, &text] {
                 for layout in [Layout::At2, csv_layout()] {
-                    if let Ok(samples) = parse(text, &layout) {
-                        prop_assert!(samples.len() >= 2);
-                        prop_assert!(samples.windows(2).all(|pair| pair[0].0 < pair[1].0));
-                        prop_assert!(samples.iter().all(|s| s.0.is_finite() && s.1.is_finite()));
+                    match parse(text, &layout) {
+                        Ok(samples) => {
+                            prop_assert!(samples.len() >= 2);
+                            prop_assert!(samples.windows(2).all(|pair| pair[0].0 < pair[1].0));
+                            prop_assert!(samples.iter().all(|s| s.0.is_finite() && s.1.is_finite()));
+                        }
+                        Err(fault) => {
+                            let lines = text.split('\n').count();
+                            prop_assert!((1..=lines).contains(&fault.line));
+                            prop_assert!(!fault.message.contains(char::is_control));
+                        }
                     }
                 }
             }
