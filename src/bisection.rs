@@ -10,7 +10,6 @@ pub(crate) enum Width {
     /// At most so wide, or until no number lies between.
     Absolute(f64),
     /// At most so wide as a part of its upper end, or until no number lies between.
-    #[allow(dead_code, reason = "for the search of least amplitudes")]
     Relative(f64),
 }
 
