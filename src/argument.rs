@@ -28,7 +28,11 @@ pub(crate) fn within(
     Err(ArgumentError {
         argument,
         value,
-        allowed: format!("a number from {:?} to {:?}", range.start(), range.end()),
+        allowed: format!(
+            "a number from {} to {}",
+            short(*range.start()),
+            short(*range.end())
+        ),
     })
 }
 
@@ -45,6 +49,15 @@ pub(crate) fn above(
     Err(ArgumentError {
         argument,
         value,
-        allowed: format!("a number above {low:?} and at most {high:?}"),
+        allowed: format!("a number above {} and at most {}", short(low), short(high)),
     })
+}
+
+/// A bound as people write it: without a row of zeros.
+fn short(x: f64) -> String {
+    if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
+        format!("{x:e}")
+    } else {
+        format!("{x}")
+    }
 }

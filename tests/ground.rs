@@ -66,7 +66,7 @@ fn assert_works(ground: Result<GroundMotion, GroundError>, other: f64) {
                 acceleration.iter().chain(&rate).all(|x| x.is_finite()),
                 "{piece:?}"
             );
-            assert!(acceleration.norm() < 1e10, "{piece:?}");
+            assert!(acceleration.norm() < 1e13, "{piece:?}");
         }
         assert!(piece.longest_step_s() > 0.0);
     }
@@ -146,7 +146,7 @@ fn errors_name_the_number_and_what_is_allowed() {
     assert_eq!(
         record(&[(0.0, 1.0), (0.5, f64::NAN)], &[], 0.0),
         "sample 1 of `horizontal`: `acceleration_m_s2 = NaN` is not allowed: it must be a number from \
-         -1000000000.0 to 1000000000.0"
+         -1e12 to 1e12"
     );
     assert_eq!(
         record(&[(0.0, 1.0), (0.5, 0.0), (0.5, 1.0)], &[], 0.0),

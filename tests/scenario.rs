@@ -306,11 +306,7 @@ fn columns() {
                 11,
                 &["`width_m = -0.8` is out of range", "at most 1000000.0"],
             ),
-            (
-                4,
-                1,
-                &["`mean_radius_m` in [column]", "height_m, width_m"],
-            ),
+            (4, 1, &["`mean_radius_m` in [column]", "height_m, width_m"]),
         ],
     );
     let released = |rotation: &str| {

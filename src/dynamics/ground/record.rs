@@ -41,8 +41,8 @@ impl GroundMotion {
     /// Recorded motion: straight lines between samples `(time in s, acceleration in m/s2)`, zero before the
     /// first and after the last. One of the two components may be empty.
     ///
-    /// Times count from `start_s` (0 to 1e9); they rise by at least 1e-8 s, and none falls before time zero. Times and
-    /// accelerations are at most 1e9 in magnitude.
+    /// Times count from `start_s` (0 to 1e9); they rise by at least 1e-8 s, and none falls before time zero. Times are at
+    /// most 1e9 in magnitude, accelerations 1e12.
     ///
     /// # Errors
     /// When both components are empty, one has a single sample, or times and accelerations are not like that.
