@@ -468,6 +468,59 @@ fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
 }
 
 /// Rectangles of a path of cells: left, right, top, bottom.
+/// Bands that are wide enough to be seen have the sway of the events between which they lie; hops that are not share
+/// one shade, which is neither.
+#[test]
+fn bands_have_the_sway_of_the_events() {
+    let folder = tempfile::tempdir().unwrap();
+    scenario(
+        folder.path(),
+        "[ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n",
+    );
+    archrock(&["run", "s.toml", "--out", "out"], folder.path());
+    let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+    let picture = read("history.svg");
+    let document = Document::parse(&picture).unwrap();
+    let mut events: Vec<(f64, String)> = vec![(0.0, String::new())];
+    let mut table =
+        csv::Reader::from_reader(fs::File::open(folder.path().join("out/events.csv")).unwrap());
+    for row in table.records() {
+        let row = row.unwrap();
+        events.push((row[0].parse().unwrap(), row[3].to_owned()));
+    }
+    let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
+    let end_s = summary["outcome_time_s"].as_f64().unwrap();
+    let place = |time_s: f64| 85.0 + 790.0 * time_s / end_s;
+    let mut hops = 0;
+    for name in ["right", "left", "hops"] {
+        let bands = named(&document, name);
+        let bands = bands.iter().filter(|node| node.has_tag_name("rect"));
+        for band in bands {
+            let (left, width) = (number(band, "x"), number(band, "width"));
+            let inside = |&&(time_s, _): &&(f64, String)| {
+                let x = place(time_s);
+                left + 0.05 < x && x < left + width - 0.05
+            };
+            let within: Vec<_> = events.iter().filter(inside).collect();
+            if name == "hops" {
+                hops += within.len();
+                continue;
+            }
+            // What a visible band holds besides its own sway is together narrower than a pixel.
+            let first = within.iter().map(|(time_s, _)| place(*time_s) - left);
+            assert!(first.fold(0.0, f64::max) < 1.0, "{name} {left} {width}");
+            let middle_s = (left + 0.5 * width - 85.0) / 790.0 * end_s;
+            let here = events
+                .iter()
+                .rfind(|(time_s, _)| *time_s <= middle_s)
+                .unwrap();
+            assert_eq!(here.1, name, "{left} {width}");
+        }
+    }
+    // In each of four panels, at the end of the decay.
+    assert!(hops > 4 * 20, "{hops}");
+}
+
 fn rectangles(document: &Document<'_>, name: &str) -> Vec<[f64; 4]> {
     let paths = named(document, name);
     let paths = paths.iter().map(|node| node.attribute("d").unwrap());
