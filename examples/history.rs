@@ -1,5 +1,11 @@
 //! The time history of an arch, as numbers. Run with `cargo run --release --example history`.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "an example prints its results"
+)]
+
 use archrock::{Arch, FourLinkArch, GroundMotion, ImpactModel, Model, Pulse, Request};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,6 +1,12 @@
 //! An overturning map in a caller's own program, with its own progress display. Run with
 //! `cargo run --release --example map`.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "an example prints its results"
+)]
+
 use std::ops::ControlFlow;
 
 use archrock::studies::map::{CellResult, OverturningMap};

@@ -1,6 +1,12 @@
 //! A column on a ground motion from an array of the caller's own. Run with
 //! `cargo run --release --example own_ground_motion`.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "an example prints its results"
+)]
+
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 

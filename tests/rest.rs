@@ -1,5 +1,4 @@
 //! What the rest criterion costs: nothing that is reported.
-#![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::path::Path;
 
@@ -26,7 +25,7 @@ fn halving_the_rest_energy_changes_no_scenario() {
         let run = |part: f64| {
             let mut request = scenario.request();
             request.rest_energy_ratio *= part;
-            let summary = model.simulate(&scenario.ground_motion(), &request, None);
+            let summary = model.simulate(scenario.ground_motion(), &request, None);
             let summary = summary.unwrap();
             (summary.outcome, summary.peak_rotations_rad)
         };

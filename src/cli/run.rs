@@ -80,11 +80,11 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             events: &mut events,
             written: Ok(()),
         };
-        let summary = model.simulate(&ground, &scenario.request(), Some(&mut results))?;
+        let summary = model.simulate(ground, &scenario.request(), Some(&mut results))?;
         results.written?;
         (summary, results.table.finish()?)
     };
-    let mut text = human_summary(&scenario, &*model, &ground, &summary, &events);
+    let mut text = human_summary(&scenario, &*model, ground, &summary, &events);
     if let Some(mut folder) = folder {
         results::write_events(folder.file(EVENTS), &bodies, &events)?;
         results::write_impacts(folder.file(IMPACTS), &*model, &events)?;
@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             .file(PICTURE)
             .write_all(timeline.draw(title, &events).as_bytes())
             .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-        let summary = results::summary(&scenario, &*model, &ground, &summary)?;
+        let summary = results::summary(&scenario, &*model, ground, &summary)?;
         writeln!(folder.file(SUMMARY), "{summary:#}")
             .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
         let path = folder.path().to_owned();

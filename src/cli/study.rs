@@ -67,6 +67,9 @@ impl From<RunnerError> for Failure {
     }
 }
 
+/// All rows of a study, and the file that they are in until the results are complete.
+type Complete<R> = (Vec<R>, PartFile);
+
 impl Options {
     /// The folder for the results.
     pub fn folder(&self) -> PathBuf {
@@ -89,7 +92,7 @@ impl Options {
         &self,
         study: &S,
         quiet: bool,
-    ) -> Result<Option<(Vec<S::Row>, PartFile)>, Failure> {
+    ) -> Result<Option<Complete<S::Row>>, Failure> {
         let runner = Runner {
             threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
         };

@@ -1176,7 +1176,6 @@ impl Engine<'_> {
 }
 
 #[cfg(test)]
-#[expect(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use clarabel::algebra::CscMatrix;
     use clarabel::solver::{

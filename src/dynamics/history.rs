@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use nalgebra::Vector2;
 
 use super::free_hinges::Run;
-use super::hybrid::integrator::Cost;
+pub use super::hybrid::integrator::Cost;
 use super::model::Recorder;
 use super::thrust::ThrustRecord;
 use crate::mechanics::chain::{Demand, Hinge};

@@ -2,6 +2,8 @@
 pub mod free_hinges;
 pub mod ground;
 pub mod history;
+// Public for the tests and benchmarks of the engine; models are simulated through `model`.
+#[doc(hidden)]
 pub mod hybrid;
 pub mod model;
 pub mod thrust;

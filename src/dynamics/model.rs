@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::free_hinges::FreeHingeError;
 use super::ground::GroundMotion;
 use super::history::{Event, History, Recording, Sample, Summary};
-use super::hybrid::engine::EngineError;
+pub use super::hybrid::engine::EngineError;
 use crate::argument::{ArgumentError, above, within};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;

@@ -62,7 +62,7 @@ impl<'a> RecordSuite<'a> {
     /// The cases of a scenario's suite.
     ///
     /// # Errors
-    /// As [`crate::scenario::Arch::build`].
+    /// As [`crate::FourLinkArch::new`].
     pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, FourLinkError> {
         Ok(Self {
             scenario,
