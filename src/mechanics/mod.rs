@@ -3,9 +3,12 @@ pub mod arch;
 pub mod blocks;
 pub mod chain;
 pub mod column;
+// The inside of rows of blocks, public for its tests.
+#[doc(hidden)]
 pub mod contact;
 pub mod equivalent;
 pub mod four_link;
 pub mod geometry;
+#[doc(hidden)]
 pub mod joints;
 pub mod stability;

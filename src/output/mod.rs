@@ -13,7 +13,7 @@ pub mod results;
 pub mod rotations;
 pub mod spectrum;
 pub mod suite;
-pub mod svg;
+mod svg;
 pub mod timeline;
 
 use std::io;

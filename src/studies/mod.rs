@@ -13,7 +13,7 @@
 pub mod boundary;
 pub mod ending;
 pub mod fragility;
-pub mod impact_free;
+mod impact_free;
 pub mod map;
 pub mod part;
 pub mod runner;
