@@ -206,7 +206,7 @@ fn human_summary(
         }
         let _ = writeln!(
             text,
-            "  energy defect {:.1e} of the barrier, {} steps, {} evaluations",
+            "  energy defect {:.1e} of the first mechanism's barrier, {} steps, {} evaluations",
             history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
         );
     }
