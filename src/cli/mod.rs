@@ -12,6 +12,7 @@ mod run;
 mod spectrum;
 mod study;
 mod suite;
+mod threshold;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -59,6 +60,8 @@ enum Command {
     Spectrum(spectrum::Arguments),
     /// Shake with every record of a suite at every level and draw the fragility: see [suite] in the scenario.
     Suite(suite::Arguments),
+    /// Find the factors on the ground motion at which the structure overturns, and the safe gaps between them.
+    Threshold(threshold::Arguments),
     /// Join the parts of a study that were computed with --shard.
     Merge(merge::Arguments),
     /// Check a scenario and print it with every default resolved.
@@ -132,6 +135,7 @@ pub fn main() -> ExitCode {
         Command::Map(map) => map::map(&map, arguments.quiet),
         Command::Spectrum(spectrum) => spectrum::spectrum(&spectrum, arguments.quiet),
         Command::Suite(suite) => suite::suite(&suite, arguments.quiet),
+        Command::Threshold(threshold) => threshold::threshold(&threshold, arguments.quiet),
         Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),
     };

@@ -119,7 +119,7 @@ impl Options {
             ControlFlow::Continue(())
         })?;
         if let Some(display) = display {
-            display.bar.finish_and_clear();
+            display.finish();
         }
         match computed {
             Computed::Whole(rows, part) => Ok(Some((rows, part))),
@@ -171,7 +171,7 @@ pub fn say(text: &str) {
 }
 
 /// How far the work is: a bar on a terminal, a line a minute elsewhere.
-struct Display {
+pub struct Display {
     bar: ProgressBar,
     /// When the last line was said, if lines are.
     said: Option<Instant>,
@@ -181,7 +181,7 @@ struct Display {
 const MINUTE: Duration = Duration::from_secs(60);
 
 impl Display {
-    fn new(begin: Progress, quiet: bool) -> Self {
+    pub fn new(begin: Progress, quiet: bool) -> Self {
         let on_terminal = io::stderr().is_terminal();
         let target = if quiet || !on_terminal {
             ProgressDrawTarget::hidden()
@@ -205,7 +205,8 @@ impl Display {
         }
     }
 
-    fn show(&mut self, progress: Progress) {
+    pub fn show(&mut self, progress: Progress) {
+        self.bar.set_length(progress.all as u64);
         self.bar.set_position(progress.done as u64);
         if let Some(said) = &mut self.said
             && said.elapsed() >= MINUTE
@@ -219,5 +220,9 @@ impl Display {
                 HumanDuration(self.bar.eta())
             ));
         }
+    }
+
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
     }
 }

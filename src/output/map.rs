@@ -7,17 +7,12 @@ use std::io::Write;
 use nalgebra::Vector2;
 
 use super::ending;
-use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
+use super::kind::{self, CANNOT_STAND, Kind, NOT_FOUR_LINKS};
+use super::svg::{Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite};
-use crate::dynamics::history::Outcome;
 use crate::scenario::{Axis, Quantity, Spacing};
 use crate::studies::boundary::{Boundary, BoundaryRow};
 use crate::studies::map::{CellResult, CellRow, OverturningMap};
-
-/// Outcome of a cell whose arch cannot carry its own weight.
-const CANNOT_STAND: &str = "cannot_stand";
-/// Outcome of a cell whose arch is too thick for four links.
-const NOT_FOUR_LINKS: &str = "not_four_links";
 
 /// The outcome of a cell, as it stands in the table.
 #[must_use]
@@ -104,46 +99,12 @@ fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
 }
 
 /// What a cell is coloured by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Kind {
-    name: &'static str,
-    label: &'static str,
-    fill: &'static str,
-}
-
-const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Kind {
-    Kind { name, label, fill }
-}
-
-/// In the order of the legend.
-const KINDS: [Kind; 10] = [
-    kind("never_moved", "never moves", "#e4e4e4"),
-    kind("rest", "comes to rest", "#bcdcf0"),
-    kind("still_rocking", "still rocking", "#6f8ba0"),
-    kind("overturned-0", "overturns without impact", color::VERMILION),
-    kind("overturned-1", "overturns after 1 impact", color::ORANGE),
-    kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
-    kind("overturned-more", "overturns after more", color::PURPLE),
-    kind(CANNOT_STAND, "cannot stand", "#ffffff"),
-    kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
-    kind(ending::FAILED, "failed", color::BLACK),
-];
-
-impl Kind {
-    fn of(result: &CellResult) -> Self {
-        let name = match result {
-            CellResult::Ended(ending) => match (ending.outcome, ending.impacts) {
-                (Outcome::Overturned(_), 0) => "overturned-0",
-                (Outcome::Overturned(_), 1) => "overturned-1",
-                (Outcome::Overturned(_), 2) => "overturned-2",
-                (Outcome::Overturned(_), _) => "overturned-more",
-                (outcome, _) => outcome.name(),
-            },
-            other => outcome(other),
-        };
-        let known = KINDS.into_iter().find(|kind| kind.name == name);
-        known.unwrap_or(KINDS[KINDS.len() - 1])
-    }
+fn kind_of(result: &CellResult) -> Kind {
+    let impacts = match result {
+        CellResult::Ended(ending) => ending.impacts,
+        _ => 0,
+    };
+    Kind::of(outcome(result), impacts)
 }
 
 const fn label(quantity: Quantity) -> &'static str {
@@ -214,7 +175,7 @@ pub fn draw(
     let boundaries: Vec<_> = found(boundaries).collect();
     let mut drawing = Drawing::new(900.0, 720.0);
     drawing.title(title);
-    let kinds: Vec<_> = rows.iter().map(|row| Kind::of(&row.result)).collect();
+    let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result)).collect();
     let top = legend(&mut drawing, map, &kinds, !boundaries.is_empty());
     let [(x, x_edges), (y, y_edges)] = map.axes().map(scale);
     let axes = Axes {
@@ -228,7 +189,7 @@ pub fn draw(
         y,
     };
     let high = map.values()[1].len();
-    for kind in KINDS {
+    for kind in Kind::ALL {
         let mut path = String::new();
         for (column, kinds) in kinds.chunks(high).enumerate() {
             let mut bottom = 0;
@@ -279,29 +240,14 @@ const IMPACT_FREE: Stroke = Stroke::new(color::BLACK, 2.2, "");
 const LEFT: f64 = 85.0;
 const WIDTH: f64 = 790.0;
 
-/// What the colours and lines mean, in as many rows as it takes; returns where these end.
+/// What the colours and lines mean; returns where that ends.
 fn legend(
     drawing: &mut Drawing,
     map: &OverturningMap<'_>,
     kinds: &[Kind],
     boundaries: bool,
 ) -> f64 {
-    const ROW: f64 = 24.0;
-    let (mut x, mut y) = (LEFT, 46.0);
-    for kind in KINDS.into_iter().filter(|kind| kinds.contains(kind)) {
-        #[expect(clippy::cast_precision_loss, reason = "the length of a label")]
-        let advance = 46.0 + 6.6 * kind.label.len() as f64;
-        if x + advance > LEFT + WIDTH {
-            (x, y) = (LEFT, y + ROW);
-        }
-        let swatch = format!("M{x} {y}h22v14h-22z");
-        let outline = Stroke::new(color::GREY, 0.8, "");
-        drawing.path("", &swatch, kind.fill, outline);
-        let at = Vector2::new(x + 28.0, y + 12.0);
-        drawing.label(at, Anchor::Start, 0.0, kind.label);
-        x += advance;
-    }
-    y += ROW;
+    let mut y = kind::legend(drawing, Vector2::new(LEFT, 46.0), WIDTH, kinds);
     if boundaries {
         let incipient = if map.moves_vertically() {
             "incipient acceleration, were there no vertical motion"
@@ -313,7 +259,7 @@ fn legend(
             ("least amplitude that overturns without impact", IMPACT_FREE),
         ];
         drawing.legend(Vector2::new(LEFT, y + 10.0), 395.0, entries);
-        y += ROW;
+        y += kind::LEGEND_ROW;
     }
     y + 6.0
 }

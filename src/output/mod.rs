@@ -6,6 +6,7 @@ pub mod chart;
 pub mod ending;
 mod folder;
 pub mod impact;
+mod kind;
 pub mod map;
 pub mod mechanisms;
 pub mod pictures;
@@ -14,6 +15,7 @@ pub mod rotations;
 pub mod spectrum;
 pub mod suite;
 mod svg;
+pub mod threshold;
 pub mod timeline;
 
 use std::io;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Outcome;
+use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Model, Request};
 
 /// How a history ended, in the numbers that studies compare. They are finite.
@@ -30,6 +30,14 @@ impl Ending {
         let summary = model
             .simulate(ground, request, None)
             .map_err(|error| error.to_string())?;
+        Self::from_summary(&summary)
+    }
+
+    /// What a history came to.
+    ///
+    /// # Errors
+    /// Says that a number is not finite.
+    pub(super) fn from_summary(summary: &Summary) -> Result<Self, String> {
         let ending = Self {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,

@@ -7,6 +7,7 @@
 //!
 //! - [`map`]: which pulses overturn, over two quantities; [`boundary`]: from where on they do so without impact;
 //! - [`spectrum`]: how strong a pulse must be, over the size of a structure;
+//! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them;
 //! - [`suite`]: what records overturn, at several levels, and the [`fragility`] that this makes;
 //! - [`survey`]: arches of many shapes compared, without a history.
 
@@ -20,3 +21,4 @@ pub mod runner;
 pub mod spectrum;
 pub mod suite;
 pub mod survey;
+pub mod threshold;

@@ -17,6 +17,7 @@ mod velocity;
 
 use nalgebra::Vector2;
 
+use crate::argument::{ArgumentError, within};
 use crate::bisection::{Width, bisect, middle};
 pub use error::GroundError;
 use piece::Formula;
@@ -120,6 +121,21 @@ impl GroundMotion {
         Some(middle(before_s, after_s))
     }
 
+    /// The same motion with both components of the acceleration times a factor, from -1e9 to 1e9.
+    ///
+    /// # Errors
+    /// When the factor is not such a number.
+    pub fn scaled(&self, factor: f64) -> Result<Self, ArgumentError> {
+        within("factor", factor, -1e9..=1e9)?;
+        let pieces = self.pieces.iter().map(|piece| Piece {
+            formula: piece.formula.scaled(factor),
+            ..*piece
+        });
+        Ok(Self {
+            pieces: pieces.collect(),
+        })
+    }
+
     /// The same motion with further corners at these times (0 to 1e9), which change nothing: for tests of the
     /// integration.
     ///
@@ -188,6 +204,39 @@ mod tests {
         assert_eq!(wave(9.0).free_fall_s(9.81), None);
         // 20 sin(2 pi s) = -10 first at 7/12.
         assert!((wave(20.0).free_fall_s(10.0).unwrap() - 7.0 / 12.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn scaled_motion_is_that_of_the_scaled_amplitude() {
+        let record = |factor: f64| {
+            let scaled = |samples: [(f64, f64); 3]| samples.map(|(t, a)| (t, factor * a));
+            let horizontal = scaled([(0.5, 1.0), (1.0, -2.0), (1.5, 0.5)]);
+            GroundMotion::record(
+                &horizontal,
+                &scaled([(0.0, 0.0), (0.7, 3.0), (2.0, 0.1)]),
+                0.25,
+            )
+            .unwrap()
+        };
+        // Powers of two are exact.
+        assert_eq!(record(1.0).scaled(-4.0), Ok(record(-4.0)));
+        for pulse in Pulse::ALL.iter().copied() {
+            let ground = |factor: f64| {
+                let amplitude = Vector2::new(2.0, -0.7) * factor;
+                GroundMotion::pulse_along(pulse, amplitude, 0.3, 0.1, WaveTrain::default()).unwrap()
+            };
+            assert_eq!(ground(1.0).scaled(0.5), Ok(ground(0.5)));
+            let scaled = ground(1.0).scaled(1.7).unwrap();
+            for (ours, direct) in scaled.pieces().iter().zip(ground(1.7).pieces()) {
+                let time_s = ours.start_s + 0.01;
+                assert!((ours.at(time_s).0 - direct.at(time_s).0).norm() < 1e-14);
+                assert!((ours.start_s, ours.end_s) == (direct.start_s, direct.end_s));
+            }
+        }
+        for factor in [f64::NAN, f64::INFINITY, -1e10] {
+            let error = record(1.0).scaled(factor).unwrap_err();
+            assert_eq!(error.argument, "factor");
+        }
     }
 
     #[test]

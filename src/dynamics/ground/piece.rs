@@ -25,6 +25,20 @@ impl Formula {
         }
     }
 
+    /// The formula times a factor.
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::Linear { at_origin, slope } => Self::Linear {
+                at_origin: at_origin * factor,
+                slope: slope * factor,
+            },
+            Self::Shaped { amplitude, shape } => Self::Shaped {
+                amplitude: amplitude * factor,
+                shape,
+            },
+        }
+    }
+
     /// Acceleration and its rate of change.
     pub(super) fn at(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {

@@ -1,0 +1,287 @@
+//! The command `threshold`.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use archrock::dynamics::ground::GroundMotion;
+use archrock::dynamics::history::Outcome;
+use archrock::dynamics::model::Model;
+use archrock::output::threshold::{self as output, rounded};
+use archrock::scenario::{Scenario, Structure};
+use archrock::studies::runner::Runner;
+use archrock::studies::threshold::{
+    FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
+};
+
+use super::study::{Display, say};
+use super::{Failure, Format, commands, open_folder, print, results_folder};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scenario file (TOML).
+    scenario: PathBuf,
+    /// Folder for the results [default: results/<name of the scenario file>].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// The least factor on the ground motion.
+    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
+    from: f64,
+    /// The largest factor.
+    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().last())]
+    to: f64,
+    /// How much larger a factor is than the one before, as a part of it: what is narrower may be missed.
+    #[arg(long, value_name = "PART", default_value_t = Factors::default().stride())]
+    stride: f64,
+    /// How many threads work [default: as many as there are processors].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+const PICTURE: &str = "threshold.svg";
+const TABLE: &str = "threshold.csv";
+/// Written last: a folder that has it is complete.
+const SUMMARY: &str = "threshold.json";
+
+pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+    let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
+        .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
+    let scenario = Scenario::read(&arguments.scenario)?;
+    check(&scenario).map_err(|message| {
+        Failure::Input(format!("{}: {message}", arguments.scenario.display()))
+    })?;
+    let models = models(&scenario)?;
+    let models: Vec<(&str, &dyn Model)> = models
+        .iter()
+        .map(|(name, model)| (*name, &**model))
+        .collect();
+    let ground = scenario.ground_motion();
+    // Opened before the work starts, so that a folder that cannot be written costs no time.
+    let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
+    let mut folder = open_folder(&path, &[PICTURE, TABLE, SUMMARY])?;
+
+    let runner = Runner {
+        threads: arguments.threads.and_then(|n| NonZeroUsize::new(n.into())),
+    };
+    let mut display = None;
+    let watch = |progress| {
+        let display = display.get_or_insert_with(|| Display::new(progress, quiet));
+        display.show(progress);
+        ControlFlow::Continue(())
+    };
+    let request = scenario.request();
+    let found = thresholds(&models, ground, &request, &factors, &runner, watch)?;
+    if let Some(display) = display {
+        display.finish();
+    }
+    for threshold in &found {
+        refuse_if_nothing_is_known(threshold)?;
+    }
+
+    let title = scenario
+        .title
+        .as_deref()
+        .unwrap_or("Threshold of overturning");
+    let peak_g = output::peak_g(&scenario, ground);
+    let json = output::to_json(&scenario, ground, &factors, &found)?;
+    let json = commands::pretty(&json);
+    let picture = output::draw(title, peak_g, &factors, &found);
+    for (name, text) in [(PICTURE, &picture), (SUMMARY, &json)] {
+        folder
+            .file(name)
+            .write_all(text.as_bytes())
+            .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
+    }
+    output::write_table(folder.file(TABLE), &found)?;
+    folder.complete()?;
+    if !quiet {
+        say(&format!(
+            "results in {}: {PICTURE}, {TABLE}, {SUMMARY}",
+            path.display()
+        ));
+    }
+    match arguments.format {
+        Format::Json => print(&json),
+        Format::Text => print(&words(&scenario, ground, &factors, &found)),
+    }
+}
+
+/// A model of motion, and its name in the results.
+type NamedModel = (&'static str, Box<dyn Model>);
+
+/// The models of motion that are asked: that which the scenario chooses.
+fn models(scenario: &Scenario) -> Result<Vec<NamedModel>, Failure> {
+    let model: NamedModel = match (scenario.free_hinges, &scenario.structure) {
+        (Some(steps), structure) => {
+            let model = structure.free_hinges(steps);
+            let model = model.map_err(|error| Failure::Input(error.to_string()))?;
+            ("free_hinges", Box::new(model))
+        }
+        (None, Structure::Arch(_)) => ("four_links", commands::model(scenario)?),
+        (None, Structure::Column(_)) => ("column", commands::model(scenario)?),
+    };
+    Ok(vec![model])
+}
+
+/// Whether there is something to be scaled.
+fn check(scenario: &Scenario) -> Result<(), &'static str> {
+    if scenario.initial.is_some() {
+        return Err("the histories of a threshold start from rest: leave [initial] out");
+    }
+    if scenario.ground.is_none() {
+        return Err(
+            "the scenario has no ground motion whose threshold could be found: give it a table such as\n\n\
+             [ground.one_cosine]\n\
+             amplitude_g = 0.3\n\
+             duration_s = 0.5",
+        );
+    }
+    Ok(())
+}
+
+impl From<ThresholdError> for Failure {
+    fn from(error: ThresholdError) -> Self {
+        match error {
+            ThresholdError::Argument(_) => Self::Input(error.to_string()),
+            ThresholdError::Runner(error) => error.into(),
+        }
+    }
+}
+
+/// Where no history could be computed there is no result.
+fn refuse_if_nothing_is_known(threshold: &Threshold) -> Result<(), Failure> {
+    let samples = &threshold.samples;
+    if samples.iter().any(|sample| sample.result.is_ok()) {
+        return Ok(());
+    }
+    match samples
+        .iter()
+        .find_map(|sample| sample.result.as_ref().err())
+    {
+        Some(NoHistory::GroundFalls(reason)) => Err(Failure::Input(reason.clone())),
+        Some(NoHistory::Failed(reason)) => Err(Failure::Work(reason.clone())),
+        None => Ok(()),
+    }
+}
+
+/// What was found, a line per band.
+fn words(
+    scenario: &Scenario,
+    ground: &GroundMotion,
+    factors: &Factors,
+    thresholds: &[Threshold],
+) -> String {
+    let mut text = String::new();
+    if let Some(title) = &scenario.title {
+        let _ = writeln!(text, "{title}");
+    }
+    let peak_g = output::peak_g(scenario, ground);
+    for threshold in thresholds {
+        if thresholds.len() > 1 {
+            let _ = writeln!(text, "{}", threshold.model.replace('_', " "));
+        }
+        bands(&mut text, peak_g, threshold);
+        doubts(&mut text, threshold);
+    }
+    let _ = writeln!(
+        text,
+        "  sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed",
+        factors.first(),
+        factors.last(),
+        (1e6 * factors.stride()).round() / 1e4,
+    );
+    let end_s = scenario.simulation.duration_s;
+    if ground.end_s() > end_s {
+        let _ = writeln!(
+            text,
+            "  the histories end at {end_s:.4} s and the ground moves until {:.4} s: a longer duration_s in \
+             [simulation] shows the rest",
+            ground.end_s()
+        );
+    }
+    text
+}
+
+fn bands(text: &mut String, peak_g: f64, threshold: &Threshold) {
+    let at = |factor: f64| format!("{} ({} g)", rounded(factor), rounded(factor * peak_g));
+    let Some(first) = threshold.bands.first() else {
+        let known = threshold.samples.iter().rev();
+        let last = known
+            .filter(|sample| sample.result.is_ok())
+            .map(|sample| sample.factor);
+        let last = last.into_iter().next().unwrap_or_default();
+        let _ = writeln!(text, "  does not overturn up to factor {}", at(last));
+        return;
+    };
+    if first.from_end == RangeEnd::Sampled {
+        let _ = writeln!(
+            text,
+            "  overturns at the least factor already: a lower --from finds where that begins"
+        );
+    }
+    for band in &threshold.bands {
+        let _ = write!(text, "  overturns from factor {}", at(band.from));
+        let _ = match (band.to_end, gap_after(threshold, band)) {
+            (RangeEnd::Sampled, _) => writeln!(text, " on"),
+            (RangeEnd::Unknown, _) => {
+                writeln!(text, " to {}; what follows is not known", at(band.to))
+            }
+            (RangeEnd::Edge, None) => writeln!(text, " to {}; survives from there on", at(band.to)),
+            (RangeEnd::Edge, Some(gap)) => {
+                let (from, to) = (at(band.to), at(gap.to));
+                writeln!(text, " to {from}; survives again up to {to}")
+            }
+        };
+    }
+}
+
+/// The safe gap that follows a band.
+fn gap_after<'a>(threshold: &'a Threshold, band: &FactorRange) -> Option<&'a FactorRange> {
+    let mut gaps = threshold.gaps.iter();
+    gaps.find(|gap| gap.from > band.to)
+}
+
+/// What is not certain about it.
+fn doubts(text: &mut String, threshold: &Threshold) {
+    let falls = |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
+    let samples = &threshold.samples;
+    if let Some(first) = samples.iter().find(falls) {
+        let _ = writeln!(
+            text,
+            "  from factor {} on the ground falls as fast as a free body at some time, which this model does \
+             not tell of",
+            rounded(first.factor)
+        );
+    }
+    let failed: Vec<_> = samples
+        .iter()
+        .filter(|sample| !falls(sample))
+        .filter_map(|sample| Some((sample.factor, sample.result.as_ref().err()?)))
+        .collect();
+    if let Some((factor, reason)) = failed.first() {
+        let _ = writeln!(
+            text,
+            "  failed: {} of {} histories; the first, at factor {}: {reason}",
+            failed.len(),
+            samples.len(),
+            rounded(*factor)
+        );
+    }
+    let rocking = samples.iter().filter(|sample| {
+        let ending = sample.result.as_ref();
+        ending.is_ok_and(|ending| ending.outcome == Outcome::StillRocking)
+    });
+    let rocking = rocking.count();
+    if rocking > 0 {
+        let _ = writeln!(
+            text,
+            "  still rocking at duration_s of [simulation], which counts as survived: {rocking} of {} histories",
+            samples.len()
+        );
+    }
+}

@@ -1,0 +1,439 @@
+//! Thresholds of overturning: their table, their JSON, their picture.
+
+use std::io::Write;
+
+use nalgebra::Vector2;
+use serde_json::{Value, json};
+
+use super::kind::{self, GROUND_FALLS, Kind};
+use super::svg::{Anchor, Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
+use super::{OutputError, ending, finite};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::Outcome;
+use crate::scenario::Scenario;
+use crate::studies::ending::Ending;
+use crate::studies::threshold::{
+    FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold,
+};
+
+/// Names of the columns.
+pub const COLUMNS: [&str; 8] = [
+    "model",
+    "factor",
+    "outcome",
+    "overturning_sway",
+    "impacts",
+    "outcome_time_s",
+    "peak_rotation_over_critical",
+    "peak_rotation_rad",
+];
+
+/// The outcome of a sample, also where there is no history.
+#[must_use]
+pub const fn outcome(sample: &FactorSample) -> &'static str {
+    match &sample.result {
+        Ok(ending) => ending.outcome.name(),
+        Err(NoHistory::GroundFalls(_)) => GROUND_FALLS,
+        Err(NoHistory::Failed(_)) => ending::FAILED,
+    }
+}
+
+const fn overturning_sway(ending: &Ending) -> Option<&'static str> {
+    match ending.outcome {
+        Outcome::Overturned(sway) => Some(sway.name()),
+        _ => None,
+    }
+}
+
+/// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.
+#[must_use]
+pub fn peak_g(scenario: &Scenario, ground: &GroundMotion) -> f64 {
+    ground.peaks_m_s2(f64::INFINITY).x / scenario.simulation.gravity_m_s2
+}
+
+/// A factor or an acceleration for people: with four digits, about as many as are certain of an edge.
+#[must_use]
+pub fn rounded(value: f64) -> String {
+    let before_point = if value > 0.0 {
+        value.log10().floor() + 1.0
+    } else {
+        1.0
+    };
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number, not negative"
+    )]
+    let digits = (4.0 - before_point).max(0.0) as usize;
+    format!("{value:.digits$}")
+}
+
+/// Writes the samples, model by model, factors ascending.
+///
+/// # Errors
+/// When the system refuses.
+pub fn write_table(writer: impl Write, thresholds: &[Threshold]) -> Result<(), OutputError> {
+    const WHAT: &str = "cannot write the samples";
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(COLUMNS).map_err(OutputError::csv(WHAT))?;
+    for threshold in thresholds {
+        for sample in &threshold.samples {
+            let ending = sample.result.as_ref().ok();
+            csv.serialize((
+                &threshold.model,
+                sample.factor,
+                outcome(sample),
+                ending.and_then(overturning_sway),
+                ending.map(|ending| ending.impacts),
+                ending.map(|ending| ending.outcome_time_s),
+                ending.and_then(|ending| ending.peak_over_critical),
+                sample.peak_rotation_rad,
+            ))
+            .map_err(OutputError::csv(WHAT))?;
+        }
+    }
+    csv.flush().map_err(OutputError::io(WHAT))
+}
+
+/// All that was found, as JSON: per model the least factor that overturns, the bands that overturn and the safe
+/// gaps between them, and all samples; beside the edges the peak acceleration of the ground, in units of gravity.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn to_json(
+    scenario: &Scenario,
+    ground: &GroundMotion,
+    factors: &Factors,
+    thresholds: &[Threshold],
+) -> Result<Value, OutputError> {
+    let peak_g = peak_g(scenario, ground);
+    finite("peak_acceleration_g", &[peak_g])?;
+    let ranges = |ranges: &[FactorRange]| -> Vec<Value> {
+        let ranges = ranges.iter();
+        ranges.map(|range| range_to_json(range, peak_g)).collect()
+    };
+    let models: Vec<Value> = thresholds
+        .iter()
+        .map(|threshold| {
+            let samples: Vec<Value> = threshold.samples.iter().map(sample_to_json).collect();
+            json!({
+                "model": threshold.model,
+                "lowest_factor": threshold.lowest_factor(),
+                "bands": ranges(&threshold.bands),
+                "gaps": ranges(&threshold.gaps),
+                "samples": samples,
+            })
+        })
+        .collect();
+    Ok(json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenario": scenario.to_json(),
+        "peak_acceleration_g": peak_g,
+        "factors": { "from": factors.first(), "to": factors.last(), "stride": factors.stride() },
+        "models": models,
+    }))
+}
+
+fn range_to_json(range: &FactorRange, peak_g: f64) -> Value {
+    json!({
+        "from": range.from,
+        "to": range.to,
+        "from_end": range.from_end.name(),
+        "to_end": range.to_end.name(),
+        "from_peak_g": range.from * peak_g,
+        "to_peak_g": range.to * peak_g,
+    })
+}
+
+fn sample_to_json(sample: &FactorSample) -> Value {
+    match &sample.result {
+        Ok(ending) => json!({
+            "factor": sample.factor,
+            "outcome": outcome(sample),
+            "overturning_sway": overturning_sway(ending),
+            "impacts": ending.impacts,
+            "outcome_time_s": ending.outcome_time_s,
+            "peak_rotation_over_critical": ending.peak_over_critical,
+            "peak_rotation_rad": sample.peak_rotation_rad,
+        }),
+        Err(error) => json!({
+            "factor": sample.factor,
+            "outcome": outcome(sample),
+            "reason": error.to_string(),
+        }),
+    }
+}
+
+const LEFT: f64 = 95.0;
+const WIDTH: f64 = 780.0;
+
+/// Room for the labels of the edges above a strip.
+const EDGE_LABELS: f64 = 58.0;
+const STRIP: f64 = 28.0;
+/// Distance of labels that stand side by side.
+const LABEL_ADVANCE: f64 = 15.0;
+
+const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
+const EDGE: Stroke = Stroke::new(color::GREY, 0.8, "");
+
+/// Draws the outcome over the factor as a strip for each model, with the edges of the bands, and the largest
+/// rotation below. `peak_g` is the peak acceleration of the ground at the factor 1.
+#[must_use]
+pub fn draw(title: &str, peak_g: f64, factors: &Factors, thresholds: &[Threshold]) -> String {
+    #[expect(clippy::cast_precision_loss, reason = "a handful of models")]
+    let strips = thresholds.len() as f64 * (EDGE_LABELS + STRIP);
+    let height = 500.0 + strips;
+    let mut drawing = Drawing::new(900.0, height);
+    drawing.title(title);
+    let kinds: Vec<Kind> = thresholds
+        .iter()
+        .flat_map(|threshold| threshold.samples.iter().map(kind_of))
+        .collect();
+    let mut top = kind::legend(&mut drawing, Vector2::new(LEFT, 46.0), WIDTH, &kinds);
+    let names: Vec<String> = thresholds.iter().map(name).collect();
+    let rotation = Rotation::of(thresholds);
+    let mut entries = Vec::new();
+    if rotation == Rotation::OverCritical {
+        entries.push(("unstable equilibrium", CRITICAL));
+    }
+    if let [_, _, ..] = names[..] {
+        entries.extend(names.iter().map(String::as_str).zip(curves()));
+    }
+    drawing.legend(Vector2::new(LEFT, top + 10.0), 190.0, entries);
+    top += kind::LEGEND_ROW;
+
+    let (first, last) = (factors.first(), factors.last());
+    let x = if last < 2.0 * first {
+        Scale::exactly(first, last, 8)
+    } else {
+        Scale::logarithmic(first, last)
+    };
+    let axes = Axes {
+        frame: Frame {
+            left: LEFT,
+            top: top + strips + 16.0,
+            width: WIDTH,
+            height: height - 60.0 - (top + strips + 16.0),
+        },
+        x,
+        y: rotation.scale(thresholds),
+    };
+    for (threshold, name) in thresholds.iter().zip(&names) {
+        top += EDGE_LABELS;
+        let frame = Frame {
+            left: LEFT,
+            top,
+            width: WIDTH,
+            height: STRIP,
+        };
+        strip(&mut drawing, &Axes { frame, ..axes }, threshold);
+        let at = Vector2::new(LEFT - 8.0, top + 0.5 * STRIP + 4.5);
+        drawing.label(at, Anchor::End, 0.0, name);
+        top += STRIP;
+    }
+    let label = format!("factor on the ground motion (1: {} g)", rounded(peak_g));
+    axes.draw(&mut drawing, Some(&label), rotation.label());
+    drawing.within(&axes.frame, |drawing| {
+        if rotation == Rotation::OverCritical {
+            drawing.line(axes.place(first, 1.0), axes.place(last, 1.0), CRITICAL);
+        }
+        for (threshold, stroke) in thresholds.iter().zip(curves()) {
+            for edge in edges(threshold) {
+                let [bottom, top] = [axes.y.low, axes.y.high].map(|y| axes.place(edge, y));
+                drawing.line(bottom, top, Stroke::new(stroke.color, 0.5, "2 3"));
+            }
+            // Where there is no rotation to show the curve breaks.
+            for run in threshold
+                .samples
+                .chunk_by(|a, b| rotation.peak(a).is_some() == rotation.peak(b).is_some())
+            {
+                let points = run
+                    .iter()
+                    .filter_map(|sample| Some(axes.place(sample.factor, rotation.peak(sample)?)));
+                drawing.curve(&format!("{} peak", threshold.model), points, stroke);
+            }
+        }
+    });
+    drawing.finish()
+}
+
+/// What the curves of the models look like.
+fn curves() -> impl Iterator<Item = Stroke> {
+    CURVES.into_iter().cycle()
+}
+
+/// The name of its model for people.
+fn name(threshold: &Threshold) -> String {
+    threshold.model.replace('_', " ")
+}
+
+fn kind_of(sample: &FactorSample) -> Kind {
+    let impacts = sample.result.as_ref().map_or(0, |ending| ending.impacts);
+    Kind::of(outcome(sample), impacts)
+}
+
+/// Which rotation is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rotation {
+    /// The largest over the critical one.
+    OverCritical,
+    /// The largest in radians, because a model does not know a critical one.
+    Plain,
+}
+
+impl Rotation {
+    fn of(thresholds: &[Threshold]) -> Self {
+        let mut samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
+        let known = samples.all(|sample| {
+            let ending = sample.result.as_ref();
+            ending.map_or(true, |ending| ending.peak_over_critical.is_some())
+        });
+        if known {
+            Self::OverCritical
+        } else {
+            Self::Plain
+        }
+    }
+
+    const fn label(self) -> &'static str {
+        match self {
+            Self::OverCritical => "peak rotation / critical rotation",
+            Self::Plain => "peak rotation (rad)",
+        }
+    }
+
+    fn peak(self, sample: &FactorSample) -> Option<f64> {
+        match self {
+            Self::OverCritical => sample.result.as_ref().ok()?.peak_over_critical,
+            Self::Plain => sample.peak_rotation_rad,
+        }
+    }
+
+    /// Up to the largest that was survived. What overturns goes beyond.
+    fn scale(self, thresholds: &[Threshold]) -> Scale {
+        let least = match self {
+            Self::OverCritical => 1.0,
+            Self::Plain => 0.01,
+        };
+        let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
+        let survived = samples
+            .filter(|sample| sample.overturns() == Some(false))
+            .filter_map(|sample| self.peak(sample));
+        Scale::exactly(0.0, 1.15 * survived.fold(least, f64::max), 6)
+    }
+}
+
+/// The edges of the bands, ascending.
+fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
+    threshold.bands.iter().flat_map(|band| {
+        let ends = [(band.from, band.from_end), (band.to, band.to_end)];
+        let ends = ends.into_iter().filter(|(_, end)| *end == RangeEnd::Edge);
+        ends.map(|(factor, _)| factor)
+    })
+}
+
+/// The outcomes of a model along its factors, and the edges of its bands above.
+fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
+    let edges: Vec<f64> = edges(threshold).collect();
+    // Where one colour ends and the next begins: at the edge, if there is one, or halfway.
+    let border = |below: &FactorSample, above: &FactorSample| {
+        let edge = edges
+            .iter()
+            .find(|edge| (below.factor..=above.factor).contains(*edge));
+        let changes = below.overturns() != above.overturns();
+        match edge.filter(|_| changes) {
+            Some(edge) => *edge,
+            None => (below.factor * above.factor).sqrt(),
+        }
+    };
+    let Frame { top, height, .. } = axes.frame;
+    let place = |factor: f64| axes.place(factor, axes.y.low).x;
+    let mut from = axes.x.low;
+    let runs: Vec<_> = threshold
+        .samples
+        .chunk_by(|a, b| kind_of(a) == kind_of(b))
+        .collect();
+    for (index, run) in runs.iter().enumerate() {
+        let last = &run[run.len() - 1];
+        let next = runs.get(index + 1);
+        let to = next.map_or(axes.x.high, |next| border(last, &next[0]));
+        let frame = Frame {
+            left: place(from),
+            top,
+            width: place(to) - place(from),
+            height,
+        };
+        let kind = kind_of(last);
+        drawing.band(
+            &format!("{} {}", threshold.model, kind.name),
+            &frame,
+            kind.fill,
+            1.0,
+        );
+        from = to;
+    }
+    let Frame { left, width, .. } = axes.frame;
+    let outline = format!("M{left} {top}h{width}v{height}h-{width}z");
+    drawing.path("", &outline, "none", Stroke::new(color::BLACK, 0.8, ""));
+    let places: Vec<f64> = edges.iter().map(|edge| place(*edge)).collect();
+    for ((edge, at), beside) in edges
+        .iter()
+        .zip(&places)
+        .zip(spread(&places, left, left + width))
+    {
+        let foot = Vector2::new(*at, top);
+        let head = Vector2::new(beside, top - 14.0);
+        drawing.line(foot, head, EDGE);
+        let text = head + Vector2::new(4.5, -3.0);
+        drawing.label(text, Anchor::Start, 90.0, &rounded(*edge));
+    }
+}
+
+/// Places for labels near the given ascending places, side by side between `left` and `right`; fewer where there is
+/// not room for all.
+fn spread(places: &[f64], left: f64, right: f64) -> Vec<f64> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number, not negative"
+    )]
+    let room = ((right - left) / LABEL_ADVANCE) as usize + 1;
+    let mut least = left;
+    let mut spread: Vec<f64> = Vec::new();
+    for place in places.iter().take(room) {
+        let place = place.max(least);
+        least = place + LABEL_ADVANCE;
+        spread.push(place);
+    }
+    let mut most = right;
+    for place in spread.iter_mut().rev() {
+        *place = place.min(most);
+        most = *place - LABEL_ADVANCE;
+    }
+    spread
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounded_numbers_have_four_digits() {
+        let texts = [0.0, 0.012_345, 0.5, 2.113_06, 12.5, 123.456, 98_765.0].map(rounded);
+        assert_eq!(
+            texts,
+            [
+                "0.000", "0.01235", "0.5000", "2.113", "12.50", "123.5", "98765"
+            ]
+        );
+    }
+
+    #[test]
+    fn labels_stand_side_by_side() {
+        assert_eq!(spread(&[10.0, 50.0], 0.0, 60.0), [10.0, 50.0]);
+        assert_eq!(spread(&[10.0, 11.0, 59.0], 0.0, 60.0), [10.0, 25.0, 59.0]);
+        assert_eq!(spread(&[58.0, 59.0], 0.0, 60.0), [45.0, 60.0]);
+        assert_eq!(spread(&[1.0, 2.0, 3.0], 0.0, 20.0), [1.0, 16.0]);
+    }
+}

@@ -1,0 +1,438 @@
+//! Thresholds: the factors on a ground motion at which structures overturn.
+//!
+//! A stronger motion need not be a worse one: after impacts there are **bands** of factors that overturn with
+//! safe **gaps** between them. So factors are sampled upwards in equal strides, and bisection only finds the edge
+//! between two neighbours of which one overturns and the other does not. Bands and gaps that are narrower than a
+//! stride may be missed.
+
+use std::ops::ControlFlow;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::ending::Ending;
+use super::runner::{Progress, Runner, RunnerError, Study};
+use crate::argument::{ArgumentError, above, within};
+use crate::bisection::{Width, try_bisect};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::Outcome;
+use crate::dynamics::model::{Model, Request, SimulationError};
+
+/// How closely an edge is enclosed, as a part of its factor: far closer than any motion of the ground is known,
+/// and wide enough that the errors of the integration do not decide.
+pub const EDGE_WIDTH: f64 = 1e-4;
+
+/// The factors that are sampled: from the first to the last, each larger than the one before by a stride, or by
+/// less where that reaches the last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Factors {
+    from: f64,
+    to: f64,
+    stride: f64,
+}
+
+impl Default for Factors {
+    /// From a tenth to ten times, in strides of 2 %.
+    fn default() -> Self {
+        Self {
+            from: 0.1,
+            to: 10.0,
+            stride: 0.02,
+        }
+    }
+}
+
+impl Factors {
+    /// Factors `from`, at least 1e-6, `to`, above that and at most 1e6, in strides of `stride` times the factor,
+    /// 1e-4 to 1.
+    ///
+    /// # Errors
+    /// When a number is not allowed.
+    pub fn new(from: f64, to: f64, stride: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            from: within("from", from, 1e-6..=1e6)?,
+            to: above("to", to, from, 1e6)?,
+            stride: within("stride", stride, 1e-4..=1.0)?,
+        })
+    }
+
+    /// The first factor.
+    #[must_use]
+    pub const fn first(&self) -> f64 {
+        self.from
+    }
+
+    /// The last factor.
+    #[must_use]
+    pub const fn last(&self) -> f64 {
+        self.to
+    }
+
+    /// How much larger than a factor the next is, as a part of it.
+    #[must_use]
+    pub const fn stride(&self) -> f64 {
+        self.stride
+    }
+
+    /// All of them, ascending.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        // A last stride that is nothing but rounding is none.
+        let end = self.to * (1.0 - 1e-9);
+        let next = |factor: &f64| Some(factor * (1.0 + self.stride));
+        let mut values: Vec<f64> = std::iter::successors(Some(self.from), next)
+            .take_while(|factor| *factor < end)
+            .collect();
+        values.push(self.to);
+        values
+    }
+}
+
+/// The history on the ground motion times a factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FactorSample {
+    /// The factor.
+    pub factor: f64,
+    /// How it ended, or why there is none.
+    pub result: Result<Ending, NoHistory>,
+    /// Largest magnitude of the rotation of any body; `None` where there is no history.
+    pub peak_rotation_rad: Option<f64>,
+}
+
+/// Why there is no history at a factor.
+#[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
+pub enum NoHistory {
+    /// The ground falls as fast as a free body, which is beyond the model.
+    #[error("{0}")]
+    GroundFalls(String),
+    /// It could not be computed.
+    #[error("{0}")]
+    Failed(String),
+}
+
+impl FactorSample {
+    fn of(model: &dyn Model, ground: &GroundMotion, request: &Request, factor: f64) -> Self {
+        let summary = ground
+            .scaled(factor)
+            .map_err(SimulationError::from)
+            .and_then(|ground| model.simulate(&ground, request, None));
+        let peak_rotation_rad = summary.as_ref().ok().map(|summary| {
+            let peaks = summary.peak_rotations_rad.iter();
+            peaks.copied().fold(0.0, f64::max)
+        });
+        let result = match summary {
+            Ok(summary) => Ending::from_summary(&summary).map_err(NoHistory::Failed),
+            Err(error @ SimulationError::FreeFall { .. }) => {
+                Err(NoHistory::GroundFalls(error.to_string()))
+            }
+            Err(error) => Err(NoHistory::Failed(error.to_string())),
+        };
+        Self {
+            factor,
+            result,
+            peak_rotation_rad,
+        }
+    }
+
+    /// Whether the structure overturns; `None` where there is no history. What is still rocking at the end does
+    /// not.
+    #[must_use]
+    pub fn overturns(&self) -> Option<bool> {
+        let ending = self.result.as_ref().ok()?;
+        Some(matches!(ending.outcome, Outcome::Overturned(_)))
+    }
+}
+
+named! {
+    /// Why a range of factors ends where it does.
+    pub enum RangeEnd {
+        /// Beyond it the outcome is another.
+        Edge = "edge",
+        /// No factor beyond it was asked for.
+        Sampled = "sampled",
+        /// Beyond it there is no history.
+        Unknown = "unknown",
+    }
+}
+
+/// A range of factors of one outcome. The histories at both ends were simulated, and have that outcome.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FactorRange {
+    /// Its least factor.
+    pub from: f64,
+    /// Its largest factor.
+    pub to: f64,
+    /// Why it begins there.
+    pub from_end: RangeEnd,
+    /// Why it ends there.
+    pub to_end: RangeEnd,
+}
+
+/// What a model of motion says of all factors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Threshold {
+    /// Name of the model.
+    pub model: String,
+    /// The histories at all factors, ascending; where the search for an edge failed, that history is among them.
+    pub samples: Vec<FactorSample>,
+    /// Where it overturns, ascending.
+    pub bands: Vec<FactorRange>,
+    /// Where it survives between bands, ascending.
+    pub gaps: Vec<FactorRange>,
+}
+
+impl Threshold {
+    /// The least factor at which it overturns; `None` if it never does.
+    #[must_use]
+    pub fn lowest_factor(&self) -> Option<f64> {
+        self.bands.first().map(|band| band.from)
+    }
+}
+
+/// Why thresholds were not found.
+#[derive(Debug, Error)]
+pub enum ThresholdError {
+    /// What is asked of the histories is not possible.
+    #[error(transparent)]
+    Argument(#[from] ArgumentError),
+    /// The caller broke off, or there are no threads.
+    #[error(transparent)]
+    Runner(#[from] RunnerError),
+}
+
+/// The factors on the ground motion at which each of the models, given with its name, overturns.
+///
+/// `watch` is told of the progress as by [`Runner::rows`]: first over all factors, then over the edges as well.
+///
+/// # Errors
+/// When `watch` breaks, threads cannot be started, or the request is not possible. Histories that fail are among the
+/// results.
+pub fn thresholds(
+    models: &[(&str, &dyn Model)],
+    ground: &GroundMotion,
+    request: &Request,
+    factors: &Factors,
+    runner: &Runner,
+    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Vec<Threshold>, ThresholdError> {
+    request.check()?;
+    let factors = factors.values();
+    let shaking = Shaking {
+        models,
+        ground,
+        request,
+    };
+    let samples = AtFactors {
+        shaking,
+        factors: &factors,
+    };
+    let samples = runner.rows(&samples, &mut watch)?;
+    let samples: Vec<&[FactorSample]> = samples.chunks(factors.len()).collect();
+
+    let mut changes: Vec<Change<'_>> = Vec::new();
+    for (index, samples) in samples.iter().enumerate() {
+        let pairs = samples.windows(2);
+        let pairs = pairs.filter(|pair| changes_outcome(&pair[0], &pair[1]));
+        changes.extend(pairs.map(|pair| (index, &pair[0], &pair[1])));
+    }
+    let sampled = models.len() * factors.len();
+    let edges = AtEdges {
+        shaking,
+        changes: &changes,
+    };
+    let edges = runner.rows(&edges, |progress| {
+        watch(Progress {
+            done: sampled + progress.done,
+            all: sampled + progress.all,
+        })
+    })?;
+
+    let mut results: Vec<(Vec<FactorSample>, Vec<Edge>)> = samples
+        .into_iter()
+        .map(|samples| (samples.to_vec(), Vec::new()))
+        .collect();
+    for ((index, ..), edge) in changes.iter().zip(edges) {
+        let (samples, edges) = &mut results[*index];
+        match edge {
+            Ok(edge) => edges.push(edge),
+            Err(failed) => samples.push(failed),
+        }
+    }
+    let results = models.iter().zip(results);
+    Ok(results
+        .map(|((name, _), (mut samples, edges))| {
+            samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+            Threshold::new((*name).to_owned(), samples, &edges)
+        })
+        .collect())
+}
+
+/// What is shaken, and how.
+#[derive(Clone, Copy)]
+struct Shaking<'a> {
+    models: &'a [(&'a str, &'a dyn Model)],
+    ground: &'a GroundMotion,
+    request: &'a Request,
+}
+
+impl Shaking<'_> {
+    fn sample(&self, model: usize, factor: f64) -> FactorSample {
+        FactorSample::of(self.models[model].1, self.ground, self.request, factor)
+    }
+}
+
+/// All models at all factors, model by model. The rows are not kept in files.
+struct AtFactors<'a> {
+    shaking: Shaking<'a>,
+    factors: &'a [f64],
+}
+
+impl Study for AtFactors<'_> {
+    type Row = FactorSample;
+    const NAME: &'static str = "threshold";
+
+    fn scenario(&self) -> String {
+        String::new()
+    }
+
+    fn count(&self) -> usize {
+        self.shaking.models.len() * self.factors.len()
+    }
+
+    fn row(&self, index: usize) -> FactorSample {
+        let (model, factor) = (index / self.factors.len(), index % self.factors.len());
+        self.shaking.sample(model, self.factors[factor])
+    }
+}
+
+/// Neighbouring samples of a model, given by its index, of which one overturns and the other does not.
+type Change<'a> = (usize, &'a FactorSample, &'a FactorSample);
+
+/// Neighbouring factors of different outcomes, closely together.
+type Edge = (f64, f64);
+
+fn changes_outcome(below: &FactorSample, above: &FactorSample) -> bool {
+    let both = below.overturns().zip(above.overturns());
+    both.is_some_and(|(below, above)| below != above)
+}
+
+/// The edges between neighbours of different outcomes, or the histories that failed in the search.
+struct AtEdges<'a> {
+    shaking: Shaking<'a>,
+    changes: &'a [Change<'a>],
+}
+
+impl Study for AtEdges<'_> {
+    type Row = Result<Edge, FactorSample>;
+    const NAME: &'static str = "threshold-edges";
+
+    fn scenario(&self) -> String {
+        String::new()
+    }
+
+    fn count(&self) -> usize {
+        self.changes.len()
+    }
+
+    fn row(&self, index: usize) -> Self::Row {
+        let (model, below, above) = self.changes[index];
+        let width = Width::Relative(EDGE_WIDTH);
+        try_bisect(below.factor, above.factor, width, |factor| {
+            let sample = self.shaking.sample(model, factor);
+            match sample.overturns() {
+                None => Err(sample),
+                overturns => Ok(overturns == above.overturns()),
+            }
+        })
+    }
+}
+
+impl Threshold {
+    fn new(model: String, samples: Vec<FactorSample>, edges: &[Edge]) -> Self {
+        let between = |below: &FactorSample, above: &FactorSample| {
+            let mut edges = edges.iter();
+            edges.find(|(low, high)| below.factor <= *low && *high <= above.factor)
+        };
+        let mut ranges: Vec<(bool, FactorRange)> = Vec::new();
+        let mut start = 0_usize;
+        for run in samples.chunk_by(|a, b| a.overturns() == b.overturns()) {
+            let (first, last) = (&run[0], &run[run.len() - 1]);
+            let before = start.checked_sub(1).map(|index| &samples[index]);
+            start += run.len();
+            let after = samples.get(start);
+            let Some(overturns) = first.overturns() else {
+                continue;
+            };
+            let (from, from_end) = match before.map(|before| between(before, first)) {
+                None => (first.factor, RangeEnd::Sampled),
+                Some(None) => (first.factor, RangeEnd::Unknown),
+                Some(Some((_, high))) => (*high, RangeEnd::Edge),
+            };
+            let (to, to_end) = match after.map(|after| between(last, after)) {
+                None => (last.factor, RangeEnd::Sampled),
+                Some(None) => (last.factor, RangeEnd::Unknown),
+                Some(Some((low, _))) => (*low, RangeEnd::Edge),
+            };
+            let range = FactorRange {
+                from,
+                to,
+                from_end,
+                to_end,
+            };
+            ranges.push((overturns, range));
+        }
+        let of = |wanted: bool| {
+            let ranges = ranges.iter();
+            ranges.filter_map(move |(overturns, range)| (*overturns == wanted).then_some(*range))
+        };
+        let bands: Vec<FactorRange> = of(true).collect();
+        let gaps = of(false).filter(|gap| {
+            bands.iter().any(|band| band.to < gap.from)
+                && bands.iter().any(|band| band.from > gap.to)
+        });
+        Self {
+            model,
+            gaps: gaps.collect(),
+            bands,
+            samples,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(from: f64, to: f64, stride: f64) -> Vec<f64> {
+        Factors::new(from, to, stride).unwrap().values()
+    }
+
+    #[test]
+    fn factors_rise_by_strides_from_the_first_to_the_last() {
+        assert_eq!(values(1.0, 8.0, 1.0), [1.0, 2.0, 4.0, 8.0]);
+        assert_eq!(values(1.0, 5.0, 1.0), [1.0, 2.0, 4.0, 5.0]);
+        assert_eq!(values(1.0, 1.02, 0.02), [1.0, 1.02]);
+        let default = Factors::default().values();
+        assert_eq!((default.len(), default[0]), (234, 0.1));
+        assert!(
+            default
+                .windows(2)
+                .all(|pair| pair[1] <= pair[0] * 1.0200001)
+        );
+    }
+
+    #[test]
+    fn factors_that_are_none_are_refused() {
+        for (from, to, stride, argument) in [
+            (0.0, 1.0, 0.1, "from"),
+            (f64::NAN, 1.0, 0.1, "from"),
+            (1.0, 1.0, 0.1, "to"),
+            (1.0, f64::INFINITY, 0.1, "to"),
+            (1.0, 2.0, 0.0, "stride"),
+            (1.0, 2.0, f64::NAN, "stride"),
+        ] {
+            let error = Factors::new(from, to, stride).unwrap_err();
+            assert_eq!(error.argument, argument);
+        }
+    }
+}

@@ -1,0 +1,530 @@
+//! Thresholds: edges against closed forms and published numbers, bands and gaps against plain histories, and the
+//! command as a user meets it.
+
+#![allow(missing_docs, clippy::unwrap_used)]
+
+mod common;
+mod program;
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
+
+use archrock::dynamics::hybrid::engine::EngineError;
+use archrock::dynamics::hybrid::integrator::Cost;
+use archrock::output::threshold::outcome;
+use archrock::studies::runner::{Progress, Runner, RunnerError};
+use archrock::studies::threshold::{
+    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, ThresholdError, thresholds,
+};
+use archrock::{
+    Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
+    SimulationError, Summary, Sway, WaveTrain,
+};
+use common::{GRAVITY, request, semicircle, seven_voussoirs};
+use nalgebra::Vector2;
+use program::{archrock, stderr};
+use serde_json::Value;
+
+fn found(model: &dyn Model, ground: &GroundMotion, end_s: f64, factors: &Factors) -> Threshold {
+    let models = [("model", model)];
+    let go_on = |_| ControlFlow::Continue(());
+    let mut found = thresholds(
+        &models,
+        ground,
+        &request(end_s),
+        factors,
+        &Runner::default(),
+        go_on,
+    )
+    .unwrap();
+    assert_eq!(found.len(), 1);
+    found.remove(0)
+}
+
+fn factors(from: f64, to: f64, stride: f64) -> Factors {
+    Factors::new(from, to, stride).unwrap()
+}
+
+fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
+    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
+}
+
+/// Slender column, rectangular pulse `(a, t)`: `cosh(p t) = 1 + 1 / (2 x (x - 1))`, `x = a / (g alpha)`, solved for
+/// `x`. A finite slenderness changes that by a small multiple of its square, 1e-4 here.
+#[test]
+fn rectangular_pulses_overturn_slender_columns_from_housners_amplitude_on() {
+    let alpha: f64 = 0.01;
+    let column = Column::new(4.0, 4.0 * alpha.tan()).unwrap();
+    let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
+    let p = (0.75 * GRAVITY / (2.0 / alpha.cos())).sqrt();
+    for p_t in [0.3, 1.0, 2.5_f64] {
+        let x = 0.5 + (0.25 + 0.5 / (p_t.cosh() - 1.0)).sqrt();
+        // The factor is `x` itself.
+        let ground = pulse(Pulse::Rectangular, alpha.tan(), p_t / p);
+        let threshold = found(&column, &ground, 60.0, &factors(0.5, 12.0, 0.05));
+        let lowest = threshold.lowest_factor().unwrap();
+        assert!(
+            (lowest / x - 1.0).abs() < 2.0 * EDGE_WIDTH,
+            "{p_t}: {lowest} {x}"
+        );
+        assert_eq!((threshold.bands.len(), threshold.gaps.len()), (1, 0));
+        assert_eq!(threshold.bands[0].to_end, RangeEnd::Sampled);
+        assert_eq!(threshold.bands[0].to, 12.0);
+    }
+}
+
+/// Amplitudes in g from which a step pair overturns within the first half cycle, by an independent integration. After
+/// impacts there may be bands below.
+#[test]
+fn step_pairs_overturn_seven_voussoirs_without_impact_from_the_known_amplitudes_on() {
+    let arch = seven_voussoirs();
+    for (duration_s, without_impact_g, bands) in [(0.2, 3.066, 1), (0.5, 0.820, 2), (1.0, 0.465, 2)]
+    {
+        let ground = pulse(Pulse::StepPair, 1.0, duration_s);
+        let threshold = found(&arch, &ground, 10.0, &factors(0.3, 10.0, 0.02));
+        assert_eq!(threshold.bands.len(), bands, "{duration_s}");
+        let last = threshold.bands[bands - 1];
+        // The numbers have three digits behind the point.
+        assert!(
+            (last.from - without_impact_g).abs() < 5e-4 + EDGE_WIDTH,
+            "{last:?}"
+        );
+        assert_eq!(
+            (last.from_end, last.to_end),
+            (RangeEnd::Edge, RangeEnd::Sampled)
+        );
+        for sample in &threshold.samples {
+            let history = sample.result.as_ref().unwrap();
+            let below = sample.factor < last.from && sample.overturns() == Some(true);
+            assert!(!below || history.impacts > 0, "{}", sample.factor);
+            assert!(sample.factor < last.from || history.impacts == 0);
+        }
+    }
+}
+
+fn overturns(model: &dyn Model, ground: &GroundMotion, end_s: f64, factor: f64) -> bool {
+    let ground = ground.scaled(factor).unwrap();
+    let summary = model.simulate(&ground, &request(end_s), None).unwrap();
+    matches!(summary.outcome, Outcome::Overturned(_))
+}
+
+/// Strong cosine pulses throw the arch the other way before it can fall: an island that is safe, between bands. Plain
+/// histories at the ends, just beyond them and in the middle say the same.
+#[test]
+fn safe_islands_of_cosine_pulses_are_gaps_between_bands() {
+    let arch = semicircle();
+    for duration_s in [0.7, 0.9, 1.2] {
+        let ground = pulse(Pulse::OneCosine, 1.0, duration_s);
+        let threshold = found(&arch, &ground, 10.0, &factors(0.1, 10.0, 0.02));
+        assert_eq!((threshold.bands.len(), threshold.gaps.len()), (2, 1));
+        let ([low, high], gap) = ([threshold.bands[0], threshold.bands[1]], threshold.gaps[0]);
+        assert!(low.to < gap.from && gap.from <= low.to * (1.0 + 2.0 * EDGE_WIDTH));
+        assert!(gap.to < high.from && high.from <= gap.to * (1.0 + 2.0 * EDGE_WIDTH));
+        assert_eq!((gap.from_end, gap.to_end), (RangeEnd::Edge, RangeEnd::Edge));
+        let overturns = |factor| overturns(&arch, &ground, 10.0, factor);
+        for (range, expected) in [(low, true), (gap, false), (high, true)] {
+            let FactorRange { from, to, .. } = range;
+            for factor in [from, 0.5 * (from + to), to] {
+                assert_eq!(overturns(factor), expected, "{duration_s} {factor}");
+            }
+        }
+        assert!(!overturns(low.from * (1.0 - 1.01 * EDGE_WIDTH)));
+        assert_eq!(threshold.lowest_factor(), Some(low.from));
+    }
+}
+
+/// Half the amplitude and twice the factors are the same motion; powers of two are exact.
+#[test]
+fn factor_times_amplitude_counts() {
+    let arch = semicircle();
+    let whole = pulse(Pulse::OneCosine, 1.0, 0.9);
+    let half = pulse(Pulse::OneCosine, 0.5, 0.9);
+    let a = found(&arch, &whole, 10.0, &factors(0.2, 2.0, 0.1));
+    let b = found(&arch, &half, 10.0, &factors(0.4, 4.0, 0.1));
+    for (a, b) in a.samples.iter().zip(&b.samples) {
+        assert!(2.0 * a.factor == b.factor && a.result == b.result);
+    }
+    let doubled = |range: &FactorRange| FactorRange {
+        from: 2.0 * range.from,
+        to: 2.0 * range.to,
+        ..*range
+    };
+    assert_eq!(a.bands.iter().map(doubled).collect::<Vec<_>>(), b.bands);
+    assert_eq!(a.gaps.iter().map(doubled).collect::<Vec<_>>(), b.gaps);
+}
+
+/// Where vertical motion is so strong that nothing presses the column on the ground there is no history, and what is
+/// known ends there.
+#[test]
+fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
+    let column = Column::new(4.0, 0.8).unwrap();
+    let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
+    let amplitude = Vector2::new(0.3, 0.2) * GRAVITY;
+    let train = WaveTrain::default();
+    let ground = GroundMotion::pulse_along(Pulse::OneSine, amplitude, 1.2, 0.0, train).unwrap();
+    let threshold = found(&column, &ground, 20.0, &factors(0.5, 10.0, 0.1));
+    for sample in &threshold.samples {
+        assert_eq!(
+            outcome(sample) == "ground_falls",
+            sample.factor >= 5.0,
+            "{}",
+            sample.factor
+        );
+    }
+    let band = threshold.bands[threshold.bands.len() - 1];
+    assert_eq!(band.to_end, RangeEnd::Unknown);
+    assert!(band.to < 5.0 && band.to > 4.5);
+}
+
+/// Overturns as a function of the peak acceleration of the ground, in m/s2, or fails.
+#[derive(Debug)]
+struct Rule(fn(f64) -> Option<bool>);
+
+impl Rule {
+    fn new(rule: fn(f64) -> Option<bool>) -> Self {
+        Self(rule)
+    }
+}
+
+impl Model for Rule {
+    fn bodies(&self) -> Vec<String> {
+        vec![String::new()]
+    }
+
+    fn incipient_acceleration_g(&self, _: Sway) -> Option<f64> {
+        None
+    }
+
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        _: &Request,
+        _: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError> {
+        let overturns = (self.0)(ground.peaks_m_s2(f64::INFINITY).x);
+        let failure = EngineError::TooManyTransitions {
+            time_s: 1.0,
+            most: 1,
+        };
+        let outcome = match overturns.ok_or(failure)? {
+            true => Outcome::Overturned(Sway::Left),
+            false => Outcome::Rest,
+        };
+        Ok(Summary {
+            outcome,
+            outcome_time_s: 1.0,
+            end_s: 1.0,
+            impacts: 0,
+            peak_rotations_rad: vec![0.0],
+            peak_over_critical: None,
+            energy_defect_ratio: 0.0,
+            thrust: None,
+            cost: Cost::default(),
+            free_hinges: None,
+        })
+    }
+}
+
+fn unit_pulse() -> GroundMotion {
+    GroundMotion::pulse(Pulse::Rectangular, 1.0, 1.0, 0.0).unwrap()
+}
+
+#[test]
+fn bands_and_gaps_of_any_models_side_by_side() {
+    let islands = Rule::new(|x| Some((2.0..3.0).contains(&x) || x >= 4.0));
+    let always = Rule::new(|_| Some(true));
+    let never = Rule::new(|_| Some(false));
+    let models: [(&str, &dyn Model); 3] = [
+        ("islands", &islands),
+        ("always", &always),
+        ("never", &never),
+    ];
+    let all = factors(1.0, 8.0, 0.1);
+    let mut last = None;
+    let runner = Runner::default();
+    let found = thresholds(
+        &models,
+        &unit_pulse(),
+        &request(1.0),
+        &all,
+        &runner,
+        |progress| {
+            last = Some((progress.done, progress.all));
+            ControlFlow::Continue(())
+        },
+    )
+    .unwrap();
+    let cases = 3 * all.values().len() + 3;
+    assert_eq!(last, Some((cases, cases)));
+    let names: Vec<_> = found
+        .iter()
+        .map(|threshold| threshold.model.as_str())
+        .collect();
+    assert_eq!(names, ["islands", "always", "never"]);
+    let near = |range: FactorRange, from: f64, to: f64| {
+        (range.from / from - 1.0).abs() < EDGE_WIDTH && (range.to / to - 1.0).abs() < EDGE_WIDTH
+    };
+    let islands = &found[0];
+    assert_eq!((islands.bands.len(), islands.gaps.len()), (2, 1));
+    assert!(near(islands.bands[0], 2.0, 3.0) && near(islands.bands[1], 4.0, 8.0));
+    assert!(near(islands.gaps[0], 3.0, 4.0));
+    // Each end has the outcome of its range.
+    assert!(islands.bands[0].from >= 2.0 && islands.bands[0].to < 3.0);
+    assert!(islands.gaps[0].from >= 3.0 && islands.gaps[0].to < 4.0);
+    let whole = FactorRange {
+        from: 1.0,
+        to: 8.0,
+        from_end: RangeEnd::Sampled,
+        to_end: RangeEnd::Sampled,
+    };
+    assert_eq!(found[1].bands, [whole]);
+    assert!(found[1].gaps.is_empty() && found[2].gaps.is_empty() && found[2].bands.is_empty());
+    assert_eq!(found[2].lowest_factor(), None);
+}
+
+#[test]
+fn histories_that_fail_keep_their_reasons_and_stop_nothing() {
+    // One failure among the samples, one only in the search for the edge near 4.05.
+    let rule = Rule::new(|x| match x {
+        _ if (2.9..3.1).contains(&x) => None,
+        _ if (4.04..4.06).contains(&x) => None,
+        _ => Some((2.0..4.05).contains(&x)),
+    });
+    let threshold = found(&rule, &unit_pulse(), 1.0, &factors(1.0, 8.0, 0.03));
+    let failed: Vec<_> = threshold
+        .samples
+        .iter()
+        .filter(|sample| sample.result.is_err())
+        .collect();
+    assert!(failed.iter().all(|sample| outcome(sample) == "failed"));
+    assert!(
+        failed[0]
+            .result
+            .as_ref()
+            .unwrap_err()
+            .to_string()
+            .contains("transitions")
+    );
+    assert!(
+        failed
+            .iter()
+            .any(|sample| (4.04..4.06).contains(&sample.factor))
+    );
+    assert!(threshold.samples.is_sorted_by(|a, b| a.factor < b.factor));
+    let ends: Vec<_> = threshold
+        .bands
+        .iter()
+        .map(|band| (band.from_end, band.to_end))
+        .collect();
+    assert_eq!(
+        ends,
+        [
+            (RangeEnd::Edge, RangeEnd::Unknown),
+            (RangeEnd::Unknown, RangeEnd::Unknown)
+        ]
+    );
+    assert!(threshold.bands[0].to < 2.9 && threshold.bands[1].from >= 3.1);
+    // What is not known is not safe.
+    assert!(threshold.gaps.is_empty());
+}
+
+#[test]
+fn the_study_can_be_cancelled_and_refuses_what_is_not_possible() {
+    let rule = Rule::new(|_| {
+        thread::sleep(Duration::from_millis(1));
+        Some(false)
+    });
+    let models: [(&str, &dyn Model); 1] = [("rule", &rule)];
+    let all = factors(1.0, 8.0, 0.001);
+    let runner = Runner::default();
+    let stop = |_: Progress| ControlFlow::Break(());
+    let error = thresholds(&models, &unit_pulse(), &request(1.0), &all, &runner, stop).unwrap_err();
+    let ThresholdError::Runner(RunnerError::Cancelled(progress)) = error else {
+        panic!("{error}");
+    };
+    assert!(progress.done < 1000 && progress.all == all.values().len());
+    let error = thresholds(
+        &models,
+        &unit_pulse(),
+        &request(f64::NAN),
+        &all,
+        &runner,
+        stop,
+    )
+    .unwrap_err();
+    assert!(matches!(error, ThresholdError::Argument(error) if error.argument == "end_s"));
+}
+
+const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
+                        [ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.9\n";
+
+fn file(folder: &Path, text: &str) {
+    fs::write(folder.join("s.toml"), text).unwrap();
+}
+
+#[track_caller]
+fn succeeds(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn files_agree_and_threads_change_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    file(folder, SCENARIO);
+    let said = succeeds(folder, &["threshold", "s.toml", "--threads", "1"]);
+    // The semicircle overturns from 0.266 to 0.990 g and from 1.26 g on.
+    assert!(
+        said.contains("overturns from factor 0.5325 (0.2662 g) to 1.98"),
+        "{said}"
+    );
+    assert!(said.contains("survives again up to 2.52"), "{said}");
+    assert!(said.contains("in strides of 2 %"), "{said}");
+    let json = [
+        "--out",
+        "r",
+        "--threads",
+        "3",
+        "--format",
+        "json",
+        "--quiet",
+    ];
+    let printed = succeeds(folder, &[&["threshold", "s.toml"][..], &json].concat());
+    let read = |folder_name: &str, name: &str| {
+        fs::read_to_string(folder.join(folder_name).join(name)).unwrap()
+    };
+    for name in ["threshold.json", "threshold.csv", "threshold.svg"] {
+        assert!(read("results/s", name) == read("r", name), "{name}");
+    }
+    assert_eq!(printed, read("r", "threshold.json"));
+
+    let json: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!(
+        (&json["program"], &json["models"][0]["model"]),
+        (&"archrock".into(), &"four_links".into())
+    );
+    assert_eq!(json["peak_acceleration_g"], 0.5);
+    let model = &json["models"][0];
+    let (bands, gaps) = (
+        model["bands"].as_array().unwrap(),
+        model["gaps"].as_array().unwrap(),
+    );
+    assert_eq!((bands.len(), gaps.len()), (2, 1));
+    assert_eq!(model["lowest_factor"], bands[0]["from"]);
+    let mut csv = csv::Reader::from_path(folder.join("r/threshold.csv")).unwrap();
+    let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
+    let samples = model["samples"].as_array().unwrap();
+    assert_eq!((rows.len(), samples.len()), (234, 234));
+    for (row, sample) in rows.iter().zip(samples) {
+        assert_eq!(&row[0], "four_links");
+        assert_eq!(
+            row[1].parse::<f64>().unwrap(),
+            sample["factor"].as_f64().unwrap()
+        );
+        assert_eq!(&row[2], sample["outcome"].as_str().unwrap());
+        assert_eq!(
+            &row[3],
+            sample["overturning_sway"].as_str().unwrap_or_default()
+        );
+        assert_eq!(
+            row[4].parse::<u64>().unwrap(),
+            sample["impacts"].as_u64().unwrap()
+        );
+        let peak = sample["peak_rotation_over_critical"].as_f64().unwrap();
+        assert_eq!(row[6].parse::<f64>().unwrap(), peak);
+    }
+
+    let svg = read("r", "threshold.svg");
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let named = |start: &str| {
+        let nodes = document.descendants();
+        let names = nodes.filter_map(|node| node.attribute("data-name"));
+        names.filter(|name| name.starts_with(start)).count()
+    };
+    assert_eq!(named("four_links peak"), 1);
+    let runs = rows.chunk_by(|a, b| {
+        let kind = |row: &csv::StringRecord| {
+            (
+                row[2].to_owned(),
+                row[2] == *"overturned",
+                row[4].to_owned(),
+            )
+        };
+        let (a, b) = (kind(a), kind(b));
+        a.0 == b.0
+            && (!a.1
+                || a.2 == b.2
+                || [a.2, b.2]
+                    .iter()
+                    .all(|count| count.parse::<u32>().unwrap() > 2))
+    });
+    assert_eq!(named("four_links ") - 1, runs.count());
+    for edge in ["0.5325", "factor on the ground motion (1: 0.5000 g)"] {
+        assert!(svg.contains(&format!(">{edge}<")), "{edge}");
+    }
+}
+
+#[test]
+fn strides_and_ends_can_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    file(folder, SCENARIO);
+    let arguments = "threshold s.toml --from 1 --to 2 --stride 0.25 --out r";
+    let said = succeeds(folder, &arguments.split(' ').collect::<Vec<_>>());
+    assert!(
+        said.contains("overturns at the least factor already"),
+        "{said}"
+    );
+    assert!(said.contains("survives from there on"), "{said}");
+    let mut csv = csv::Reader::from_path(folder.join("r/threshold.csv")).unwrap();
+    let factors: Vec<String> = csv
+        .records()
+        .map(|row| row.unwrap()[1].to_owned())
+        .collect();
+    assert_eq!(factors, ["1.0", "1.25", "1.5625", "1.953125", "2.0"]);
+    let said = succeeds(
+        folder,
+        &["threshold", "s.toml", "--to", "0.4", "--out", "r"],
+    );
+    assert!(
+        said.contains("does not overturn up to factor 0.4000 (0.2000 g)"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_has_no_threshold_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+    let initial = format!("{SCENARIO}[initial]\nsway = \"left\"\nrotation_rad = 0.01\n");
+    let falling = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.one_sine]\namplitude_g = 0.3\n\
+                   vertical_amplitude_g = 0.5\nduration_s = 1.0\n";
+    for (text, more, words) in [
+        (arch, "", "no ground motion"),
+        (&initial, "", "leave [initial] out"),
+        (falling, "--from 3", "falls as fast as a free body"),
+        (SCENARIO, "--from 3 --to 2", "`to = 2.0` is not allowed"),
+        (SCENARIO, "--stride 0", "`stride = 0.0` is not allowed"),
+        (SCENARIO, "--from nan", "`from = NaN` is not allowed"),
+        (SCENARIO, "--threads 0", "--threads"),
+    ] {
+        file(folder, text);
+        let arguments = format!("threshold s.toml {more}");
+        let output = archrock(folder, &arguments.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{more}");
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+        assert!(output.stdout.is_empty() && !folder.join("results").exists());
+    }
+    file(folder, falling);
+    let said = succeeds(folder, &["threshold", "s.toml", "--from", "1"]);
+    assert!(
+        said.contains("the ground falls as fast as a free body"),
+        "{said}"
+    );
+}
