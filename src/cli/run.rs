@@ -1,5 +1,7 @@
 //! The command `run`.
 
+mod free_hinges;
+
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write as _};
 use std::ops::ControlFlow;
@@ -10,10 +12,13 @@ use archrock::dynamics::history::{Event, Outcome, Sample, Summary};
 use archrock::dynamics::model::{MechanismModel, Recorder};
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::output::overlay::{self, Curves};
+use archrock::output::results::{self, EventsWriter};
 use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::timeline::Timeline;
-use archrock::output::{Folder, OutputError, results};
+use archrock::output::{Folder, OutputError};
 use archrock::scenario::{Scenario, Structure};
+use clap::ValueEnum;
 
 use super::{Failure, commands, results_folder};
 
@@ -29,26 +34,187 @@ pub struct Arguments {
     #[arg(long, value_name = "-", value_parser = ["-"])]
     rotations: Option<String>,
     /// Add dimensionless columns to the rotations: p_t (time), acceleration_over_incipient and
-    /// rotation_over_critical.
+    /// rotation_over_critical. Of four links and columns only.
     #[arg(long)]
     dimensionless: bool,
+    /// Model of motion [default: free if the scenario has [free_hinges], else four].
+    #[arg(long, value_enum)]
+    hinges: Option<Hinges>,
+    /// Do not repeat a run with free hinges with half and with double steps.
+    #[arg(long)]
+    no_spread: bool,
+}
+
+/// Models of motion.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Hinges {
+    /// Four links, or Housner's column.
+    Four,
+    /// Blocks whose joints open and shut anywhere.
+    Free,
+    /// One beside the other: results in the folders `four` and `free`, and a picture of both.
+    Both,
 }
 
 const ROTATIONS: &str = "rotations.csv";
+const JOINTS: &str = "joints.csv";
 const EVENTS: &str = "events.csv";
 const PICTURE: &str = "history.svg";
 const IMPACTS: &str = "impacts.csv";
 /// Written last: a folder that has it is complete.
 const SUMMARY: &str = "summary.json";
+/// Two models of motion in one picture.
+const OVERLAY: &str = "overlay.svg";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
     scenario.check_for_run().map_err(Failure::Input)?;
-    let model = commands::model(&scenario)?;
+    let own = if scenario.free_hinges.is_some() {
+        Hinges::Free
+    } else {
+        Hinges::Four
+    };
+    let hinges = arguments.hinges.unwrap_or(own);
+    let mut text = scenario
+        .title
+        .as_ref()
+        .map_or(String::new(), |title| format!("{title}\n"));
+    if own == Hinges::Four && hinges != Hinges::Four {
+        let model = scenario.impact.name();
+        let _ = writeln!(
+            text,
+            "  free hinges take no [impact], the blocks decide: {model} does not count for them"
+        );
+    }
+    let with = |free_hinges| {
+        let mut scenario = scenario.clone();
+        scenario.free_hinges = free_hinges;
+        scenario
+    };
+    let four = || with(None);
+    let free = || with(Some(scenario.free_hinges.unwrap_or_default()));
+    text += &match hinges {
+        Hinges::Four => four_links(&four(), Place::of(arguments), arguments.dimensionless, None)?,
+        Hinges::Free => {
+            free_hinges::run(&free(), Place::of(arguments), arguments.options()?, None)?
+        }
+        Hinges::Both => both(&four(), &free(), arguments)?,
+    };
+    if !quiet {
+        // Nobody is left to be told when standard error fails.
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
+    Ok(())
+}
+
+impl Arguments {
+    /// What concerns free hinges, or why it does not go with them.
+    fn options(&self) -> Result<free_hinges::Options, Failure> {
+        if self.dimensionless {
+            let message = "--dimensionless goes with four links and columns: free hinges have no unstable \
+                           equilibrium to measure by";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        Ok(free_hinges::Options {
+            spread: !self.no_spread,
+        })
+    }
+}
+
+/// Where results go.
+struct Place {
+    /// The folder, if there are to be files.
+    folder: Option<PathBuf>,
+    /// Whether the rotations go to standard output.
+    to_stdout: bool,
+}
+
+impl Place {
+    fn of(arguments: &Arguments) -> Self {
+        let to_stdout = arguments.rotations.is_some();
+        let folder = || results_folder(arguments.out.as_deref(), &arguments.scenario);
+        Self {
+            folder: (!to_stdout || arguments.out.is_some()).then(folder),
+            to_stdout,
+        }
+    }
+
+    /// Opens the folder for these results, the rotations before them unless they go elsewhere. Others that
+    /// earlier runs may have left there go when these are complete.
+    fn open(&self, names: &[&str]) -> Result<Option<Folder>, Failure> {
+        let Some(path) = &self.folder else {
+            return Ok(None);
+        };
+        let mut all = names.to_vec();
+        if !self.to_stdout {
+            all.insert(0, ROTATIONS);
+        }
+        let mut folder = super::open_folder(path, &all)?;
+        for name in [ROTATIONS, JOINTS, OVERLAY] {
+            if !all.contains(&name) {
+                folder.forget(name);
+            }
+        }
+        Ok(Some(folder))
+    }
+}
+
+/// Runs both models and draws them in one picture.
+fn both(four: &Scenario, free: &Scenario, arguments: &Arguments) -> Result<String, Failure> {
+    if arguments.rotations.is_some() {
+        let message = "--rotations - is for one model: choose --hinges four or --hinges free";
+        return Err(Failure::Input(message.to_owned()));
+    }
+    let options = arguments.options()?;
+    let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
+    let within = |name: &str| Place {
+        folder: Some(path.join(name)),
+        to_stdout: false,
+    };
+    // Neither is run where the other cannot be.
+    commands::model(four)?;
+    free_hinges::model(free)?;
+    let mut folder = super::open_folder(&path, &[OVERLAY])?;
+    for name in [SUMMARY, ROTATIONS, JOINTS, EVENTS, IMPACTS, PICTURE] {
+        folder.forget(name);
+    }
+    let gravity_m_s2 = four.simulation.gravity_m_s2;
+    let mut curves = [Curves::new(gravity_m_s2), Curves::new(gravity_m_s2)];
+    let [of_four, of_free] = &mut curves;
+    let mut text = "four links\n".to_owned();
+    text += &four_links(four, within("four"), false, Some(of_four))?;
+    text += "free hinges\n";
+    text += &free_hinges::run(free, within("free"), options, Some(of_free))?;
+    let title = four
+        .title
+        .as_deref()
+        .unwrap_or("Four links and free hinges");
+    let [of_four, of_free] = &curves;
+    let picture = overlay::draw(title, &[("four links", of_four), ("free hinges", of_free)]);
+    folder
+        .file(OVERLAY)
+        .write_all(picture.as_bytes())
+        .map_err(cannot_write("the picture"))?;
+    folder.complete()?;
+    let _ = writeln!(text, "both in {}", path.join(OVERLAY).display());
+    Ok(text)
+}
+
+fn cannot_write(what: &str) -> impl FnOnce(io::Error) -> Failure {
+    move |error| Failure::Work(format!("cannot write {what}: {error}"))
+}
+
+/// Runs four links or a column, and says what happened.
+fn four_links(
+    scenario: &Scenario,
+    place: Place,
+    dimensionless: bool,
+    curves: Option<&mut Curves>,
+) -> Result<String, Failure> {
+    let model = commands::model(scenario)?;
     let ground = scenario.ground_motion();
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-    let scales = arguments
-        .dimensionless
+    let scales = dimensionless
         .then(|| {
             Scales::new(&*model, gravity_m_s2).ok_or_else(|| {
                 Failure::Input(
@@ -58,62 +224,58 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             })
         })
         .transpose()?;
-    let to_stdout = arguments.rotations.is_some();
-    let path = (!to_stdout || arguments.out.is_some())
-        .then(|| results_folder(arguments.out.as_deref(), &arguments.scenario));
     // Opened before the work starts, so that a folder that cannot be written costs no time.
-    let mut folder = path
-        .map(|path| open(&path, to_stdout))
-        .transpose()
-        .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))?;
+    let mut folder = place.open(&[EVENTS, IMPACTS, PICTURE, SUMMARY])?;
     let bodies = model.bodies();
     let mut timeline = Timeline::new(&bodies, gravity_m_s2);
     let mut events = Vec::new();
     let (summary, rows) = {
         let writer: Box<dyn io::Write + '_> = match &mut folder {
-            Some(folder) if !to_stdout => Box::new(folder.file(ROTATIONS)),
+            Some(folder) if !place.to_stdout => Box::new(folder.file(ROTATIONS)),
             _ => Box::new(BufWriter::new(io::stdout().lock())),
         };
         let mut results = Results {
             table: RotationsWriter::new(writer, &bodies, ground.has_vertical(), scales)?,
             timeline: &mut timeline,
             events: &mut events,
+            curves,
             written: Ok(()),
         };
         let summary = model.simulate(ground, &scenario.request(), Some(&mut results))?;
         results.written?;
         (summary, results.table.finish()?)
     };
-    let mut text = human_summary(&scenario, &*model, ground, &summary, &events);
+    let mut text = human_summary(scenario, &*model, ground, &summary, &events);
     if let Some(mut folder) = folder {
-        results::write_events(folder.file(EVENTS), &bodies, &events)?;
+        let mut table = EventsWriter::new(folder.file(EVENTS), &bodies)?;
+        for event in &events {
+            table.write(event)?;
+        }
+        table.finish()?;
         results::write_impacts(folder.file(IMPACTS), &*model, &events)?;
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
         folder
             .file(PICTURE)
             .write_all(timeline.draw(title, &events).as_bytes())
-            .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-        let summary = results::summary(&scenario, &*model, ground, &summary)?;
-        writeln!(folder.file(SUMMARY), "{summary:#}")
-            .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))?;
+            .map_err(cannot_write("the picture"))?;
+        let summary = results::summary(scenario, &*model, ground, &summary)?;
+        writeln!(folder.file(SUMMARY), "{summary:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
-        let rotations = if to_stdout {
-            String::new()
-        } else {
-            format!("{ROTATIONS} ({rows} rows), ")
-        };
-        let _ = writeln!(
-            text,
-            "  results in {}: {rotations}{EVENTS}, {IMPACTS}, {PICTURE}, {SUMMARY}",
-            path.display()
-        );
+        text += &written(&path, &place, rows, &[EVENTS, IMPACTS, PICTURE, SUMMARY]);
     }
-    if !quiet {
-        // Nobody is left to be told when standard error fails.
-        let _ = io::stderr().write_all(text.as_bytes());
-    }
-    Ok(())
+    Ok(text)
+}
+
+/// Says which files there are.
+fn written(path: &Path, place: &Place, rows: u64, names: &[&str]) -> String {
+    let rotations = if place.to_stdout {
+        String::new()
+    } else {
+        format!("{ROTATIONS} ({rows} rows), ")
+    };
+    let (path, names) = (path.display(), names.join(", "));
+    format!("  results in {path}: {rotations}{names}\n")
 }
 
 /// Where samples and events go.
@@ -121,6 +283,7 @@ struct Results<'a, W: io::Write> {
     table: RotationsWriter<W>,
     timeline: &'a mut Timeline,
     events: &'a mut Vec<Event>,
+    curves: Option<&'a mut Curves>,
     /// Why the table could not be written, which ends the history.
     written: Result<(), OutputError>,
 }
@@ -128,6 +291,9 @@ struct Results<'a, W: io::Write> {
 impl<W: io::Write> Recorder for Results<'_, W> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self.timeline.push(sample);
+        if let Some(curves) = &mut self.curves {
+            curves.push(sample);
+        }
         self.written = self.table.write(sample);
         match self.written {
             Ok(()) => ControlFlow::Continue(()),
@@ -141,17 +307,6 @@ impl<W: io::Write> Recorder for Results<'_, W> {
     }
 }
 
-/// Opens the folder for the results.
-fn open(path: &Path, without_rotations: bool) -> Result<Folder, OutputError> {
-    if without_rotations {
-        let mut folder = Folder::open(path, &[EVENTS, IMPACTS, PICTURE, SUMMARY])?;
-        folder.forget(ROTATIONS);
-        Ok(folder)
-    } else {
-        Folder::open(path, &[ROTATIONS, EVENTS, IMPACTS, PICTURE, SUMMARY])
-    }
-}
-
 /// What happened, when, and what it compares with.
 fn human_summary(
     scenario: &Scenario,
@@ -160,28 +315,7 @@ fn human_summary(
     history: &Summary,
     events: &[Event],
 ) -> String {
-    let mut text = String::new();
-    if let Some(title) = &scenario.title {
-        let _ = writeln!(text, "{title}");
-    }
-    let time_s = history.outcome_time_s;
-    let impacts = match history.impacts {
-        0 => "without impact".to_owned(),
-        1 => "after 1 impact".to_owned(),
-        count => format!("after {count} impacts"),
-    };
-    let _ = match history.outcome {
-        Outcome::NeverMoved => writeln!(text, "  never moved"),
-        Outcome::Rest => writeln!(text, "  came to rest at {time_s:.4} s {impacts}"),
-        Outcome::Overturned(sway) => {
-            writeln!(
-                text,
-                "  overturned to the {} at {time_s:.4} s {impacts}",
-                sway.name()
-            )
-        }
-        Outcome::StillRocking => writeln!(text, "  still rocking at {time_s:.4} s {impacts}"),
-    };
+    let mut text = outcome(history);
     let first = events
         .iter()
         .find_map(|event| Some((event.time_s, event.impact.as_ref()?)));
@@ -213,6 +347,45 @@ fn human_summary(
     let incipient_g = model
         .incipient_acceleration_g(Sway::Right)
         .unwrap_or(f64::INFINITY);
+    let reaches = reaches(scenario, ground, history, incipient_g);
+    let _ = writeln!(
+        text,
+        "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
+    );
+    text += &cut_short(scenario, ground, history);
+    if let Some(thrust) = &history.thrust {
+        let of_arch = matches!(scenario.structure, Structure::Arch(_));
+        text += &trust(thrust, of_arch);
+    }
+    text
+}
+
+/// How it ended.
+fn outcome(history: &Summary) -> String {
+    let time_s = history.outcome_time_s;
+    let impacts = match history.impacts {
+        0 => "without impact".to_owned(),
+        1 => "after 1 impact".to_owned(),
+        count => format!("after {count} impacts"),
+    };
+    match history.outcome {
+        Outcome::NeverMoved => "  never moved\n".to_owned(),
+        Outcome::Rest => format!("  came to rest at {time_s:.4} s {impacts}\n"),
+        Outcome::Overturned(sway) => {
+            let sway = sway.name();
+            format!("  overturned to the {sway} at {time_s:.4} s {impacts}\n")
+        }
+        Outcome::StillRocking => format!("  still rocking at {time_s:.4} s {impacts}\n"),
+    }
+}
+
+/// What the ground reaches, beside what starts the structure.
+fn reaches(
+    scenario: &Scenario,
+    ground: &GroundMotion,
+    history: &Summary,
+    incipient_g: f64,
+) -> String {
     let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.simulation.gravity_m_s2;
     let mut reaches = if peaks_g.x > 0.0 {
         format!(
@@ -230,24 +403,20 @@ fn human_summary(
             peaks_g.y
         );
     }
-    let _ = writeln!(
-        text,
-        "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
-    );
+    reaches
+}
+
+/// Warns of a run that ends before the ground does.
+fn cut_short(scenario: &Scenario, ground: &GroundMotion, history: &Summary) -> String {
     if history.end_s >= scenario.simulation.duration_s && ground.end_s() > history.end_s {
-        let _ = writeln!(
-            text,
+        return format!(
             "  the run ends at {:.4} s and the ground moves until {:.4} s: a longer duration_s in [simulation] \
-             shows the rest",
+             shows the rest\n",
             history.end_s,
             ground.end_s()
         );
     }
-    if let Some(thrust) = &history.thrust {
-        let of_arch = matches!(scenario.structure, Structure::Arch(_));
-        text += &trust(thrust, of_arch);
-    }
-    text
+    String::new()
 }
 
 /// How far the motion can be trusted to be that of four links, or of a column on its toe.

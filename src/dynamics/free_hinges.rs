@@ -10,6 +10,7 @@
 //! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
 
 mod model;
+pub mod spread;
 
 use std::ops::ControlFlow;
 

@@ -5,13 +5,16 @@
 pub mod chart;
 pub mod ending;
 mod folder;
+pub mod free_hinges;
 pub mod impact;
 mod kind;
 pub mod map;
 pub mod mechanisms;
+pub mod overlay;
 pub mod pictures;
 pub mod results;
 pub mod rotations;
+pub mod row_timeline;
 pub mod spectrum;
 pub mod suite;
 mod svg;

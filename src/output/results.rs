@@ -13,7 +13,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::mechanism::Sway;
 use crate::scenario::{Ground, Scenario};
 
-/// Writes one row per transition.
+/// Writes events, a row per transition.
 ///
 /// | column | |
 /// |---|---|
@@ -21,44 +21,65 @@ use crate::scenario::{Ground, Scenario};
 /// | `phase` | the phase that begins, as in `rotations.csv`; phase 0 begins with the run, without a row |
 /// | `kind` | `uplift`, `impact`, `rest` or `overturned` |
 /// | `sway` | `right` or `left`, from here on; empty at rest |
-/// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest |
+/// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and of free hinges |
 /// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
 /// | `energy_j` | kinetic and potential, just after |
-///
-/// # Errors
-/// When the system refuses, or a value is not finite.
-pub fn write_events(
-    writer: impl Write,
-    bodies: &[String],
-    events: &[Event],
-) -> Result<(), OutputError> {
+pub struct EventsWriter<W: Write> {
+    csv: csv::Writer<W>,
+    rows: usize,
+}
+
+impl<W: Write> EventsWriter<W> {
     const WHAT: &str = "cannot write the events";
-    let mut csv = csv::Writer::from_writer(writer);
-    let mut header: Vec<String> = ["time_s", "phase", "kind", "sway", "mechanism"]
-        .map(str::to_owned)
-        .to_vec();
-    header.extend(columns(bodies, "rotation", "rad"));
-    header.extend(columns(bodies, "rate", "rad_s"));
-    header.push("energy_j".to_owned());
-    csv.write_record(header).map_err(OutputError::csv(WHAT))?;
-    for (index, event) in events.iter().enumerate() {
+
+    /// Starts with the header for bodies of these names.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn new(writer: W, bodies: &[String]) -> Result<Self, OutputError> {
+        let mut csv = csv::Writer::from_writer(writer);
+        let mut header: Vec<String> = ["time_s", "phase", "kind", "sway", "mechanism"]
+            .map(str::to_owned)
+            .to_vec();
+        header.extend(columns(bodies, "rotation", "rad"));
+        header.extend(columns(bodies, "rate", "rad_s"));
+        header.push("energy_j".to_owned());
+        csv.write_record(header)
+            .map_err(OutputError::csv(Self::WHAT))?;
+        Ok(Self { csv, rows: 0 })
+    }
+
+    /// Writes a row.
+    ///
+    /// # Errors
+    /// When the system refuses, or a value is not finite.
+    pub fn write(&mut self, event: &Event) -> Result<(), OutputError> {
         let (rotations, rates) = (&event.rotations_rad[..], &event.rates_rad_s[..]);
         finite("of a row of events.csv", &[event.time_s, event.energy_j])?;
         finite("of a row of events.csv", rotations)?;
         finite("of a row of events.csv", rates)?;
-        csv.serialize((
-            event.time_s,
-            index + 1,
-            event.kind.name(),
-            event.state.sway().map(Sway::name),
-            event.mechanism,
-            rotations,
-            rates,
-            event.energy_j,
-        ))
-        .map_err(OutputError::csv(WHAT))?;
+        self.rows += 1;
+        self.csv
+            .serialize((
+                event.time_s,
+                self.rows,
+                event.kind.name(),
+                event.state.sway().map(Sway::name),
+                event.mechanism,
+                rotations,
+                rates,
+                event.energy_j,
+            ))
+            .map_err(OutputError::csv(Self::WHAT))
     }
-    csv.flush().map_err(OutputError::io(WHAT))
+
+    /// Ends the table.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        self.csv.flush().map_err(OutputError::io(Self::WHAT))
+    }
 }
 
 /// Writes one row per impact.
@@ -169,26 +190,9 @@ pub fn summary(
     ground: &GroundMotion,
     history: &Summary,
 ) -> Result<Value, OutputError> {
-    let peaks = &history.peak_rotations_rad[..];
-    finite("peak_rotation", peaks)?;
-    finite("energy_defect_ratio", &[history.energy_defect_ratio])?;
-    finite("outcome_time_s", &[history.outcome_time_s])?;
+    let mut summary = beginning(scenario, history, &model.bodies())?;
     let incipient_g = |sway| model.incipient_acceleration_g(sway);
-    let mut summary = json!({
-        "program": env!("CARGO_PKG_NAME"),
-        "version": env!("CARGO_PKG_VERSION"),
-        "scenario": scenario.to_json(),
-        "outcome": history.outcome.name(),
-        "outcome_time_s": history.outcome_time_s,
-        "overturning_sway": match history.outcome {
-            Outcome::Overturned(sway) => Some(sway.name()),
-            _ => None,
-        },
-        "impacts": history.impacts,
-    });
     let more = summary.as_object_mut().expect("the summary is an object");
-    let keys = columns(&model.bodies(), "peak_rotation", "rad");
-    more.extend(keys.into_iter().zip(peaks.iter().map(|peak| json!(peak))));
     finite(
         "peak_rotation_over_critical",
         history.peak_over_critical.as_slice(),
@@ -252,5 +256,33 @@ pub fn summary(
     }
     more.insert("evaluations".to_owned(), json!(history.cost.evaluations));
     more.insert("steps".to_owned(), json!(history.cost.steps));
+    Ok(summary)
+}
+
+/// What the summaries of all models of motion begin with, an object.
+pub(super) fn beginning(
+    scenario: &Scenario,
+    history: &Summary,
+    bodies: &[String],
+) -> Result<Value, OutputError> {
+    let peaks = &history.peak_rotations_rad[..];
+    finite("peak_rotation", peaks)?;
+    finite("energy_defect_ratio", &[history.energy_defect_ratio])?;
+    finite("outcome_time_s", &[history.outcome_time_s])?;
+    let mut summary = json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenario": scenario.to_json(),
+        "outcome": history.outcome.name(),
+        "outcome_time_s": history.outcome_time_s,
+        "overturning_sway": match history.outcome {
+            Outcome::Overturned(sway) => Some(sway.name()),
+            _ => None,
+        },
+        "impacts": history.impacts,
+    });
+    let more = summary.as_object_mut().expect("the summary is an object");
+    let keys = columns(bodies, "peak_rotation", "rad");
+    more.extend(keys.into_iter().zip(peaks.iter().map(|peak| json!(peak))));
     Ok(summary)
 }

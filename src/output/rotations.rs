@@ -54,6 +54,8 @@ pub struct RotationsWriter<W: Write> {
     csv: csv::Writer<W>,
     scales: Option<Scales>,
     rows: u64,
+    /// Whether the bodies are the blocks of a row with free hinges.
+    of_row: bool,
     /// Whether there is a column for the vertical acceleration.
     vertical: bool,
 }
@@ -70,13 +72,37 @@ impl<W: Write> RotationsWriter<W> {
         vertical: bool,
         scales: Option<Scales>,
     ) -> Result<Self, OutputError> {
+        Self::start(writer, bodies, vertical, scales, false)
+    }
+
+    /// The same for a row of blocks with free hinges: instead of the excess of the thrust line, which stays inside,
+    /// there is the number of `open_joints`.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn of_row(writer: W, blocks: &[String], vertical: bool) -> Result<Self, OutputError> {
+        Self::start(writer, blocks, vertical, None, true)
+    }
+
+    fn start(
+        writer: W,
+        bodies: &[String],
+        vertical: bool,
+        scales: Option<Scales>,
+        of_row: bool,
+    ) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
         let mut header: Vec<String> = ["time_s", "ground_acceleration_m_s2", "phase", "state"]
             .map(str::to_owned)
             .to_vec();
         header.extend(columns(bodies, "rotation", "rad"));
         header.extend(columns(bodies, "rate", "rad_s"));
-        header.extend(["thrust_excess_ratio", "friction_demand"].map(str::to_owned));
+        let asked = if of_row {
+            "open_joints"
+        } else {
+            "thrust_excess_ratio"
+        };
+        header.extend([asked, "friction_demand"].map(str::to_owned));
         if vertical {
             header.push("vertical_acceleration_m_s2".to_owned());
         }
@@ -93,6 +119,7 @@ impl<W: Write> RotationsWriter<W> {
             csv,
             scales,
             rows: 0,
+            of_row,
             vertical,
         })
     }
@@ -113,6 +140,8 @@ impl<W: Write> RotationsWriter<W> {
         finite("of a row of rotations.csv", rates)?;
         let demand = [sample.demand.excess_ratio, sample.demand.friction];
         finite("of a row of rotations.csv", &demand)?;
+        let excess = (!self.of_row).then_some(sample.demand.excess_ratio);
+        let open_joints = self.of_row.then_some(sample.hinges.len());
         let further = self.scales.map(|scales| {
             [
                 sample.time_s * scales.frequency_rad_s,
@@ -131,7 +160,9 @@ impl<W: Write> RotationsWriter<W> {
                 sample.state.name(),
                 rotations,
                 rates,
-                demand,
+                excess.as_slice(),
+                open_joints.as_slice(),
+                sample.demand.friction,
                 vertical.as_slice(),
                 further,
             ))

@@ -7,7 +7,7 @@ use crate::dynamics::history::{Event, Sample, State, impacts};
 use crate::mechanics::four_link::mechanism::Sway;
 
 /// Columns that a curve is thinned to, at most: about two to a pixel.
-const COLUMNS: usize = 1600;
+pub(super) const COLUMNS: usize = 1600;
 
 /// Marks and bands narrower than this many pixels are not told apart.
 const NARROWEST_PX: f64 = 1.0;
@@ -18,7 +18,9 @@ const LARGEST_EXCESS: f64 = 1.0;
 
 /// A long series of values thinned to the least and largest of each of equal groups.
 #[derive(Clone, Debug)]
-struct Envelope {
+pub(super) struct Envelope {
+    /// Columns that it is thinned to.
+    most: usize,
     group: usize,
     /// Samples in the last column.
     in_last: usize,
@@ -29,7 +31,13 @@ struct Envelope {
 
 impl Envelope {
     const fn new() -> Self {
+        Self::of_columns(COLUMNS)
+    }
+
+    /// One that is thinned to so many columns at most.
+    pub(super) const fn of_columns(most: usize) -> Self {
         Self {
+            most,
             group: 1,
             in_last: 0,
             columns: Vec::new(),
@@ -37,7 +45,7 @@ impl Envelope {
         }
     }
 
-    fn push(&mut self, time_s: f64, value: f64) {
+    pub(super) fn push(&mut self, time_s: f64, value: f64) {
         let point = (time_s, value);
         self.last = Some(point);
         if self.in_last < self.group
@@ -47,7 +55,7 @@ impl Envelope {
             self.in_last += 1;
             return;
         }
-        if self.columns.len() == COLUMNS {
+        if self.columns.len() == self.most {
             self.columns = self
                 .columns
                 .chunks(2)
@@ -60,7 +68,7 @@ impl Envelope {
     }
 
     /// The points to draw, in the order of time.
-    fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub(super) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         let mut points: Vec<(f64, f64)> = Vec::new();
         let extremes = self.columns.iter().flat_map(|[low, high]| {
             if low.0 <= high.0 {
@@ -77,7 +85,7 @@ impl Envelope {
         points.into_iter()
     }
 
-    fn values(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn values(&self) -> impl Iterator<Item = f64> {
         self.columns.iter().flatten().map(|(_, value)| *value)
     }
 }
@@ -188,7 +196,8 @@ impl Timeline {
                 x: time,
                 y: Scale::around(values.chain([0.0]), if height > 200.0 { 6 } else { 3 }),
             };
-            drawing_hops |= self.shade(&mut drawing, &axes, events);
+            let changes = events.iter().map(|event| (event.time_s, event.state));
+            drawing_hops |= shade(&mut drawing, &axes, self.end_s, self.start, changes);
             let time_label = (index == last).then_some("Time (s)");
             axes.draw(&mut drawing, time_label, label);
             for (name, envelope, stroke) in curves {
@@ -211,43 +220,6 @@ impl Timeline {
         drawing.finish()
     }
 
-    /// Shades what the structure does, and tells whether there are hops too short to be told apart: these get
-    /// one shade together.
-    fn shade(&self, drawing: &mut Drawing, axes: &Axes, events: &[Event]) -> bool {
-        let place = |time_s: f64| axes.place(time_s.min(self.end_s), axes.y.low).x;
-        let mut band = |(name, fill): Shade, left: f64, right: f64| {
-            let frame = Frame {
-                left,
-                width: right - left,
-                ..axes.frame
-            };
-            drawing.band(name, &frame, fill, OPACITY);
-        };
-        let starts = events.iter().map(|event| (event.time_s, event.state));
-        let ends_s = events.iter().map(|event| event.time_s).chain([self.end_s]);
-        // Where the last band ends that is wide enough to be seen.
-        let mut drawn = place(0.0);
-        let mut hops = false;
-        for ((start_s, state), end_s) in [(0.0, self.start)].into_iter().chain(starts).zip(ends_s) {
-            let (start, end) = (place(start_s), place(end_s));
-            if end - start < NARROWEST_PX && end_s < self.end_s {
-                continue;
-            }
-            if start - drawn >= NARROWEST_PX {
-                band(HOPS, drawn, start);
-                hops = true;
-                drawn = start;
-            }
-            if let Some(shade) = shade_of(state)
-                && end - drawn >= NARROWEST_PX
-            {
-                band(shade, drawn, end);
-            }
-            drawn = end;
-        }
-        hops
-    }
-
     /// The legend.
     fn explain(&self, drawing: &mut Drawing, y: f64, hops: bool) {
         let bodies = self.bodies.iter().zip(CURVES);
@@ -258,29 +230,34 @@ impl Timeline {
             90.0,
             named.map(|(body, stroke)| (body.as_str(), stroke)),
         );
-        let mut x = 365.0;
-        let keys = [
-            (SWAYS_RIGHT, "sways right"),
-            (SWAYS_LEFT, "sways left"),
-            (HOPS, "hops"),
-        ];
-        for ((_, fill), text) in keys.into_iter().take(if hops { 3 } else { 2 }) {
-            let frame = Frame {
-                left: x,
-                top: y - 7.0,
-                width: 24.0,
-                height: 14.0,
-            };
-            drawing.band("key", &frame, fill, OPACITY);
-            let at = Vector2::new(x + 30.0, y + 4.5);
-            drawing.label(at, Anchor::Start, 0.0, text);
-            x += 125.0;
-        }
-        let mark = Vector2::new(740.0, y + 6.0);
-        draw_mark(drawing, "", mark);
-        let at = Vector2::new(752.0, y + 4.5);
-        drawing.label(at, Anchor::Start, 0.0, "impacts");
+        explain_shades(drawing, Vector2::new(365.0, y), hops);
     }
+}
+
+/// The legend of what is shaded and marked.
+pub(super) fn explain_shades(drawing: &mut Drawing, at: Vector2<f64>, hops: bool) {
+    let (mut x, y) = (at.x, at.y);
+    let keys = [
+        (SWAYS_RIGHT, "sways right"),
+        (SWAYS_LEFT, "sways left"),
+        (HOPS, "hops"),
+    ];
+    for ((_, fill), text) in keys.into_iter().take(if hops { 3 } else { 2 }) {
+        let frame = Frame {
+            left: x,
+            top: y - 7.0,
+            width: 24.0,
+            height: 14.0,
+        };
+        drawing.band("key", &frame, fill, OPACITY);
+        let at = Vector2::new(x + 30.0, y + 4.5);
+        drawing.label(at, Anchor::Start, 0.0, text);
+        x += 125.0;
+    }
+    let mark = Vector2::new(at.x + 375.0, y + 6.0);
+    draw_mark(drawing, "", mark);
+    let at = Vector2::new(at.x + 387.0, y + 4.5);
+    drawing.label(at, Anchor::Start, 0.0, "impacts");
 }
 
 /// Name and colour of a band.
@@ -304,8 +281,54 @@ const fn shade_of(state: State) -> Option<Shade> {
     }
 }
 
+/// Shades what the structure does from its beginning on, and tells whether there are hops too short to be told apart:
+/// these get one shade together.
+pub(super) fn shade(
+    drawing: &mut Drawing,
+    axes: &Axes,
+    end_s: f64,
+    start: State,
+    changes: impl Iterator<Item = (f64, State)> + Clone,
+) -> bool {
+    let place = |time_s: f64| axes.place(time_s.min(end_s), axes.y.low).x;
+    let mut band = |(name, fill): Shade, left: f64, right: f64| {
+        let frame = Frame {
+            left,
+            width: right - left,
+            ..axes.frame
+        };
+        drawing.band(name, &frame, fill, OPACITY);
+    };
+    let ends_s = changes.clone().map(|(time_s, _)| time_s).chain([end_s]);
+    // Where the last band ends that is wide enough to be seen.
+    let mut drawn = place(0.0);
+    let mut hops = false;
+    for ((from_s, state), to_s) in [(0.0, start)].into_iter().chain(changes).zip(ends_s) {
+        let (left, right) = (place(from_s), place(to_s));
+        if right - left < NARROWEST_PX && to_s < end_s {
+            continue;
+        }
+        if left - drawn >= NARROWEST_PX {
+            band(HOPS, drawn, left);
+            hops = true;
+            drawn = left;
+        }
+        if let Some(shade) = shade_of(state)
+            && right - drawn >= NARROWEST_PX
+        {
+            band(shade, drawn, right);
+        }
+        drawn = right;
+    }
+    hops
+}
+
 /// Marks impacts along the lower side, those apart from the last mark.
-fn mark_impacts(drawing: &mut Drawing, axes: &Axes, impacts_s: impl Iterator<Item = f64>) {
+pub(super) fn mark_impacts(
+    drawing: &mut Drawing,
+    axes: &Axes,
+    impacts_s: impl Iterator<Item = f64>,
+) {
     let mut last_px = f64::NEG_INFINITY;
     for time_s in impacts_s {
         let at = axes.place(time_s, axes.y.low);

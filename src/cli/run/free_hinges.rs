@@ -1,0 +1,387 @@
+//! `run` with free hinges.
+
+use std::fmt::Write as _;
+use std::io::{self, BufWriter, Write as _};
+use std::ops::ControlFlow;
+use std::thread;
+
+use archrock::dynamics::free_hinges::spread::{REPETITIONS, SAME_PEAK_RATIO, Spread};
+use archrock::dynamics::free_hinges::{FreeHinges, HalfCycle};
+use archrock::dynamics::ground::GroundMotion;
+use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
+use archrock::dynamics::model::{Model as _, Recorder};
+use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::output::free_hinges::{JointsWriter, LandingsWriter, joints, summary};
+use archrock::output::overlay::Curves;
+use archrock::output::results::EventsWriter;
+use archrock::output::rotations::RotationsWriter;
+use archrock::output::row_timeline::RowTimeline;
+use archrock::output::{Folder, OutputError};
+use archrock::scenario::Scenario;
+
+use super::{
+    EVENTS, IMPACTS, JOINTS, PICTURE, Place, ROTATIONS, SUMMARY, cannot_write, cut_short, outcome,
+    reaches, written,
+};
+use crate::cli::Failure;
+
+/// What can be asked of it.
+#[derive(Clone, Copy)]
+pub struct Options {
+    /// Whether it is repeated with half and with double steps.
+    pub spread: bool,
+}
+
+/// The model of a scenario that has free hinges.
+pub fn model(scenario: &Scenario) -> Result<FreeHinges, Failure> {
+    let steps = scenario.free_hinges.unwrap_or_default();
+    scenario
+        .structure
+        .free_hinges(steps)
+        .map_err(|error| Failure::Input(error.to_string()))
+}
+
+/// Runs it, and says what happened.
+pub fn run(
+    scenario: &Scenario,
+    place: Place,
+    options: Options,
+    curves: Option<&mut Curves>,
+) -> Result<String, Failure> {
+    let model = model(scenario)?;
+    let ground = scenario.ground_motion();
+    let mut folder = place.open(&[JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY])?;
+    let mut timeline = RowTimeline::new(model.row(), scenario.simulation.gravity_m_s2);
+    let mut first_landings = Vec::new();
+    let (summary, spread, rows) = {
+        let mut results = Results {
+            tables: Tables::new(&model, ground, &place, folder.as_mut())?,
+            timeline: &mut timeline,
+            first_landings: &mut first_landings,
+            curves,
+            written: Ok(()),
+        };
+        let (summary, spread) = simulate(scenario, &model, options, &mut results)?;
+        results.written?;
+        (summary, spread, results.tables.finish()?)
+    };
+    let mut text = words(scenario, &model, &summary, spread.as_ref(), &first_landings);
+    if let Some(mut folder) = folder {
+        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        folder
+            .file(PICTURE)
+            .write_all(timeline.draw(title, &summary).as_bytes())
+            .map_err(cannot_write("the picture"))?;
+        let json = self::summary(scenario, &model, &summary, spread.as_ref())?;
+        writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
+        let path = folder.path().to_owned();
+        folder.complete()?;
+        let names = [JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY];
+        text += &written(&path, &place, rows, &names);
+    }
+    Ok(text)
+}
+
+/// The history, and at the same time its repetitions with other steps.
+fn simulate(
+    scenario: &Scenario,
+    model: &FreeHinges,
+    options: Options,
+    results: &mut Results<'_>,
+) -> Result<(Summary, Option<Spread>), Failure> {
+    let (ground, request) = (scenario.ground_motion(), scenario.request());
+    thread::scope(|scope| {
+        let factors = REPETITIONS.iter().filter(|_| options.spread);
+        let repetitions: Vec<_> = factors
+            .map(|factor| scope.spawn(|| model.repeated(*factor, ground, &request)))
+            .collect();
+        let own = model.simulate(ground, &request, Some(results))?;
+        let mut repeated = Vec::new();
+        for (factor, repetition) in REPETITIONS.iter().zip(repetitions) {
+            let ended = repetition.join().map_err(|_| {
+                Failure::Work(format!(
+                    "the repetition with {factor} times the steps crashed"
+                ))
+            })?;
+            repeated.push(ended.map_err(|error| {
+                Failure::Work(format!(
+                    "the repetition with {factor} times the steps failed: {error}; --no-spread leaves it out"
+                ))
+            })?);
+        }
+        let spread = match &repeated[..] {
+            [half, double] => Some(Spread::new(&own, half, double)),
+            _ => None,
+        };
+        Ok((own, spread))
+    })
+}
+
+/// The tables that are written while the motion is computed.
+struct Tables<'a> {
+    rotations: RotationsWriter<Box<dyn io::Write + 'a>>,
+    others: Option<Others<'a>>,
+}
+
+/// Those that only a folder can hold.
+struct Others<'a> {
+    joints: JointsWriter<Box<dyn io::Write + 'a>>,
+    events: EventsWriter<Box<dyn io::Write + 'a>>,
+    landings: LandingsWriter<Box<dyn io::Write + 'a>>,
+}
+
+impl<'a> Tables<'a> {
+    fn new(
+        model: &FreeHinges,
+        ground: &GroundMotion,
+        place: &Place,
+        folder: Option<&'a mut Folder>,
+    ) -> Result<Self, OutputError> {
+        let blocks = model.bodies();
+        let mut rotations: Option<Box<dyn io::Write + 'a>> = None;
+        let mut others = None;
+        if let Some(folder) = folder {
+            let [joints, events, landings] = if place.to_stdout {
+                folder.files([JOINTS, EVENTS, IMPACTS]).map(boxed)
+            } else {
+                let [table, joints, events, landings] = folder
+                    .files([ROTATIONS, JOINTS, EVENTS, IMPACTS])
+                    .map(boxed);
+                rotations = Some(table);
+                [joints, events, landings]
+            };
+            others = Some(Others {
+                joints: JointsWriter::new(joints, model.row().joints().len())?,
+                events: EventsWriter::new(events, &blocks)?,
+                landings: LandingsWriter::new(landings)?,
+            });
+        }
+        let rotations = rotations.unwrap_or_else(|| Box::new(BufWriter::new(io::stdout().lock())));
+        Ok(Self {
+            rotations: RotationsWriter::of_row(rotations, &blocks, ground.has_vertical())?,
+            others,
+        })
+    }
+
+    fn sample(&mut self, sample: &Sample) -> Result<(), OutputError> {
+        self.rotations.write(sample)?;
+        match &mut self.others {
+            Some(others) => others.joints.write(sample),
+            None => Ok(()),
+        }
+    }
+
+    fn event(&mut self, event: &Event) -> Result<(), OutputError> {
+        let Some(others) = &mut self.others else {
+            return Ok(());
+        };
+        others.events.write(event)?;
+        match &event.impact {
+            Some(impact) => others.landings.write(event.time_s, impact),
+            None => Ok(()),
+        }
+    }
+
+    /// Ends the tables and returns the number of samples.
+    fn finish(self) -> Result<u64, OutputError> {
+        if let Some(others) = self.others {
+            others.joints.finish()?;
+            others.events.finish()?;
+            others.landings.finish()?;
+        }
+        self.rotations.finish()
+    }
+}
+
+fn boxed<'a>(writer: impl io::Write + 'a) -> Box<dyn io::Write + 'a> {
+    Box::new(writer)
+}
+
+/// Landings that the words of a run tell of.
+const FIRST: usize = 3;
+
+/// Where samples and events go.
+struct Results<'a> {
+    tables: Tables<'a>,
+    timeline: &'a mut RowTimeline,
+    first_landings: &'a mut Vec<(f64, Impact)>,
+    curves: Option<&'a mut Curves>,
+    /// Why a table could not be written, which ends the history.
+    written: Result<(), OutputError>,
+}
+
+impl Results<'_> {
+    fn go_on(&mut self, written: Result<(), OutputError>) -> ControlFlow<()> {
+        self.written = written;
+        match self.written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    }
+}
+
+impl Recorder for Results<'_> {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.timeline.push(sample);
+        if let Some(curves) = &mut self.curves {
+            curves.push(sample);
+        }
+        let written = self.tables.sample(sample);
+        self.go_on(written)
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        if let Some(impact) = &event.impact {
+            self.timeline.landing(event.time_s);
+            if self.first_landings.len() < FIRST {
+                self.first_landings.push((event.time_s, impact.clone()));
+            }
+        }
+        // Of a history that was ended because a table failed, the end is no event of the tables.
+        if self.written.is_err() {
+            return ControlFlow::Break(());
+        }
+        let written = self.tables.event(event);
+        self.go_on(written)
+    }
+}
+
+/// What happened, when, and what it compares with.
+fn words(
+    scenario: &Scenario,
+    model: &FreeHinges,
+    history: &Summary,
+    spread: Option<&Spread>,
+    first_landings: &[(f64, Impact)],
+) -> String {
+    let ground = scenario.ground_motion();
+    let mut text = outcome(history);
+    for (index, (time_s, impact)) in first_landings.iter().enumerate() {
+        let begin = if index == 0 {
+            "  first impacts:"
+        } else {
+            "                "
+        };
+        let opened = if impact.opened.is_empty() {
+            String::new()
+        } else {
+            format!(", {} open", named(&impact.opened))
+        };
+        let _ = writeln!(
+            text,
+            "{begin} {time_s:.4} s, {} shut{opened}; energy after/before {:.4}",
+            named(&impact.closed),
+            impact.restitution,
+        );
+    }
+    if let Some(run) = history.free_hinges.as_deref()
+        && history.outcome != Outcome::NeverMoved
+    {
+        let cycles = run.half_cycles.iter().take(FIRST).map(cycle);
+        let _ = writeln!(
+            text,
+            "  peaks of the first half cycles in rad: {}",
+            cycles.collect::<Vec<_>>().join(", ")
+        );
+        let peaks = history.peak_rotations_rad.iter().enumerate();
+        if let Some((block, peak)) = peaks.max_by(|a, b| a.1.total_cmp(b.1)) {
+            let _ = writeln!(
+                text,
+                "  largest rotation {peak:.6} rad, of block {} of {}",
+                block + 1,
+                history.peak_rotations_rad.len()
+            );
+        }
+        let _ = writeln!(
+            text,
+            "  energy defect {:.1e} of weight times size, {} steps, {} iterations",
+            run.energy_defect_ratio, run.cost.steps, run.cost.iterations
+        );
+    }
+    let sides = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
+    let least_g = sides
+        .iter()
+        .flatten()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    let reaches = reaches(scenario, ground, history, least_g);
+    let incipient = match sides {
+        [Some(right), Some(left)] if (right - left).abs() > 1e-9 * right => {
+            format!("{right:.4} g to the right, {left:.4} g to the left")
+        }
+        [None, None] => "none, no push starts it".to_owned(),
+        _ => format!("{least_g:.4} g"),
+    };
+    let _ = writeln!(
+        text,
+        "  incipient acceleration A_L {incipient}; the ground {reaches}"
+    );
+    text += &cut_short(scenario, ground, history);
+    if let Some(thrust) = &history.thrust {
+        let friction = thrust.largest_friction;
+        let _ = writeln!(
+            text,
+            "  friction coefficient needed to prevent sliding: {:.3} (at {:.4} s)",
+            friction.value, friction.time_s
+        );
+    }
+    if let Some(spread) = spread
+        && history.outcome != Outcome::NeverMoved
+    {
+        text += &sure(spread);
+    }
+    text
+}
+
+fn named(hinges: &[archrock::mechanics::chain::Hinge]) -> String {
+    let joint = if hinges.len() == 1 { "joint" } else { "joints" };
+    format!("{joint} {}", joints(hinges, ", "))
+}
+
+fn cycle(cycle: &HalfCycle) -> String {
+    format!("{} {:.6}", cycle.sway.name(), cycle.peak_rad)
+}
+
+/// What half and double steps leave as it is.
+fn sure(spread: &Spread) -> String {
+    let [_, half, double] = spread.outcomes.map(ending);
+    let mut text = if spread.same_outcome() {
+        "  half and double steps: the same outcome".to_owned()
+    } else {
+        format!("  half and double steps: ANOTHER OUTCOME, {half} and {double}")
+    };
+    let percent = 100.0 * SAME_PEAK_RATIO;
+    let same = spread.same_until_half_cycle;
+    let _ = match (same, spread.parts_at_s) {
+        (_, None) => write!(text, ", peaks of all {same} half cycles within {percent} %"),
+        (0, Some(_)) => write!(text, "; the first half cycles differ already"),
+        (1, Some(time_s)) => write!(
+            text,
+            ", peak of the first half cycle within {percent} %;\n    from {time_s:.4} s on they part"
+        ),
+        (_, Some(time_s)) => write!(
+            text,
+            ", peaks of the first {same} half cycles within {percent} %;\n    from {time_s:.4} s on they part"
+        ),
+    };
+    if let Some(peak) = spread.half_cycles.get(same) {
+        let _ = write!(
+            text,
+            ": half cycle {} peaks at {:.6} to {:.6} rad",
+            same + 1,
+            peak.min_rad,
+            peak.max_rad
+        );
+    }
+    text.push('\n');
+    text
+}
+
+fn ending(outcome: Outcome) -> String {
+    match outcome {
+        Outcome::NeverMoved => "never moved".to_owned(),
+        Outcome::Rest => "rest".to_owned(),
+        Outcome::Overturned(sway) => format!("overturned to the {}", sway.name()),
+        Outcome::StillRocking => "still rocking".to_owned(),
+    }
+}

@@ -1,0 +1,232 @@
+//! What a run of a row of blocks writes beside the tables of any run: `joints.csv`, `impacts.csv`, `summary.json`.
+
+use std::io::Write;
+
+use serde_json::{Value, json};
+
+use super::results::beginning;
+use super::{OutputError, finite};
+use crate::dynamics::free_hinges::FreeHinges;
+use crate::dynamics::free_hinges::spread::Spread;
+use crate::dynamics::history::{Impact, Sample, Summary};
+use crate::dynamics::model::Model as _;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::four_link::mechanism::Sway;
+use crate::scenario::Scenario;
+
+/// Writes the gaps of all joints at both edges, a row per sample: `time_s`, `gap_0_intrados_m`, `gap_0_extrados_m`
+/// and so on.
+///
+/// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
+/// joint is an arc: thickness times relative rotation, plus the smaller gap.
+pub struct JointsWriter<W: Write> {
+    csv: csv::Writer<W>,
+}
+
+impl<W: Write> JointsWriter<W> {
+    const WHAT: &str = "cannot write the joints";
+
+    /// Starts with the header for so many joints.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn new(writer: W, joints: usize) -> Result<Self, OutputError> {
+        let mut csv = csv::Writer::from_writer(writer);
+        let gaps = (0..joints)
+            .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
+        let header = std::iter::once("time_s".to_owned()).chain(gaps);
+        csv.write_record(header)
+            .map_err(OutputError::csv(Self::WHAT))?;
+        Ok(Self { csv })
+    }
+
+    /// Writes a row.
+    ///
+    /// # Errors
+    /// When the system refuses, or a value is not finite.
+    pub fn write(&mut self, sample: &Sample) -> Result<(), OutputError> {
+        const ROW: &str = "of a row of joints.csv";
+        finite(ROW, &[sample.time_s])?;
+        finite(ROW, sample.gaps_m.as_flattened())?;
+        self.csv
+            .serialize((sample.time_s, &sample.gaps_m[..]))
+            .map_err(OutputError::csv(Self::WHAT))
+    }
+
+    /// Ends the table.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        self.csv.flush().map_err(OutputError::io(Self::WHAT))
+    }
+}
+
+/// Writes the landings, a row per impact: `impact` (from 1), `time_s`, `joints_shut` and `joints_opened` (numbers with
+/// spaces between), `energy_before_j`, `energy_after_j` and `energy_taken_j`, kinetic energies.
+pub struct LandingsWriter<W: Write> {
+    csv: csv::Writer<W>,
+    rows: usize,
+}
+
+impl<W: Write> LandingsWriter<W> {
+    const WHAT: &str = "cannot write the impacts";
+
+    /// Starts with the header.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn new(writer: W) -> Result<Self, OutputError> {
+        let mut csv = csv::Writer::from_writer(writer);
+        csv.write_record([
+            "impact",
+            "time_s",
+            "joints_shut",
+            "joints_opened",
+            "energy_before_j",
+            "energy_after_j",
+            "energy_taken_j",
+        ])
+        .map_err(OutputError::csv(Self::WHAT))?;
+        Ok(Self { csv, rows: 0 })
+    }
+
+    /// Writes a row.
+    ///
+    /// # Errors
+    /// When the system refuses, or a value is not finite.
+    pub fn write(&mut self, time_s: f64, impact: &Impact) -> Result<(), OutputError> {
+        let (before_j, after_j) = (impact.energy_before_j, impact.energy_after_j);
+        finite("of a row of impacts.csv", &[time_s, before_j, after_j])?;
+        self.rows += 1;
+        self.csv
+            .serialize((
+                self.rows,
+                time_s,
+                joints(&impact.closed, " "),
+                joints(&impact.opened, " "),
+                before_j,
+                after_j,
+                before_j - after_j,
+            ))
+            .map_err(OutputError::csv(Self::WHAT))
+    }
+
+    /// Ends the table.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        self.csv.flush().map_err(OutputError::io(Self::WHAT))
+    }
+}
+
+/// Numbers of the joints that hinges are at, with something between them.
+#[must_use]
+pub fn joints(hinges: &[Hinge], between: &str) -> String {
+    let numbers = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Joint { joint, .. } => Some(joint.to_string()),
+        Hinge::Section { .. } | Hinge::Toe(_) => None,
+    });
+    numbers.collect::<Vec<_>>().join(between)
+}
+
+/// The summary of a run with free hinges as JSON.
+///
+/// Normal forces and friction are those outside impacts; `largest_friction_demand` is that of the samples, as in
+/// `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the diagonal of
+/// a column). `spread` is left out where the run was not repeated.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn summary(
+    scenario: &Scenario,
+    model: &FreeHinges,
+    history: &Summary,
+    spread: Option<&Spread>,
+) -> Result<Value, OutputError> {
+    let mut summary = beginning(scenario, history, &model.bodies())?;
+    let more = summary.as_object_mut().expect("the summary is an object");
+    let mut put = |name: &str, value: Value| more.insert(name.to_owned(), value);
+    let incipient_g = |sway| model.incipient_acceleration_g(sway);
+    let peaks_rad = history.peak_rotations_rad.iter().copied();
+    put(
+        "largest_peak_rotation_rad",
+        json!(peaks_rad.fold(0.0, f64::max)),
+    );
+    put(
+        "incipient_acceleration_g",
+        json!({ "right": incipient_g(Sway::Right), "left": incipient_g(Sway::Left) }),
+    );
+    if let Some(run) = history.free_hinges.as_deref() {
+        let mut half_cycles = Vec::new();
+        for cycle in &run.half_cycles {
+            finite(
+                "of a half cycle",
+                &[cycle.start_s, cycle.duration_s, cycle.peak_rad],
+            )?;
+            finite("of a half cycle", cycle.energy_ratio.as_slice())?;
+            half_cycles.push(json!({
+                "sway": cycle.sway.name(),
+                "start_s": cycle.start_s,
+                "duration_s": cycle.duration_s,
+                "peak_rad": cycle.peak_rad,
+                "energy_ratio": cycle.energy_ratio,
+            }));
+        }
+        put("half_cycles", json!(half_cycles));
+        let least_normal_n = run.least_normal_n;
+        put("least_normal_n", number("least_normal_n", least_normal_n)?);
+        if let Some(thrust) = &history.thrust {
+            let (name, largest) = ("largest_friction_demand", thrust.largest_friction);
+            put(name, number(name, largest.value)?);
+            put(
+                "largest_friction_demand_time_s",
+                number(name, largest.time_s)?,
+            );
+        }
+        for (name, value) in [
+            ("energy_taken_j", run.energy_taken_j),
+            ("energy_defect_ratio", run.energy_defect_ratio),
+            ("closure_error_m", run.closure_error_m),
+        ] {
+            put(name, number(name, value)?);
+        }
+        for (name, count) in [
+            ("steps", run.cost.steps),
+            ("programs", run.cost.programs),
+            ("iterations", run.cost.iterations),
+            ("most_iterations", run.cost.most_iterations),
+            ("relaxed", run.cost.relaxed),
+            ("merged", run.cost.merged),
+        ] {
+            put(name, json!(count));
+        }
+    }
+    if let Some(spread) = spread {
+        put("spread", of_spread(spread)?);
+    }
+    Ok(summary)
+}
+
+fn number(name: &str, value: f64) -> Result<Value, OutputError> {
+    finite(name, &[value])?;
+    Ok(json!(value))
+}
+
+fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
+    let mut half_cycles = Vec::new();
+    for peak in &spread.half_cycles {
+        finite("spread", &[peak.own_rad, peak.min_rad, peak.max_rad])?;
+        half_cycles.push(json!({
+            "peak_rad": { "own": peak.own_rad, "min": peak.min_rad, "max": peak.max_rad },
+        }));
+    }
+    let [own, half_steps, double_steps] = spread.outcomes.map(|outcome| outcome.name());
+    Ok(json!({
+        "outcomes": { "own": own, "half_steps": half_steps, "double_steps": double_steps },
+        "half_cycles": half_cycles,
+        "same_until_half_cycle": spread.same_until_half_cycle,
+        "parts_at_s": spread.parts_at_s,
+    }))
+}

@@ -1,0 +1,383 @@
+//! `history.svg` of a row of blocks: a history at a glance, with the joints that are open.
+
+use std::fmt::Write as _;
+
+use nalgebra::Vector2;
+
+use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
+use super::timeline::{COLUMNS, Envelope, explain_shades, mark_impacts, shade};
+use crate::dynamics::free_hinges::HalfCycle;
+use crate::dynamics::history::{Outcome, Sample, State, Summary};
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
+
+/// Columns that all curves of rotations are thinned to together, so that long rows do not make huge files.
+const COLUMNS_OF_ALL: usize = 16_000;
+/// Columns that one of them has at least.
+const LEAST_COLUMNS: usize = 200;
+/// Columns of the joints: about one to a pixel.
+const JOINT_COLUMNS: usize = 800;
+
+/// Collects the samples and landings of a history, thinned, and draws them.
+#[derive(Clone, Debug)]
+pub struct RowTimeline {
+    gravity_m_s2: f64,
+    ground_g: Envelope,
+    rotations_rad: Vec<Envelope>,
+    energy: Envelope,
+    /// Whether energies are parts of a barrier; else J.
+    in_barriers: bool,
+    joints: OpenJoints,
+    /// Names of the hinges at the two edges.
+    edges: [&'static str; 2],
+    impacts_s: Vec<f64>,
+    end_s: f64,
+}
+
+impl RowTimeline {
+    /// An empty one, for this row.
+    #[must_use]
+    pub fn new(row: &Row, gravity_m_s2: f64) -> Self {
+        let blocks = row.blocks().len();
+        let columns = (COLUMNS_OF_ALL / blocks).clamp(LEAST_COLUMNS, COLUMNS);
+        Self {
+            gravity_m_s2,
+            ground_g: Envelope::of_columns(COLUMNS),
+            rotations_rad: vec![Envelope::of_columns(columns); blocks],
+            energy: Envelope::of_columns(COLUMNS),
+            in_barriers: false,
+            joints: OpenJoints::new(row.joints().len()),
+            edges: match row.supports() {
+                Supports::Both => ["hinge at the intrados", "hinge at the extrados"],
+                Supports::Left => ["hinge at the left edge", "hinge at the right edge"],
+            },
+            impacts_s: Vec::new(),
+            end_s: 0.0,
+        }
+    }
+
+    /// Takes a sample. Samples come in the order of time.
+    pub fn push(&mut self, sample: &Sample) {
+        let time_s = sample.time_s;
+        self.end_s = time_s;
+        let ground_g = sample.ground_acceleration_m_s2 / self.gravity_m_s2;
+        self.ground_g.push(time_s, ground_g);
+        let envelopes = self.rotations_rad.iter_mut();
+        for (envelope, rotation) in envelopes.zip(&sample.rotations_rad) {
+            envelope.push(time_s, *rotation);
+        }
+        self.in_barriers = sample.energy_ratio.is_some();
+        let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
+        self.energy.push(time_s, energy);
+        self.joints.push(sample);
+    }
+
+    /// Takes the time of a landing.
+    pub fn landing(&mut self, time_s: f64) {
+        self.impacts_s.push(time_s);
+    }
+
+    /// The picture, with what the history comes to.
+    #[must_use]
+    pub fn draw(&self, title: &str, summary: &Summary) -> String {
+        let (left, width) = (85.0, 790.0);
+        let joints_height = (14 * self.joints.count).clamp(60, 260) as f64;
+        let heights = [110.0, 240.0, joints_height, 120.0];
+        let mut drawing = Drawing::new(
+            900.0,
+            70.0 + heights.iter().sum::<f64>() + 4.0 * 22.0 + 88.0,
+        );
+        drawing.title(title);
+        let time = Scale::exactly(0.0, self.end_s.max(f64::MIN_POSITIVE), 10);
+        let mut top = 70.0;
+        let mut next = |height: f64, y: Scale| {
+            let frame = Frame {
+                left,
+                top,
+                width,
+                height,
+            };
+            top += height + 22.0;
+            Axes { frame, x: time, y }
+        };
+        // A little room, so that no curve runs along the frame.
+        let around = |curves: &[&Envelope], ticks: u32| {
+            let values = curves.iter().flat_map(|envelope| envelope.values());
+            Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
+        };
+        let black = Stroke::new(color::BLACK, 1.4, "");
+        let curve =
+            |drawing: &mut Drawing, axes: &Axes, name: &str, envelope: &Envelope, stroke| {
+                let points = envelope.points().map(|(t, value)| axes.place(t, value));
+                drawing.curve(name, points, stroke);
+            };
+        let mut hops = false;
+
+        let axes = next(heights[0], around(&[&self.ground_g], 3));
+        hops |= self.shade(&mut drawing, &axes, summary);
+        axes.draw(&mut drawing, None, "Ground (g)");
+        curve(&mut drawing, &axes, "ground", &self.ground_g, black);
+
+        let blocks: Vec<&Envelope> = self.rotations_rad.iter().collect();
+        let axes = next(heights[1], around(&blocks, 6));
+        hops |= self.shade(&mut drawing, &axes, summary);
+        axes.draw(&mut drawing, None, "Rotation (rad)");
+        let largest = largest_block(&summary.peak_rotations_rad);
+        for (block, envelope) in blocks.iter().enumerate() {
+            if block != largest {
+                let name = (block + 1).to_string();
+                curve(&mut drawing, &axes, &name, envelope, BLOCK);
+            }
+        }
+        let name = (largest + 1).to_string();
+        curve(&mut drawing, &axes, &name, blocks[largest], LARGEST);
+        mark_impacts(&mut drawing, &axes, self.impacts_s.iter().copied());
+
+        #[expect(clippy::cast_precision_loss, reason = "few joints")]
+        let highest = self.joints.count as f64 - 0.5;
+        let ticks = u32::try_from(self.joints.count.min(6)).unwrap_or(6);
+        let axes = next(heights[2], Scale::exactly(-0.5, highest, ticks));
+        axes.draw(&mut drawing, None, "Open joint");
+        self.joints.draw(&mut drawing, &axes, self.end_s);
+
+        let axes = next(heights[3], around(&[&self.energy], 3));
+        hops |= self.shade(&mut drawing, &axes, summary);
+        let label = if self.in_barriers {
+            "Energy / barrier"
+        } else {
+            "Energy (J)"
+        };
+        axes.draw(&mut drawing, Some("Time (s)"), label);
+        curve(&mut drawing, &axes, "energy", &self.energy, black);
+
+        let y = top + 44.0;
+        let name = format!("block {name}, which turns most");
+        let at = Vector2::new(left, y);
+        drawing.legend(at, 210.0, [(&*name, LARGEST), ("others", BLOCK)]);
+        explain_shades(&mut drawing, Vector2::new(395.0, y), hops);
+        self.explain_joints(&mut drawing, Vector2::new(left, y + 26.0));
+        drawing.finish()
+    }
+
+    /// Shades the half cycles.
+    fn shade(&self, drawing: &mut Drawing, axes: &Axes, summary: &Summary) -> bool {
+        let run = summary.free_hinges.as_deref();
+        let half_cycles: &[HalfCycle] = run.map_or(&[], |run| &run.half_cycles);
+        let end = match summary.outcome {
+            Outcome::Rest => Some(State::Rest),
+            Outcome::Overturned(sway) => Some(State::Overturned(sway)),
+            Outcome::NeverMoved | Outcome::StillRocking => None,
+        };
+        let changes = half_cycles
+            .iter()
+            .map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)))
+            .chain(end.map(|state| (summary.outcome_time_s, state)));
+        shade(drawing, axes, self.end_s, State::Rest, changes)
+    }
+
+    fn explain_joints(&self, drawing: &mut Drawing, at: Vector2<f64>) {
+        let mut x = at.x;
+        let [intrados, extrados] = self.edges;
+        for ((kind, _), text) in KINDS.into_iter().zip([intrados, extrados, "parted"]) {
+            let frame = Frame {
+                left: x,
+                top: at.y - 5.0,
+                width: 24.0,
+                height: 10.0,
+            };
+            drawing.band("key", &frame, kind.fill, 1.0);
+            let at = Vector2::new(x + 30.0, at.y + 4.5);
+            drawing.label(at, Anchor::Start, 0.0, text);
+            x += 210.0;
+        }
+    }
+}
+
+const LARGEST: Stroke = Stroke::new(color::BLUE, 1.8, "");
+const BLOCK: Stroke = Stroke::new(color::BLACK, 0.5, "");
+
+/// Index of the block that turns most.
+fn largest_block(peaks_rad: &[f64]) -> usize {
+    let most = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
+    let largest = peaks_rad.iter().enumerate().max_by(most);
+    largest.map_or(0, |(block, _)| block)
+}
+
+/// How an open joint is drawn: name, colour, and where in its row, from its lower to its upper end.
+#[derive(Clone, Copy)]
+struct Kind {
+    name: &'static str,
+    fill: &'static str,
+    part: [f64; 2],
+}
+
+/// The ways in which a joint is open, each with its bit.
+const KINDS: [(Kind, u8); 3] = [
+    (
+        Kind {
+            name: "intrados",
+            fill: color::BLUE,
+            part: [-0.42, 0.0],
+        },
+        1,
+    ),
+    (
+        Kind {
+            name: "extrados",
+            fill: color::VERMILION,
+            part: [0.0, 0.42],
+        },
+        2,
+    ),
+    (
+        Kind {
+            name: "parted",
+            fill: color::BLACK,
+            part: [-0.42, 0.42],
+        },
+        4,
+    ),
+];
+
+/// Which joints are open over time, thinned to columns: in each, all ways in which a joint is open in its samples.
+#[derive(Clone, Debug)]
+struct OpenJoints {
+    count: usize,
+    /// Samples in a column, and those in the last.
+    group: usize,
+    in_last: usize,
+    /// When each column begins.
+    starts_s: Vec<f64>,
+    /// Bits of [`KINDS`], column by column.
+    bits: Vec<u8>,
+}
+
+impl OpenJoints {
+    const fn new(count: usize) -> Self {
+        Self {
+            count,
+            group: 1,
+            in_last: 0,
+            starts_s: Vec::new(),
+            bits: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, sample: &Sample) {
+        if self.in_last == self.group || self.starts_s.is_empty() {
+            if self.starts_s.len() == JOINT_COLUMNS {
+                self.halve();
+            }
+            self.starts_s.push(sample.time_s);
+            self.bits.resize(self.starts_s.len() * self.count, 0);
+            self.in_last = 0;
+        }
+        self.in_last += 1;
+        let first = (self.starts_s.len() - 1) * self.count;
+        for open in &sample.hinges {
+            if let Hinge::Joint { joint, edge } = open.hinge {
+                self.bits[first + joint] |= match edge {
+                    Some(Edge::Intrados) => KINDS[0].1,
+                    Some(Edge::Extrados) => KINDS[1].1,
+                    None => KINDS[2].1,
+                };
+            }
+        }
+    }
+
+    /// Joins the columns by pairs.
+    fn halve(&mut self) {
+        self.group *= 2;
+        self.starts_s = self.starts_s.iter().copied().step_by(2).collect();
+        let pairs = self.bits.chunks(2 * self.count);
+        self.bits = pairs
+            .flat_map(|pair| {
+                let (first, second) = pair.split_at(self.count);
+                first.iter().zip(second).map(|(a, b)| a | b)
+            })
+            .collect();
+    }
+
+    fn draw(&self, drawing: &mut Drawing, axes: &Axes, end_s: f64) {
+        for (kind, bit) in KINDS {
+            let mut path = String::new();
+            for joint in 0..self.count {
+                #[expect(clippy::cast_precision_loss, reason = "few joints")]
+                let [low, high] = kind.part.map(|part| joint as f64 + part);
+                let is_open = |column: &usize| self.bits[column * self.count + joint] & bit != 0;
+                let mut columns = 0..self.starts_s.len();
+                while let Some(first) = columns.find(is_open) {
+                    let end = columns.find(|column| !is_open(column));
+                    let end_s = end.map_or(end_s, |end| self.starts_s[end]);
+                    let corner = axes.place(self.starts_s[first], high);
+                    let opposite = axes.place(end_s, low);
+                    let _ = write!(
+                        path,
+                        "M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z",
+                        corner.x, corner.y, opposite.x, opposite.y, corner.x
+                    );
+                }
+            }
+            if !path.is_empty() {
+                drawing.path(kind.name, &path, kind.fill, Stroke::new("none", 0.0, ""));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::history::OpenHinge;
+
+    /// A sample in which joint 1 of 3 is open at the intrados, and joint 2 parted if asked.
+    fn sample(time_s: f64, parted: bool) -> Sample {
+        let hinge = |joint, edge| OpenHinge {
+            hinge: Hinge::Joint { joint, edge },
+            position_m: Vector2::zeros(),
+        };
+        let mut hinges = vec![hinge(1, Some(Edge::Intrados))];
+        if parted {
+            hinges.push(hinge(2, None));
+        }
+        Sample {
+            time_s,
+            ground_acceleration_m_s2: 0.0,
+            vertical_acceleration_m_s2: 0.0,
+            phase: 0,
+            state: State::Rest,
+            rotations_rad: Vec::new(),
+            rates_rad_s: Vec::new(),
+            poses: Vec::new(),
+            hinges,
+            demand: crate::mechanics::chain::Demand::NONE,
+            energy_j: 0.0,
+            energy_ratio: None,
+            rotation_over_critical: None,
+            gaps_m: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn joints_are_thinned_to_few_columns_and_keep_what_was_open() {
+        let mut joints = OpenJoints::new(3);
+        for i in 0..10_001 {
+            joints.push(&sample(f64::from(i), i == 7_777));
+        }
+        let columns = joints.starts_s.len();
+        assert!((JOINT_COLUMNS / 2..=JOINT_COLUMNS).contains(&columns));
+        assert_eq!(joints.bits.len(), 3 * columns);
+        assert!(joints.starts_s.is_sorted());
+        let of_joint = |joint: usize| joints.bits.iter().skip(joint).step_by(3).copied();
+        assert!(of_joint(0).all(|bits| bits == 0));
+        assert!(of_joint(1).all(|bits| bits == 1));
+        let parted: Vec<_> = of_joint(2)
+            .enumerate()
+            .filter(|(_, bits)| *bits == 4)
+            .collect();
+        assert_eq!(parted.len(), 1);
+        let start_s = joints.starts_s[parted[0].0];
+        assert!((0.0..joints.group as f64).contains(&(7_777.0 - start_s)));
+    }
+}
