@@ -4,12 +4,12 @@ use std::io::Write as _;
 use std::path::Path;
 
 use archrock::output::{Folder, ending, map as output};
-use archrock::scenario::Scenario;
+use archrock::scenario::{Quantity, Scenario};
 use archrock::studies::boundary::{BoundaryRow, MapRow, MapWithBoundary};
 use archrock::studies::map::{CellResult, CellRow, OverturningMap};
 
 use super::Failure;
-use super::study::{Options, say, write_summary};
+use super::study::{HingesOption, Options, say, write_summary};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -17,6 +17,8 @@ pub struct Arguments {
     options: Options,
     #[command(flatten)]
     boundary: BoundaryOption,
+    #[command(flatten)]
+    hinges: HingesOption,
 }
 
 /// What the results of a map may have besides.
@@ -35,10 +37,10 @@ const TABLE: &str = "map.csv";
 
 pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
-    let scenario = Scenario::read(&options.scenario)?;
+    let scenario = arguments.hinges.read(&options.scenario, quiet)?;
     let map = overturning_map(&scenario).map_err(|failure| options.about_scenario(failure))?;
     let study = MapWithBoundary::new(&map);
-    arguments.boundary.check(&study)?;
+    arguments.boundary.check(&map)?;
     let Some((rows, part)) = options.compute(&study, quiet)? else {
         return Ok(());
     };
@@ -61,8 +63,13 @@ fn overturning_map(scenario: &Scenario) -> Result<OverturningMap<'_>, Failure> {
 }
 
 impl BoundaryOption {
-    fn check(self, study: &MapWithBoundary<'_>) -> Result<(), Failure> {
-        if study.has_boundary() {
+    fn check(self, map: &OverturningMap<'_>) -> Result<(), Failure> {
+        if self.no_impact && map.has_free_hinges() {
+            let message = "--no-impact is about four links, and the hinges of this map are free: leave it out, or \
+                           give --hinges four";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        if MapWithBoundary::new(map).has_boundary() {
             return Ok(());
         }
         self.refuse()
@@ -88,7 +95,7 @@ pub fn merge(
 ) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
     let map = overturning_map(&scenario)?;
-    boundary.check(&MapWithBoundary::new(&map))?;
+    boundary.check(&map)?;
     finish(&map, rows, folder, boundary, quiet)
 }
 
@@ -119,10 +126,21 @@ fn finish(
         .write_all(picture.as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
     write_summary(folder.file(SUMMARY), scenario, cells.len())?;
-    output::write_table(folder.file(TABLE), map.axes(), &cells)?;
+    output::write_table(folder.file(TABLE), map, &cells)?;
     folder.complete()?;
     if !quiet {
         say(&summary(&cells));
+        if map.has_spread() {
+            say(&format!(
+                "  with half and double steps {} of them have another outcome",
+                output::doubtful(&cells)
+            ));
+        }
+        if map.has_free_hinges() && map.axes()[1].quantity == Quantity::Amplitude {
+            say(
+                "  free hinges: without the boundary of overturning without impact, which is of four links",
+            );
+        }
         if let Some(reason) = first_failed(&boundaries) {
             say(&format!("  the boundary without impact has gaps: {reason}"));
         }

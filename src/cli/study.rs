@@ -4,15 +4,17 @@ use std::fmt;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::output::results;
-use archrock::scenario::Scenario;
+use archrock::scenario::{Hinges, Scenario};
 use archrock::studies::part::{PartError, PartFile, Shard};
 use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
+use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Failure;
@@ -34,6 +36,40 @@ pub struct Options {
     /// Compute one part of n only, into a file that `archrock merge` joins with the others.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+}
+
+/// Which model of motion is asked for.
+#[derive(clap::Args, Clone, Copy)]
+pub struct HingesOption {
+    /// The model of motion, whatever the scenario chooses.
+    #[arg(long, value_enum, value_name = "MODEL")]
+    hinges: Option<Model>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Model {
+    /// Four links, or the column of Housner.
+    Four,
+    /// A row of blocks whose joints open and shut anywhere.
+    Free,
+}
+
+impl HingesOption {
+    /// Reads a scenario with that model.
+    pub fn read(self, path: &Path, quiet: bool) -> Result<Scenario, Failure> {
+        let hinges = self.hinges.map(|model| match model {
+            Model::Four => Hinges::Four,
+            Model::Free => Hinges::Free,
+        });
+        let scenario = Scenario::read_with(path, hinges)?;
+        if scenario.free_hinges.is_some()
+            && scenario.impact != ImpactModel::MaxRestitution
+            && !quiet
+        {
+            say("[impact] is ignored: with free hinges impacts follow from the blocks");
+        }
+        Ok(scenario)
+    }
 }
 
 impl From<PartError> for Failure {

@@ -11,12 +11,14 @@ use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 
 use super::Failure;
 use super::commands::pretty;
-use super::study::{Options, say};
+use super::study::{HingesOption, Options, say};
 
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
     options: Options,
+    #[command(flatten)]
+    hinges: HingesOption,
 }
 
 const PICTURE: &str = "suite.svg";
@@ -27,7 +29,7 @@ const TABLE: &str = "suite.csv";
 
 pub fn suite(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
-    let scenario = Scenario::read(&options.scenario)?;
+    let scenario = arguments.hinges.read(&options.scenario, quiet)?;
     let suite = suite_of(&scenario).map_err(|failure| options.about_scenario(failure))?;
     let study = RecordSuite::new(&scenario, suite)
         .map_err(|error| options.about_scenario(Failure::Input(error.to_string())))?;
@@ -82,7 +84,7 @@ fn finish(heading: &Heading, rows: Vec<CaseRow>, path: &Path, quiet: bool) -> Re
             .write_all(text.as_bytes())
             .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
     }
-    output::write_table(folder.file(TABLE), &results.cases)?;
+    output::write_table(folder.file(TABLE), heading, &results.cases)?;
     folder.complete()?;
     if !quiet {
         say(&summary(&results));

@@ -4,8 +4,8 @@ use super::{OutputError, finite};
 use crate::dynamics::history::Outcome;
 use crate::studies::ending::Ending;
 
-/// Names of the columns.
-pub(super) const COLUMNS: [&str; 7] = [
+/// Names of the columns of any model.
+const COLUMNS: [&str; 7] = [
     "outcome",
     "overturning_sway",
     "impacts",
@@ -15,28 +15,40 @@ pub(super) const COLUMNS: [&str; 7] = [
     "energy_defect_ratio",
 ];
 
+/// What rows of blocks have besides.
+const PEAK_ROTATION: &str = "peak_rotation_rad";
+
+/// Names of the columns.
+pub(super) fn columns(free_hinges: bool) -> impl Iterator<Item = &'static str> {
+    COLUMNS
+        .into_iter()
+        .chain(free_hinges.then_some(PEAK_ROTATION))
+}
+
 /// Outcome where a history could not be computed.
 pub const FAILED: &str = "failed";
 
-/// The fields of an ending. Only what overturned has a sway and impacts before it.
+/// The fields of an ending, as many as columns. Only what overturned has a sway and impacts before it.
 ///
 /// # Errors
 /// When a value is not finite.
-pub(super) fn fields(ending: &Ending) -> Result<[String; 7], OutputError> {
+pub(super) fn fields(ending: &Ending) -> Result<Vec<String>, OutputError> {
     let Ending {
         outcome,
         outcome_time_s,
         impacts,
         peak_over_critical,
         energy_defect_ratio,
+        peak_rotation_rad,
     } = *ending;
     finite("of a history", &[outcome_time_s, energy_defect_ratio])?;
     finite("of a history", peak_over_critical.as_slice())?;
+    finite("of a history", peak_rotation_rad.as_slice())?;
     let (sway, before) = match outcome {
         Outcome::Overturned(sway) => (sway.name().to_owned(), impacts.to_string()),
         _ => (String::new(), String::new()),
     };
-    Ok([
+    let mut fields = vec![
         outcome.name().to_owned(),
         sway,
         impacts.to_string(),
@@ -44,12 +56,14 @@ pub(super) fn fields(ending: &Ending) -> Result<[String; 7], OutputError> {
         number(outcome_time_s),
         peak_over_critical.map_or(String::new(), number),
         number(energy_defect_ratio),
-    ])
+    ];
+    fields.extend(peak_rotation_rad.map(number));
+    Ok(fields)
 }
 
 /// The fields where there is no history, for the reason named.
-pub(super) fn none(reason: &str) -> [String; 7] {
-    let mut fields = <[String; 7]>::default();
+pub(super) fn none(reason: &str, free_hinges: bool) -> Vec<String> {
+    let mut fields = vec![String::new(); columns(free_hinges).count()];
     reason.clone_into(&mut fields[0]);
     fields
 }

@@ -25,6 +25,19 @@ pub const fn outcome(result: &CellResult) -> &'static str {
     }
 }
 
+/// The number of outcomes of a cell with several steps, as it stands in the table.
+const SPREAD: &str = "spread";
+
+/// How many cells have an outcome that depends on the steps.
+#[must_use]
+pub fn doubtful(rows: &[CellRow]) -> usize {
+    rows.iter().filter(|row| is_doubtful(row)).count()
+}
+
+fn is_doubtful(row: &CellRow) -> bool {
+    row.spread > Some(1)
+}
+
 /// How many cells have each outcome.
 #[must_use]
 pub fn counts(rows: &[CellRow]) -> BTreeMap<&'static str, usize> {
@@ -41,23 +54,30 @@ pub fn counts(rows: &[CellRow]) -> BTreeMap<&'static str, usize> {
 /// When the system refuses, or a value is not finite.
 pub fn write_table(
     writer: impl Write,
-    axes: [&Axis; 2],
+    map: &OverturningMap<'_>,
     rows: &[CellRow],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the table";
     let mut csv = csv::Writer::from_writer(writer);
-    let axes = axes.map(|axis| axis.quantity.name());
-    csv.write_record([&axes[..], &ending::COLUMNS].concat())
+    let axes = map.axes().map(|axis| axis.quantity.name());
+    let free_hinges = map.has_free_hinges();
+    let columns = axes.into_iter().chain(ending::columns(free_hinges));
+    csv.write_record(columns.chain(map.has_spread().then_some(SPREAD)))
         .map_err(OutputError::csv(WHAT))?;
-    for CellRow { x, y, result } in rows {
-        finite("of a cell", &[*x, *y])?;
-        let fields = match result {
+    for row in rows {
+        finite("of a cell", &[row.x, row.y])?;
+        let mut fields = [row.x, row.y].map(ending::number).to_vec();
+        fields.extend(match &row.result {
             CellResult::Ended(ended) => ending::fields(ended)?,
-            other => ending::none(outcome(other)),
-        };
-        let lead = [*x, *y].map(ending::number);
-        csv.write_record(lead.iter().chain(&fields))
-            .map_err(OutputError::csv(WHAT))?;
+            other => ending::none(outcome(other), free_hinges),
+        });
+        if map.has_spread() {
+            fields.push(
+                row.spread
+                    .map_or(String::new(), |spread| spread.to_string()),
+            );
+        }
+        csv.write_record(fields).map_err(OutputError::csv(WHAT))?;
     }
     csv.flush().map_err(OutputError::io(WHAT))
 }
@@ -212,6 +232,7 @@ pub fn draw(
             drawing.path(kind.name, &path, kind.fill, Stroke::new(kind.fill, 0.4, ""));
         }
     }
+    hatch(&mut drawing, &axes, [&x_edges, &y_edges], rows);
     let [x_label, y_label] = map.axes().map(|axis| label(axis.quantity));
     axes.draw(&mut drawing, Some(x_label), y_label);
     let signs: Vec<f64> = [1.0, -1.0]
@@ -234,6 +255,26 @@ pub fn draw(
     drawing.finish()
 }
 
+/// Strikes out the cells whose outcome depends on the steps.
+fn hatch(drawing: &mut Drawing, axes: &Axes, edges: [&[f64]; 2], rows: &[CellRow]) {
+    let [x_edges, y_edges] = edges;
+    let mut path = String::new();
+    for (index, _) in (0..).zip(rows).filter(|(_, row)| is_doubtful(row)) {
+        let [column, line] = [index / (y_edges.len() - 1), index % (y_edges.len() - 1)];
+        let low = axes.place(x_edges[column], y_edges[line]);
+        let high = axes.place(x_edges[column + 1], y_edges[line + 1]);
+        let _ = write!(
+            path,
+            "M{:.2} {:.2}L{:.2} {:.2}",
+            low.x, low.y, high.x, high.y
+        );
+    }
+    if !path.is_empty() {
+        drawing.path("spread", &path, "none", DOUBTFUL);
+    }
+}
+
+const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
 const INCIPIENT: Stroke = Stroke::new(color::BLUE, 2.0, "7 4");
 const IMPACT_FREE: Stroke = Stroke::new(color::BLACK, 2.2, "");
 
@@ -248,6 +289,11 @@ fn legend(
     boundaries: bool,
 ) -> f64 {
     let mut y = kind::legend(drawing, Vector2::new(LEFT, 46.0), WIDTH, kinds);
+    if map.has_spread() {
+        let words = "outcome depends on the steps of the computation";
+        drawing.legend(Vector2::new(LEFT, y + 10.0), WIDTH, [(words, DOUBTFUL)]);
+        y += kind::LEGEND_ROW;
+    }
     if boundaries {
         let incipient = if map.moves_vertically() {
             "incipient acceleration, were there no vertical motion"

@@ -19,16 +19,21 @@ const COLUMNS: [&str; 4] = ["record", "sign", "scale", "peak_g"];
 ///
 /// # Errors
 /// When the system refuses, or a value is not finite.
-pub fn write_table(writer: impl Write, rows: &[CaseRow]) -> Result<(), OutputError> {
+pub fn write_table(
+    writer: impl Write,
+    heading: &Heading,
+    rows: &[CaseRow],
+) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the table";
     let mut csv = csv::Writer::from_writer(writer);
-    csv.write_record([&COLUMNS[..], &ending::COLUMNS].concat())
+    let free_hinges = heading.has_free_hinges();
+    csv.write_record(COLUMNS.into_iter().chain(ending::columns(free_hinges)))
         .map_err(OutputError::csv(WHAT))?;
     for case in rows {
         finite("of a row of suite.csv", &[case.scale, case.peak_g])?;
         let fields = match &case.result {
             Ok(ended) => ending::fields(ended)?,
-            Err(_) => ending::none(ending::FAILED),
+            Err(_) => ending::none(ending::FAILED, free_hinges),
         };
         let [scale, peak_g] = [case.scale, case.peak_g].map(ending::number);
         let sign = if case.mirrored { "-1" } else { "1" };
@@ -79,6 +84,10 @@ impl Heading {
             measure,
             spacing,
         })
+    }
+
+    fn has_free_hinges(&self) -> bool {
+        self.scenario.get("free_hinges").is_some()
     }
 
     fn title(&self) -> &str {

@@ -6,7 +6,8 @@
 //! amplitude_g = { from = 0.15, to = 1.5, count = 80, spacing = "logarithmic" }
 //! ```
 //!
-//! Two quantities of the scenario vary; all else stays as it is.
+//! Two quantities of the scenario vary; all else stays as it is. With free hinges, `spread = true` computes every cell
+//! with half and with double steps as well, to see whether its outcome depends on them.
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
@@ -14,7 +15,7 @@ use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ};
 use super::impact::RESTITUTION;
 use super::sequence::Sequence;
 use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
-use super::table::{Number, Reading, Table};
+use super::table::{Number, Reading, Switch, Table};
 use super::{Ground, PulseGround, Simulation, Structure};
 use crate::mechanics::four_link::impact::ImpactModel;
 
@@ -69,6 +70,8 @@ pub struct Map {
     pub x: Axis,
     /// Upwards; the amplitude where it is one of the two.
     pub y: Axis,
+    /// Whether every cell is computed with half and with double steps as well; with free hinges only.
+    pub spread: bool,
 }
 
 /// Cells of a map: more would not fit into a picture, nor their rows into memory.
@@ -79,16 +82,18 @@ impl Map {
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
+        free_hinges: bool,
         ground: Option<&Option<Ground>>,
         impact: Option<&ImpactModel>,
         simulation: Option<&Simulation>,
     ) -> Reading<Self> {
+        let spread = read_spread(table, free_hinges);
         let read: Vec<_> = Quantity::ALL
             .iter()
             .map(|&quantity| {
                 let sequence = Sequence::read(table, quantity.name(), quantity.range())?;
                 if sequence.is_some() {
-                    suits(table, quantity, structure, impact)?;
+                    suits(table, quantity, structure, free_hinges, impact)?;
                 }
                 Ok(sequence.map(|sequence| Axis { quantity, sequence }))
             })
@@ -112,7 +117,8 @@ impl Map {
             )));
         }
         Ground::check_pulse(table, ground)?;
-        let map = Self { x, y };
+        let spread = spread?;
+        let map = Self { x, y, spread };
         if let (Some(Some(Ground::Pulse(pulse))), Some(simulation)) = (ground, simulation) {
             map.check_end(table, pulse, simulation)?;
         }
@@ -151,14 +157,29 @@ impl Map {
 }
 
 impl Serialize for Map {
-    /// The two sequences, named by what varies.
+    /// The two sequences, named by what varies, and the spread where there is one.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(2))?;
+        let mut map = serializer.serialize_map(None)?;
         for axis in [&self.x, &self.y] {
             map.serialize_entry(axis.quantity.name(), &axis.sequence)?;
         }
+        if self.spread {
+            map.serialize_entry(SPREAD, &true)?;
+        }
         map.end()
     }
+}
+
+const SPREAD: &str = "spread";
+
+/// Reads `spread`, which is of free hinges.
+fn read_spread(table: &mut Table<'_>, free_hinges: bool) -> Reading<bool> {
+    let spread = table.or(SPREAD, &Switch, false)?;
+    if spread && !free_hinges {
+        let wrong = "goes with a table [free_hinges]: four links are integrated to a tolerance, not in steps";
+        return Err(table.wrong(SPREAD, wrong));
+    }
+    Ok(spread)
 }
 
 /// Refuses a quantity that the scenario does not have.
@@ -166,6 +187,7 @@ fn suits(
     table: &mut Table<'_>,
     quantity: Quantity,
     structure: Option<&Structure>,
+    free_hinges: bool,
     impact: Option<&ImpactModel>,
 ) -> Reading<()> {
     let wrong = match quantity {
@@ -173,6 +195,9 @@ fn suits(
             if matches!(structure, Some(Structure::Column(_))) =>
         {
             "goes with an [arch], and this is a column"
+        }
+        Quantity::Restitution if free_hinges => {
+            "goes with four links: with free hinges impacts follow from the blocks"
         }
         Quantity::Restitution
             if impact.is_some_and(|model| !matches!(model, ImpactModel::Prescribed { .. })) =>

@@ -50,7 +50,7 @@ use serde_json::Value;
 
 use crate::dynamics::free_hinges::Steps;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{Initial, Request};
+use crate::dynamics::model::{Initial, Model, Request};
 use crate::mechanics::four_link::impact::ImpactModel;
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
@@ -64,10 +64,20 @@ pub use sequence::{Sequence, Spacing};
 pub use simulation::Simulation;
 pub use spectrum::Spectrum;
 pub(crate) use spectrum::block;
-pub use structure::Structure;
+pub use structure::{ModelError, Structure};
 pub use suite::{Measure, Suite};
 use table::{Reading, Table, Text};
 use toml_text::toml_text;
+
+named! {
+    /// A model of motion.
+    pub enum Hinges {
+        /// Mechanisms of one degree of freedom that follow one another: four links, or Housner's column.
+        Four = "four",
+        /// A row of blocks whose joints open and shut anywhere.
+        Free = "free",
+    }
+}
 
 /// What to simulate, every default resolved.
 ///
@@ -118,11 +128,16 @@ impl Scenario {
     /// All that is wrong with the text and with its records. After twenty lines that are not TOML it stops
     /// looking.
     pub fn parse(text: &str, name: &str) -> Result<Self, ScenarioErrors> {
-        Self::parse_in(folder_of(Path::new(name)), text, name)
+        Self::parse_in(folder_of(Path::new(name)), text, name, None)
     }
 
-    fn parse_in(folder: &Path, text: &str, name: &str) -> Result<Self, ScenarioErrors> {
-        table::read_text(text, |table| Self::read_table(table, folder))
+    fn parse_in(
+        folder: &Path,
+        text: &str,
+        name: &str,
+        hinges: Option<Hinges>,
+    ) -> Result<Self, ScenarioErrors> {
+        table::read_text(text, |table| Self::read_table(table, folder, hinges))
             .map_err(|faults| ScenarioErrors::placed(name, text, faults))
     }
 
@@ -133,6 +148,18 @@ impl Scenario {
     /// As [`Scenario::parse`], and when there is no such file, it cannot be read, is not UTF-8
     /// text or is larger than 1 MiB.
     pub fn read(path: &Path) -> Result<Self, ScenarioErrors> {
+        Self::read_with(path, None)
+    }
+
+    /// Reads a scenario file as if it chose this model of motion; `None`: the model that it chooses.
+    ///
+    /// Free hinges take the steps of `[free_hinges]` if that is there, and do not ask for `[impact]`; four links do not ask
+    /// for `[free_hinges]`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scenario::read`], and when the rest does not go with that model.
+    pub fn read_with(path: &Path, hinges: Option<Hinges>) -> Result<Self, ScenarioErrors> {
         const MAX_BYTES: u64 = 1 << 20;
         let name = path.display().to_string();
         let unreadable = |message: String| ScenarioErrors::unreadable(&name, message);
@@ -158,14 +185,18 @@ impl Scenario {
             };
             ScenarioErrors::placed(&name, &text, vec![fault])
         })?;
-        Self::parse_in(folder_of(path), &text, &name)
+        Self::parse_in(folder_of(path), &text, &name, hinges)
     }
 
     /// Reads a scenario whose files are relative to `folder`.
-    fn read_table(table: &mut Table<'_>, folder: &Path) -> Reading<Self> {
+    fn read_table(table: &mut Table<'_>, folder: &Path, hinges: Option<Hinges>) -> Reading<Self> {
         let title = table.optional("title", &Text);
-        let free_hinges = table.table("free_hinges", free_hinges::read);
-        let structure = Structure::read(table, table.gives_table("free_hinges"));
+        let steps = table.table("free_hinges", free_hinges::read);
+        let free = match hinges {
+            Some(hinges) => hinges == Hinges::Free,
+            None => table.gives_table("free_hinges"),
+        };
+        let structure = Structure::read(table, free);
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let gravity_m_s2 = match &simulation {
             Ok(simulation) => Ok(simulation.gravity_m_s2),
@@ -177,7 +208,7 @@ impl Scenario {
             Ok(None) => (Ok(None), GroundMotion::still()),
             Err(reported) => (Err(reported), GroundMotion::still()),
         };
-        if table.gives("free_hinges") && table.gives("impact") {
+        if hinges.is_none() && table.gives("free_hinges") && table.gives("impact") {
             let wrong = "stands beside [free_hinges], where impacts follow from the blocks; allowed is one of them";
             return Err(table.wrong("impact", wrong));
         }
@@ -188,7 +219,7 @@ impl Scenario {
         let map = table.table("map", |table| {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
             let (impact, simulation) = (impact.as_ref().ok(), simulation.as_ref().ok());
-            Map::read(table, structure, ground, impact, simulation)
+            Map::read(table, structure, free, ground, impact, simulation)
         });
         let spectrum = table.table("spectrum", |table| {
             let structure = structure.as_ref().ok();
@@ -197,10 +228,11 @@ impl Scenario {
         let suite = table.table("suite", |table| {
             Suite::read(table, folder, simulation.as_ref().ok())
         });
+        let steps = steps?;
         Ok(Self {
             title: title?,
             structure: structure?,
-            free_hinges: free_hinges?,
+            free_hinges: free.then(|| steps.unwrap_or_default()),
             ground: ground?,
             impact: impact?,
             initial: initial?,
@@ -209,6 +241,17 @@ impl Scenario {
             spectrum: spectrum?,
             suite: suite?,
             motion: Arc::new(motion),
+        })
+    }
+
+    /// The model of motion that the scenario chooses.
+    ///
+    /// # Errors
+    /// As [`Structure::model`] or [`Structure::free_hinges`].
+    pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
+        Ok(match self.free_hinges {
+            Some(steps) => Box::new(self.structure.free_hinges(steps)?),
+            None => self.structure.model(self.impact)?,
         })
     }
 

@@ -3,6 +3,7 @@
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 use serde::Serialize;
+use thiserror::Error;
 
 use super::table::{Count, List, Number, Reading, Table};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, Steps};
@@ -41,6 +42,17 @@ pub enum Structure {
     Arch(Arch),
     /// A free-standing column, from `[column]`.
     Column(Column),
+}
+
+/// Why a structure has no model of motion.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ModelError {
+    /// It does not rock as four links.
+    #[error(transparent)]
+    FourLinks(#[from] FourLinkError),
+    /// It makes no row of blocks that stands.
+    #[error(transparent)]
+    FreeHinges(#[from] FreeHingesError),
 }
 
 impl Structure {

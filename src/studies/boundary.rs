@@ -35,17 +35,18 @@ pub struct ImpactFreeBoundary<'m> {
 }
 
 impl<'m> ImpactFreeBoundary<'m> {
-    /// The boundaries of a map; `None` if its y is not the amplitude.
+    /// The boundaries of a map; `None` if its y is not the amplitude, or its hinges are free.
     #[must_use]
     pub fn new(map: &'m OverturningMap<'m>) -> Option<Self> {
         // The amplitude, where it is one of the axes, goes upwards.
-        (map.axes()[1].quantity == Quantity::Amplitude).then_some(Self { map })
+        let has_edge = map.axes()[1].quantity == Quantity::Amplitude && !map.has_free_hinges();
+        has_edge.then_some(Self { map })
     }
 
     fn result(&self, x: usize) -> Result<Option<Boundary>, String> {
         let amplitudes_g = &self.map.values()[1];
         let index = x * amplitudes_g.len();
-        let Ok(model) = self.map.model(index) else {
+        let Some(model) = self.map.mechanism_model(index) else {
             return Ok(None);
         };
         let request = self.map.scenario().request_from_rest();

@@ -19,6 +19,9 @@ pub struct Ending {
     pub peak_over_critical: Option<f64>,
     /// Largest gap in the energy balance, over the energy barrier.
     pub energy_defect_ratio: f64,
+    /// Largest rotation of any block, in radians; with free hinges only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_rotation_rad: Option<f64>,
 }
 
 impl Ending {
@@ -44,9 +47,17 @@ impl Ending {
             impacts: summary.impacts,
             peak_over_critical: summary.peak_over_critical,
             energy_defect_ratio: summary.energy_defect_ratio,
+            peak_rotation_rad: summary.free_hinges.is_some().then(|| {
+                summary
+                    .peak_rotations_rad
+                    .iter()
+                    .copied()
+                    .fold(0.0, f64::max)
+            }),
         };
         check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
         check_finite(ending.peak_over_critical.as_slice())?;
+        check_finite(ending.peak_rotation_rad.as_slice())?;
         Ok(ending)
     }
 }

@@ -7,12 +7,16 @@ use serde::{Deserialize, Serialize};
 use super::ending::Ending;
 use super::impact_free::ScalablePulse;
 use super::runner::Study;
-use crate::dynamics::model::MechanismModel;
+use crate::argument::ArgumentError;
+use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::model::{MechanismModel, Model};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::limit::LimitError;
-use crate::scenario::{Axis, Ground, PulseGround, Quantity, Scenario, Structure};
+use crate::mechanics::stability::StabilityError;
+use crate::scenario::{Axis, Ground, ModelError, PulseGround, Quantity, Scenario, Structure};
 
 /// What became of a cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,15 +32,24 @@ pub enum CellResult {
     Failed(String),
 }
 
-impl From<FourLinkError> for CellResult {
-    fn from(error: FourLinkError) -> Self {
+impl From<ModelError> for CellResult {
+    fn from(error: ModelError) -> Self {
         match error {
-            FourLinkError::Limit(LimitError::CannotStand) => Self::CannotStand,
-            FourLinkError::Limit(LimitError::OtherMechanism { .. } | LimitError::NoPush) => {
-                Self::NotFourLinks
+            ModelError::FourLinks(FourLinkError::Limit(LimitError::CannotStand))
+            | ModelError::FreeHinges(FreeHingesError::Stability(StabilityError::CannotStand(_))) => {
+                Self::CannotStand
             }
-            FourLinkError::Argument(error) => Self::Failed(error.to_string()),
+            ModelError::FourLinks(FourLinkError::Limit(
+                LimitError::OtherMechanism { .. } | LimitError::NoPush,
+            )) => Self::NotFourLinks,
+            error => Self::Failed(error.to_string()),
         }
+    }
+}
+
+impl From<Result<Ending, String>> for CellResult {
+    fn from(ending: Result<Ending, String>) -> Self {
+        ending.map_or_else(Self::Failed, Self::Ended)
     }
 }
 
@@ -49,6 +62,10 @@ pub struct CellRow {
     pub y: f64,
     /// What became of it.
     pub result: CellResult,
+    /// How many outcomes it has with the steps as they are, half and double: one, if it does not depend on them. To
+    /// which side it overturns does not count. `None` where that was not asked, or there is no history.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spread: Option<usize>,
 }
 
 /// The cells of a map: cell `i` has the `i / m`-th value of x and the `i % m`-th of y, of which there are `m`.
@@ -58,16 +75,29 @@ pub struct OverturningMap<'a> {
     pulse: &'a PulseGround,
     axes: [&'a Axis; 2],
     values: [Vec<f64>; 2],
+    /// Whether each cell tells how many outcomes it has with other steps.
+    spread: bool,
     /// The structures and pulses that serve more than one cell.
-    structures: Shared<Result<Standing, FourLinkError>>,
+    structures: Shared<Result<Standing, ModelError>>,
     pulses: Shared<ScalablePulse>,
 }
 
-/// What stands in cells of any size.
+/// What stands in cells: of any size, but for a row of blocks.
 #[derive(Clone, Debug)]
 enum Standing {
     Arch(FourLinkArch),
     Column(RockingColumn),
+    Row(Arc<FreeHinges>),
+}
+
+impl Standing {
+    fn model(&self) -> &dyn Model {
+        match self {
+            Self::Arch(arch) => arch,
+            Self::Column(column) => column,
+            Self::Row(row) => &**row,
+        }
+    }
 }
 
 /// Values that depend on no axis or on one, for each of its values; each is made when first asked for.
@@ -116,12 +146,19 @@ impl<'a> OverturningMap<'a> {
             Quantity::Embrace,
             Quantity::Restitution,
         ];
+        let mut structures = depends(&shapes);
+        if scenario.free_hinges.is_some() {
+            for (depends, of_size) in structures.iter_mut().zip(depends(&[Quantity::MeanRadius])) {
+                *depends |= of_size;
+            }
+        }
         let durations = [Quantity::Duration, Quantity::Frequency];
         Some(Self {
             scenario,
             pulse,
             axes,
-            structures: Shared::new(counts, depends(&shapes)),
+            spread: map.spread,
+            structures: Shared::new(counts, structures),
             pulses: Shared::new(counts, depends(&durations)),
             values,
         })
@@ -143,6 +180,18 @@ impl<'a> OverturningMap<'a> {
     #[must_use]
     pub const fn axes(&self) -> [&'a Axis; 2] {
         self.axes
+    }
+
+    /// Whether cells are rows of blocks with free hinges.
+    #[must_use]
+    pub const fn has_free_hinges(&self) -> bool {
+        self.scenario.free_hinges.is_some()
+    }
+
+    /// Whether each cell tells how many outcomes it has with other steps.
+    #[must_use]
+    pub const fn has_spread(&self) -> bool {
+        self.spread
     }
 
     /// Whether the ground moves vertically too.
@@ -173,21 +222,56 @@ impl<'a> OverturningMap<'a> {
         Some(self.coordinates(index)[axis])
     }
 
-    /// The model of what stands in a cell.
-    pub(super) fn model(&self, index: usize) -> Result<Arc<dyn MechanismModel>, FourLinkError> {
-        let make = || self.make_standing(index);
+    /// What stands in a cell.
+    fn standing(&self, index: usize) -> Result<Standing, ModelError> {
+        let make = || match self.scenario.free_hinges {
+            Some(steps) => {
+                let structure = self.structure(index).map_err(FreeHingesError::from)?;
+                Ok(Standing::Row(Arc::new(structure.free_hinges(steps)?)))
+            }
+            None => Ok(self.mechanisms(index)?),
+        };
         let standing = self.structures.get(self.place(index), make)?;
         Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
             (Standing::Arch(arch), Some(mean_radius_m)) => {
-                Arc::new(arch.with_mean_radius_m(mean_radius_m)?)
+                let arch = arch.with_mean_radius_m(mean_radius_m);
+                Standing::Arch(arch.map_err(FourLinkError::from)?)
             }
-            (Standing::Arch(arch), None) => Arc::new(arch),
-            (Standing::Column(column), _) => Arc::new(column),
+            (standing, _) => standing,
         })
     }
 
-    /// The same, but for its size.
-    fn make_standing(&self, index: usize) -> Result<Standing, FourLinkError> {
+    /// The model of what stands in a cell, where it has one degree of freedom at a time.
+    pub(super) fn mechanism_model(&self, index: usize) -> Option<Arc<dyn MechanismModel>> {
+        match self.standing(index).ok()? {
+            Standing::Arch(arch) => Some(Arc::new(arch)),
+            Standing::Column(column) => Some(Arc::new(column)),
+            Standing::Row(_) => None,
+        }
+    }
+
+    /// The structure of a cell.
+    fn structure(&self, index: usize) -> Result<Structure, ArgumentError> {
+        let arch = match &self.scenario.structure {
+            Structure::Arch(arch) => arch,
+            column @ Structure::Column(_) => return Ok(column.clone()),
+        };
+        let mut arch = arch.clone();
+        // Arches of one shape share their limit analysis.
+        if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
+            arch = arch.with_thickness_ratio(thickness_ratio)?;
+        }
+        if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
+            arch = arch.with_embrace_deg(embrace_deg)?;
+        }
+        if let Some(mean_radius_m) = self.value(index, Quantity::MeanRadius) {
+            arch = arch.with_mean_radius_m(mean_radius_m)?;
+        }
+        Ok(Structure::Arch(arch))
+    }
+
+    /// The mechanisms of the structure of a cell.
+    fn mechanisms(&self, index: usize) -> Result<Standing, FourLinkError> {
         let impact = match self.scenario.impact {
             ImpactModel::Prescribed { restitution } => ImpactModel::Prescribed {
                 restitution: self
@@ -196,22 +280,10 @@ impl<'a> OverturningMap<'a> {
             },
             impact => impact,
         };
-        match &self.scenario.structure {
-            Structure::Arch(arch) => {
-                let mut arch = arch.clone();
-                // Arches of one shape share their limit analysis.
-                if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
-                    arch = arch.with_thickness_ratio(thickness_ratio)?;
-                }
-                if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
-                    arch = arch.with_embrace_deg(embrace_deg)?;
-                }
-                FourLinkArch::new(arch, impact).map(Standing::Arch)
-            }
-            Structure::Column(column) => {
-                Ok(RockingColumn::new(column, impact).map(Standing::Column)?)
-            }
-        }
+        Ok(match self.structure(index)? {
+            Structure::Arch(arch) => Standing::Arch(FourLinkArch::new(arch, impact)?),
+            Structure::Column(column) => Standing::Column(RockingColumn::new(&column, impact)?),
+        })
     }
 
     /// The pulse of a cell, of any amplitude.
@@ -232,19 +304,45 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    fn result(&self, index: usize) -> CellResult {
-        let model = match self.model(index) {
-            Ok(model) => model,
-            Err(error) => return error.into(),
+    /// What becomes of a cell, and how many outcomes it has with other steps.
+    fn result(&self, index: usize) -> (CellResult, Option<usize>) {
+        let standing = match self.standing(index) {
+            Ok(standing) => standing,
+            Err(error) => return (error.into(), None),
         };
         let amplitude_g = self.value(index, Quantity::Amplitude);
         let ground = self
             .pulse(index)
             .motion(amplitude_g.unwrap_or(self.pulse.amplitude_g));
-        match Ending::of(&*model, &ground, &self.scenario.request_from_rest()) {
-            Ok(ending) => CellResult::Ended(ending),
-            Err(reason) => CellResult::Failed(reason),
+        let request = self.scenario.request_from_rest();
+        let ending = Ending::of(standing.model(), &ground, &request);
+        let spread = match &standing {
+            Standing::Row(row) if self.spread => Some(self.outcomes(row, &ground, &ending)),
+            _ => None,
+        };
+        (ending.into(), spread)
+    }
+
+    /// How many outcomes a row of blocks has with its own steps, half of them and double.
+    fn outcomes(
+        &self,
+        row: &FreeHinges,
+        ground: &GroundMotion,
+        own: &Result<Ending, String>,
+    ) -> usize {
+        let name = |ending: &Result<Ending, String>| {
+            ending.as_ref().ok().map(|ending| ending.outcome.name())
+        };
+        let request = self.scenario.request_from_rest();
+        let mut names = vec![name(own)];
+        for factor in [0.5, 2.0] {
+            let row = row.with_coarse_steps_times(factor, &request);
+            let other = name(&Ending::of(&row, ground, &request));
+            if !names.contains(&other) {
+                names.push(other);
+            }
         }
+        names.len()
     }
 }
 
@@ -263,10 +361,12 @@ impl Study for OverturningMap<'_> {
 
     fn row(&self, index: usize) -> CellRow {
         let [x, y] = self.coordinates(index);
+        let (result, spread) = self.result(index);
         CellRow {
             x,
             y,
-            result: self.result(index),
+            result,
+            spread,
         }
     }
 }

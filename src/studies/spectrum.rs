@@ -23,6 +23,11 @@ pub enum NoSpectrum {
     /// Its histories do not start from rest.
     #[error("the histories of a spectrum start from rest: leave [initial] out")]
     Initial,
+    /// Its hinges are free.
+    #[error(
+        "a spectrum is of four links or a column, whose motion is similar at all sizes: leave [free_hinges] out"
+    )]
+    FreeHinges,
     /// There is no pulse whose duration could vary.
     #[error(
         "a spectrum needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]; its \
@@ -114,6 +119,9 @@ impl<'a> OverturningSpectrum<'a> {
     pub fn new(scenario: &'a Scenario) -> Result<Self, NoSpectrum> {
         if scenario.initial.is_some() {
             return Err(NoSpectrum::Initial);
+        }
+        if scenario.free_hinges.is_some() {
+            return Err(NoSpectrum::FreeHinges);
         }
         let Some(Ground::Pulse(pulse)) = &scenario.ground else {
             return Err(NoSpectrum::NoPulse);

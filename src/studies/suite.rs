@@ -8,9 +8,8 @@ use super::ending::{Ending, check_finite};
 use super::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 use super::runner::Study;
 use crate::dynamics::history::Outcome;
-use crate::dynamics::model::MechanismModel;
-use crate::mechanics::four_link::arch::FourLinkError;
-use crate::scenario::{Measure, Scenario, Suite};
+use crate::dynamics::model::Model;
+use crate::scenario::{Measure, ModelError, Scenario, Suite};
 
 /// A record that shakes the structure, and how that ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,7 +53,7 @@ impl CaseRow {
 pub struct RecordSuite<'a> {
     scenario: &'a Scenario,
     suite: &'a Suite,
-    model: Box<dyn MechanismModel>,
+    model: Box<dyn Model>,
     levels: Vec<f64>,
 }
 
@@ -62,12 +61,12 @@ impl<'a> RecordSuite<'a> {
     /// The cases of a scenario's suite.
     ///
     /// # Errors
-    /// As [`crate::FourLinkArch::new`].
-    pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, FourLinkError> {
+    /// As [`Scenario::model`].
+    pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, ModelError> {
         Ok(Self {
             scenario,
             suite,
-            model: scenario.structure.model(scenario.impact)?,
+            model: scenario.model()?,
             levels: suite.levels.values(),
         })
     }

@@ -168,10 +168,19 @@ impl FreeHinges {
         Ok(Self { steps_s, ..self })
     }
 
-    /// The same with all steps so many times as long, to see what depends on them.
+    /// The same with all steps so many times as long as those of samples, to see what depends on them.
     #[must_use]
     pub fn with_steps_times(&self, factor: f64, request: &Request) -> Self {
-        let settings = self.settings(request, true).times(factor);
+        self.with_settings(&self.settings(request, true).times(factor))
+    }
+
+    /// The same with all steps so many times as long as where no samples are made, as in studies.
+    #[must_use]
+    pub fn with_coarse_steps_times(&self, factor: f64, request: &Request) -> Self {
+        self.with_settings(&self.settings(request, false).times(factor))
+    }
+
+    fn with_settings(&self, settings: &Settings) -> Self {
         Self {
             steps_s: Steps {
                 longest_step_s: Some(settings.longest_step_s),
