@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         let model = scenario.impact.name();
         let _ = writeln!(
             text,
-            "  free hinges take no [impact], the blocks decide: {model} does not count for them"
+            "  impacts of free hinges follow from the blocks: the impact model {model} does not count there"
         );
     }
     let with = |free_hinges| {

@@ -165,9 +165,9 @@ pub struct Sample<'a> {
 pub struct Impact<'a> {
     /// Time in seconds.
     pub time_s: f64,
-    /// Joints that shut.
+    /// Joints that shut, also where they open again at once.
     pub shut: &'a [usize],
-    /// Joints that open at once.
+    /// Joints that open at once; those among them that shut go on about their other edge.
     pub opened: &'a [usize],
     /// Kinetic energy before, in joules.
     pub energy_before_j: f64,
@@ -1093,10 +1093,7 @@ impl Engine<'_> {
         self.shut.clear();
         self.opened.clear();
         for joint in 0..self.touching.len() {
-            if self.closed[joint] != [true; 2]
-                && self.placement.is_shut(joint)
-                && self.program.keeps_shut(joint)
-            {
+            if self.closed[joint] != [true; 2] && self.placement.is_shut(joint) {
                 self.shut.push(joint);
             }
         }
@@ -1107,7 +1104,8 @@ impl Engine<'_> {
             .fold(0.0, f64::max);
         for (joint, rates) in self.program.open_joints() {
             let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
-            if self.closed[joint] == [true; 2] && opens {
+            let was_shut = self.closed[joint] == [true; 2] || self.placement.is_shut(joint);
+            if was_shut && opens {
                 self.opened.push(joint);
             }
         }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
-use super::timeline::{COLUMNS, Envelope, explain_shades, mark_impacts, shade};
+use super::timeline::{COLUMNS, Envelope, explain_shades, shade};
 use crate::dynamics::free_hinges::HalfCycle;
 use crate::dynamics::history::{Outcome, Sample, State, Summary};
 use crate::mechanics::blocks::{Row, Supports};
@@ -19,7 +19,7 @@ const LEAST_COLUMNS: usize = 200;
 /// Columns of the joints: about one to a pixel.
 const JOINT_COLUMNS: usize = 800;
 
-/// Collects the samples and landings of a history, thinned, and draws them.
+/// Collects the samples of a history, thinned, and draws them.
 #[derive(Clone, Debug)]
 pub struct RowTimeline {
     gravity_m_s2: f64,
@@ -31,7 +31,6 @@ pub struct RowTimeline {
     joints: OpenJoints,
     /// Names of the hinges at the two edges.
     edges: [&'static str; 2],
-    impacts_s: Vec<f64>,
     end_s: f64,
 }
 
@@ -52,7 +51,6 @@ impl RowTimeline {
                 Supports::Both => ["hinge at the intrados", "hinge at the extrados"],
                 Supports::Left => ["hinge at the left edge", "hinge at the right edge"],
             },
-            impacts_s: Vec::new(),
             end_s: 0.0,
         }
     }
@@ -71,11 +69,6 @@ impl RowTimeline {
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
         self.joints.push(sample);
-    }
-
-    /// Takes the time of a landing.
-    pub fn landing(&mut self, time_s: f64) {
-        self.impacts_s.push(time_s);
     }
 
     /// The picture, with what the history comes to.
@@ -132,7 +125,6 @@ impl RowTimeline {
         }
         let name = (largest + 1).to_string();
         curve(&mut drawing, &axes, &name, blocks[largest], LARGEST);
-        mark_impacts(&mut drawing, &axes, self.impacts_s.iter().copied());
 
         #[expect(clippy::cast_precision_loss, reason = "few joints")]
         let highest = self.joints.count as f64 - 0.5;
@@ -154,8 +146,8 @@ impl RowTimeline {
         let y = top + 44.0;
         let name = format!("block {name}, which turns most");
         let at = Vector2::new(left, y);
-        drawing.legend(at, 210.0, [(&*name, LARGEST), ("others", BLOCK)]);
-        explain_shades(&mut drawing, Vector2::new(395.0, y), hops);
+        drawing.legend(at, 230.0, [(&*name, LARGEST), ("others", BLOCK)]);
+        explain_shades(&mut drawing, Vector2::new(430.0, y), hops);
         self.explain_joints(&mut drawing, Vector2::new(left, y + 26.0));
         drawing.finish()
     }
@@ -189,7 +181,7 @@ impl RowTimeline {
             drawing.band("key", &frame, kind.fill, 1.0);
             let at = Vector2::new(x + 30.0, at.y + 4.5);
             drawing.label(at, Anchor::Start, 0.0, text);
-            x += 210.0;
+            x += 230.0;
         }
     }
 }

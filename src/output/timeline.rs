@@ -231,10 +231,14 @@ impl Timeline {
             named.map(|(body, stroke)| (body.as_str(), stroke)),
         );
         explain_shades(drawing, Vector2::new(365.0, y), hops);
+        let mark = Vector2::new(740.0, y + 6.0);
+        draw_mark(drawing, "", mark);
+        let at = Vector2::new(752.0, y + 4.5);
+        drawing.label(at, Anchor::Start, 0.0, "impacts");
     }
 }
 
-/// The legend of what is shaded and marked.
+/// The legend of what is shaded.
 pub(super) fn explain_shades(drawing: &mut Drawing, at: Vector2<f64>, hops: bool) {
     let (mut x, y) = (at.x, at.y);
     let keys = [
@@ -254,10 +258,6 @@ pub(super) fn explain_shades(drawing: &mut Drawing, at: Vector2<f64>, hops: bool
         drawing.label(at, Anchor::Start, 0.0, text);
         x += 125.0;
     }
-    let mark = Vector2::new(at.x + 375.0, y + 6.0);
-    draw_mark(drawing, "", mark);
-    let at = Vector2::new(at.x + 387.0, y + 4.5);
-    drawing.label(at, Anchor::Start, 0.0, "impacts");
 }
 
 /// Name and colour of a band.
@@ -324,11 +324,7 @@ pub(super) fn shade(
 }
 
 /// Marks impacts along the lower side, those apart from the last mark.
-pub(super) fn mark_impacts(
-    drawing: &mut Drawing,
-    axes: &Axes,
-    impacts_s: impl Iterator<Item = f64>,
-) {
+fn mark_impacts(drawing: &mut Drawing, axes: &Axes, impacts_s: impl Iterator<Item = f64>) {
     let mut last_px = f64::NEG_INFINITY;
     for time_s in impacts_s {
         let at = axes.place(time_s, axes.y.low);

@@ -52,12 +52,12 @@ pub fn run(
     let ground = scenario.ground_motion();
     let mut folder = place.open(&[JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY])?;
     let mut timeline = RowTimeline::new(model.row(), scenario.simulation.gravity_m_s2);
-    let mut first_landings = Vec::new();
+    let mut impacts = Notable::default();
     let (summary, spread, rows) = {
         let mut results = Results {
             tables: Tables::new(&model, ground, &place, folder.as_mut())?,
             timeline: &mut timeline,
-            first_landings: &mut first_landings,
+            impacts: &mut impacts,
             curves,
             written: Ok(()),
         };
@@ -65,7 +65,7 @@ pub fn run(
         results.written?;
         (summary, spread, results.tables.finish()?)
     };
-    let mut text = words(scenario, &model, &summary, spread.as_ref(), &first_landings);
+    let mut text = words(scenario, &model, &summary, spread.as_ref(), &impacts);
     if let Some(mut folder) = folder {
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
         folder
@@ -197,14 +197,38 @@ fn boxed<'a>(writer: impl io::Write + 'a) -> Box<dyn io::Write + 'a> {
     Box::new(writer)
 }
 
-/// Landings that the words of a run tell of.
+/// Half cycles that the words of a run tell of.
 const FIRST: usize = 3;
+
+/// Impacts that the words of a run tell of, with their times.
+#[derive(Default)]
+struct Notable {
+    first: Option<(f64, Impact)>,
+    /// The one that takes the most energy.
+    hardest: Option<(f64, Impact)>,
+}
+
+impl Notable {
+    fn note(&mut self, time_s: f64, impact: &Impact) {
+        if self.first.is_none() {
+            self.first = Some((time_s, impact.clone()));
+        }
+        let harder = |(_, hardest): &(f64, Impact)| taken_j(impact) > taken_j(hardest);
+        if self.hardest.as_ref().is_none_or(harder) {
+            self.hardest = Some((time_s, impact.clone()));
+        }
+    }
+}
+
+fn taken_j(impact: &Impact) -> f64 {
+    impact.energy_before_j - impact.energy_after_j
+}
 
 /// Where samples and events go.
 struct Results<'a> {
     tables: Tables<'a>,
     timeline: &'a mut RowTimeline,
-    first_landings: &'a mut Vec<(f64, Impact)>,
+    impacts: &'a mut Notable,
     curves: Option<&'a mut Curves>,
     /// Why a table could not be written, which ends the history.
     written: Result<(), OutputError>,
@@ -232,10 +256,7 @@ impl Recorder for Results<'_> {
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         if let Some(impact) = &event.impact {
-            self.timeline.landing(event.time_s);
-            if self.first_landings.len() < FIRST {
-                self.first_landings.push((event.time_s, impact.clone()));
-            }
+            self.impacts.note(event.time_s, impact);
         }
         // Of a history that was ended because a table failed, the end is no event of the tables.
         if self.written.is_err() {
@@ -252,27 +273,17 @@ fn words(
     model: &FreeHinges,
     history: &Summary,
     spread: Option<&Spread>,
-    first_landings: &[(f64, Impact)],
+    impacts: &Notable,
 ) -> String {
     let ground = scenario.ground_motion();
     let mut text = outcome(history);
-    for (index, (time_s, impact)) in first_landings.iter().enumerate() {
-        let begin = if index == 0 {
-            "  first impacts:"
-        } else {
-            "                "
-        };
-        let opened = if impact.opened.is_empty() {
-            String::new()
-        } else {
-            format!(", {} open", named(&impact.opened))
-        };
-        let _ = writeln!(
-            text,
-            "{begin} {time_s:.4} s, {} shut{opened}; energy after/before {:.4}",
-            named(&impact.closed),
-            impact.restitution,
-        );
+    for (which, notable) in [
+        ("first impact", &impacts.first),
+        ("hardest impact", &impacts.hardest),
+    ] {
+        if let Some((time_s, impact)) = notable {
+            let _ = writeln!(text, "  {which} at {time_s:.4} s: {}", landing(impact));
+        }
     }
     if let Some(run) = history.free_hinges.as_deref()
         && history.outcome != Outcome::NeverMoved
@@ -333,9 +344,22 @@ fn words(
     text
 }
 
-fn named(hinges: &[archrock::mechanics::chain::Hinge]) -> String {
-    let joint = if hinges.len() == 1 { "joint" } else { "joints" };
-    format!("{joint} {}", joints(hinges, ", "))
+/// What an impact did.
+fn landing(impact: &Impact) -> String {
+    let mut text = String::new();
+    for (hinges, one, many) in [
+        (&impact.closed, "shuts", "shut"),
+        (&impact.opened, "opens", "open"),
+    ] {
+        let named = joints(hinges, ", ");
+        let _ = match hinges.len() {
+            0 => Ok(()),
+            1 => write!(text, "joint {named} {one}, "),
+            _ => write!(text, "joints {named} {many}, "),
+        };
+    }
+    let _ = write!(text, "energy after/before {:.4}", impact.restitution);
+    text
 }
 
 fn cycle(cycle: &HalfCycle) -> String {
