@@ -47,7 +47,7 @@ pub struct Arguments {
 
 /// Models of motion.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Hinges {
+pub enum Hinges {
     /// Four links, or Housner's column.
     Four,
     /// Blocks whose joints open and shut anywhere.

@@ -16,6 +16,7 @@ use archrock::studies::threshold::{
     FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
 };
 
+use super::run::Hinges;
 use super::study::{Display, say};
 use super::{Failure, Format, commands, open_folder, print, results_folder};
 
@@ -26,6 +27,9 @@ pub struct Arguments {
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Model of motion [default: free if the scenario has [free_hinges], else four].
+    #[arg(long, value_enum)]
+    hinges: Option<Hinges>,
     /// The least factor on the ground motion.
     #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
     from: f64,
@@ -55,7 +59,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     check(&scenario).map_err(|message| {
         Failure::Input(format!("{}: {message}", arguments.scenario.display()))
     })?;
-    let models = models(&scenario)?;
+    let models = models(&scenario, arguments.hinges)?;
     let models: Vec<(&str, &dyn Model)> = models
         .iter()
         .map(|(name, model)| (*name, &**model))
@@ -115,17 +119,27 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 type NamedModel = (&'static str, Box<dyn Model>);
 
 /// The models of motion that are asked: that which the scenario chooses.
-fn models(scenario: &Scenario) -> Result<Vec<NamedModel>, Failure> {
-    let model: NamedModel = match (scenario.free_hinges, &scenario.structure) {
-        (Some(steps), structure) => {
-            let model = structure.free_hinges(steps);
-            let model = model.map_err(|error| Failure::Input(error.to_string()))?;
-            ("free_hinges", Box::new(model))
-        }
-        (None, Structure::Arch(_)) => ("four_links", commands::model(scenario)?),
-        (None, Structure::Column(_)) => ("column", commands::model(scenario)?),
+fn models(scenario: &Scenario, hinges: Option<Hinges>) -> Result<Vec<NamedModel>, Failure> {
+    let own = match scenario.free_hinges {
+        Some(_) => Hinges::Free,
+        None => Hinges::Four,
     };
-    Ok(vec![model])
+    let hinges = hinges.unwrap_or(own);
+    let mut models: Vec<NamedModel> = Vec::new();
+    if hinges != Hinges::Free {
+        let name = match scenario.structure {
+            Structure::Arch(_) => "four_links",
+            Structure::Column(_) => "column",
+        };
+        models.push((name, commands::model(scenario)?));
+    }
+    if hinges != Hinges::Four {
+        let steps = scenario.free_hinges.unwrap_or_default();
+        let model = scenario.structure.free_hinges(steps);
+        let model = model.map_err(|error| Failure::Input(error.to_string()))?;
+        models.push(("free_hinges", Box::new(model)));
+    }
+    Ok(models)
 }
 
 /// Whether there is something to be scaled.
