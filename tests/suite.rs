@@ -537,6 +537,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
             impacts: 0,
             peak_over_critical: Some(0.5),
             energy_defect_ratio: 0.0,
+            peak_rotation_rad: None,
         }),
     });
     SuiteFragility::new(Measure::Scale, rows.collect())
