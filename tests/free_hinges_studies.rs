@@ -1,0 +1,399 @@
+//! Maps and suites on rows of blocks with free hinges: cells against single histories, pieces of work against the
+//! whole, what they depend on, and what they refuse.
+
+#![allow(clippy::unwrap_used)]
+
+mod program;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use archrock::dynamics::free_hinges::{FreeHinges, Steps};
+use archrock::output::map::draw;
+use archrock::scenario::{Hinges, Scenario};
+use archrock::studies::boundary::ImpactFreeBoundary;
+use archrock::studies::ending::Ending;
+use archrock::studies::map::{CellResult, OverturningMap};
+use archrock::studies::runner::Study as _;
+use archrock::{Arch, Column, GroundMotion, Model as _, Pulse};
+use program::{archrock, scenarios, stderr};
+
+const ARCH: &str =
+    "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n";
+const PULSE: &str = "[ground.rectangular]\namplitude_g = -0.5\nduration_s = 0.2\n";
+const AXES: &str = "[map]\nduration_s = [0.1, 0.2]\namplitude_g = [-1.2, 0.3, 0.6]\n";
+
+const DRUMS: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 2\n[free_hinges]\n\
+                     [simulation]\nduration_s = 30.0\n";
+
+fn map_text() -> String {
+    format!("{ARCH}[free_hinges]\n{PULSE}[simulation]\nduration_s = 4.0\n{AXES}")
+}
+
+fn parse(text: &str) -> Scenario {
+    Scenario::parse(text, "s.toml").unwrap()
+}
+
+fn arch(mean_radius_m: f64, thickness_ratio: f64, embrace_deg: f64) -> Arch {
+    Arch::new(mean_radius_m, thickness_ratio, embrace_deg)
+        .unwrap()
+        .with_voussoirs(7)
+        .unwrap()
+}
+
+/// How a single history of a row ends in a cell of `map`.
+fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration_s: f64) -> Ending {
+    let ground =
+        GroundMotion::pulse(Pulse::Rectangular, amplitude_g * 9.81, duration_s, 0.0).unwrap();
+    Ending::of(row, &ground, &map.scenario().request_from_rest()).unwrap()
+}
+
+fn ended(map: &OverturningMap<'_>, index: usize) -> Ending {
+    match map.row(index).result {
+        CellResult::Ended(ending) => ending,
+        other => panic!("cell {index}: {other:?}"),
+    }
+}
+
+#[test]
+fn a_cell_is_the_history_of_its_row_under_its_pulse() {
+    let scenario = parse(&map_text());
+    let map = OverturningMap::new(&scenario).unwrap();
+    let row = FreeHinges::of_arch(&arch(10.0, 0.15, 157.5)).unwrap();
+    let mut outcomes = Vec::new();
+    for index in 0..map.count() {
+        let [duration_s, amplitude_g] = map.coordinates(index);
+        let expected = single(&row, &map, amplitude_g, duration_s);
+        assert_eq!(ended(&map, index), expected);
+        assert!(expected.peak_over_critical.is_none());
+        outcomes.push(expected.outcome.name());
+    }
+    // Where nothing moves no block has turned.
+    assert_eq!(outcomes[1], "never_moved");
+    assert_eq!(ended(&map, 1).peak_rotation_rad, Some(0.0));
+    assert!(outcomes.contains(&"overturned") && outcomes.contains(&"rest"));
+    // That boundary is of mechanisms with one degree of freedom.
+    assert!(ImpactFreeBoundary::new(&map).is_none());
+}
+
+#[test]
+fn sizes_and_shapes_make_other_rows() {
+    let scenario = parse(&map_text().replace(
+        AXES,
+        "[map]\nmean_radius_m = [5.0, 10.0]\namplitude_g = [0.6]",
+    ));
+    let map = OverturningMap::new(&scenario).unwrap();
+    for (index, mean_radius_m) in [5.0, 10.0].into_iter().enumerate() {
+        let row = FreeHinges::of_arch(&arch(mean_radius_m, 0.15, 157.5)).unwrap();
+        assert_eq!(ended(&map, index), single(&row, &map, 0.6, 0.2));
+    }
+    assert_ne!(ended(&map, 0), ended(&map, 1));
+
+    let shapes = "[map]\nthickness_ratio = [0.05, 0.15, 0.4]\nembrace_deg = [120.0, 179.0]";
+    let scenario = parse(&map_text().replace(AXES, shapes));
+    let map = OverturningMap::new(&scenario).unwrap();
+    for index in 0..map.count() {
+        let [thickness_ratio, embrace_deg] = map.coordinates(index);
+        match FreeHinges::of_arch(&arch(10.0, thickness_ratio, embrace_deg)) {
+            Ok(row) => assert_eq!(ended(&map, index), single(&row, &map, -0.5, 0.2)),
+            Err(_) => assert_eq!(map.row(index).result, CellResult::CannotStand),
+        }
+    }
+    // An arch of 179 degrees and 0.05 cannot stand; one of 120 degrees and 0.4, too thick for four links, can.
+    assert_eq!(map.row(1).result, CellResult::CannotStand);
+    ended(&map, 4);
+}
+
+#[test]
+fn a_cell_of_drums_is_the_history_of_their_column() {
+    let scenario = parse(&format!(
+        "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 3\n[free_hinges]\nlongest_step_s = 2e-3\n{PULSE}\
+         [simulation]\nduration_s = 3.0\n{AXES}"
+    ));
+    let map = OverturningMap::new(&scenario).unwrap();
+    let column = Column::new(4.0, 0.8).unwrap().with_drums(3).unwrap();
+    let steps = Steps {
+        longest_step_s: Some(2e-3),
+        shortest_step_s: None,
+    };
+    let row = FreeHinges::of_column(&column).unwrap();
+    let row = row.with_steps(steps).unwrap();
+    for index in 0..map.count() {
+        let [duration_s, amplitude_g] = map.coordinates(index);
+        assert_eq!(
+            ended(&map, index),
+            single(&row, &map, amplitude_g, duration_s)
+        );
+    }
+}
+
+#[test]
+fn the_spread_counts_outcomes_with_half_and_double_steps() {
+    // Drums of 4 m under a pulse near the edge of overturning: with so long steps the edge is blurred.
+    let text = |spread: &str| {
+        format!(
+            "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 2\n\
+             [free_hinges]\nlongest_step_s = 2e-2\nshortest_step_s = 1e-2\n\
+             [ground.one_sine]\namplitude_g = 0.5\nduration_s = 1.0\n[simulation]\nduration_s = 8.0\n\
+             [map]\nduration_s = [0.8, 1.0]\n\
+             amplitude_g = {{ from = 0.3, to = 0.9, count = 10 }}\n{spread}"
+        )
+    };
+    let scenario = parse(&text("spread = true"));
+    let map = OverturningMap::new(&scenario).unwrap();
+    let request = scenario.request_from_rest();
+    let row = scenario
+        .structure
+        .free_hinges(scenario.free_hinges.unwrap())
+        .unwrap();
+    let mut rows = Vec::new();
+    for index in 0..map.count() {
+        let [duration_s, amplitude_g] = map.coordinates(index);
+        let ground =
+            GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
+        let mut outcomes: Vec<_> = [1.0, 0.5, 2.0]
+            .map(|factor| {
+                let steps = Steps {
+                    longest_step_s: Some(2e-2 * factor),
+                    shortest_step_s: Some(1e-2 * factor),
+                };
+                let row = row.clone().with_steps(steps).unwrap();
+                let summary = row.simulate(&ground, &request, None);
+                summary.ok().map(|summary| summary.outcome.name())
+            })
+            .to_vec();
+        outcomes.sort_unstable();
+        outcomes.dedup();
+        let cell = map.row(index);
+        assert_eq!(cell.spread, Some(outcomes.len()), "cell {index}");
+        rows.push(cell);
+    }
+    let doubtful = rows.iter().filter(|row| row.spread > Some(1)).count();
+    assert!(0 < doubtful && doubtful < rows.len() / 2, "{doubtful}");
+    let picture = draw("Title", &map, &rows, &[]);
+    assert!(picture.contains("outcome depends on the steps"));
+    let hatch = picture.lines().find(|line| line.contains("\"spread\""));
+    assert_eq!(hatch.unwrap().matches('L').count(), doubtful);
+
+    // Without it the outcomes are the same.
+    let plain = parse(&text(""));
+    let map = OverturningMap::new(&plain).unwrap();
+    for (index, with) in rows.iter().enumerate() {
+        let without = map.row(index);
+        assert_eq!((&without.result, without.spread), (&with.result, None));
+    }
+    assert!(!draw("Title", &map, &rows, &[]).contains("depends on the steps"));
+}
+
+// The program.
+
+fn folder(scenario: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("s.toml"), scenario).unwrap();
+    folder
+}
+
+#[track_caller]
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    stderr(&output)
+}
+
+#[track_caller]
+fn refused(folder: &Path, arguments: &[&str], words: &str) {
+    let output = archrock(folder, arguments);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains(words), "{words:?} is not in: {said}");
+}
+
+/// All files of a folder with their contents.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| {
+            let entry = entry.unwrap();
+            let name = entry.file_name().into_string().unwrap();
+            (name, fs::read(entry.path()).unwrap())
+        })
+        .collect()
+}
+
+#[test]
+fn results_do_not_depend_on_threads_and_parts() {
+    let work = folder(&format!("{}spread = true\n", map_text()));
+    let path = work.path();
+    let said = done(path, &["map", "s.toml", "--threads", "1", "--out", "one"]);
+    for words in ["6 cells: ", "half and double steps", "without the boundary"] {
+        assert!(said.contains(words), "{said}");
+    }
+    let whole = files(&path.join("one"));
+    let table = String::from_utf8(whole["map.csv"].clone()).unwrap();
+    let header = table.lines().next().unwrap();
+    assert!(header.ends_with("energy_defect_ratio,peak_rotation_rad,spread"));
+    assert!(!whole.contains_key("no_impact.csv"));
+
+    done(path, &["map", "s.toml", "--threads", "3", "--out", "three"]);
+    assert_eq!(files(&path.join("three")), whole);
+
+    for shard in ["1/2", "2/2"] {
+        done(path, &["map", "s.toml", "--shard", shard, "--out", "parts"]);
+    }
+    // One of the parts was interrupted in its last line, and is resumed.
+    let part = path.join("parts/map-2-of-2.part");
+    let complete = fs::read(&part).unwrap();
+    fs::write(&part, &complete[..complete.len() - 20]).unwrap();
+    let (first, second) = ("parts/map-1-of-2.part", "parts/map-2-of-2.part");
+    refused(path, &["merge", first, second], "--shard 2/2 --resume");
+    let resume = [
+        "map", "s.toml", "--shard", "2/2", "--resume", "--out", "parts",
+    ];
+    // Nor does it go on with the other model of motion.
+    let four = [&resume[..], &["--hinges", "four"]].concat();
+    refused(path, &four, "goes with a table [free_hinges]");
+    done(path, &resume);
+    done(path, &["merge", first, second, "--out", "merged"]);
+    assert_eq!(files(&path.join("merged")), whole);
+}
+
+#[test]
+fn the_model_of_motion_can_be_chosen_on_the_command_line() {
+    let four = map_text().replace("[free_hinges]\n", "");
+    let prescribed = "[impact]\nmodel = \"prescribed\"\nrestitution = 0.5\n";
+    let work = folder(&four);
+    let path = work.path();
+    fs::write(path.join("free.toml"), map_text()).unwrap();
+    fs::write(path.join("impact.toml"), format!("{prescribed}{four}")).unwrap();
+    let map = |file: &str, options: &[&str], out: &str| {
+        let said = done(path, &[&["map", file, "--out", out], options].concat());
+        (said, files(&path.join(out)))
+    };
+    let (_, as_four) = map("s.toml", &[], "a");
+    let (said, as_free) = map("free.toml", &[], "b");
+    assert!(!said.contains("[impact]"));
+    assert_eq!(map("free.toml", &["--hinges", "four"], "c").1, as_four);
+    assert_eq!(map("s.toml", &["--hinges", "free"], "d").1, as_free);
+    let (said, files) = map("impact.toml", &["--hinges", "free"], "e");
+    assert!(said.contains("[impact] is ignored"), "{said}");
+    assert_eq!(files, as_free);
+    assert_ne!(as_four["map.csv"], as_free["map.csv"]);
+
+    // A part of one model is none of the other.
+    let shard = ["map", "s.toml", "--shard", "1/2", "--out", "f"];
+    done(path, &shard);
+    let free = [&shard[..], &["--resume", "--hinges", "free"]].concat();
+    refused(path, &free, "belongs to something else");
+}
+
+#[test]
+fn what_is_of_four_links_is_refused() {
+    let work = folder(&map_text());
+    let path = work.path();
+    let no_impact = ["map", "s.toml", "--no-impact"];
+    refused(path, &no_impact, "--no-impact is about four links");
+    refused(path, &["spectrum", "s.toml"], "leave [free_hinges] out");
+    let out = ["map", "s.toml", "--shard", "1/1", "--out", "part"];
+    done(path, &out);
+
+    for (axes, words) in [
+        (
+            "[map]\nrestitution = [0.4, 0.6]\namplitude_g = [0.5]\n",
+            "s.toml:13:15: `restitution = [0.4, 0.6]` goes with four links",
+        ),
+        (
+            "[map]\nspread = 2\nduration_s = [0.2]\namplitude_g = [0.5]\n",
+            "s.toml:13:10: `spread = 2`",
+        ),
+    ] {
+        let errors = Scenario::parse(&map_text().replace(AXES, axes), "s.toml").unwrap_err();
+        assert!(errors.to_string().contains(words), "{errors}");
+    }
+    let spread = format!("{}spread = true\n", map_text());
+    assert!(
+        Scenario::parse(&spread, "s.toml")
+            .unwrap()
+            .map
+            .unwrap()
+            .spread
+    );
+    let four = spread.replace("[free_hinges]\n", "");
+    let errors = Scenario::parse(&four, "s.toml").unwrap_err();
+    let words = "`spread = true` goes with a table [free_hinges]";
+    assert!(errors.to_string().contains(words), "{errors}");
+}
+
+#[test]
+fn a_scenario_with_another_model_is_written_as_it_was_read() {
+    let work = folder(&map_text());
+    let file = work.path().join("s.toml");
+    let chosen = Scenario::read(&file).unwrap();
+    let free = Scenario::read_with(&file, Some(Hinges::Free)).unwrap();
+    assert_eq!(free, chosen);
+    let four = Scenario::read_with(&file, Some(Hinges::Four)).unwrap();
+    assert_eq!(four.free_hinges, None);
+    for scenario in [free, four] {
+        assert_eq!(parse(&scenario.to_toml()), scenario);
+    }
+    // Free hinges open at joints.
+    fs::write(
+        &file,
+        map_text().replace("voussoirs = 7\n[free_hinges]\n", ""),
+    )
+    .unwrap();
+    let errors = Scenario::read_with(&file, Some(Hinges::Free)).unwrap_err();
+    assert!(
+        errors.to_string().contains("has no `voussoirs`"),
+        "{errors}"
+    );
+}
+
+#[test]
+fn a_suite_shakes_the_row_of_its_scenario() {
+    let work = folder(&format!(
+        "{DRUMS}[suite]\nrecords = [\"wave-1.at2\", \"wave-2.at2\"]\npeaks_g = [0.15, 0.6, 3.0]\n\
+         both_signs = false\n"
+    ));
+    let path = work.path();
+    for name in ["wave-1.at2", "wave-2.at2"] {
+        fs::copy(scenarios().join("records").join(name), path.join(name)).unwrap();
+    }
+    let said = done(path, &["suite", "s.toml", "--threads", "1", "--out", "one"]);
+    assert!(said.contains("6 cases of 2 records"), "{said}");
+    let whole = files(&path.join("one"));
+    done(path, &["suite", "s.toml", "--threads", "2", "--out", "two"]);
+    assert_eq!(files(&path.join("two")), whole);
+    for shard in ["1/2", "2/2"] {
+        done(
+            path,
+            &["suite", "s.toml", "--shard", shard, "--out", "parts"],
+        );
+    }
+    let parts = ["parts/suite-1-of-2.part", "parts/suite-2-of-2.part"];
+    done(path, &["merge", parts[0], parts[1], "--out", "merged"]);
+    assert_eq!(files(&path.join("merged")), whole);
+
+    // The rows are single histories under the records as scaled.
+    let mut table = csv::Reader::from_reader(&*whole["suite.csv"]);
+    let headers = table.headers().unwrap().clone();
+    let column = |name: &str| headers.iter().position(|header| header == name).unwrap();
+    let [record, peak_g, outcome, peak_rad] =
+        ["record", "peak_g", "outcome", "peak_rotation_rad"].map(column);
+    let mut overturned = 0;
+    for row in table.records().map(Result::unwrap) {
+        let text = format!(
+            "{DRUMS}[ground.record]\nfile = {:?}\npeak_g = {}\n",
+            &row[record], &row[peak_g]
+        );
+        fs::write(path.join("single.toml"), text).unwrap();
+        let single = Scenario::read(&path.join("single.toml")).unwrap();
+        let model = single.model().unwrap();
+        let ending = Ending::of(&*model, single.ground_motion(), &single.request()).unwrap();
+        assert_eq!(&row[outcome], ending.outcome.name());
+        let expected_rad = ending.peak_rotation_rad.unwrap();
+        assert_eq!(row[peak_rad].parse::<f64>().unwrap(), expected_rad);
+        overturned += usize::from(&row[outcome] == "overturned");
+    }
+    assert!(0 < overturned && overturned < 6, "{overturned}");
+}
