@@ -53,8 +53,8 @@ pub(crate) fn above(
     })
 }
 
-/// A bound as people write it: without a row of zeros.
-fn short(x: f64) -> String {
+/// A bound as people write it: 1e6, not 1000000.0.
+pub(crate) fn short(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
         format!("{x:e}")
     } else {

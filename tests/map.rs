@@ -719,18 +719,18 @@ fn faults_of_a_map_are_said_with_their_place_and_remedy() {
     assert_error(
         "frequency_hz = [1e-9, 1]\namplitude_g = [1]",
         "9:16",
-        &["at least 1e-6"],
+        &["from 1e-6"],
     );
     assert_error(&both("amplitude_g = []"), "10:15", &["is empty"]);
     assert_error(
         &both("amplitude_g = [1, 'x']"),
         "10:15",
-        &["element, number 2", "is a string"],
+        &["element (number 2)", "is a string"],
     );
     assert_error(
         &both("amplitude_g = [1, 2000]"),
         "10:15",
-        &["number 2", "out of range", "at most 1000"],
+        &["number 2", "out of range", "to 1000"],
     );
     assert_error(
         &both("amplitude_g = 3"),

@@ -269,7 +269,7 @@ fn faulty_records_are_input_errors() {
         (
             "file = 'good.csv'\nunit = 'g'\nscale = 1\npeak_g = 1",
             "9:10",
-            "stands beside `scale`",
+            "cannot be combined with `scale`",
         ),
         (
             "file = 'zero.csv'\nunit = 'g'\npeak_g = 1",
@@ -299,12 +299,12 @@ fn faulty_records_are_input_errors() {
         (
             "file = 'short.at2'\nunit = 'g'",
             "7:8",
-            "goes with `format = \"csv\"` only",
+            "applies to `format = \"csv\"` only",
         ),
         (
             "file = 'good.csv'\nunit = 'g'\ncomponent = 'vertical'\nscale = 0.1\n[ground.record.vertical]\nfile = 'good.csv'\nunit = 'g'",
             "10:1",
-            "stands beside `component = \"vertical\"`",
+            "cannot be combined with `component = \"vertical\"`",
         ),
     ] {
         let message = scenario(folder.path(), &files, keys).expect_err(keys);

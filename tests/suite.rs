@@ -685,19 +685,23 @@ fn faults_of_the_table_have_places() {
     assert_faults(
         folder,
         &format!("{all}\nscales = [1]\npeaks_g = [1]"),
-        &[(3, 11, &["`peaks_g` stands beside `scales`", "exactly one"])],
+        &[(
+            3,
+            11,
+            &["`peaks_g` cannot be combined with `scales`", "exactly one"],
+        )],
     );
     assert_faults(
         folder,
         &format!("{all}\nscales = [0.0, 1.0]"),
-        &[(2, 10, &["number 1, that is out of range", "above 0.0"])],
+        &[(2, 10, &["(number 1) that is out of range", "above 0 and"])],
     );
     assert_faults(
         folder,
         &format!("{all}\npeaks_g = {{ from = -1, to = 2000, count = 3 }}"),
         &[
-            (2, 20, &["`from = -1` is out of range", "above 0.0"]),
-            (2, 29, &["`to = 2000` is out of range", "at most 1000.0"]),
+            (2, 20, &["`from = -1` is out of range", "above 0 and"]),
+            (2, 29, &["`to = 2000` is out of range", "at most 1000"]),
         ],
     );
     assert_faults(
@@ -726,7 +730,7 @@ fn faults_of_the_table_have_places() {
     assert_faults(
         folder,
         &format!("{all}\nscales = [1]\nunit = 'g'"),
-        &[(3, 8, &["goes with `format = \"csv\"` only"])],
+        &[(3, 8, &["applies to `format = \"csv\"` only"])],
     );
     assert_faults(
         folder,
@@ -836,7 +840,7 @@ fn faults_of_records_name_the_file() {
         &[(
             1,
             11,
-            &["names fine.dat, which has an ending that does not tell the format"],
+            &["names fine.dat, which has an extension that does not tell the format"],
         )],
     );
     write(

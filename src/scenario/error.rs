@@ -107,17 +107,17 @@ pub(super) struct Fault {
     pub(super) message: String,
 }
 
-/// A piece of the file for a message: its first line, cut when long, without control characters,
-/// which could rewrite the terminal.
+/// A piece of the file for a message: its first line, cut when long. Control characters, which could
+/// rewrite the terminal, are replaced.
 pub(super) fn excerpt(text: &str) -> String {
-    const LONGEST: usize = 60;
+    const MAX_CHARS: usize = 60;
     let line = text.trim().lines().next().unwrap_or_default();
     let mut short: String = line
         .chars()
-        .take(LONGEST)
+        .take(MAX_CHARS)
         .map(|c| if c.is_control() { '\u{fffd}' } else { c })
         .collect();
-    if line.chars().nth(LONGEST).is_some() {
+    if line.chars().nth(MAX_CHARS).is_some() {
         short.push_str("...");
     }
     short

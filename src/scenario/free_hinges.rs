@@ -5,7 +5,7 @@ use std::ops::Bound::Included;
 use super::table::{Number, Reading, Table};
 use crate::dynamics::free_hinges::Steps;
 
-/// Shorter steps would never end, longer ones miss the motion.
+/// With shorter steps a run takes forever; longer ones miss the motion.
 const STEP_S: Number = Number(Included(1e-9), Included(1.0));
 
 /// Reads `[free_hinges]`, which may be empty.

@@ -10,17 +10,17 @@ use super::Record;
 use super::table::{Number, Reading, Table};
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 
-/// Ground that moves more strongly than this is a slip of the pen.
+/// Largest acceleration of the ground: beyond it the unit must be wrong.
 pub(crate) const LARGEST_G: f64 = 1e3;
 pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
 pub(super) const DURATION_S: Number = Number(Included(1e-6), Included(1e6));
 /// Inverses of durations.
 pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
-/// At one the envelope of the velocity pulse is as long as a period; far beyond nothing is a pulse.
+/// At 1 the envelope of the velocity pulse is one period long; at 100 it is no longer a pulse.
 const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
 const CYCLES: Number = Number(Included(1.0), Included(100.0));
 const PHASE_DEG: Number = Number(Included(-360.0), Included(360.0));
-/// Why the keys make a ground motion.
+/// Why a checked pulse cannot fail.
 const IN_RANGE: &str = "the ranges of the keys are those of a ground motion";
 /// The kind of ground motion that is read from files.
 const RECORD: &str = "record";
@@ -61,7 +61,7 @@ impl Ground {
         table.exactly_one("tables", kinds)
     }
 
-    /// Refuses the table of a study that is about pulses where there is no pulse; `None`: not known.
+    /// Refuses the table of a study of pulses when `[ground]` has no pulse; `None`: `[ground]` is faulty.
     pub(super) fn check_pulse(table: &mut Table<'_>, ground: Option<&Option<Self>>) -> Reading<()> {
         match ground {
             Some(None | Some(Self::Record(_))) => Err(table.wrong_itself(
@@ -183,7 +183,7 @@ impl Serialize for PulseGround {
 /// Says that a vertical acceleration is impossible for a structure that rests on the ground.
 pub(super) fn free_fall(time_s: f64) -> String {
     format!(
-        "makes the ground fall as fast as a free body at {time_s:?} s, so that it no longer carries the \
-         structure; allowed are vertical accelerations above -1 g"
+        "makes the ground fall as fast as a free body at {time_s:?} s, where it no longer carries the \
+         structure; vertical accelerations must stay above -1 g"
     )
 }

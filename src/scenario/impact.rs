@@ -11,7 +11,7 @@ pub(super) const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
 
 /// Reads `[impact]`.
 pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactModel> {
-    // The name alone decides here; the restitution is filled in below.
+    // Only the names matter here; the restitution is filled in below.
     let all = [
         ImpactModel::MaxRestitution,
         ImpactModel::SameSections,
@@ -34,7 +34,7 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactModel> {
         (model, None) => Ok(model),
         (model, Some(_)) => {
             let wrong = format!(
-                "goes with model = \"prescribed\" only; the model here is {:?}",
+                "applies to model = \"prescribed\" only; the model here is {:?}",
                 model.name()
             );
             Err(table.wrong("restitution", wrong))

@@ -25,7 +25,7 @@ impl Initial {
             let limit_rad = model.map_or(0.0, |model| model.limit_rad());
             if *rotation_rad >= limit_rad {
                 let wrong = format!(
-                    "is beyond the limit position of the mechanism; allowed is a number above 0.0 and \
+                    "is beyond the limit position of the mechanism; must be \
                      below {limit_rad:?}"
                 );
                 return Err(table.wrong("rotation_rad", wrong));

@@ -74,11 +74,11 @@ pub struct Map {
     pub spread: bool,
 }
 
-/// Cells of a map: more would not fit into a picture, nor their rows into memory.
+/// Most cells of a map: more fit neither into a picture nor, as rows, into memory.
 const MAX_CELLS: usize = 1_000_000;
 
 impl Map {
-    /// Reads `[map]`; whether it suits what stands and how it is shaken is told where they are known.
+    /// Reads `[map]`, and checks it against the other tables where these are valid.
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
@@ -107,13 +107,13 @@ impl Map {
             );
         };
         if (x.quantity, y.quantity) == (Quantity::Duration, Quantity::Frequency) {
-            let wrong = "stands beside `duration_s`, its inverse; allowed is one of them";
+            let wrong = "cannot be combined with `duration_s`, its inverse; give one of them";
             return Err(table.wrong("frequency_hz", wrong));
         }
         let cells = x.sequence.values().len() * y.sequence.values().len();
         if cells > MAX_CELLS {
             return Err(table.wrong_itself(format!(
-                "has {cells} cells; allowed are at most {MAX_CELLS}"
+                "has {cells} cells; at most {MAX_CELLS} are allowed"
             )));
         }
         Ground::check_pulse(table, ground)?;
@@ -194,7 +194,7 @@ fn suits(
         Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace
             if matches!(structure, Some(Structure::Column(_))) =>
         {
-            "goes with an [arch], and this is a column"
+            "applies to an [arch], not to a column"
         }
         Quantity::Restitution if free_hinges => {
             "goes with four links: with free hinges impacts follow from the blocks"
@@ -202,7 +202,7 @@ fn suits(
         Quantity::Restitution
             if impact.is_some_and(|model| !matches!(model, ImpactModel::Prescribed { .. })) =>
         {
-            "goes with model = \"prescribed\" in [impact]"
+            "needs model = \"prescribed\" in [impact]"
         }
         _ => return Ok(()),
     };

@@ -209,7 +209,7 @@ impl Scenario {
             Err(reported) => (Err(reported), GroundMotion::still()),
         };
         if hinges.is_none() && table.gives("free_hinges") && table.gives("impact") {
-            let wrong = "stands beside [free_hinges], where impacts follow from the blocks; allowed is one of them";
+            let wrong = "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out";
             return Err(table.wrong("impact", wrong));
         }
         let impact = table.table_or_defaults("impact", impact::read);

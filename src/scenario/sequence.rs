@@ -1,4 +1,4 @@
-//! Increasing numbers: a list, or a range and how many.
+//! Increasing numbers: a list, or a range with a count.
 
 use serde::Serialize;
 use toml::de::DeValue;
@@ -8,9 +8,9 @@ use super::table::{Count, List, Number, OneOf, Reading, Rule, Table};
 named! {
     /// How the numbers of a range are spaced.
     pub enum Spacing {
-        /// By the same difference.
+        /// Equal differences.
         Linear = "linear",
-        /// By the same ratio.
+        /// Equal ratios.
         Logarithmic = "logarithmic",
     }
 }
@@ -62,7 +62,7 @@ impl Rule for Ascending<'_> {
     }
 }
 
-/// As many as a study may have in one direction.
+/// Length of a range.
 const COUNT: Count = Count {
     range: 2..=10_000,
     why: "the ends",
@@ -85,7 +85,7 @@ impl Sequence {
         }
     }
 
-    /// How the numbers are best drawn along an axis.
+    /// Spacing of the axis that the numbers are drawn along.
     #[must_use]
     pub const fn spacing(&self) -> Spacing {
         match self {
@@ -94,7 +94,7 @@ impl Sequence {
         }
     }
 
-    /// The numbers of a key, each of which follows `rule`, if given.
+    /// The numbers of a key, if given; each must follow `rule`.
     pub(super) fn read(
         table: &mut Table<'_>,
         key: &'static str,
@@ -118,14 +118,11 @@ impl Sequence {
         let spacing = table.or("spacing", &spacings, Spacing::Linear);
         let (from, to, count, spacing) = (from?, to?, count?, spacing?);
         if to <= from {
-            let wrong = format!(
-                "is not above `from`; allowed is {}, above {from:?}",
-                rule.allowed()
-            );
+            let wrong = format!("is not above `from`; must be above {from:?}");
             return Err(table.wrong("to", wrong));
         }
         if spacing == Spacing::Logarithmic && from <= 0.0 && to >= 0.0 {
-            let wrong = "needs numbers of one sign; allowed here is \"linear\"";
+            let wrong = "needs numbers of one sign; use \"linear\" here";
             return Err(table.wrong("spacing", wrong));
         }
         let range = Self::Range {
@@ -141,7 +138,7 @@ impl Sequence {
             Ok(range)
         } else {
             let wrong =
-                "is more than there are floating-point numbers in the range; allowed are fewer";
+                "exceeds the number of floating-point numbers in the range; give a smaller one";
             Err(table.wrong("count", wrong))
         }
     }

@@ -10,7 +10,7 @@ use super::table::{Number, Reading, Table};
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
 const RELATIVE_TOLERANCE: Number = Number(Included(1e-13), Included(1e-3));
 const REST_ENERGY_RATIO: Number = Number(Included(1e-16), Included(0.1));
-/// Rows of output that a run may write: about a gigabyte.
+/// Most rows of output of a run: about a gigabyte.
 const MAX_ROWS: f64 = 1e7;
 
 /// How the motion is computed.
@@ -48,7 +48,7 @@ impl Simulation {
         })
     }
 
-    /// Checks that the output has a row, and not more than a disk would like.
+    /// Checks that the output has at least one step and fits on a disk.
     fn check_rows(
         table: &mut Table<'_>,
         duration_s: Reading<f64>,
@@ -59,18 +59,17 @@ impl Simulation {
         let wrong = if rows < 1.0 {
             format!(
                 "makes the output step of {step_s:?} s longer than the run of {duration_s:?} s; \
-                 allowed is a step of at most the run"
+                 the step must not exceed the run"
             )
         } else if rows > MAX_ROWS {
             format!(
-                "makes {rows:.0} rows of output, every {step_s:?} s for {duration_s:?} s; allowed \
-                 are at most {MAX_ROWS:.0}"
+                "makes {rows:.0} rows of output, every {step_s:?} s for {duration_s:?} s; at \
+                 most {MAX_ROWS:.0} are allowed"
             )
         } else {
             return Ok(());
         };
-        // The defaults agree, so one of the two is given; the step is the one that is easily
-        // changed.
+        // The defaults agree, so at least one of the two is given; the step is the easier to change.
         let culprit = if table.gives("output_step_s") {
             "output_step_s"
         } else {

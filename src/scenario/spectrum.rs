@@ -34,9 +34,9 @@ pub struct Spectrum {
     pub acceleration_over_incipient: Sequence,
 }
 
-/// Beyond, a pulse is a blow or a new rest.
+/// A shorter pulse is a blow, a longer one a lasting acceleration.
 const P_T: Number = Number(Included(1e-3), Included(1e3));
-/// Beyond a million times nothing is tried that stands.
+/// Relative to `g A_L`, in magnitude.
 const ACCELERATION_OVER_INCIPIENT: Number = Number(Excluded(0.0), Included(1e6));
 
 impl Default for Spectrum {
@@ -55,7 +55,7 @@ impl Default for Spectrum {
 }
 
 impl Spectrum {
-    /// Reads `[spectrum]`; whether it suits what stands and how it is shaken is told where they are known.
+    /// Reads `[spectrum]`, and checks it against the other tables where these are valid.
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
@@ -83,7 +83,7 @@ impl Spectrum {
             let longest_s = largest / block.frequency_rad_s;
             if !DURATION_S.contains(longest_s) {
                 let wrong = format!(
-                    "makes a pulse of {longest_s:?} s, as p is {:?} rad/s; allowed as a duration is {}",
+                    "makes a pulse of {longest_s:?} s, since p is {:?} rad/s; the duration must be {}",
                     block.frequency_rad_s,
                     DURATION_S.allowed()
                 );

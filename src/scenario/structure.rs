@@ -115,7 +115,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool) -> Reading<Arch> {
         .expect("the ranges of the keys are those of an arch");
     if free_hinges && voussoirs.is_none() {
         return Err(table.wrong_itself(
-            "has no `voussoirs`: the hinges of [free_hinges] open at joints; give their number",
+            "lacks `voussoirs`: with [free_hinges] hinges open at joints; give the number of voussoirs",
         ));
     }
     match arch.incipient() {
@@ -132,7 +132,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool) -> Reading<Arch> {
     }
 }
 
-/// What a limit error means for an arch, and what to change.
+/// Why the limit analysis refuses the arch, and what to change.
 fn why_not(arch: &Arch, error: LimitError) -> String {
     let embrace_deg = arch.embrace_deg();
     match error {
@@ -141,12 +141,12 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
                 .expect("the ranges of the keys are those of a ring");
             format!(
                 "makes an arch that cannot carry its own weight at an embrace angle of {embrace_deg:?} degrees; \
-                 allowed is a thickness of at least {:?} mean radii",
+                 the thickness must be at least {:?} mean radii",
                 rounded_up(least)
             )
         }
         LimitError::OtherMechanism { .. } | LimitError::NoPush => format!(
-            "makes an arch too thick for its embrace angle of {embrace_deg:?} degrees: {error}; allowed is a \
+            "makes an arch too thick for its embrace angle of {embrace_deg:?} degrees: {error}; give a \
              thinner arch or a larger angle"
         ),
     }
@@ -163,15 +163,15 @@ fn read_thickness_m(table: &mut Table<'_>, mean_radius_m: Reading<f64>) -> Readi
         Ok(Some(ratio))
     } else {
         let wrong = format!(
-            "is out of range: {ratio:?} mean radii; allowed is a number below {:?}, twice the mean radius, and not \
-             below a millionth of the mean radius",
+            "is out of range: {ratio:?} mean radii; must be at least a millionth of the mean radius and below {:?}, \
+             twice the mean radius",
             2.0 * mean_radius_m
         );
         Err(table.wrong("thickness_m", wrong))
     }
 }
 
-/// The next larger number of four significant digits: a bound that is said is then one that holds.
+/// Rounded up to four significant digits, so that the bound in the message is itself allowed.
 fn rounded_up(x: f64) -> f64 {
     let unit = 10.0_f64.powf(3.0 - x.log10().floor());
     (x * unit).ceil() / unit
@@ -195,13 +195,13 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
         for key in ["drums", "drum_heights_m", "top_width_m"] {
             if table.gives(key) {
                 let wrong =
-                    "goes with a table [free_hinges]: Housner's model is of one prismatic block";
+                    "needs a table [free_hinges]: Housner's model is a single prismatic block";
                 return Err(table.wrong(key, wrong));
             }
         }
     }
     if table.gives("drums") && table.gives("drum_heights_m") {
-        let wrong = "stands beside `drums`; allowed is one of them";
+        let wrong = "cannot be combined with `drums`; give one of them";
         return Err(table.wrong("drum_heights_m", wrong));
     }
     let (height_m, width_m, depth_m, density_kg_m3) =

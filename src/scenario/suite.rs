@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Every record shakes the structure at every level: multiplied by every factor of `scales`, or scaled to
-//! every peak of `peaks_g`. `[ground]` has no part in it.
+//! every peak of `peaks_g`. `[ground]` is not used.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound::{Excluded, Included};
@@ -26,7 +26,7 @@ use super::table::{Number, OneOrMore, Reading, Switch, Table, Text};
 use super::{Component, Simulation};
 
 named! {
-    /// What the levels of a suite are, by its key in `[suite]`.
+    /// What the levels of a suite are, named by their key in `[suite]`.
     pub enum Measure {
         /// Factors of the records.
         Scale = "scales",
@@ -35,7 +35,7 @@ named! {
     }
 }
 
-/// As far as records are scaled; what is beyond is a slip of the pen, or of the unit.
+/// Largest factor on a record: beyond it the unit must be wrong.
 const MAX_SCALE: f64 = 1e6;
 const SCALE: Number = Number(Excluded(0.0), Included(MAX_SCALE));
 
@@ -68,29 +68,29 @@ impl Measure {
 /// Which records shake the structure, and how strongly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suite {
-    /// The records as they are in their files, by the names of these: at least one.
+    /// The records as they are in their files, sorted by file name; at least one.
     pub records: Vec<Series>,
     /// What the levels are.
     pub measure: Measure,
     /// How strong each record is made, above 0.
     pub levels: Sequence,
-    /// Whether every record comes mirrored as well, which does the same to the other side.
+    /// Whether every record is also run mirrored, which acts the same to the other side.
     pub both_signs: bool,
 }
 
 /// Cases of a suite: their rows must fit into memory.
 const MAX_CASES: usize = 1_000_000;
 
-/// A file that the key `records` names.
+/// A file named by the key `records`.
 struct Listed {
     file: String,
-    /// Which element of the key names it first.
+    /// Index of the element that names it first.
     element: usize,
     format: Format,
 }
 
 impl Suite {
-    /// Reads `[suite]` with its records; `None`: what the simulation is, is not known.
+    /// Reads `[suite]` with its records; `None`: `[simulation]` is faulty.
     pub(super) fn read(
         table: &mut Table<'_>,
         folder: &Path,
@@ -110,7 +110,7 @@ impl Suite {
             (Ok(patterns), Ok(format)) => list(table, folder, &patterns, format),
             (Err(reported), _) | (_, Err(reported)) => Err(reported),
         };
-        // The keys of tables are given if and only if one of the files is a table.
+        // The keys of CSV files are needed if and only if one of the files is CSV.
         let layout = Layout::read(
             table,
             listed.as_ref().map_err(|reported| *reported).map(|listed| {
@@ -128,7 +128,7 @@ impl Suite {
         let cases = listed.len() * (1 + usize::from(both_signs)) * values.len();
         if cases > MAX_CASES {
             return Err(table.wrong_itself(format!(
-                "has {cases} cases, {} records at {} levels; allowed are at most {MAX_CASES}",
+                "has {cases} cases, {} records at {} levels; at most {MAX_CASES} are allowed",
                 listed.len(),
                 values.len()
             )));
@@ -202,7 +202,7 @@ impl Serialize for Suite {
 
 const RECORDS: &str = "records";
 
-/// Says why a record cannot shake the structure as strongly as it shall.
+/// Why a record cannot be used at the strongest level.
 fn suits(
     series: &Series,
     strongest: Scaling,
@@ -242,7 +242,7 @@ fn start_s(series: &Series) -> f64 {
     (-series.first_s()).max(0.0)
 }
 
-/// All files that the patterns name, in the order of their names, each once.
+/// All files that match the patterns, sorted by name, each once.
 fn list(
     table: &mut Table<'_>,
     folder: &Path,
@@ -250,7 +250,7 @@ fn list(
     format: Option<Format>,
 ) -> Reading<Vec<Listed>> {
     let mut found = BTreeMap::new();
-    // The same file under another name counts once.
+    // A file with several names counts once.
     let mut seen = BTreeSet::new();
     let mut all_well = Ok(());
     for (element, pattern) in patterns.iter().enumerate() {
@@ -286,21 +286,19 @@ fn list(
     listed.into_iter().collect()
 }
 
-/// The files that a pattern names, relative to the folder; or why none, to follow the pattern.
+/// The files that match a pattern, relative to the folder; or why there are none, as words to follow the pattern.
 fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
-    // A name that is also a pattern is the name, so that a resolved scenario reads back the same.
+    // A file whose name looks like a pattern is taken as that file, so that a resolved scenario reads back the same.
     let path = folder.join(pattern);
     if path.is_dir() {
-        return Err(
-            "is a folder; allowed is a file or a pattern such as \"folder/*.at2\"".to_owned(),
-        );
+        return Err("is a folder; must be a file or a pattern such as \"folder/*.at2\"".to_owned());
     }
     if path.is_file() {
         return Ok(vec![file_name(Path::new(pattern))?]);
     }
     if !pattern.contains(['*', '?', '[']) {
         return Err(
-            "does not exist; allowed is a file or a pattern such as \"folder/*.at2\"".to_owned(),
+            "does not exist; must be a file or a pattern such as \"folder/*.at2\"".to_owned(),
         );
     }
     let folder = if folder.as_os_str().is_empty() {
@@ -308,7 +306,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     } else {
         folder
     };
-    // Patterns say nothing of what they are relative to.
+    // `glob` has no folder to start from: its patterns are made absolute.
     let folder =
         std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
     let escaped = folder
@@ -317,13 +315,13 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
         .ok_or("is relative to a folder whose name is not UTF-8 text; name the files one by one")?;
     let absolute = Path::new(&escaped).join(pattern);
     let options = MatchOptions {
-        // As in a shell: hidden files are of other programs.
+        // As in a shell, `*` does not match hidden files.
         require_literal_leading_dot: true,
         require_literal_separator: true,
         case_sensitive: true,
     };
     let matches = glob::glob_with(&absolute.to_string_lossy(), options)
-        .map_err(|error| format!("is not a pattern of files: {}", error.msg))?;
+        .map_err(|error| format!("is not a valid file pattern: {}", error.msg))?;
     let mut files = Vec::new();
     for path in matches {
         let path = path.map_err(|error| format!("cannot be searched: {}", error.error()))?;
@@ -337,7 +335,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     Ok(files)
 }
 
-/// The name of a file as it stands in scenarios and results, which have a line for each.
+/// The name of a file for scenarios and results, where it must fit on a line.
 fn file_name(path: &Path) -> Result<String, String> {
     let plain: PathBuf = path
         .components()
@@ -346,7 +344,7 @@ fn file_name(path: &Path) -> Result<String, String> {
     match plain.to_str() {
         Some(name) if !name.contains(char::is_control) => Ok(name.to_owned()),
         _ => Err(format!(
-            "names {:?}; allowed are names in UTF-8 without control characters",
+            "names {:?}; file names must be UTF-8 without control characters",
             plain.display().to_string()
         )),
     }

@@ -9,14 +9,15 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Fault, excerpt};
+use crate::argument::short;
 
-/// Stands for a value that could not be had, after the reason was recorded as a [`Fault`].
+/// Stands for a value that could not be read; the reason is recorded as a [`Fault`].
 ///
 /// A reader asks for all its keys before it gives up on one (with `?`), so that all are checked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reported;
 
-/// A value, or the knowledge that its fault is recorded.
+/// A value, or [`Reported`]: its fault is recorded.
 pub(super) type Reading<T> = Result<T, Reported>;
 
 /// Reads a whole TOML text with `read`, or says all that is wrong with it.
@@ -51,22 +52,22 @@ pub(super) fn read_text<T>(
 
 /// The part of a text that is TOML.
 ///
-/// Syntax errors hide what follows them and breed others, so the first one is recorded, its line
-/// is blanked out, and the rest is looked at again.
+/// A syntax error hides what follows it and causes others, so the first one is recorded, its line
+/// blanked out, and the rest parsed again.
 struct Legible {
     /// The text with the faulty lines blanked out: offsets are those of the original.
     text: String,
     /// What was blanked out. A key that is named here may be given, so it is not called missing.
     unread: String,
-    /// Whether `text` is TOML by now; not so when an error is not confined to a line, such as
-    /// an unclosed bracket, or when there are too many.
+    /// Whether `text` is valid TOML now. It is not when an error spans lines, such as an unclosed
+    /// bracket, or when there are too many errors.
     is_toml: bool,
     faults: Vec<Fault>,
 }
 
 impl Legible {
     fn of(text: &str) -> Self {
-        // Each takes a pass over the text, so there must be an end.
+        // Each takes a pass over the text.
         const MAX_SYNTAX_FAULTS: usize = 20;
         let mut legible = Self {
             text: text.to_owned(),
@@ -76,7 +77,7 @@ impl Legible {
         };
         while legible.faults.len() < MAX_SYNTAX_FAULTS {
             let (_, errors) = DeTable::parse_recoverable(&legible.text);
-            // An error without a place is the parser's refusal of deeply nested keys.
+            // Only the error for keys nested too deeply has no place.
             let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
             let Some(first) = errors.into_iter().min_by_key(start) else {
                 legible.is_toml = true;
@@ -129,9 +130,9 @@ fn faulty_part(text: &str, offset: usize) -> std::ops::Range<usize> {
 ///
 /// It remembers the keys that it was asked for: those are the ones it allows.
 pub(super) struct Table<'a> {
-    /// As messages call it.
+    /// Its name in messages.
     name: String,
-    /// Of its header.
+    /// Offset of its header.
     offset: usize,
     entries: &'a DeTable<'a>,
     legible: &'a Legible,
@@ -172,7 +173,7 @@ impl<'a> Table<'a> {
         };
         match rule.read(entry.get_ref()) {
             Ok(value) => Ok(Some(value)),
-            Err(wrong) => Err(self.wrong(key, format!("{wrong}; allowed is {}", rule.allowed()))),
+            Err(wrong) => Err(self.wrong(key, format!("{wrong}; must be {}", rule.allowed()))),
         }
     }
 
@@ -186,7 +187,7 @@ impl<'a> Table<'a> {
             return Ok(None);
         };
         let DeValue::Table(entries) = entry.get_ref() else {
-            let wrong = format!("is {}; allowed is a table", kind_of(entry.get_ref()));
+            let wrong = format!("is {}; must be a table", kind_of(entry.get_ref()));
             return Err(self.wrong(key, wrong));
         };
         self.descend(key, entry.span().start, entries, read)
@@ -205,7 +206,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The value of the only one of several keys, which exclude each other, that is given.
+    /// The value of the one key given out of several that exclude each other.
     pub(super) fn exactly_one<T>(
         &mut self,
         what: &str,
@@ -228,13 +229,13 @@ impl<'a> Table<'a> {
             [_] => {}
             [(_, first), others @ ..] => {
                 for (offset, key) in others {
-                    let message = format!("`{key}` stands beside `{first}`; allowed is {rule}");
+                    let message = format!("`{key}` cannot be combined with `{first}`; give {rule}");
                     self.fault(*offset, message);
                 }
                 return Err(Reported);
             }
         }
-        // Without an only value, the one that is given is faulty.
+        // If there is none, the key that is given is faulty.
         candidates
             .into_iter()
             .find_map(|(_, value)| value.ok().flatten())
@@ -334,7 +335,7 @@ impl<'a> Table<'a> {
             let (name, offset) = (key.get_ref().as_ref(), key.span().start);
             if !self.known.contains(&name) {
                 let message = format!(
-                    "unknown key `{}` in {}{}; allowed are {}",
+                    "unknown key `{}` in {}{}; known keys: {}",
                     excerpt(name),
                     self.name,
                     did_you_mean(name, &self.known),
@@ -348,7 +349,7 @@ impl<'a> Table<'a> {
 
 /// What a value must be.
 pub(super) trait Rule {
-    /// What it is read as.
+    /// The type it is read as.
     type Value;
     /// The rule in words.
     fn allowed(&self) -> String;
@@ -369,15 +370,18 @@ impl Rule for Number {
     type Value = f64;
 
     fn allowed(&self) -> String {
+        if let (Bound::Included(low), Bound::Included(high)) = (self.0, self.1) {
+            return format!("a number from {} to {}", short(low), short(high));
+        }
         let bounds = [
             match self.0 {
-                Bound::Included(low) => Some(format!("at least {low:?}")),
-                Bound::Excluded(low) => Some(format!("above {low:?}")),
+                Bound::Included(low) => Some(format!("of at least {}", short(low))),
+                Bound::Excluded(low) => Some(format!("above {}", short(low))),
                 Bound::Unbounded => None,
             },
             match self.1 {
-                Bound::Included(high) => Some(format!("at most {high:?}")),
-                Bound::Excluded(high) => Some(format!("below {high:?}")),
+                Bound::Included(high) => Some(format!("at most {}", short(high))),
+                Bound::Excluded(high) => Some(format!("below {}", short(high))),
                 Bound::Unbounded => None,
             },
         ];
@@ -417,7 +421,7 @@ impl<R: Rule> Rule for List<'_, R> {
         };
         let read = |(index, element): (usize, &Spanned<DeValue<'_>>)| {
             let place = index + 1;
-            let wrong = |wrong| format!("has an element, number {place}, that {wrong}");
+            let wrong = |wrong| format!("has an element (number {place}) that {wrong}");
             self.0.read(element.get_ref()).map_err(wrong)
         };
         elements.iter().enumerate().map(read).collect()
@@ -443,7 +447,7 @@ impl<R: Rule> Rule for OneOrMore<'_, R> {
     }
 }
 
-/// Yes or no.
+/// True or false.
 pub(super) struct Switch;
 
 impl Rule for Switch {
@@ -549,9 +553,9 @@ fn kind_of(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// A question that names the nearest of the known names, or nothing when none is near.
+/// Suggests the known name nearest to `name`; empty when none is near.
 fn did_you_mean(name: &str, known: &[&str]) -> String {
-    // Half a name in common leaves room for a forgotten unit or prefix and not for a chance hit.
+    // Half a name in common: enough for a forgotten unit or prefix, too much for a chance match.
     const NEAR: f64 = 0.5;
     let name = excerpt(name);
     known
@@ -559,6 +563,6 @@ fn did_you_mean(name: &str, known: &[&str]) -> String {
         .map(|known| (strsim::normalized_damerau_levenshtein(&name, known), known))
         .filter(|(likeness, _)| *likeness > NEAR)
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
-        .map(|(_, known)| format!(", did you mean `{known}`?"))
+        .map(|(_, known)| format!(" (did you mean `{known}`?)"))
         .unwrap_or_default()
 }

@@ -124,17 +124,15 @@ impl Header {
                 }
                 (true, false) if here.contains(&Item::Count) => {}
                 (true, false) => {
-                    return fault(
-                        "there is no DT, the time step, by here in the header".to_owned(),
-                    );
+                    return fault("the header has no DT (time step) up to here".to_owned());
                 }
             }
         }
         let line = text.lines().take(LONGEST_HEADER).count().max(1);
         let message = if items.is_empty() {
-            "there is no NPTS, the number of samples, by here: is this an AT2 file?"
+            "there is no NPTS (number of samples) up to here: is this an AT2 file?"
         } else {
-            "there is no DT, the time step, by here in the header"
+            "the header has no DT (time step) up to here"
         };
         Err(LineFault {
             line,
@@ -145,19 +143,19 @@ impl Header {
     fn checked(line: usize, count: f64, step_s: f64) -> Result<Self, String> {
         if !(step_s.is_finite() && step_s >= MIN_STEP_S) {
             return Err(format!(
-                "DT is {step_s:?} s; allowed is at least {MIN_STEP_S:?} s"
+                "DT is {step_s:?} s; must be at least {MIN_STEP_S:?} s"
             ));
         }
         #[expect(clippy::cast_precision_loss, reason = "the bound is below 2^53")]
         let most = MAX_SAMPLES as f64;
         if !(count.fract() == 0.0 && (2.0..=most).contains(&count)) {
             return Err(format!(
-                "NPTS is {count:?}; allowed is a whole number from 2 to {MAX_SAMPLES}"
+                "NPTS is {count:?}; must be a whole number from 2 to {MAX_SAMPLES}"
             ));
         }
         if (count - 1.0) * step_s > LONGEST_S {
             return Err(format!(
-                "NPTS and DT make a record of {:?} s; allowed are at most {LONGEST_S:?} s",
+                "NPTS and DT make a record of {:?} s; at most {LONGEST_S:?} s are allowed",
                 (count - 1.0) * step_s
             ));
         }
@@ -233,7 +231,7 @@ fn wrong_quantity(line: &str) -> Option<String> {
     for quantity in ["VELOCITY", "DISPLACEMENT"] {
         if line.contains(&format!("{quantity} TIME")) {
             return Some(format!(
-                "the file holds a {} history; allowed is an acceleration history",
+                "the file holds a {} history; must be an acceleration history",
                 quantity.to_ascii_lowercase()
             ));
         }
@@ -243,7 +241,7 @@ fn wrong_quantity(line: &str) -> Option<String> {
     let unit = unit.trim_end_matches(|c: char| !c.is_alphanumeric());
     (unit != "G").then(|| {
         format!(
-            "the unit is {}; allowed in an AT2 file is G: a CSV file may have other units",
+            "the unit is {}; in an AT2 file it must be G (a CSV file may have other units)",
             excerpt(unit)
         )
     })

@@ -58,7 +58,7 @@ pub(super) fn parse(
         let [time_s, acceleration] = values;
         if time_s.abs() > LONGEST_S {
             return Err(fault(format!(
-                "the time {time_s:?} s is out of range; allowed are at most {LONGEST_S:?} s"
+                "the time {time_s:?} s is out of range; its magnitude must be at most {LONGEST_S:?} s"
             )));
         }
         if let Some((before_s, _)) = samples.last()
@@ -81,7 +81,7 @@ pub(super) fn parse(
         return Err(LineFault {
             line: last_line,
             message: format!(
-                "the number of samples is {}; allowed are at least 2",
+                "the number of samples is {}; must be at least 2",
                 samples.len()
             ),
         });

@@ -3,7 +3,7 @@
 //! ```toml
 //! [ground.record]
 //! file = "north.at2"            # relative to the scenario file
-//! format = "at2"                # or "csv"; guessed from the ending when left out
+//! format = "at2"                # or "csv"; from the file extension when left out
 //! component = "horizontal"      # or "vertical": where the file's accelerations point, positive to the
 //!                               # right or upwards
 //! scale = 1.0                   # or peak_g = 0.5, the peak to scale to
@@ -206,7 +206,7 @@ impl Record {
         });
         if let (Ok(Component::Vertical), Ok(Some(_))) = (&component, &vertical) {
             let wrong =
-                "stands beside `component = \"vertical\"`; allowed is one record for a direction";
+                "cannot be combined with `component = \"vertical\"`; give one record per direction";
             return Err(table.wrong("vertical", wrong));
         }
         let (record, gravity_m_s2) = (
@@ -275,7 +275,7 @@ impl Series {
             Ok(())
         } else {
             Err(format!(
-                "reaches {peak_g:?} g as scaled; allowed is at most {LARGEST_G:?} g"
+                "reaches {peak_g:?} g as scaled; must be at most {LARGEST_G:?} g"
             ))
         }
     }
@@ -366,7 +366,7 @@ impl Scaling {
         match (scale?, peak_g?) {
             (Some(_), Some(_)) => Err(table.wrong(
                 "peak_g",
-                "stands beside `scale`; allowed is at most one of them",
+                "cannot be combined with `scale`; give at most one of them",
             )),
             (scale, None) => Ok(Self::Factor(scale.unwrap_or(1.0))),
             (None, Some(peak_g)) => Ok(Self::PeakG(peak_g)),
@@ -384,7 +384,7 @@ impl Format {
         let mut formats = Self::ALL.iter().copied();
         formats
             .find(|format| ending.eq_ignore_ascii_case(format.name()))
-            .ok_or("has an ending that does not tell the format: give `format` as well, \"at2\" or \"csv\"")
+            .ok_or("has an extension that does not tell the format: give `format` as well, \"at2\" or \"csv\"")
     }
 
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Option<Self>> {
@@ -421,7 +421,7 @@ impl Layout {
             Format::At2 => {
                 for key in ["time_column", "acceleration_column", "unit"] {
                     if table.gives(key) {
-                        return Err(table.wrong(key, "goes with `format = \"csv\"` only"));
+                        return Err(table.wrong(key, "applies to `format = \"csv\"` only"));
                     }
                 }
                 Ok(Self::At2)
