@@ -26,7 +26,7 @@ const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Ki
 
 impl Kind {
     /// In the order of the legend.
-    pub(super) const ALL: [Self; 11] = [
+    pub(super) const ALL: [Self; 12] = [
         kind("never_moved", "never moves", "#e4e4e4"),
         kind("rest", "comes to rest", "#bcdcf0"),
         kind("still_rocking", "still rocking", "#6f8ba0"),
@@ -34,19 +34,21 @@ impl Kind {
         kind("overturned-1", "overturns after 1 impact", color::ORANGE),
         kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
         kind("overturned-more", "overturns after more", color::PURPLE),
+        kind("overturned", "overturns", color::VERMILION),
         kind(CANNOT_STAND, "cannot stand", "#ffffff"),
         kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
         kind(GROUND_FALLS, "the ground falls freely", "#ffffff"),
         kind(ending::FAILED, "failed", color::BLACK),
     ];
 
-    /// That of an outcome by its name; the impacts count where it is that of overturning.
-    pub(super) fn of(outcome: &str, impacts: usize) -> Self {
+    /// That of an outcome by its name, with the number of impacts before overturning where all hinges close at
+    /// once: the landings of free hinges, which come in cascades, tell no kinds apart.
+    pub(super) fn of(outcome: &str, impacts: Option<usize>) -> Self {
         let name = match (outcome, impacts) {
-            ("overturned", 0) => "overturned-0",
-            ("overturned", 1) => "overturned-1",
-            ("overturned", 2) => "overturned-2",
-            ("overturned", _) => "overturned-more",
+            ("overturned", Some(0)) => "overturned-0",
+            ("overturned", Some(1)) => "overturned-1",
+            ("overturned", Some(2)) => "overturned-2",
+            ("overturned", Some(_)) => "overturned-more",
             (outcome, _) => outcome,
         };
         let known = Self::ALL.into_iter().find(|kind| kind.name == name);

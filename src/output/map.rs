@@ -121,8 +121,8 @@ fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
 /// What a cell is coloured by.
 fn kind_of(result: &CellResult) -> Kind {
     let impacts = match result {
-        CellResult::Ended(ending) => ending.impacts,
-        _ => 0,
+        CellResult::Ended(ending) => ending.impacts_of_all_hinges(),
+        _ => None,
     };
     Kind::of(outcome(result), impacts)
 }

@@ -269,7 +269,8 @@ fn name(threshold: &Threshold) -> String {
 }
 
 fn kind_of(sample: &FactorSample) -> Kind {
-    let impacts = sample.result.as_ref().map_or(0, |ending| ending.impacts);
+    let ending = sample.result.as_ref().ok();
+    let impacts = ending.and_then(|ending| ending.impacts_of_all_hinges());
     Kind::of(outcome(sample), impacts)
 }
 

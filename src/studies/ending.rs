@@ -25,6 +25,15 @@ pub struct Ending {
 }
 
 impl Ending {
+    /// Number of impacts at which all hinges close at once; `None` of free hinges, which land one by one.
+    #[must_use]
+    pub const fn impacts_of_all_hinges(&self) -> Option<usize> {
+        match self.peak_rotation_rad {
+            Some(_) => None,
+            None => Some(self.impacts),
+        }
+    }
+
     /// Shakes a structure from rest and says how that ended.
     ///
     /// # Errors
