@@ -354,8 +354,7 @@ fn human_summary(
     );
     text += &cut_short(scenario, ground, history);
     if let Some(thrust) = &history.thrust {
-        let of_arch = matches!(scenario.structure, Structure::Arch(_));
-        text += &trust(thrust, of_arch);
+        text += &trust(thrust, &scenario.structure);
     }
     text
 }
@@ -420,29 +419,39 @@ fn cut_short(scenario: &Scenario, ground: &GroundMotion, history: &Summary) -> S
 }
 
 /// How far the motion can be trusted to be that of four links, or of a column on its toe.
-fn trust(thrust: &ThrustRecord, of_arch: bool) -> String {
-    let Some(shares) = thrust.shares_within() else {
+fn trust(thrust: &ThrustRecord, structure: &Structure) -> String {
+    let Some([_, near]) = thrust.shares_within() else {
         return String::new();
     };
     let Peak { value, time_s } = thrust.largest_excess;
-    let [close, near] = shares.map(|share| 100.0 * share);
-    let [least, most] = EXCESS_LEVELS;
-    let mut text = if !of_arch {
-        if value > 0.0 {
+    let [close, most] = EXCESS_LEVELS;
+    let excess =
+        format!("the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s)");
+    let mut text = match structure {
+        Structure::Column(_) if value > 0.0 => format!(
+            "  the ground would have to hold the column down (at {time_s:.4} s): it flies off\n"
+        ),
+        Structure::Column(_) => String::new(),
+        Structure::Arch(_) if value <= close => {
             format!(
-                "  the ground would have to hold the column down (at {time_s:.4} s): it flies off\n"
+                "  four links suffice: the thrust line leaves the arch by {value:.4} t at most\n"
             )
-        } else {
-            String::new()
         }
-    } else if value <= least {
-        format!("  four links suffice: the thrust line leaves the arch by {value:.4} t at most\n")
-    } else {
-        format!(
-            "  four links do not suffice: the thrust line leaves the arch by up to {value:.3} t (at \
-             {time_s:.4} s);\n    it stays within {least} t for {close:.1} % and within {most} t for \
-             {near:.1} % of the rocking time. Not on the safe side.\n"
-        )
+        Structure::Arch(arch) => {
+            let grade = if value <= most {
+                "four links are close"
+            } else {
+                "four links are a rough guide, not on the safe side"
+            };
+            let compare = match arch.voussoirs() {
+                Some(_) => "compare with --hinges both",
+                None => "give `voussoirs` and compare with --hinges both",
+            };
+            format!(
+                "  {grade}: {excess},\n    and stays within {most} t for {:.1} % of the rocking time; {compare}\n",
+                100.0 * near
+            )
+        }
     };
     let _ = writeln!(
         text,
