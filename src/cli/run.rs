@@ -17,9 +17,10 @@ use archrock::output::results::{self, EventsWriter};
 use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError};
-use archrock::scenario::{Scenario, Structure};
+use archrock::scenario::{Hinges, Scenario, Structure};
 use clap::ValueEnum;
 
+use super::study::impact_ignored;
 use super::{Failure, commands, results_folder};
 
 #[derive(clap::Args)]
@@ -39,7 +40,7 @@ pub struct Arguments {
     dimensionless: bool,
     /// Model of motion [default: free if the scenario has [free_hinges], else four].
     #[arg(long, value_enum)]
-    hinges: Option<Hinges>,
+    hinges: Option<Models>,
     /// Do not repeat a run with free hinges with half and with double steps.
     #[arg(long)]
     no_spread: bool,
@@ -47,7 +48,7 @@ pub struct Arguments {
 
 /// Models of motion.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Hinges {
+pub enum Models {
     /// Four links, or Housner's column.
     Four,
     /// Blocks whose joints open and shut anywhere.
@@ -67,44 +68,48 @@ const SUMMARY: &str = "summary.json";
 const OVERLAY: &str = "overlay.svg";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let scenario = Scenario::read(&arguments.scenario)?;
-    scenario.check_for_run().map_err(Failure::Input)?;
-    let own = if scenario.free_hinges.is_some() {
-        Hinges::Free
-    } else {
-        Hinges::Four
+    let read = |hinges| -> Result<Scenario, Failure> {
+        let scenario = Scenario::read_with(&arguments.scenario, hinges)?;
+        scenario.check_for_run().map_err(Failure::Input)?;
+        Ok(scenario)
     };
-    let hinges = arguments.hinges.unwrap_or(own);
-    let mut text = scenario
-        .title
-        .as_ref()
-        .map_or(String::new(), |title| format!("{title}\n"));
-    if own == Hinges::Four && hinges != Hinges::Four {
-        let model = scenario.impact.name();
-        let _ = writeln!(
-            text,
-            "  impacts of free hinges follow from the blocks: the impact model {model} does not count there"
-        );
-    }
-    let with = |free_hinges| {
-        let mut scenario = scenario.clone();
-        scenario.free_hinges = free_hinges;
-        scenario
-    };
-    let four = || with(None);
-    let free = || with(Some(scenario.free_hinges.unwrap_or_default()));
-    text += &match hinges {
-        Hinges::Four => four_links(&four(), Place::of(arguments), arguments.dimensionless, None)?,
-        Hinges::Free => {
-            free_hinges::run(&free(), Place::of(arguments), arguments.options()?, None)?
+    let (four, free) = (Some(Hinges::Four), Some(Hinges::Free));
+    let task = match arguments.hinges {
+        None => {
+            let scenario = read(None)?;
+            match scenario.free_hinges {
+                None => Task::Four(scenario),
+                Some(_) => Task::Free(scenario),
+            }
         }
-        Hinges::Both => both(&four(), &free(), arguments)?,
+        Some(Models::Four) => Task::Four(read(four)?),
+        Some(Models::Free) => Task::Free(read(free)?),
+        Some(Models::Both) => Task::Both(read(four)?, read(free)?),
+    };
+    let (Task::Four(scenario) | Task::Free(scenario) | Task::Both(_, scenario)) = &task;
+    let title = scenario.title.as_ref();
+    let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
+    if let Some(ignored) = impact_ignored(scenario) {
+        let _ = writeln!(text, "  {ignored}");
+    }
+    let place = Place::of(arguments);
+    text += &match &task {
+        Task::Four(scenario) => four_links(scenario, &place, arguments.dimensionless, None)?,
+        Task::Free(scenario) => free_hinges::run(scenario, &place, arguments.options()?, None)?,
+        Task::Both(four, free) => both(four, free, arguments)?,
     };
     if !quiet {
         // Nobody is left to be told when standard error fails.
         let _ = io::stderr().write_all(text.as_bytes());
     }
     Ok(())
+}
+
+/// What is to be run.
+enum Task {
+    Four(Scenario),
+    Free(Scenario),
+    Both(Scenario, Scenario),
 }
 
 impl Arguments {
@@ -182,9 +187,9 @@ fn both(four: &Scenario, free: &Scenario, arguments: &Arguments) -> Result<Strin
     let mut curves = [Curves::new(gravity_m_s2), Curves::new(gravity_m_s2)];
     let [of_four, of_free] = &mut curves;
     let mut text = "four links\n".to_owned();
-    text += &four_links(four, within("four"), false, Some(of_four))?;
+    text += &four_links(four, &within("four"), false, Some(of_four))?;
     text += "free hinges\n";
-    text += &free_hinges::run(free, within("free"), options, Some(of_free))?;
+    text += &free_hinges::run(free, &within("free"), options, Some(of_free))?;
     let title = four
         .title
         .as_deref()
@@ -207,7 +212,7 @@ fn cannot_write(what: &str) -> impl FnOnce(io::Error) -> Failure {
 /// Runs four links or a column, and says what happened.
 fn four_links(
     scenario: &Scenario,
-    place: Place,
+    place: &Place,
     dimensionless: bool,
     curves: Option<&mut Curves>,
 ) -> Result<String, Failure> {
@@ -262,7 +267,7 @@ fn four_links(
         writeln!(folder.file(SUMMARY), "{summary:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
-        text += &written(&path, &place, rows, &[EVENTS, IMPACTS, PICTURE, SUMMARY]);
+        text += &written(&path, place, rows, &[EVENTS, IMPACTS, PICTURE, SUMMARY]);
     }
     Ok(text)
 }

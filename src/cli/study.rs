@@ -62,14 +62,17 @@ impl HingesOption {
             Model::Free => Hinges::Free,
         });
         let scenario = Scenario::read_with(path, hinges)?;
-        if scenario.free_hinges.is_some()
-            && scenario.impact != ImpactModel::MaxRestitution
-            && !quiet
-        {
-            say("[impact] is ignored: with free hinges impacts follow from the blocks");
+        if !quiet && let Some(ignored) = impact_ignored(&scenario) {
+            say(ignored);
         }
         Ok(scenario)
     }
+}
+
+/// Says that the impact model of a scenario does not count, where that is so.
+pub fn impact_ignored(scenario: &Scenario) -> Option<&'static str> {
+    let ignored = scenario.free_hinges.is_some() && scenario.impact != ImpactModel::MaxRestitution;
+    ignored.then_some("[impact] is ignored: with free hinges impacts follow from the blocks")
 }
 
 impl From<PartError> for Failure {

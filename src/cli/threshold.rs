@@ -16,7 +16,7 @@ use archrock::studies::threshold::{
     FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
 };
 
-use super::run::Hinges;
+use super::run::Models;
 use super::study::{Display, say};
 use super::{Failure, Format, commands, open_folder, print, results_folder};
 
@@ -29,7 +29,7 @@ pub struct Arguments {
     out: Option<PathBuf>,
     /// Model of motion [default: free if the scenario has [free_hinges], else four].
     #[arg(long, value_enum)]
-    hinges: Option<Hinges>,
+    hinges: Option<Models>,
     /// The least factor on the ground motion.
     #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
     from: f64,
@@ -119,21 +119,21 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 type NamedModel = (&'static str, Box<dyn Model>);
 
 /// The models of motion that are asked: that which the scenario chooses.
-fn models(scenario: &Scenario, hinges: Option<Hinges>) -> Result<Vec<NamedModel>, Failure> {
+fn models(scenario: &Scenario, hinges: Option<Models>) -> Result<Vec<NamedModel>, Failure> {
     let own = match scenario.free_hinges {
-        Some(_) => Hinges::Free,
-        None => Hinges::Four,
+        Some(_) => Models::Free,
+        None => Models::Four,
     };
     let hinges = hinges.unwrap_or(own);
     let mut models: Vec<NamedModel> = Vec::new();
-    if hinges != Hinges::Free {
+    if hinges != Models::Free {
         let name = match scenario.structure {
             Structure::Arch(_) => "four_links",
             Structure::Column(_) => "column",
         };
         models.push((name, commands::model(scenario)?));
     }
-    if hinges != Hinges::Four {
+    if hinges != Models::Four {
         let steps = scenario.free_hinges.unwrap_or_default();
         let model = scenario.structure.free_hinges(steps);
         let model = model.map_err(|error| Failure::Input(error.to_string()))?;

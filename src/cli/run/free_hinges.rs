@@ -44,7 +44,7 @@ pub fn model(scenario: &Scenario) -> Result<FreeHinges, Failure> {
 /// Runs it, and says what happened.
 pub fn run(
     scenario: &Scenario,
-    place: Place,
+    place: &Place,
     options: Options,
     curves: Option<&mut Curves>,
 ) -> Result<String, Failure> {
@@ -55,7 +55,7 @@ pub fn run(
     let mut impacts = Notable::default();
     let (summary, spread, rows) = {
         let mut results = Results {
-            tables: Tables::new(&model, ground, &place, folder.as_mut())?,
+            tables: Tables::new(&model, ground, place, folder.as_mut())?,
             timeline: &mut timeline,
             impacts: &mut impacts,
             curves,
@@ -77,7 +77,7 @@ pub fn run(
         let path = folder.path().to_owned();
         folder.complete()?;
         let names = [JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY];
-        text += &written(&path, &place, rows, &names);
+        text += &written(&path, place, rows, &names);
     }
     Ok(text)
 }
