@@ -103,8 +103,8 @@ impl<W: Write> LandingsWriter<W> {
             .serialize((
                 self.rows,
                 time_s,
-                joints(&impact.closed, " "),
-                joints(&impact.opened, " "),
+                joints(&impact.closed),
+                joints(&impact.opened),
                 before_j,
                 after_j,
                 before_j - after_j,
@@ -121,14 +121,13 @@ impl<W: Write> LandingsWriter<W> {
     }
 }
 
-/// Numbers of the joints that hinges are at, with something between them.
-#[must_use]
-pub fn joints(hinges: &[Hinge], between: &str) -> String {
+/// Numbers of the joints that hinges are at, with spaces between.
+fn joints(hinges: &[Hinge]) -> String {
     let numbers = hinges.iter().filter_map(|hinge| match hinge {
         Hinge::Joint { joint, .. } => Some(joint.to_string()),
         Hinge::Section { .. } | Hinge::Toe(_) => None,
     });
-    numbers.collect::<Vec<_>>().join(between)
+    numbers.collect::<Vec<_>>().join(" ")
 }
 
 /// The summary of a run with free hinges as JSON.

@@ -24,9 +24,14 @@ use crate::scenario::{Ground, Scenario};
 /// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and of free hinges |
 /// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
 /// | `energy_j` | kinetic and potential, just after |
+///
+/// Rows of blocks have thousands of impacts, and bodies by the hundred: without names of bodies their columns are left
+/// out.
 pub struct EventsWriter<W: Write> {
     csv: csv::Writer<W>,
     rows: usize,
+    /// Whether there are columns by body.
+    by_body: bool,
 }
 
 impl<W: Write> EventsWriter<W> {
@@ -46,7 +51,11 @@ impl<W: Write> EventsWriter<W> {
         header.push("energy_j".to_owned());
         csv.write_record(header)
             .map_err(OutputError::csv(Self::WHAT))?;
-        Ok(Self { csv, rows: 0 })
+        Ok(Self {
+            csv,
+            rows: 0,
+            by_body: !bodies.is_empty(),
+        })
     }
 
     /// Writes a row.
@@ -54,7 +63,11 @@ impl<W: Write> EventsWriter<W> {
     /// # Errors
     /// When the system refuses, or a value is not finite.
     pub fn write(&mut self, event: &Event) -> Result<(), OutputError> {
-        let (rotations, rates) = (&event.rotations_rad[..], &event.rates_rad_s[..]);
+        let (rotations, rates) = if self.by_body {
+            (&event.rotations_rad[..], &event.rates_rad_s[..])
+        } else {
+            (&[][..], &[][..])
+        };
         finite("of a row of events.csv", &[event.time_s, event.energy_j])?;
         finite("of a row of events.csv", rotations)?;
         finite("of a row of events.csv", rates)?;

@@ -16,6 +16,8 @@ use crate::mechanics::geometry::ring::Edge;
 const COLUMNS_OF_ALL: usize = 16_000;
 /// Columns that one of them has at least.
 const LEAST_COLUMNS: usize = 200;
+/// Height of the row of a joint below which it is not divided.
+const NARROW_PX: f64 = 5.0;
 /// Columns of the joints: about one to a pixel.
 const JOINT_COLUMNS: usize = 800;
 
@@ -292,11 +294,19 @@ impl OpenJoints {
     }
 
     fn draw(&self, drawing: &mut Drawing, axes: &Axes, end_s: f64) {
+        #[expect(clippy::cast_precision_loss, reason = "few joints")]
+        let row_px = axes.frame.height / self.count as f64;
         for (kind, bit) in KINDS {
+            // Parts of rows that are too narrow would be pale.
+            let part = if row_px < NARROW_PX {
+                [-0.5, 0.5]
+            } else {
+                kind.part
+            };
             let mut path = String::new();
             for joint in 0..self.count {
                 #[expect(clippy::cast_precision_loss, reason = "few joints")]
-                let [low, high] = kind.part.map(|part| joint as f64 + part);
+                let [low, high] = part.map(|part| joint as f64 + part);
                 let is_open = |column: &usize| self.bits[column * self.count + joint] & bit != 0;
                 let mut columns = 0..self.starts_s.len();
                 while let Some(first) = columns.find(is_open) {

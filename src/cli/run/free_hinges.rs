@@ -10,8 +10,9 @@ use archrock::dynamics::free_hinges::{FreeHinges, HalfCycle};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::{Model as _, Recorder};
+use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::four_link::mechanism::Sway;
-use archrock::output::free_hinges::{JointsWriter, LandingsWriter, joints, summary};
+use archrock::output::free_hinges::{JointsWriter, LandingsWriter, summary};
 use archrock::output::overlay::Curves;
 use archrock::output::results::EventsWriter;
 use archrock::output::rotations::RotationsWriter;
@@ -152,7 +153,7 @@ impl<'a> Tables<'a> {
             };
             others = Some(Others {
                 joints: JointsWriter::new(joints, model.row().joints().len())?,
-                events: EventsWriter::new(events, &blocks)?,
+                events: EventsWriter::new(events, &[])?,
                 landings: LandingsWriter::new(landings)?,
             });
         }
@@ -277,13 +278,17 @@ fn words(
 ) -> String {
     let ground = scenario.ground_motion();
     let mut text = outcome(history);
-    for (which, notable) in [
-        ("first impact", &impacts.first),
-        ("hardest impact", &impacts.hardest),
-    ] {
-        if let Some((time_s, impact)) = notable {
-            let _ = writeln!(text, "  {which} at {time_s:.4} s: {}", landing(impact));
-        }
+    if let Some((time_s, impact)) = &impacts.first {
+        let _ = writeln!(text, "  first impact at {time_s:.4} s: {}", landing(impact));
+    }
+    if let Some((time_s, impact)) = &impacts.hardest
+        && impacts.hardest != impacts.first
+    {
+        let _ = writeln!(
+            text,
+            "  the one that takes most at {time_s:.4} s: {}",
+            landing(impact)
+        );
     }
     if let Some(run) = history.free_hinges.as_deref()
         && history.outcome != Outcome::NeverMoved
@@ -351,7 +356,7 @@ fn landing(impact: &Impact) -> String {
         (&impact.closed, "shuts", "shut"),
         (&impact.opened, "opens", "open"),
     ] {
-        let named = joints(hinges, ", ");
+        let named = joints(hinges);
         let _ = match hinges.len() {
             0 => Ok(()),
             1 => write!(text, "joint {named} {one}, "),
@@ -360,6 +365,25 @@ fn landing(impact: &Impact) -> String {
     }
     let _ = write!(text, "energy after/before {:.4}", impact.restitution);
     text
+}
+
+/// Numbers of the joints that hinges are at; neighbours as `3-7`.
+fn joints(hinges: &[Hinge]) -> String {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for hinge in hinges {
+        if let Hinge::Joint { joint, .. } = *hinge {
+            match runs.last_mut() {
+                Some((_, last)) if *last + 1 == joint => *last = joint,
+                _ => runs.push((joint, joint)),
+            }
+        }
+    }
+    let names = runs.into_iter().map(|(first, last)| match last - first {
+        0 => first.to_string(),
+        1 => format!("{first}, {last}"),
+        _ => format!("{first}-{last}"),
+    });
+    names.collect::<Vec<_>>().join(", ")
 }
 
 fn cycle(cycle: &HalfCycle) -> String {
@@ -377,6 +401,7 @@ fn sure(spread: &Spread) -> String {
     let percent = 100.0 * SAME_PEAK_RATIO;
     let same = spread.same_until_half_cycle;
     let _ = match (same, spread.parts_at_s) {
+        (1, None) => write!(text, ", peak of the only half cycle within {percent} %"),
         (_, None) => write!(text, ", peaks of all {same} half cycles within {percent} %"),
         (0, Some(_)) => write!(text, "; the first half cycles differ already"),
         (1, Some(time_s)) => write!(

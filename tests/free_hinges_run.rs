@@ -1,0 +1,474 @@
+//! `archrock run` with free hinges: its files, its words, the override, and what it refuses.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod program;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::dynamics::free_hinges::spread::Spread;
+use archrock::{Column, GroundMotion, Model as _, Pulse, Request};
+use program::{archrock, stderr};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Seven voussoirs under a pulse: rest within two seconds.
+const SEVEN: &str = "title = \"Seven\"\n[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\n\
+                     voussoirs = 7\n[ground.rectangular]\namplitude_g = -0.5336\nduration_s = 0.2\n";
+const SHAKEN_COLUMN: &str =
+    "height_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = -0.4\nduration_s = 0.3\n";
+
+/// What a run wrote and said.
+struct Results {
+    root: TempDir,
+    said: String,
+}
+
+impl Results {
+    /// Runs a scenario; results are in `out`.
+    fn of(scenario: &str, arguments: &[&str]) -> Self {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join("s.toml"), scenario).unwrap();
+        let all = [&["run", "s.toml", "--out", "out"], arguments].concat();
+        let output = archrock(root.path(), &all);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        Self { root, said }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.root.path().join("out").join(name)
+    }
+
+    fn summary(&self) -> Value {
+        summary(&self.path("summary.json"))
+    }
+
+    fn files(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path(folder)).unwrap();
+        let mut names: Vec<_> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+fn summary(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// A table: header and rows.
+struct Table {
+    header: Vec<String>,
+    rows: Vec<csv::StringRecord>,
+}
+
+impl Table {
+    fn read(path: &Path) -> Self {
+        let mut csv = csv::Reader::from_path(path).unwrap();
+        let header = csv.headers().unwrap().iter().map(str::to_owned).collect();
+        let rows = csv.records().map(Result::unwrap).collect();
+        Self { header, rows }
+    }
+
+    fn text(&self, row: usize, column: &str) -> &str {
+        let at = self.header.iter().position(|name| name == column).unwrap();
+        &self.rows[row][at]
+    }
+
+    fn number(&self, row: usize, column: &str) -> f64 {
+        self.text(row, column).parse().unwrap()
+    }
+
+    fn column(&self, column: &str) -> Vec<f64> {
+        let rows = 0..self.rows.len();
+        rows.map(|row| self.number(row, column)).collect()
+    }
+}
+
+fn free(scenario: &str) -> String {
+    format!("{scenario}[free_hinges]\n")
+}
+
+/// What a run that is refused says.
+fn refusal(scenario: &str, arguments: &[&str]) -> String {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("s.toml"), scenario).unwrap();
+    let output = archrock(root.path(), &[&["run", "s.toml"], arguments].concat());
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(!root.path().join("results").exists(), "{said}");
+    said
+}
+
+#[test]
+fn tables_of_a_row_fit_together() {
+    let results = Results::of(&free(SEVEN), &["--no-spread"]);
+    let names = [
+        "events.csv",
+        "history.svg",
+        "impacts.csv",
+        "joints.csv",
+        "rotations.csv",
+        "summary.json",
+    ];
+    assert_eq!(results.files(""), names);
+    let rotations = Table::read(&results.path("rotations.csv"));
+    let mut expected: Vec<String> = ["time_s", "ground_acceleration_m_s2", "phase", "state"]
+        .map(str::to_owned)
+        .to_vec();
+    expected.extend((1..=7).map(|block| format!("rotation_{block}_rad")));
+    expected.extend((1..=7).map(|block| format!("rate_{block}_rad_s")));
+    expected.extend(["open_joints", "friction_demand"].map(str::to_owned));
+    assert_eq!(rotations.header, expected);
+    let joints = Table::read(&results.path("joints.csv"));
+    assert_eq!(joints.header.len(), 1 + 2 * 8);
+    assert_eq!(
+        joints.header[..3],
+        ["time_s", "gap_0_intrados_m", "gap_0_extrados_m"]
+    );
+    assert_eq!(joints.column("time_s"), rotations.column("time_s"));
+
+    // A joint is open where one of its gaps is; the difference of gaps is that of the rotations.
+    let thickness_m = 0.15 * 10.0;
+    for row in 0..joints.rows.len() {
+        let mut open = 0;
+        for joint in 0..8 {
+            let [intrados_m, extrados_m] = ["intrados", "extrados"]
+                .map(|edge| joints.number(row, &format!("gap_{joint}_{edge}_m")));
+            assert!(intrados_m >= 0.0 && extrados_m >= 0.0);
+            open += usize::from(intrados_m > 0.0 || extrados_m > 0.0);
+            let rotation = |block: usize| match block {
+                1..=7 => rotations.number(row, &format!("rotation_{block}_rad")),
+                _ => 0.0,
+            };
+            let turn_rad = rotation(joint) - rotation(joint + 1);
+            assert!(((extrados_m - intrados_m) / thickness_m - turn_rad).abs() < 1e-9);
+        }
+        assert_eq!(rotations.text(row, "open_joints"), open.to_string());
+        assert_eq!(
+            open == 0,
+            rotations.text(row, "state") == "rest",
+            "row {row}"
+        );
+    }
+
+    let impacts = Table::read(&results.path("impacts.csv"));
+    let header = [
+        "impact",
+        "time_s",
+        "joints_shut",
+        "joints_opened",
+        "energy_before_j",
+        "energy_after_j",
+        "energy_taken_j",
+    ];
+    assert_eq!(impacts.header, header);
+    let summary = results.summary();
+    assert_eq!(summary["outcome"], "rest");
+    assert_eq!(summary["overturning_sway"], Value::Null);
+    assert_eq!(summary["impacts"], impacts.rows.len());
+    assert!(impacts.column("time_s").is_sorted());
+    let taken_j: f64 = impacts.column("energy_taken_j").iter().sum();
+    let all_j = summary["energy_taken_j"].as_f64().unwrap();
+    assert!((taken_j / all_j - 1.0).abs() < 1e-9, "{taken_j} {all_j}");
+    for row in 0..impacts.rows.len() {
+        assert!(impacts.number(row, "energy_after_j") <= impacts.number(row, "energy_before_j"));
+        for column in ["joints_shut", "joints_opened"] {
+            let joints = impacts.text(row, column).split_whitespace();
+            assert!(
+                joints
+                    .map(|joint| joint.parse::<usize>().unwrap())
+                    .is_sorted()
+            );
+        }
+    }
+    // Every impact is an event, and after the last one it rests.
+    let events = Table::read(&results.path("events.csv"));
+    assert_eq!(events.rows.len(), impacts.rows.len() + 1);
+    assert_eq!(events.text(events.rows.len() - 1, "kind"), "rest");
+    assert_eq!(events.text(0, "mechanism"), "");
+    assert_eq!(
+        events.header,
+        ["time_s", "phase", "kind", "sway", "mechanism", "energy_j"]
+    );
+
+    // Peaks are those of the half cycles, and at least those of the rows.
+    let cycles = summary["half_cycles"].as_array().unwrap();
+    let peaks = [8.4125e-3, 5.933e-3, 2.373e-3];
+    for (cycle, peak) in cycles.iter().zip(peaks) {
+        assert!((cycle["peak_rad"].as_f64().unwrap() / peak - 1.0).abs() < 2e-3);
+    }
+    assert_eq!(cycles[0]["sway"], "right");
+    assert_eq!(cycles[1]["sway"], "left");
+    for pair in cycles.windows(2) {
+        let [start_s, duration_s] =
+            ["start_s", "duration_s"].map(|key| pair[0][key].as_f64().unwrap());
+        assert!((start_s + duration_s - pair[1]["start_s"].as_f64().unwrap()).abs() < 1e-9);
+    }
+    assert_eq!(summary["largest_peak_rotation_rad"], cycles[0]["peak_rad"]);
+    let of_rows = rotations.column("rotation_5_rad");
+    let of_rows = of_rows
+        .iter()
+        .fold(0.0_f64, |most, angle| most.max(angle.abs()));
+    let peak_rad = summary["peak_rotation_5_rad"].as_f64().unwrap();
+    assert!(of_rows <= peak_rad && of_rows > 0.999 * peak_rad);
+    for side in ["right", "left"] {
+        let incipient_g = summary["incipient_acceleration_g"][side].as_f64().unwrap();
+        assert!((incipient_g - 0.370_010).abs() < 1e-6);
+    }
+    for key in [
+        "least_normal_n",
+        "largest_friction_demand",
+        "largest_friction_demand_time_s",
+        "energy_defect_ratio",
+        "closure_error_m",
+        "steps",
+        "iterations",
+        "relaxed",
+    ] {
+        assert!(summary[key].is_number(), "{key}: {}", summary[key]);
+    }
+    assert_eq!(summary.get("spread"), None);
+    assert!(summary["scenario"].get("impact").is_none());
+    for name in names {
+        let text = fs::read_to_string(results.path(name)).unwrap();
+        assert!(!text.contains("NaN") && !text.contains(",inf"), "{name}");
+    }
+}
+
+#[test]
+fn the_vertical_ground_has_a_column_and_the_end_of_an_overturning_is_an_event() {
+    let scenario = free(SEVEN).replace(
+        "amplitude_g = -0.5336",
+        "amplitude_g = -1.3\nvertical_amplitude_g = 0.2",
+    );
+    let results = Results::of(&scenario, &["--no-spread"]);
+    let rotations = Table::read(&results.path("rotations.csv"));
+    let last = rotations.header.last().unwrap();
+    assert_eq!(last, "vertical_acceleration_m_s2");
+    assert!((rotations.number(1, last) - 0.2 * 9.81).abs() < 1e-12);
+    let summary = results.summary();
+    assert_eq!(summary["outcome"], "overturned");
+    assert_eq!(summary["overturning_sway"], "right");
+    let events = Table::read(&results.path("events.csv"));
+    let end = events.rows.len() - 1;
+    assert_eq!(events.text(end, "kind"), "overturned");
+    assert!(summary["outcome_time_s"].as_f64().unwrap() <= events.number(end, "time_s"));
+    assert!(
+        results.said.contains("overturned to the right at"),
+        "{}",
+        results.said
+    );
+}
+
+#[test]
+fn the_picture_shows_every_block_and_which_joints_are_open() {
+    let results = Results::of(&free(SEVEN), &["--no-spread"]);
+    let picture = fs::read_to_string(results.path("history.svg")).unwrap();
+    for name in [
+        "ground", "1", "7", "intrados", "extrados", "energy", "right", "left",
+    ] {
+        assert!(picture.contains(&format!("data-name=\"{name}\"")), "{name}");
+    }
+    assert!(picture.contains(">Energy / barrier<"));
+    assert!(picture.contains(">block 5, which turns most<"));
+    // Of two drums no barrier is known.
+    let column = format!("[column]\ndrums = 2\n{SHAKEN_COLUMN}[free_hinges]\n");
+    let results = Results::of(&column, &["--no-spread"]);
+    let picture = fs::read_to_string(results.path("history.svg")).unwrap();
+    assert!(picture.contains(">Energy (J)<"));
+    assert!(picture.contains(">hinge at the left edge<"));
+    let joints = Table::read(&results.path("joints.csv"));
+    assert_eq!(joints.header.len(), 1 + 2 * 2);
+}
+
+#[test]
+fn what_half_and_double_steps_change_is_said_and_written() {
+    let results = Results::of(&free(SEVEN), &[]);
+    let summary = results.summary();
+    let spread = &summary["spread"];
+    for which in ["own", "half_steps", "double_steps"] {
+        assert_eq!(spread["outcomes"][which], "rest");
+    }
+    let same = spread["same_until_half_cycle"].as_u64().unwrap();
+    assert!(same >= 2, "{same}");
+    let cycles = spread["half_cycles"].as_array().unwrap();
+    assert!(cycles.len() as u64 > same);
+    for (index, cycle) in cycles.iter().enumerate() {
+        let [own, min, max] =
+            ["own", "min", "max"].map(|key| cycle["peak_rad"][key].as_f64().unwrap());
+        assert!(min <= own && own <= max);
+        assert_eq!(
+            summary["half_cycles"][index]["peak_rad"].as_f64(),
+            Some(own)
+        );
+        if (index as u64) < same {
+            assert!(max - min <= 0.01 * max);
+        }
+    }
+    // The first half cycle does not depend on steps.
+    let first = &cycles[0]["peak_rad"];
+    let ratio = first["max"].as_f64().unwrap() / first["min"].as_f64().unwrap();
+    assert!(ratio < 1.001, "{ratio}");
+    let same = format!("peaks of the first {same} half cycles within 1 %");
+    let said = &results.said;
+    assert!(
+        said.contains("half and double steps: the same outcome"),
+        "{said}"
+    );
+    assert!(said.contains(&same), "{said}");
+    let parts_s = spread["parts_at_s"].as_f64().unwrap();
+    assert!(
+        said.contains(&format!("from {parts_s:.4} s on they part")),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_spread_knows_other_outcomes() {
+    let column = Column::new(4.0, 0.8).unwrap();
+    let model = FreeHinges::of_column(&column).unwrap();
+    let pulse = |amplitude_m_s2| {
+        let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude_m_s2, 0.3, 0.0).unwrap();
+        model.simulate(&ground, &Request::default(), None).unwrap()
+    };
+    let (rests, falls) = (pulse(3.0), pulse(20.0));
+    let alike = Spread::new(&rests, &rests, &rests);
+    assert!(alike.same_outcome());
+    assert_eq!(alike.parts_at_s, None);
+    assert_eq!(alike.same_until_half_cycle, alike.half_cycles.len());
+    let other = Spread::new(&rests, &rests, &falls);
+    assert!(!other.same_outcome());
+    assert_eq!(other.same_until_half_cycle, 0);
+    assert_eq!(other.parts_at_s, Some(0.0));
+}
+
+#[test]
+fn hinges_override_the_scenario() {
+    let four = Results::of(SEVEN, &[]);
+    assert!(four.summary().get("evaluations").is_some());
+    // What the scenario chooses does not count where the command chooses.
+    let overridden = Results::of(&free(SEVEN), &["--hinges", "four"]);
+    for name in ["rotations.csv", "impacts.csv", "summary.json"] {
+        let read = |results: &Results| fs::read(results.path(name)).unwrap();
+        assert!(read(&four) == read(&overridden), "{name}");
+    }
+    let impact = "[impact]\nmodel = \"same_sections\"\n";
+    let free_of_four = Results::of(
+        &format!("{SEVEN}{impact}"),
+        &["--hinges", "free", "--no-spread"],
+    );
+    let said = &free_of_four.said;
+    assert!(
+        said.contains("[impact] is ignored: with free hinges"),
+        "{said}"
+    );
+    let chosen = Results::of(&free(SEVEN), &["--no-spread"]);
+    let read = |results: &Results| fs::read(results.path("rotations.csv")).unwrap();
+    assert!(read(&free_of_four) == read(&chosen));
+}
+
+#[test]
+fn both_models_stand_side_by_side_with_one_picture() {
+    let results = Results::of(SEVEN, &["--hinges", "both", "--no-spread"]);
+    assert_eq!(results.files(""), ["four", "free", "overlay.svg"]);
+    let outcome = |name: &str| summary(&results.path(name))["outcome"].clone();
+    assert_eq!(outcome("four/summary.json"), "rest");
+    assert_eq!(outcome("free/summary.json"), "rest");
+    let picture = fs::read_to_string(results.path("overlay.svg")).unwrap();
+    for name in ["ground", "four links", "free hinges"] {
+        assert!(picture.contains(&format!("data-name=\"{name}\"")), "{name}");
+    }
+    // One model after both: only its files are in the folder itself, and none of an earlier model.
+    let root = results.root.path();
+    for (hinges, joints) in [("free", true), ("four", false)] {
+        let arguments = ["run", "s.toml", "--out", "out", "--hinges", hinges];
+        assert_eq!(archrock(root, &arguments).status.code(), Some(0));
+        assert_eq!(results.path("joints.csv").exists(), joints);
+        assert!(!results.path("overlay.svg").exists());
+    }
+    let arguments = ["run", "s.toml", "--out", "out", "--hinges", "both"];
+    assert_eq!(archrock(root, &arguments).status.code(), Some(0));
+    assert_eq!(results.files(""), ["four", "free", "overlay.svg"]);
+}
+
+#[test]
+fn rotations_go_to_standard_output() {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("s.toml"), free(SEVEN)).unwrap();
+    let arguments = ["run", "s.toml", "--no-spread", "--rotations", "-"];
+    let output = archrock(root.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(!root.path().join("results").exists());
+    let table = String::from_utf8(output.stdout).unwrap();
+    let results = Results::of(&free(SEVEN), &["--no-spread"]);
+    let file = fs::read_to_string(results.path("rotations.csv")).unwrap();
+    assert!(table == file);
+}
+
+#[test]
+fn what_a_model_cannot_do_is_refused() {
+    let whole = SEVEN.replace("voussoirs = 7\n", "");
+    let said = refusal(&whole, &["--hinges", "free"]);
+    assert!(said.contains("voussoirs"), "{said}");
+    let said = refusal(&whole, &["--hinges", "both"]);
+    assert!(said.contains("voussoirs"), "{said}");
+    let drums = format!("[column]\ndrums = 3\n{SHAKEN_COLUMN}[free_hinges]\n");
+    let said = refusal(&drums, &["--hinges", "four"]);
+    assert!(said.contains("drums"), "{said}");
+    let thick = SEVEN
+        .replace("thickness_ratio = 0.15", "thickness_ratio = 0.6")
+        .replace("157.5", "60.0");
+    let said = refusal(&thick, &["--hinges", "four"]);
+    assert!(said.contains("too thick"), "{said}");
+    let said = refusal(&free(SEVEN), &["--dimensionless"]);
+    assert!(said.contains("--dimensionless"), "{said}");
+    let said = refusal(SEVEN, &["--hinges", "both", "--rotations", "-"]);
+    assert!(said.contains("--rotations"), "{said}");
+    let said = refusal(SEVEN, &["--hinges", "five"]);
+    assert!(
+        said.contains("[possible values: four, free, both]"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_column_of_one_block_moves_as_housner_s() {
+    let column = format!("[column]\n{SHAKEN_COLUMN}");
+    let results = Results::of(&column, &["--hinges", "both", "--no-spread"]);
+    let [four, free] = ["four", "free"].map(|model| {
+        let table = Table::read(&results.path(&format!("{model}/rotations.csv")));
+        let name = if model == "four" {
+            "rotation_rad"
+        } else {
+            "rotation_1_rad"
+        };
+        (table.column("time_s"), table.column(name))
+    });
+    let rows = 200;
+    assert_eq!(four.0[..rows], free.0[..rows]);
+    let peak_rad = four
+        .1
+        .iter()
+        .fold(0.0_f64, |most, angle| most.max(angle.abs()));
+    for (four_rad, free_rad) in four.1.iter().zip(&free.1).take(rows) {
+        assert!(
+            (four_rad - free_rad).abs() < 2e-4 * peak_rad,
+            "{four_rad} {free_rad}"
+        );
+    }
+    let [of_four, of_free] =
+        ["four", "free"].map(|model| summary(&results.path(&format!("{model}/summary.json"))));
+    let incipient_g = |of: &Value| of["incipient_acceleration_g"]["right"].as_f64().unwrap();
+    assert!((incipient_g(&of_four) - incipient_g(&of_free)).abs() < 1e-9);
+    let impacts =
+        ["four", "free"].map(|model| Table::read(&results.path(&format!("{model}/impacts.csv"))));
+    let kept =
+        |table: &Table| table.number(0, "energy_after_j") / table.number(0, "energy_before_j");
+    assert!((kept(&impacts[0]) - kept(&impacts[1])).abs() < 1e-9);
+    let restitution = (1.0 - 1.5 * 0.04 / 1.04_f64).powi(2);
+    assert!((kept(&impacts[1]) - restitution).abs() < 1e-9);
+}
