@@ -686,6 +686,19 @@ fn random_histories_do_not_fail() {
     assert!(worst < 1e-3, "energy {worst}");
 }
 
+/// Where blocks are flung about, the displacement that brings the ends of an arch together shuts corners of small gaps.
+#[test]
+fn the_ends_of_an_arch_meet_where_corners_shut_on_the_way() {
+    for (voussoirs, amplitude_g, duration_s) in [(7, -2.0, 0.4), (36, -2.0, 0.4), (36, -1.27, 0.6)]
+    {
+        let row = arch(157.5, 0.15, voussoirs, 10.0);
+        let settings = Settings::coarse(&row, GRAVITY, 10.0);
+        let run = run(&row, &push(amplitude_g, duration_s), &settings);
+        assert!(matches!(run.outcome, Outcome::Overturned { .. }));
+        assert!(run.closure_error_m < 1e-9, "{}", run.closure_error_m);
+    }
+}
+
 #[test]
 fn bad_arguments_are_refused() {
     let ring = ring(0.15, 157.5);

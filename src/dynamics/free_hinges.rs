@@ -35,6 +35,8 @@ const FALLEN_ENERGY_RATIO: f64 = 1e-3;
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
 /// Below this part of the thickness of a joint the closure error is left alone.
 const CLOSURE_RATIO: f64 = 1e-13;
+/// Passes in which it is taken up; one is enough unless corners shut on the way.
+const CLOSURE_PASSES: usize = 8;
 /// Sways below this part of the size do not count as a change of side.
 const SWAY_RATIO: f64 = 1e-9;
 /// Passes in which the step that ends at a landing is found.
@@ -915,15 +917,22 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Takes up the closure error by the open joints, in positions only, while that at least halves it.
+    /// Takes up the closure error by the open joints, in positions only, while that at least halves it. A corner that
+    /// shuts on the way stays shut, and the others take up the rest.
     fn close(&mut self) {
-        for _ in 0..3 {
+        // The error to come back to, where what follows does not halve it.
+        let mut sound_m = f64::INFINITY;
+        for _ in 0..CLOSURE_PASSES {
             let Some(closure) = self.placement.closure() else {
-                return;
+                break;
             };
-            let error = closure.error_m.norm();
-            if error <= CLOSURE_RATIO * self.thinnest || !error.is_finite() {
-                return;
+            let error_m = closure.error_m.norm();
+            if error_m <= 0.5 * sound_m {
+                if error_m <= CLOSURE_RATIO * self.thinnest {
+                    return;
+                }
+                sound_m = error_m;
+                self.backup.copy_from(&self.placement);
             }
             self.free.fill(Twist::ZERO);
             self.jumps.fill(Twist::ZERO);
@@ -933,19 +942,23 @@ impl<'a> Engine<'a> {
                 touching: &self.touching,
             };
             if !self.auxiliary.close(&self.placement, &closure, &load) {
-                return;
+                break;
             }
             self.change.fill([0.0; 2]);
             for (joint, rates) in self.auxiliary.open_joints() {
                 self.change[joint] = rates;
             }
-            self.backup.copy_from(&self.placement);
+            let shut = self.placement.shut_corners();
             let change = &self.change;
             self.placement.open(|joint| change[joint]);
-            if self.placement.closure_error() > 0.5 * error || self.placement.closure().is_none() {
-                self.placement.copy_from(&self.backup);
-                return;
+            let halved = self.placement.closure_error() <= 0.5 * sound_m;
+            if !halved && self.placement.shut_corners() <= shut {
+                break;
             }
+        }
+        let closed = self.placement.closure().is_some();
+        if sound_m < f64::INFINITY && !(closed && self.placement.closure_error() <= 0.5 * sound_m) {
+            self.placement.copy_from(&self.backup);
         }
     }
 

@@ -193,6 +193,13 @@ impl Placement {
         self.gaps_m[joint] == [0.0; 2]
     }
 
+    /// Number of corners that touch.
+    #[must_use]
+    pub fn shut_corners(&self) -> usize {
+        let corners = self.gaps_m.iter().flatten();
+        corners.filter(|gap| **gap == 0.0).count()
+    }
+
     /// Takes over the positions of another placement of the same row.
     pub fn copy_from(&mut self, other: &Self) {
         self.gaps_m.copy_from_slice(&other.gaps_m);
