@@ -502,7 +502,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     let refused = archrock(folder, &again);
     assert_eq!(refused.status.code(), Some(2));
     assert!(
-        stderr(&refused).contains("3 cases of this very study"),
+        stderr(&refused).contains("3 cases of this study"),
         "{}",
         stderr(&refused)
     );

@@ -477,7 +477,7 @@ fn strides_and_ends_can_be_chosen() {
     let arguments = "threshold s.toml --from 1 --to 2 --stride 0.25 --out r";
     let said = succeeds(folder, &arguments.split(' ').collect::<Vec<_>>());
     assert!(
-        said.contains("overturns at the least factor already"),
+        said.contains("overturns at the smallest factor already"),
         "{said}"
     );
     assert!(said.contains("survives from there on"), "{said}");
@@ -506,7 +506,7 @@ fn what_has_no_threshold_is_refused() {
     let falling = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.one_sine]\namplitude_g = 0.3\n\
                    vertical_amplitude_g = 0.5\nduration_s = 1.0\n";
     for (text, more, words) in [
-        (arch, "", "no ground motion"),
+        (arch, "", "needs a ground motion"),
         (&initial, "", "leave [initial] out"),
         (falling, "--from 3", "falls as fast as a free body"),
         (SCENARIO, "--from 3 --to 2", "`to = 2.0` is not allowed"),

@@ -179,7 +179,7 @@ pub enum SimulationError {
     Argument(#[from] ArgumentError),
     /// Nothing presses the structure on the ground.
     #[error(
-        "the ground falls as fast as a free body at {time_s:?} s, so that nothing presses the structure on it: \
+        "the ground falls as fast as a free body at {time_s:?} s and no longer carries the structure: \
          this model needs vertical accelerations above -1 g"
     )]
     FreeFall {

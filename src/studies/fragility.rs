@@ -89,16 +89,18 @@ pub struct Fragility {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoFit {
     /// An intensity without a finite logarithm.
-    #[error("an intensity of {intensity}: intensities are positive and finite")]
+    #[error("intensity {intensity}: must be positive and finite")]
     Intensity {
         /// The intensity.
         intensity: f64,
     },
     /// No cases at all.
-    #[error("there are no cases to fit a fragility curve to: run records at several intensities")]
+    #[error("no cases to fit a fragility curve to: run records at several intensities")]
     NoObservations,
     /// Every case survives.
-    #[error("none of {cases} cases overturns, up to an intensity of {highest}: add higher ones")]
+    #[error(
+        "none of {cases} cases overturns up to the intensity {highest}: add higher intensities"
+    )]
     NoneOverturned {
         /// Number of cases.
         cases: usize,
@@ -106,7 +108,7 @@ pub enum NoFit {
         highest: f64,
     },
     /// No case survives.
-    #[error("all {cases} cases overturn, down to an intensity of {lowest}: add lower ones")]
+    #[error("all {cases} cases overturn down to the intensity {lowest}: add lower intensities")]
     AllOverturned {
         /// Number of cases.
         cases: usize,
@@ -154,8 +156,8 @@ pub enum NoFit {
     /// The fraction grows, but so little, or within so narrow a range, that the parameters or their errors
     /// are beyond the range of numbers.
     #[error(
-        "the cases hardly tell how the fraction that overturns grows with the intensity, and the likeliest \
-         curve is beyond what can be computed; add intensities at which few and at which most cases overturn"
+        "the fraction that overturns hardly grows with the intensity, and the likeliest curve cannot be \
+         computed; add intensities at which few and at which most cases overturn"
     )]
     Undetermined,
 }

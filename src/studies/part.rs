@@ -90,7 +90,7 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
             format!(
-                "{text:?} is no part of a whole; allowed is i/n with 1 <= i <= n <= {MAX_SHARDS}, such as 2/4"
+                "{text:?} is not a part; must be I/N with 1 <= I <= N <= {MAX_SHARDS}, such as 2/4"
             )
         };
         let (index, count) = text.split_once('/').ok_or_else(wrong)?;
@@ -235,7 +235,7 @@ pub enum PartError {
         what: String,
     },
     /// The file has rows of something else.
-    #[error("{}: belongs to something else, with {difference}", path.display())]
+    #[error("{}: belongs to another study: {difference}", path.display())]
     Other {
         /// The file.
         path: PathBuf,
@@ -243,7 +243,7 @@ pub enum PartError {
         difference: String,
     },
     /// The file has some of the cases that are to be computed, and nobody asked to resume.
-    #[error("{}: has {done} cases of this very study, interrupted", path.display())]
+    #[error("{}: has {done} cases of this study, from an interrupted run", path.display())]
     Interrupted {
         /// The file.
         path: PathBuf,
@@ -281,7 +281,8 @@ fn read_lines(path: &Path) -> Result<(String, u64), PartError> {
         .rposition(|byte| *byte == b'\n')
         .map_or(0, |last| last + 1);
     bytes.truncate(complete);
-    let text = String::from_utf8(bytes).map_err(|_| unusable(path, "is not a part of a study"))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| unusable(path, "is not a part of a study (a .part file of archrock)"))?;
     Ok((text, complete as u64))
 }
 
@@ -296,7 +297,10 @@ fn header_of<'t>(
     };
     match serde_json::from_str::<Header>(first) {
         Ok(header) if header.program == env!("CARGO_PKG_NAME") => Ok(Some((header, lines))),
-        _ => Err(unusable(path, "is not a part of a study by this program")),
+        _ => Err(unusable(
+            path,
+            "is not a part of a study (a .part file of archrock)",
+        )),
     }
 }
 
@@ -312,13 +316,12 @@ fn rows_of<R: DeserializeOwned>(
             let what = format!("line {}: {what}; compute this part again", number + 2);
             unusable(path, what)
         };
-        let (index, row) =
-            from_line(line).ok_or_else(|| damaged("not as this program wrote it"))?;
+        let (index, row) = from_line(line).ok_or_else(|| damaged("damaged"))?;
         if !header.shard.has(index) || index >= header.cases {
-            return Err(damaged("a case that does not belong here"));
+            return Err(damaged("a case of another part"));
         }
         if rows.insert(index, row).is_some() {
-            return Err(damaged("a case for the second time"));
+            return Err(damaged("a case that appears twice"));
         }
     }
     Ok(rows)
@@ -491,13 +494,12 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
         }
     }
     let Some((mut header, rows)) = whole else {
-        return Err(unusable(Path::new("merge"), "no parts"));
+        return Err(unusable(Path::new("merge"), "no parts given"));
     };
     let count = header.shard.count;
     if let Some(first) = (1..=count).find(|index| !places.contains_key(index)) {
         let missing = count - places.len();
-        let what =
-            format!("goes with parts of which {missing} are missing: the first is {first}/{count}");
+        let what = format!("{missing} of {count} parts missing: the first is {first}/{count}");
         return Err(unusable(&paths[0], what));
     }
     header.shard = Shard::WHOLE;

@@ -30,12 +30,12 @@ pub enum NoSpectrum {
     FreeHinges,
     /// There is no pulse whose duration could vary.
     #[error(
-        "a spectrum needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]; its \
-         amplitude says to which side, and the durations and amplitudes are those of [spectrum]"
+        "a spectrum needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]; only \
+         the sign of its amplitude is used, durations and amplitudes are those of [spectrum]"
     )]
     NoPulse,
     /// There is no size to compare with.
-    #[error("the structure has no unstable equilibrium, and so no equivalent block")]
+    #[error("the structure has no unstable equilibrium, hence no equivalent block")]
     NoBlock,
     /// There is no such arch.
     #[error(transparent)]

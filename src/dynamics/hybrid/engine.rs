@@ -183,8 +183,8 @@ pub enum EngineError {
     Integrator(#[from] IntegratorError),
     /// Too many events.
     #[error(
-        "more than {most} transitions by {time_s:?} s: the motion chatters; raise rest_energy_ratio, so that \
-         it rests earlier, or shorten duration_s"
+        "more than {most} transitions by {time_s:?} s: the motion chatters; raise rest_energy_ratio to bring \
+         it to rest earlier, or shorten duration_s"
     )]
     TooManyTransitions {
         /// Time in seconds.

@@ -77,7 +77,7 @@ pub struct Joint {
 /// The projection could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
-    "the motion that keeps the most energy was not found with {joints} joints ({reason}): try another number"
+    "the motion of largest restitution was not found with {joints} joints ({reason}): try another number of joints"
 )]
 pub struct ProjectionError {
     joints: usize,

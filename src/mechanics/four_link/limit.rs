@@ -32,7 +32,7 @@ pub enum LimitError {
     /// ring, or two of its hinges merge into one section that would part altogether.
     #[error(
         "the arch stands, but does not start to rock as a four-link mechanism: the best one moves at \
-         {acceleration_g:.4} g and statics does not confirm it; another mechanism governs, as in thick shallow rings"
+         {acceleration_g:.4} g, and the thrust line does not confirm it; another mechanism governs, as in thick shallow arches"
     )]
     OtherMechanism {
         /// Acceleration of the best four-link mechanism found, in units of gravity: not below the true
@@ -40,7 +40,7 @@ pub enum LimitError {
         acceleration_g: f64,
     },
     /// The ring stands, and no push moves it as a four-link mechanism.
-    #[error("the arch stands, and no horizontal push moves it as a four-link mechanism")]
+    #[error("the arch stands, but no horizontal push moves it as a four-link mechanism")]
     NoPush,
 }
 
