@@ -9,15 +9,15 @@
 //! fragility function fitting using dynamic structural analysis", Earthquake Spectra 31(1), 2015): for
 //! every case the logarithm of the probability of what it did, added up. With `eta = a + b ln x`,
 //! `b = 1 / beta` and `theta = exp(-a / b)` this is probit regression. Its log-likelihood is concave in
-//! `a` and `b`, so that Newton's method finds the one maximum from anywhere, and whether there is one can
-//! be told beforehand: in one dimension there is none if and only if the cases of either kind lie on two
+//! `a` and `b`, so Newton's method finds the one maximum from anywhere, and whether there is one is
+//! known beforehand: in one dimension there is none if and only if the cases of either kind lie on two
 //! sides of a point (Silvapulle, "On the existence of maximum likelihood estimators for the binomial
 //! response models", Journal of the Royal Statistical Society B 43, 1981).
 //!
-//! # How certain
+//! # Uncertainty
 //!
 //! There are two sets of standard errors. The plain one is the inverse of the observed information, and
-//! takes all cases for independent. Those of one record are not: a record that is harmless for its
+//! assumes all cases independent. Those of one record are not: a record that is harmless for its
 //! intensity is so at every scale, and adding levels without adding records adds less than it seems. The
 //! other set allows for any dependence within a record (Liang and Zeger, "Longitudinal data analysis using
 //! generalized linear models", Biometrika 73, 1986): the scores of the likelihood are summed record by
@@ -115,7 +115,7 @@ pub enum NoFit {
         /// Lowest intensity.
         lowest: f64,
     },
-    /// One intensity does not tell how the fraction grows.
+    /// One intensity does not show how the fraction grows.
     #[error(
         "{overturned} of {cases} cases overturn, but all at the intensity {intensity}: add lower and higher \
          ones"

@@ -1,9 +1,9 @@
-//! The file of a study at work: what it computes, and the rows that it has so far.
+//! The part file of a running study: what it computes, and the rows so far.
 //!
-//! The first line says to what the rows belong; every other line is a checksum, the index of a case and its row,
-//! with commas between. Header and rows are JSON, whose numbers read back as the same `f64`. Lines are only ever
-//! appended, so what a killed program leaves is good up to its last complete line, and the checksums tell if
-//! anything else happened to them. A study that is computed in shards, on several machines, is joined from such
+//! The first line is a header that identifies the study; every other line is a checksum, the index of a case
+//! and its row, with commas between. Header and rows are JSON, whose numbers read back as the same `f64`. Lines
+//! are only ever appended, so the file of a killed program is valid up to its last complete line, and the
+//! checksums reveal any other damage. A study computed in shards, on several machines, is merged from such
 //! files.
 
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ const MAX_SHARDS: usize = 100_000;
 
 /// Which of the cases: the one whose number, counted from 1, is `index` and every `count`-th after.
 ///
-/// Neighbouring cases cost alike, so dealing them out like cards gives all shards the same work.
+/// Neighbouring cases cost about the same, so dealing them out in turn gives all shards equal work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Shard {
@@ -104,7 +104,7 @@ impl FromStr for Shard {
     }
 }
 
-/// To what rows belong: equal headers, but for the shard, are of one study.
+/// Identifies the study of the rows: headers of one study differ in the shard only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the program.
@@ -156,7 +156,7 @@ impl Header {
     fn other_input(&self, other: &Self) -> Option<String> {
         fn only<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
             let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
-            // The checksum is no news to anybody.
+            // The checksum means nothing to the user.
             Some(input.rsplit_once(' ').map_or(input, |(name, _)| name))
         }
         match (only(self, other), only(other, self)) {
@@ -360,8 +360,8 @@ impl PartFile {
     /// computed again. The folder must be there.
     ///
     /// # Errors
-    /// When the system refuses, another program is at work on it, a part to `resume` is of something else, or
-    /// one that was interrupted would be lost.
+    /// When the system refuses, another program is at work on it, a part to `resume` belongs to another study, or
+    /// an interrupted one would be lost.
     pub fn open<R: DeserializeOwned>(
         path: &Path,
         header: &Header,
@@ -373,7 +373,7 @@ impl PartFile {
             .append(true)
             .open(path)
             .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
-        // Where files cannot be locked, two programs are not kept apart.
+        // Where files cannot be locked, two programs may write to the same file.
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
         }
@@ -381,7 +381,7 @@ impl PartFile {
         let rows = match header_of(path, &text)? {
             None => Rows::new(),
             Some((found, lines)) => {
-                // Work is not thrown away unasked; a header alone is none.
+                // Rows are not thrown away unasked; a header alone may be.
                 let begun = resume || lines.clone().next().is_some();
                 if begun && let Some(difference) = header.other(&found) {
                     let path = path.to_owned();
@@ -432,7 +432,7 @@ impl PartFile {
         written.map_err(self.cannot("write"))
     }
 
-    /// Takes it away, when its rows have found their place.
+    /// Removes it, once the results are complete.
     ///
     /// # Errors
     /// When the system refuses.
@@ -454,7 +454,7 @@ impl PartFile {
 /// Joins the parts of a study: its header as a whole, and all its rows in the order of their cases.
 ///
 /// # Errors
-/// When a file is no part, or they do not belong together, or do not make up the whole, or their rows are not of
+/// When a file is not a part, the parts do not belong to one study or are not all there, or their rows are not of
 /// this type.
 pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>), PartError> {
     let mut whole: Option<(Header, Rows<R>)> = None;
