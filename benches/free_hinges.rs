@@ -93,7 +93,8 @@ fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
     });
 }
 
-/// All four hinges of a long arch shut at once, from the active set of the motion before: the worst that a step does.
+/// All four hinges of a long arch shut at once, from the active set of the motion before: the worst that a step
+/// does.
 #[divan::bench(args = [36, 200])]
 fn full_closure(bencher: Bencher, voussoirs: usize) {
     let ring = Ring::new(0.15, PI).expect("a ring");

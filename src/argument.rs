@@ -1,4 +1,4 @@
-//! Arguments that constructors refuse.
+//! The error of an argument out of range.
 
 use std::ops::RangeInclusive;
 
@@ -16,7 +16,7 @@ pub struct ArgumentError {
     pub allowed: String,
 }
 
-/// The value, if it lies in the range. NaN lies in none.
+/// The value, if it is in the range; NaN never is.
 pub(crate) fn within(
     argument: &'static str,
     value: f64,
@@ -36,7 +36,7 @@ pub(crate) fn within(
     })
 }
 
-/// The value, if it lies above the first bound and not above the second. NaN does not.
+/// The value, if it is above the first bound and at most the second; NaN never is.
 pub(crate) fn above(
     argument: &'static str,
     value: f64,

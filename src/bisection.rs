@@ -7,9 +7,9 @@ use std::convert::Infallible;
 pub(crate) enum Width {
     /// Until no number lies between its ends.
     Rounding,
-    /// At most so wide, or until no number lies between.
+    /// Until it is at most this wide, or no number lies between its ends.
     Absolute(f64),
-    /// At most so wide as a part of its upper end, or until no number lies between.
+    /// Until it is at most this wide relative to its upper end, or no number lies between its ends.
     Relative(f64),
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn bisect(
     ends
 }
 
-/// As [`bisect`], for a property that cannot always be told.
+/// As [`bisect`], for a property whose evaluation may fail.
 ///
 /// # Errors
 /// Those of the property.

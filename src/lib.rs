@@ -11,10 +11,10 @@
 //!   ([`mechanics::arch`]) and the column ([`mechanics::column`]); the arch as four-link mechanisms
 //!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms that impacts lead
 //!   through, and what certifies it.
-//! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), what can be shaken ([`dynamics::model`]) and
-//!   its history ([`dynamics::history`]); mechanisms with one degree of freedom at a time
+//! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
+//!   their histories ([`dynamics::history`]); mechanisms with one degree of freedom at a time
 //!   ([`dynamics::hybrid`]).
-//! - [`scenario`]: what is to be done, as a TOML file. [`studies`]: many histories, and what they say together.
+//! - [`scenario`]: what to simulate, as a TOML file. [`studies`]: many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
 //! The arch of the paper, and the history of the README:
@@ -47,7 +47,7 @@
 //! # Sources
 //!
 //! "The paper" in this documentation is *Impacts analysis in the rocking of masonry circular arches*; it is
-//! quoted by its equation numbers. What is derived here instead says so.
+//! quoted by its equation numbers. Where a result is derived here instead, the documentation says so.
 
 #[macro_use]
 mod named;

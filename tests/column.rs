@@ -275,8 +275,8 @@ fn rectangular_pulses_overturn_fat_columns_by_the_energy_integral() {
 ///
 /// It lifts off at `t_0` with `x sin(w t_0) = 1`. With `y = theta / alpha - 1` the motion is
 /// `y'' = p^2 (y + x sin(w t))`, so that `v = y' + p y`, the share of the growing exponential, obeys
-/// `v' = p v + p^2 x sin(w t)` from `v(t_0) = -p`. The column overturns if `v >= 0` at the end `pi / w`, that is if
-/// `p x int_{t_0}^{pi/w} exp(-p (t - t_0)) sin(w t) dt >= 1`; the integral is elementary and leaves
+/// `v' = p v + p^2 x sin(w t)` from `v(t_0) = -p`. The column overturns if `v >= 0` at the end `pi / w`, that
+/// is if `p x int_{t_0}^{pi/w} exp(-p (t - t_0)) sin(w t) dt >= 1`; the integral is elementary and leaves
 ///
 /// `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) >= b`.
 #[test]
@@ -398,7 +398,7 @@ fn too_many_events_are_an_error_that_says_what_to_change() {
     .events[5]
         .time_s;
     assert!(
-        matches!(error, EngineError::TooManyTransitions { time_s, most: 5 } if time_s == sixth_s)
+        matches!(error, EngineError::TooManyTransitions { time_s, max_transitions: 5 } if time_s == sixth_s)
     );
     let message = error.to_string();
     for word in [

@@ -243,7 +243,7 @@ fn limit_and_impact_name_the_toes() {
     fs::write(&path, "[column]\nheight_m = 1\nwidth_m = 2\n").unwrap();
     let impact: Value = serde_json::from_str(&archrock(&arguments, &path)).unwrap();
     assert_eq!(impact, json!({ "impacts": [] }));
-    assert!(archrock(&["impact"], &path).contains("it stops"));
+    assert!(archrock(&["impact"], &path).contains("the structure stops"));
     let flat = "[column]\nheight_m = 1\nwidth_m = 2\n[initial]\nsway = 'left'\nrotation_rad = 0.3";
     let folder = results(flat, &[]);
     let (_, impacts) = table(&folder.path().join("impacts.csv"));

@@ -137,11 +137,11 @@ fn errors_name_the_number_and_what_is_allowed() {
     };
     assert_eq!(
         record(&[], &[], 0.0),
-        "`horizontal` has 0 samples: it must have at least 2"
+        "`horizontal` has too few samples (0): it must have at least 2"
     );
     assert_eq!(
         record(&[], &[(0.0, 1.0)], 0.0),
-        "`vertical` has 1 samples: it must have at least 2"
+        "`vertical` has too few samples (1): it must have at least 2"
     );
     assert_eq!(
         record(&[(0.0, 1.0), (0.5, f64::NAN)], &[], 0.0),

@@ -239,8 +239,9 @@ fn the_least_thickness_of_a_semicircle_is_milankovitchs() {
     );
 }
 
-/// By how much the moments of the best thrust line under gravity are on the right side of all edge points: a linear
-/// programme over the three components of the reaction at the left springing. Not above one; `None` when the solver fails.
+/// By how much the moments of the best thrust line under gravity are on the right side of all edge points: a
+/// linear programme over the three components of the reaction at the left springing. Not above one; `None` when
+/// the solver fails.
 fn room_for_a_line(ring: &Ring, sections: &[f64]) -> Option<f64> {
     let (mut rows, mut bounds) = (vec![[0.0, 0.0, 0.0, 1.0]], vec![1.0]);
     for &section in sections {
@@ -272,7 +273,8 @@ fn room_for_a_line(ring: &Ring, sections: &[f64]) -> Option<f64> {
 
 #[test]
 fn arches_that_stand_are_not_said_to_fall() {
-    // The search for mechanisms alone took both for arches that cannot stand, or for ones with no thickness that does.
+    // The search for mechanisms alone took both for arches that cannot stand, or for ones with no thickness
+    // that does.
     let found = incipient(&ring(0.05, 141.8), HingeSites::Anywhere).unwrap();
     assert!((found.acceleration_g - 0.047_379).abs() < 1e-6);
     let least = least_thickness_ratio(141.8_f64.to_radians(), HingeSites::Anywhere, 1e-6).unwrap();

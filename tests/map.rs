@@ -410,7 +410,11 @@ fn parts_that_do_not_belong_together_are_refused() {
     }
     succeed(path, &["map", "s.toml", "--shard", "1/4", "--out", "a"]);
     let (one, two) = ("a/map-1-of-2.part", "a/map-2-of-2.part");
-    refuse(path, &["merge", one], &["1 are missing: the first is 2/2"]);
+    refuse(
+        path,
+        &["merge", one],
+        &["1 of 2 parts missing: the first is 2/2"],
+    );
     refuse(
         path,
         &["merge", one, two, one],
@@ -779,7 +783,7 @@ fn a_map_needs_a_pulse_and_a_column_has_no_radius() {
     let column =
         "[column]\nheight_m = 4\nwidth_m = 1\n[ground.ricker]\namplitude_g = 1\nduration_s = 1\n";
     let errors = Scenario::parse(&format!("{column}{map}"), "s.toml").unwrap_err();
-    assert!(errors.to_string().contains("this is a column"), "{errors}");
+    assert!(errors.to_string().contains("not to a column"), "{errors}");
     let errors = Scenario::parse(&format!("{SEMICIRCLE}{map}"), "s.toml").unwrap_err();
     assert!(
         errors.to_string().contains("[map] needs a pulse"),
@@ -790,7 +794,7 @@ fn a_map_needs_a_pulse_and_a_column_has_no_radius() {
     let path = folder.path();
     fs::write(path.join("s.toml"), SEMICIRCLE).unwrap();
     refuse(path, &["map", "s.toml"], &["no [map]", "amplitude_g = {"]);
-    refuse(path, &["map", "s.toml", "--shard", "3/2"], &["1 <= i <= n"]);
+    refuse(path, &["map", "s.toml", "--shard", "3/2"], &["1 <= I <= N"]);
     let shapes = "[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
                   [map]\nthickness_ratio = [0.15]\nembrace_deg = [180]\n";
     fs::write(path.join("s.toml"), format!("{SEMICIRCLE}{shapes}")).unwrap();

@@ -38,7 +38,8 @@ fn grounds() -> impl Iterator<Item = GroundMotion> {
         ])
 }
 
-/// Each hinge joins two neighbours among the bodies and the ground on both sides: where it opens is a point of both.
+/// Each hinge joins two neighbours among the bodies and the ground on both sides: where it opens is a point of
+/// both.
 #[track_caller]
 fn assert_joined(sample: &Sample, point: impl Fn(Hinge) -> Vector2<f64>) {
     let ground = [Pose::UNDEFORMED];

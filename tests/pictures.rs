@@ -468,8 +468,8 @@ fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
 }
 
 /// Rectangles of a path of cells: left, right, top, bottom.
-/// Bands that are wide enough to be seen have the sway of the events between which they lie; hops that are not share
-/// one shade, which is neither.
+/// Bands that are wide enough to be seen have the sway of the events between which they lie; hops that are not
+/// share one shade, which is neither.
 #[test]
 fn bands_have_the_sway_of_the_events() {
     let folder = tempfile::tempdir().unwrap();

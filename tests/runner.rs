@@ -192,7 +192,8 @@ fn scenario(text: &str) -> Scenario {
     Scenario::parse(text, "s.toml").unwrap()
 }
 
-/// The reason of a failure goes from the row through the part to what the program says, with the others as they are.
+/// The reason of a failure goes from the row through the part to what the program says, with the others as they
+/// are.
 #[test]
 fn failed_cells_keep_their_reason() {
     let folder = tempfile::tempdir().unwrap();

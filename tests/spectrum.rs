@@ -9,7 +9,7 @@ use std::path::Path;
 
 use archrock::output::spectrum::draw;
 use archrock::studies::runner::Study as _;
-use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow, Shaken};
+use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow, StructureKind};
 use archrock::{GroundMotion, MechanismModel, Outcome, Pulse, Request, Scenario, Sway};
 use program::{archrock, stderr};
 
@@ -44,7 +44,7 @@ fn without_impact(kind: &str, alpha: f64, p_t: &[f64]) -> Vec<f64> {
     let given = points.iter().zip(p_t);
     given
         .map(|(point, p_t)| {
-            assert!(point.structure == Shaken::Column && point.p_t == *p_t);
+            assert!(point.structure == StructureKind::Column && point.p_t == *p_t);
             // It is beyond what was tried.
             assert_eq!(point.minimum, None);
             point.no_impact_over_incipient.unwrap()
@@ -164,7 +164,9 @@ fn the_equivalent_column_has_the_a_l_and_the_p_of_the_arch() {
             let points = OverturningSpectrum::new(&scenario).unwrap();
             // The defaults.
             assert_eq!(points.count(), 100);
-            let [(Shaken::Arch, arch), (Shaken::Column, column)] = points.structures() else {
+            let [(StructureKind::Arch, arch), (StructureKind::Column, column)] =
+                points.structures()
+            else {
                 panic!("an arch and a column");
             };
             assert!((incipient_g(&**arch) / incipient_g(&**column) - 1.0).abs() < 1e-14);
@@ -502,7 +504,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     let refused = archrock(folder, &again);
     assert_eq!(refused.status.code(), Some(2));
     assert!(
-        stderr(&refused).contains("3 cases of this very study"),
+        stderr(&refused).contains("3 cases of this study"),
         "{}",
         stderr(&refused)
     );

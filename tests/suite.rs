@@ -420,7 +420,7 @@ fn parts_make_the_same_files_where_the_records_are_not() {
     let damaged = read(&folder.join(&parts[0])).replace("\"mirrored\":false", "\"mirrored\":true");
     write(folder, &parts[0], &damaged);
     merge.pop();
-    assert!(refused(folder, &merge).contains("not as this program wrote it"));
+    assert!(refused(folder, &merge).contains("damaged"));
 }
 
 #[test]
@@ -452,13 +452,13 @@ fn other_records_are_not_resumed_with() {
     fs::write(&record, original.replace(sample, "1.234567E-02")).unwrap();
     let said = refused(folder, &arguments);
     assert!(
-        said.contains("with other contents of records/wave-2.at2"),
+        said.contains("other contents of records/wave-2.at2"),
         "{said}"
     );
     fs::write(&record, &original).unwrap();
     fs::copy(&record, folder.join("records/wave-3.at2")).unwrap();
     let said = refused(folder, &arguments);
-    assert!(said.contains("with no records/wave-3.at2"), "{said}");
+    assert!(said.contains(": no records/wave-3.at2"), "{said}");
 }
 
 #[test]

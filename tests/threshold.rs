@@ -52,8 +52,8 @@ fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
     GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
 }
 
-/// Slender column, rectangular pulse `(a, t)`: `cosh(p t) = 1 + 1 / (2 x (x - 1))`, `x = a / (g alpha)`, solved for
-/// `x`. A finite slenderness changes that by a small multiple of its square, 1e-4 here.
+/// Slender column, rectangular pulse `(a, t)`: `cosh(p t) = 1 + 1 / (2 x (x - 1))`, `x = a / (g alpha)`, solved
+/// for `x`. A finite slenderness changes that by a small multiple of its square, 1e-4 here.
 #[test]
 fn rectangular_pulses_overturn_slender_columns_from_housners_amplitude_on() {
     let alpha: f64 = 0.01;
@@ -76,8 +76,8 @@ fn rectangular_pulses_overturn_slender_columns_from_housners_amplitude_on() {
     }
 }
 
-/// Amplitudes in g from which a step pair overturns within the first half cycle, by an independent integration. After
-/// impacts there may be bands below.
+/// Amplitudes in g from which a step pair overturns within the first half cycle, by an independent integration.
+/// After impacts there may be bands below.
 #[test]
 fn step_pairs_overturn_seven_voussoirs_without_impact_from_the_known_amplitudes_on() {
     let arch = seven_voussoirs();
@@ -111,8 +111,8 @@ fn overturns(model: &dyn Model, ground: &GroundMotion, end_s: f64, factor: f64) 
     matches!(summary.outcome, Outcome::Overturned(_))
 }
 
-/// Strong cosine pulses throw the arch the other way before it can fall: an island that is safe, between bands. Plain
-/// histories at the ends, just beyond them and in the middle say the same.
+/// Strong cosine pulses throw the arch the other way before it can fall: an island that is safe, between bands.
+/// Plain histories at the ends, just beyond them and in the middle say the same.
 #[test]
 fn safe_islands_of_cosine_pulses_are_gaps_between_bands() {
     let arch = semicircle();
@@ -156,8 +156,8 @@ fn factor_times_amplitude_counts() {
     assert_eq!(a.gaps.iter().map(doubled).collect::<Vec<_>>(), b.gaps);
 }
 
-/// Where vertical motion is so strong that nothing presses the column on the ground there is no history, and what is
-/// known ends there.
+/// Where vertical motion is so strong that nothing presses the column on the ground there is no history, and
+/// what is known ends there.
 #[test]
 fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
     let column = Column::new(4.0, 0.8).unwrap();
@@ -207,7 +207,7 @@ impl Model for Rule {
         let overturns = (self.0)(ground.peaks_m_s2(f64::INFINITY).x);
         let failure = EngineError::TooManyTransitions {
             time_s: 1.0,
-            most: 1,
+            max_transitions: 1,
         };
         let outcome = match overturns.ok_or(failure)? {
             true => Outcome::Overturned(Sway::Left),
@@ -477,7 +477,7 @@ fn strides_and_ends_can_be_chosen() {
     let arguments = "threshold s.toml --from 1 --to 2 --stride 0.25 --out r";
     let said = succeeds(folder, &arguments.split(' ').collect::<Vec<_>>());
     assert!(
-        said.contains("overturns at the least factor already"),
+        said.contains("overturns at the smallest factor already"),
         "{said}"
     );
     assert!(said.contains("survives from there on"), "{said}");
@@ -506,7 +506,7 @@ fn what_has_no_threshold_is_refused() {
     let falling = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.one_sine]\namplitude_g = 0.3\n\
                    vertical_amplitude_g = 0.5\nduration_s = 1.0\n";
     for (text, more, words) in [
-        (arch, "", "no ground motion"),
+        (arch, "", "needs a ground motion"),
         (&initial, "", "leave [initial] out"),
         (falling, "--from 3", "falls as fast as a free body"),
         (SCENARIO, "--from 3 --to 2", "`to = 2.0` is not allowed"),

@@ -13,7 +13,7 @@ use super::{Failure, commands, open_folder, results_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario file (TOML): its embrace angle, voussoirs and impact model count.
+    /// Scenario file (TOML): its embrace angle, voussoirs and impact model are used.
     scenario: PathBuf,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
@@ -27,19 +27,19 @@ const TABLE: &str = "chart.csv";
 /// Embrace angles charted beside that of the scenario, in degrees.
 const EMBRACES_DEG: [f64; 5] = [180.0, 170.0, 157.5, 140.0, 120.0];
 
-/// Thickness ratios of a curve, between the least that stands and the largest charted.
+/// Thickness ratios of a curve, from the thinnest arch that stands to the thickest charted.
 const THICKNESSES: u32 = 24;
 
 /// Largest thickness ratio charted, unless the scenario's is larger.
-const LARGEST_THICKNESS_RATIO: f64 = 0.3;
+const MAX_THICKNESS_RATIO: f64 = 0.3;
 
 pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = Scenario::read(&arguments.scenario)?;
     let Structure::Arch(arch) = &scenario.structure else {
-        let message = "chart is of arches of all shapes, and this is a column";
+        let message = "chart is for arches only; the scenario has a column";
         return Err(Failure::Input(message.to_owned()));
     };
-    // Refuses, with its reasons, an arch that has no results of its own.
+    // An arch without results of its own is refused, with the reason.
     commands::model(&scenario)?;
     let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
     let mut folder = open_folder(&path, &[PICTURE, TABLE])?;
@@ -49,7 +49,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         embraces_deg.sort_by(|a, b| b.total_cmp(a));
     }
     let sites = arch.sites();
-    let largest = LARGEST_THICKNESS_RATIO.max(arch.thickness_ratio());
+    let largest = MAX_THICKNESS_RATIO.max(arch.thickness_ratio());
     let shapes: Vec<(f64, f64)> = embraces_deg
         .into_iter()
         .flat_map(|embrace_deg| {

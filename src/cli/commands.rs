@@ -29,7 +29,7 @@ pub fn check(path: &Path) -> Result<(), Failure> {
 pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Failure> {
     let scenario = Scenario::read(path)?;
     if let Some(plot) = plot {
-        let arch = arch(&scenario, "--plot draws")?;
+        let arch = arch(&scenario, "--plot is")?;
         write_picture(plot, &pictures::limit(arch.chain()))?;
     }
     let model = model(&scenario)?;
@@ -40,13 +40,13 @@ pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Fai
     }
 }
 
-/// The arch of a scenario, for what `does` with arches only.
-pub fn arch(scenario: &Scenario, does: &str) -> Result<FourLinkArch, Failure> {
+/// The arch of a scenario; the error for a column begins with `what`, subject and verb.
+pub fn arch(scenario: &Scenario, what: &str) -> Result<FourLinkArch, Failure> {
     match &scenario.structure {
         Structure::Arch(arch) => FourLinkArch::new(arch.clone(), scenario.impact)
             .map_err(|error| Failure::Input(error.to_string())),
         Structure::Column(_) => Err(Failure::Input(format!(
-            "{does} arches only, and this is a column: leave it out"
+            "{what} for arches only; the scenario has a column"
         ))),
     }
 }
@@ -102,14 +102,14 @@ fn limit_text(model: &dyn MechanismModel, gravity_m_s2: f64) -> String {
     }
     let _ = write!(
         text,
-        "\nunstable equilibrium of this first mechanism under gravity alone, swaying right, at a rotation of\n  \
-         {} rad (anticlockwise);\nmechanisms that follow after impacts have their own\n",
+        "\nunstable equilibrium of this first mechanism under gravity alone, swaying right, at rotations of\n  \
+         {} rad (anticlockwise);\nthe mechanisms after impacts have their own\n",
         by_body(&model.bodies(), &model.critical_rotations_rad()),
     );
     if let Some(blocks) = model.equivalent(gravity_m_s2) {
         let _ = writeln!(
             text,
-            "\nthe free-standing block of the same A_L, slenderness alpha {:.6} rad, that moves alike",
+            "\nequivalent free-standing block of the same A_L, slenderness alpha {:.6} rad",
             blocks.slenderness_rad,
         );
         for (where_to, block) in [

@@ -28,34 +28,34 @@ use super::{Failure, Format, print};
 pub struct Arguments {
     /// Scenario file (TOML).
     scenario: PathBuf,
-    /// How many impacts to print.
+    /// Number of impacts to print.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     count: u16,
-    /// The impact that --models, --certificate, --line and --plot speak of, by the mechanism that it leads to.
+    /// The impact for --models, --certificate, --line and --plot, numbered from 1.
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     link: u16,
-    /// Put the impact models side by side.
+    /// Compare the impact models.
     #[arg(long)]
     models: bool,
-    /// Compare with the most energy that any admissible motion keeps, with any number of hinges.
+    /// Compare with the largest restitution of any admissible motion, with any number of hinges.
     #[arg(long)]
     certificate: bool,
-    /// Equal parts into which --certificate cuts a ring without voussoirs [default: 720].
+    /// Number of equal parts into which --certificate cuts an arch without voussoirs [default: 720].
     #[arg(long, value_name = "N", requires = "certificate", value_parser = clap::value_parser!(u16).range(12..=10_000))]
     joints: Option<u16>,
-    /// Write the impulse line to this file (CSV), or instead of all else to standard output with `-`.
+    /// Write the impulse line to this CSV file; `-` prints it instead of the chain.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
-    /// Draw the impact as well, as SVG: mechanisms, bodies, impulse line.
+    /// Also draw the impact to this SVG file: mechanisms, bodies, impulse line.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// How to print.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
 impl Arguments {
-    /// Whether something is asked that only arches have.
+    /// Whether an option for arches only is given.
     fn of_arches_only(&self) -> bool {
         self.models || self.certificate || self.line.is_some() || self.plot.is_some()
     }
@@ -82,18 +82,15 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
                 Format::Text => print(&chain_text(&scenario, &*model, count)),
             };
         }
-        _ => commands::arch(
-            &scenario,
-            "--models, --certificate, --line and --plot speak of",
-        )?,
+        _ => commands::arch(&scenario, "--models, --certificate, --line and --plot are")?,
     };
     let chosen = || choose(&arch, arguments.link.into());
     if let Some(path) = &arguments.line {
         let others = arguments.models || arguments.certificate || arguments.plot.is_some();
         if path == Path::new("-") && others {
             return Err(Failure::Input(
-                "--line - takes all of standard output: leave --models, --certificate and --plot out, or \
-                 give --line a file"
+                "--line - prints the impulse line only: drop --models, --certificate and --plot, or give \
+                 --line a file"
                     .to_owned(),
             ));
         }
@@ -105,7 +102,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(plot) = &arguments.plot {
         let picture = pictures::impact(arch.chain(), chosen()?.index).ok_or_else(|| {
             Failure::Input(format!(
-                "--plot: impact {} stops the arch, so that there is no mechanism after it to draw",
+                "--plot: impact {} stops the arch; there is no mechanism after it to draw",
                 arguments.link
             ))
         })?;
@@ -149,7 +146,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
 fn choose(arch: &FourLinkArch, index: usize) -> Result<Chosen<'_>, Failure> {
     let before = arch.chain().link(index - 1).ok_or_else(|| {
         Failure::Input(format!(
-            "--link {index}: the arch stops at an impact before that; ask for an earlier one"
+            "--link {index}: an earlier impact stops the arch; give a smaller number"
         ))
     })?;
     Ok(Chosen {
@@ -162,13 +159,13 @@ fn choose(arch: &FourLinkArch, index: usize) -> Result<Chosen<'_>, Failure> {
 fn write_line(path: &Path, arch: &FourLinkArch, chosen: &Chosen<'_>) -> Result<(), Failure> {
     let after = chosen.after.ok_or_else(|| {
         Failure::Input(format!(
-            "--line: no mechanism can follow impact {}, so that it has no impulse line",
+            "--line: no mechanism can follow impact {}, so it has no impulse line",
             chosen.index
         ))
     })?;
     let line = after.impulse_line.as_ref().ok_or_else(|| {
         Failure::Input(
-            "--line: there is no impulse line where the restitution coefficient is prescribed; \
+            "--line: a prescribed restitution coefficient has no impulse line; \
              choose another impact model in the scenario"
                 .to_owned(),
         )
@@ -182,7 +179,7 @@ fn write_line(path: &Path, arch: &FourLinkArch, chosen: &Chosen<'_>) -> Result<(
     let name = path.file_name().and_then(|name| name.to_str());
     let (Some(name), false) = (name, path.exists() && !path.is_file()) else {
         return Err(Failure::Input(format!(
-            "--line {}: is not the name of a file that could be replaced; use - for standard output",
+            "--line {}: not a regular file; use - for standard output",
             path.display()
         )));
     };
@@ -230,7 +227,7 @@ fn certify(
     let (ring, sites) = (arch.chain().ring(), arch.chain().sites());
     if let (HingeSites::Voussoirs(count), Some(_)) = (sites, joints) {
         return Err(Failure::Input(format!(
-            "--joints: the arch has {count} voussoirs, and the joints are theirs; leave it out"
+            "--joints: the arch has {count} voussoirs, whose joints are used; leave it out"
         )));
     }
     let joints = joints.map_or(DEFAULT_JOINTS, usize::from);
@@ -265,7 +262,10 @@ fn chain_text(scenario: &Scenario, model: &dyn MechanismModel, count: usize) -> 
     text.push('\n');
     for index in 0..=count {
         let Some(restitution) = model.restitution_after(index) else {
-            let _ = writeln!(text, "{index:>6}  no mechanism can follow: it stops");
+            let _ = writeln!(
+                text,
+                "{index:>6}  no mechanism can follow: the structure stops"
+            );
             break;
         };
         let restitution = match index {
@@ -336,9 +336,9 @@ fn impulses_text(arch: &FourLinkArch, count: usize) -> String {
         }
         text.push('\n');
     }
-    text += "\nimpulse line: eccentricity e (0.5 t is the edge), least normal impulse N in the same unit,\n\
+    text += "\nimpulse line: eccentricity e (0.5 t is the edge), smallest normal impulse N in the same unit,\n\
              largest ratio of tangential impulse T to N, each with its section in degrees\n\n\
-             impact      |e|/t   section      least N   section      |T|/N   section\n";
+             impact      |e|/t   section        min N   section      |T|/N   section\n";
     for (index, line) in lines() {
         let extremes = line.extremes_from_left(arch.chain().sites(), output::sway(index));
         // Both are infinite where there is tension.
@@ -377,7 +377,7 @@ fn models_text(
     models: &[(ImpactModel, Option<Impact>)],
 ) -> String {
     let mut text = format!(
-        "\nimpact models side by side, impact {index}\n\n\
+        "\nimpact models compared, impact {index}\n\n\
          model                    r   {:>12}{:>12}{:>12}{:>12}   impulse line\n",
         "A", "B", "C", "D"
     );
@@ -385,7 +385,7 @@ fn models_text(
     for (model, impact) in models {
         let _ = write!(text, "{:<16}", model.name());
         let Some(impact) = impact else {
-            text += "  finds no mechanism that could follow\n";
+            text += "  no mechanism can follow\n";
             continue;
         };
         let line = impact.impulse_line.as_ref().map_or("none", |line| {
@@ -411,7 +411,7 @@ fn certificate_text(
     let gap = projection.restitution - four_link;
     let sway = output::sway(chosen.index);
     let mut text = format!(
-        "\ncertificate of impact {}: the most energy that any motion keeps that opens joints and closes none\n\
+        "\ncertificate of impact {}: largest restitution of any motion that opens joints and closes none\n\
          (any number of hinges; {} joints)\n\n\
          r, four hinges, model {:<16} {four_link:>12.8}\n\
          r, any number of hinges                {:>12.8}\n\
@@ -428,7 +428,7 @@ fn certificate_text(
             writeln!(
                 text,
                 "The impulse line of the four hinges is compressive and inside the ring: no admissible motion\n\
-                 keeps more energy, the four hinges are certified."
+                 keeps more energy, so the four hinges are certified."
             )
         } else if extremes.normal.value <= 0.0 {
             writeln!(
@@ -446,7 +446,7 @@ fn certificate_text(
                 if gap > 1e-6 {
                     "by the gap above"
                 } else {
-                    "which these joints are too few to show"
+                    "but these joints are too few to show it"
                 }
             )
         };

@@ -15,7 +15,7 @@ use super::suite;
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The parts of one study, all of them.
+    /// All parts of one study.
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
     /// Folder for the results [default: that of the first part].
@@ -47,7 +47,7 @@ pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             suite::merge(&header.scenario, rows, folder, quiet)
         }
         study => Err(Failure::Input(format!(
-            "parts of a study that this program does not know: {study:?}"
+            "unknown study {study:?}: merge with the version of archrock that wrote the parts"
         ))),
     }
 }

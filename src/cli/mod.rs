@@ -27,7 +27,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
 struct Arguments {
-    /// Say nothing but errors on standard error.
+    /// Print only errors on standard error.
     #[arg(long, global = true)]
     quiet: bool,
     #[command(subcommand)]
@@ -38,33 +38,33 @@ struct Arguments {
 enum Command {
     /// Simulate the time history of a scenario and write it as CSV and JSON.
     Run(run::Arguments),
-    /// Print the incipient rocking acceleration, the mechanism on both sides, and the equivalent block.
+    /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
     Limit {
         /// Scenario file (TOML).
         scenario: PathBuf,
-        /// How to print.
+        /// Output format.
         #[arg(long, value_enum, default_value_t)]
         format: Format,
-        /// Draw the mechanism and the thrust line as well, as SVG.
+        /// Also draw the mechanism and the thrust line to this SVG file.
         #[arg(long, value_name = "FILE")]
         plot: Option<PathBuf>,
     },
-    /// Print the chain of mechanisms that impacts lead through, with the impulses, and what certifies it.
+    /// Print the mechanisms after successive impacts, their restitution and impulses.
     Impact(impact::Arguments),
-    /// Chart incipient acceleration and restitution over thickness, for several embrace angles.
+    /// Chart the incipient acceleration and the restitution against thickness for several embrace angles.
     Chart(chart::Arguments),
-    /// Simulate the history of every cell of a map and draw what overturns: see [map] in the scenario.
+    /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
     Map(map::Arguments),
-    /// Find the least pulse that overturns, over size, for an arch and its equivalent column: see [spectrum] in
-    /// the scenario.
+    /// Find the weakest pulse that overturns, against size, for a structure and its equivalent column: see
+    /// [spectrum] in the scenario.
     Spectrum(spectrum::Arguments),
-    /// Shake with every record of a suite at every level and draw the fragility: see [suite] in the scenario.
+    /// Run every record of a suite at every level and fit a fragility curve: see [suite] in the scenario.
     Suite(suite::Arguments),
-    /// Find the factors on the ground motion at which the structure overturns, and the safe gaps between them.
+    /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them.
     Threshold(threshold::Arguments),
-    /// Join the parts of a study that were computed with --shard.
+    /// Merge the parts of a study computed with --shard.
     Merge(merge::Arguments),
-    /// Check a scenario and print it with every default resolved.
+    /// Check a scenario and print it with every default written out.
     Check {
         /// Scenario file (TOML).
         scenario: PathBuf,
@@ -77,7 +77,7 @@ enum Format {
     /// For people.
     #[default]
     Text,
-    /// For programs, with all digits.
+    /// For programs, with full precision.
     Json,
 }
 
@@ -87,7 +87,7 @@ enum Failure {
     Input(String),
     /// The work failed: exit code 1.
     Work(String),
-    /// Whoever read the output has gone: no failure.
+    /// The reader of the output closed the pipe: no failure.
     ClosedPipe,
 }
 
@@ -144,7 +144,7 @@ pub fn main() -> ExitCode {
         Err(Failure::Work(message)) => (1, message),
         Err(Failure::Input(message)) => (2, message),
     };
-    // Nobody is left to be told when standard error fails.
+    // When standard error fails there is nowhere to report it.
     let _ = writeln!(io::stderr(), "error: {message}");
     ExitCode::from(code)
 }
@@ -155,7 +155,7 @@ fn results_folder(out: Option<&Path>, scenario: &Path) -> PathBuf {
     out.map_or_else(own, Path::to_owned)
 }
 
-/// Opens the folder for results that go to the place named by `--out`.
+/// Opens the folder for results; a failure suggests `--out`.
 fn open_folder(path: &Path, names: &[&str]) -> Result<Folder, Failure> {
     Folder::open(path, names)
         .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))

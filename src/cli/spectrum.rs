@@ -78,7 +78,7 @@ fn finish(
     Ok(())
 }
 
-/// How many points came to what, and what is not certain about them.
+/// Counts the points by outcome, and says what is uncertain.
 fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
     let count = |wanted: fn(Option<usize>) -> bool| {
         let impacts = rows
@@ -87,7 +87,7 @@ fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
         impacts.filter(|impacts| wanted(*impacts)).count()
     };
     let mut text = format!(
-        "{} points: the least that overturns does so without impact at {}, after impacts at {}",
+        "{} points: the weakest pulse that overturns does so without impact at {}, after impacts at {}",
         rows.len(),
         count(|impacts| impacts == Some(0)),
         count(|impacts| impacts > Some(0)),
@@ -96,7 +96,7 @@ fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
     if let Some(last) = spectrum.over_incipient().last()
         && none > 0
     {
-        text += &format!("; at {none} nothing up to {last} A_L overturns");
+        text += &format!("; at {none} no pulse up to {last} A_L overturns");
     }
     let rocking: usize = rows.iter().map(|row| row.still_rocking).sum();
     if rocking > 0 {
@@ -107,7 +107,7 @@ fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
     let failures: Vec<&String> = rows.iter().flat_map(|row| &row.failures).collect();
     if let Some(first) = failures.first() {
         let failed = failures.len();
-        text += &format!("; {failed} histories failed; the first that failed: {first}");
+        text += &format!("; {failed} histories failed; the first: {first}");
     }
     text
 }

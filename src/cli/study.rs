@@ -19,7 +19,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, P
 
 use super::Failure;
 
-/// What all long work can be told.
+/// Options of every study.
 #[derive(clap::Args)]
 pub struct Options {
     /// Scenario file (TOML).
@@ -27,13 +27,13 @@ pub struct Options {
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// How many threads work [default: as many as there are processors].
+    /// Number of threads [default: number of processors].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Go on where an interrupted run stopped, if there is one.
+    /// Continue an interrupted run, if there is one.
     #[arg(long)]
     resume: bool,
-    /// Compute one part of n only, into a file that `archrock merge` joins with the others.
+    /// Compute only part I of N, into a file for `archrock merge`.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
 }
@@ -84,7 +84,7 @@ impl From<PartError> for Failure {
                 ": remove it, or choose another folder with --out".to_owned()
             }
             PartError::Interrupted { .. } => {
-                ": go on with --resume, or remove it to start over".to_owned()
+                ": continue with --resume, or remove it to start over".to_owned()
             }
             PartError::Incomplete { shard, .. } => {
                 format!(": finish it with --shard {shard} --resume")
@@ -115,7 +115,7 @@ impl Options {
         super::results_folder(self.out.as_deref(), &self.scenario)
     }
 
-    /// The failure with the name of the scenario file.
+    /// The failure, prefixed with the name of the scenario file.
     pub fn about_scenario(&self, failure: Failure) -> Failure {
         match failure {
             Failure::Input(message) => {
@@ -145,11 +145,11 @@ impl Options {
         let mut display = None;
         let computed = runner.rows_in(study, task, |progress| {
             let display = display.get_or_insert_with(|| Display::new(progress, quiet));
-            // All rows so far are in the file, and none is being written: the program may end here.
+            // All rows so far are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.bar.abandon();
                 say(&format!(
-                    "interrupted: {} of {} cases are done; go on with --resume",
+                    "interrupted: {} of {} cases are done; continue with --resume",
                     progress.done, progress.all
                 ));
                 process::exit(INTERRUPTED_CODE);
@@ -179,9 +179,9 @@ impl Options {
 /// Whether Ctrl-C was pressed.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// On Ctrl-C: ends the work between two lines of its file. Pressed again, it ends the program wherever it is.
+/// On Ctrl-C: ends the work between two lines of its file; on a second Ctrl-C, at once.
 fn listen_to_interrupts() {
-    // Without the handler Ctrl-C ends the program as well; it then does so without a word.
+    // Without the handler Ctrl-C still ends the program, without a message.
     let _ = ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             process::exit(INTERRUPTED_CODE);
@@ -189,10 +189,10 @@ fn listen_to_interrupts() {
     });
 }
 
-/// As shells tell of a program that Ctrl-C ended.
+/// The exit code of shells for a program ended by Ctrl-C.
 const INTERRUPTED_CODE: i32 = 130;
 
-/// Writes what a study was of.
+/// Writes the summary of a study: its scenario and number of cases.
 pub fn write_summary(
     mut file: impl io::Write,
     scenario: &Scenario,
@@ -203,16 +203,16 @@ pub fn write_summary(
         .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))
 }
 
-/// Says something to a person.
+/// Prints a line on standard error.
 pub fn say(text: &str) {
-    // Nobody is left to be told when standard error fails.
+    // When standard error fails there is nowhere to report it.
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// How far the work is: a bar on a terminal, a line a minute elsewhere.
+/// Progress: a bar on a terminal, a line a minute elsewhere.
 pub struct Display {
     bar: ProgressBar,
-    /// When the last line was said, if lines are.
+    /// When the last line was printed; `None` when no lines are.
     said: Option<Instant>,
 }
 

@@ -30,19 +30,19 @@ pub struct Arguments {
     /// Model of motion [default: free if the scenario has [free_hinges], else four].
     #[arg(long, value_enum)]
     hinges: Option<Models>,
-    /// The least factor on the ground motion.
+    /// Smallest factor on the ground motion.
     #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
     from: f64,
-    /// The largest factor.
+    /// Largest factor.
     #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().last())]
     to: f64,
-    /// How much larger a factor is than the one before, as a part of it: what is narrower may be missed.
+    /// Relative step from one factor to the next; narrower bands and gaps may be missed.
     #[arg(long, value_name = "PART", default_value_t = Factors::default().stride())]
     stride: f64,
-    /// How many threads work [default: as many as there are processors].
+    /// Number of threads [default: number of processors].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// How to print.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -142,14 +142,14 @@ fn models(scenario: &Scenario, hinges: Option<Models>) -> Result<Vec<NamedModel>
     Ok(models)
 }
 
-/// Whether there is something to be scaled.
+/// Checks that the scenario has a ground motion to scale, and starts from rest.
 fn check(scenario: &Scenario) -> Result<(), &'static str> {
     if scenario.initial.is_some() {
         return Err("the histories of a threshold start from rest: leave [initial] out");
     }
     if scenario.ground.is_none() {
         return Err(
-            "the scenario has no ground motion whose threshold could be found: give it a table such as\n\n\
+            "a threshold needs a ground motion: give a table such as\n\n\
              [ground.one_cosine]\n\
              amplitude_g = 0.3\n\
              duration_s = 0.5",
@@ -235,15 +235,15 @@ fn bands(text: &mut String, peak_g: f64, threshold: &Threshold) {
     if first.from_end == RangeEnd::Sampled {
         let _ = writeln!(
             text,
-            "  overturns at the least factor already: a lower --from finds where that begins"
+            "  overturns at the smallest factor already: a smaller --from finds where this band begins"
         );
     }
     for band in &threshold.bands {
         let _ = write!(text, "  overturns from factor {}", at(band.from));
         let _ = match (band.to_end, gap_after(threshold, band)) {
-            (RangeEnd::Sampled, _) => writeln!(text, " on"),
+            (RangeEnd::Sampled, _) => writeln!(text, " up to the largest factor"),
             (RangeEnd::Unknown, _) => {
-                writeln!(text, " to {}; what follows is not known", at(band.to))
+                writeln!(text, " to {}; not known beyond", at(band.to))
             }
             (RangeEnd::Edge, None) => writeln!(text, " to {}; survives from there on", at(band.to)),
             (RangeEnd::Edge, Some(gap)) => {
@@ -260,15 +260,15 @@ fn gap_after<'a>(threshold: &'a Threshold, band: &FactorRange) -> Option<&'a Fac
     gaps.find(|gap| gap.from > band.to)
 }
 
-/// What is not certain about it.
+/// What is uncertain about the bands.
 fn doubts(text: &mut String, threshold: &Threshold) {
     let falls = |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
     let samples = &threshold.samples;
     if let Some(first) = samples.iter().find(falls) {
         let _ = writeln!(
             text,
-            "  from factor {} on the ground falls as fast as a free body at some time, which this model does \
-             not tell of",
+            "  from factor {} on, the ground falls as fast as a free body at some time, which this model does \
+             not cover",
             rounded(first.factor)
         );
     }

@@ -1,4 +1,4 @@
-//! A history: what happened, and when, as any model of motion tells it.
+//! The history of a motion: samples, events and a summary, the same for every model.
 
 use std::ops::ControlFlow;
 
@@ -16,13 +16,13 @@ use crate::mechanics::geometry::pose::Pose;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// The structure never left the rest.
+    /// The structure never moved.
     NeverMoved,
     /// It moved and came to rest.
     Rest,
     /// It overturned, to this side.
     Overturned(Sway),
-    /// It was still moving when the time was over.
+    /// It was still moving at the end of the simulation.
     StillRocking,
 }
 
@@ -42,11 +42,11 @@ impl Outcome {
 /// What a structure is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// It is undeformed, and the ground carries it.
+    /// It is at rest, undeformed.
     Rest,
-    /// It moves, swayed to this side.
+    /// It rocks, swayed to this side.
     Rocking(Sway),
-    /// It is lost, to this side.
+    /// It has overturned, to this side.
     Overturned(Sway),
 }
 
@@ -102,7 +102,7 @@ pub struct Sample {
     pub poses: Vec<Pose>,
     /// The hinges that are open, from left to right.
     pub hinges: Vec<OpenHinge>,
-    /// What the internal forces ask of the sections.
+    /// Thrust excess and friction demand of the sections.
     pub demand: Demand,
     /// Kinetic and potential energy, in J.
     pub energy_j: f64,
@@ -119,18 +119,18 @@ pub struct Sample {
 named! {
     /// What an event is.
     pub enum EventKind {
-        /// The ground lifts a structure at rest off.
+        /// The structure starts to move from rest.
         Uplift = "uplift",
         /// Hinges close, and others open.
         Impact = "impact",
         /// Hinges close, and the structure comes to rest.
         Rest = "rest",
-        /// The structure is lost.
+        /// The structure has overturned.
         Overturned = "overturned",
     }
 }
 
-/// An event of a history, and the state that it leads to.
+/// An event of a history, and the state just after.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// Instant in seconds.
@@ -139,7 +139,7 @@ pub struct Event {
     pub kind: EventKind,
     /// What the structure does from here on.
     pub state: State,
-    /// Impacts since it last left the rest, which is the index of its mechanism; `None` at rest.
+    /// Impacts since uplift, which is the index of its mechanism; `None` at rest.
     pub mechanism: Option<usize>,
     /// Rotations of the bodies.
     pub rotations_rad: Vec<f64>,
@@ -147,14 +147,14 @@ pub struct Event {
     pub rates_rad_s: Vec<f64>,
     /// Kinetic and potential energy just after, in J.
     pub energy_j: f64,
-    /// The impact, where the event is one: also where it leads to rest.
+    /// The impact, where the event is one, also one that leads to rest.
     pub impact: Option<Impact>,
 }
 
 /// What an impact did.
 ///
-/// The mechanism after is the one that the impact leads to, with the motion that it would keep, also where that
-/// is so little that the structure comes to rest.
+/// The mechanism after is the one that the impact leads to, with its rates just after, even where these are so
+/// small that the structure comes to rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Impact {
     /// Sway of the mechanism that closed.
@@ -185,13 +185,13 @@ impl Impact {
     }
 }
 
-/// What a history comes to.
+/// Summary of a history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// How it ended.
     pub outcome: Outcome,
-    /// When that was decided: the last outward passage of the unstable equilibrium, the last coming to
-    /// rest, or the end of the simulation.
+    /// When: the last outward passage of the unstable equilibrium, the last time it came to rest, or the end of
+    /// the simulation.
     pub outcome_time_s: f64,
     /// When the simulation ended.
     pub end_s: f64,
@@ -203,23 +203,23 @@ pub struct Summary {
     /// alone overturns. `None` where it is not known.
     pub peak_over_critical: Option<f64>,
     /// Largest difference between the energy of the structure and its initial energy plus the work of
-    /// the ground minus what the impacts took, over the energy barrier of the first mechanism.
+    /// the ground minus the losses at impacts, over the energy barrier of the first mechanism.
     pub energy_defect_ratio: f64,
     /// The demands over all samples, if any were made; of a structure that overturns, over those before
     /// it passes the unstable equilibrium for the last time.
     pub thrust: Option<ThrustRecord>,
     /// Work done by the integrator: of a row of blocks, its systems of equations, and its steps.
     pub cost: Cost,
-    /// What only a row of blocks can tell.
+    /// Quantities of a row of blocks only.
     pub free_hinges: Option<Box<Run>>,
 }
 
-/// A history with all that was recorded of it.
+/// A history with all its samples and events.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
     /// Names of the bodies, as of [`Model::bodies`](super::model::Model::bodies).
     pub bodies: Vec<String>,
-    /// What it comes to.
+    /// Its summary.
     pub summary: Summary,
     /// The state at every output step and at the end.
     pub samples: Samples,
@@ -265,7 +265,7 @@ pub struct Samples {
     pub hinges: Vec<OpenHinge>,
     /// Where the hinges of each sample begin.
     pub first_hinge: Vec<usize>,
-    /// What the internal forces ask of the sections.
+    /// Thrust excess and friction demand of the sections.
     pub demand: Vec<Demand>,
     /// Kinetic and potential energies, in J.
     pub energy_j: Vec<f64>,
@@ -346,7 +346,7 @@ impl Samples {
     }
 }
 
-/// Keeps all samples and events.
+/// Collects all samples and events.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Recording {
     pub(super) samples: Samples,

@@ -1,4 +1,4 @@
-//! Motion in time: the ground, what can be shaken, its history, and the models of motion.
+//! Motion in time: ground motion, models of motion and their histories.
 pub mod free_hinges;
 pub mod ground;
 pub mod history;

@@ -1,4 +1,4 @@
-//! What can be shaken: the seam between a model of motion and everything that uses it.
+//! The trait of every model of motion: the seam between models and everything that uses them.
 
 use std::fmt::Debug;
 use std::ops::ControlFlow;
@@ -15,12 +15,12 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
 use crate::mechanics::four_link::mechanism::Sway;
 
-/// Whatever stands on the ground and can be shaken.
+/// A structure under ground motion, as a model of its motion.
 ///
-/// A model is chosen once a history; its equation of motion is its own affair, and is not called through this
+/// The trait is called once per history; the equation of motion is evaluated inside the model, not through this
 /// trait.
 pub trait Model: Debug + Send + Sync {
-    /// Names of its bodies from left to right, in the order of all lists by body; a single body has an empty
+    /// Names of its bodies from left to right, the order of all lists by body; a single body has an empty
     /// name.
     fn bodies(&self) -> Vec<String>;
 
@@ -28,8 +28,8 @@ pub trait Model: Debug + Send + Sync {
     /// `None` if no push moves it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64>;
 
-    /// Its motion on moving ground. Samples and events go to the recorder as they happen; without one, none are
-    /// made, which is what studies do.
+    /// Its motion on moving ground. Samples and events go to the recorder as they happen; without a recorder none
+    /// are made, as in studies.
     ///
     /// # Errors
     /// When the request is not possible, or the motion cannot be computed.
@@ -60,7 +60,7 @@ pub trait Model: Debug + Send + Sync {
     }
 }
 
-/// A model that moves as one mechanism with one degree of freedom at a time: what only such a model can tell.
+/// A model that moves as one mechanism with one degree of freedom at a time, and what only such a model has.
 pub trait MechanismModel: Model {
     /// Restitution coefficient of the impact that leads to the mechanism after so many impacts, 1 for the first;
     /// `None` when an impact before it stops the structure.
@@ -90,13 +90,13 @@ pub trait MechanismModel: Model {
     ) -> Result<Option<Sway>, SimulationError>;
 }
 
-/// The least rotation that a structure can be released from: the energy of a lesser one may vanish in rounding.
+/// Smallest rotation that a structure can be released from: the energy of a smaller one may vanish in rounding.
 pub(crate) const MIN_RELEASE_RAD: f64 = 1e-100;
 
 /// Samples that a history may have, as in a scenario.
 const MAX_SAMPLES: f64 = 1e7;
 
-/// What is to be simulated, and how exactly.
+/// What is to be simulated, and how accurately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
     /// Acceleration of gravity.
@@ -174,12 +174,12 @@ impl Request {
 /// Why a motion could not be computed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SimulationError {
-    /// The request has a number that is not allowed.
+    /// A number of the request is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
-    /// Nothing presses the structure on the ground.
+    /// The ground falls away under the structure.
     #[error(
-        "the ground falls as fast as a free body at {time_s:?} s, so that nothing presses the structure on it: \
+        "the ground falls as fast as a free body at {time_s:?} s and no longer carries the structure: \
          this model needs vertical accelerations above -1 g"
     )]
     FreeFall {
@@ -194,9 +194,9 @@ pub enum SimulationError {
     FreeHinges(#[from] FreeHingeError),
 }
 
-/// Takes what happens in a history. To break ends the history there.
+/// Receives the samples and events of a history. Breaking ends the history there.
 ///
-/// Samples come in the order of time, and so do events; the last sample before an event may come after it.
+/// Samples arrive in order of time, and so do events; the last sample before an event may arrive after it.
 pub trait Recorder {
     /// A sample: one at every multiple of the output step from zero on, and a last one at the end.
     fn sample(&mut self, _sample: &Sample) -> ControlFlow<()> {

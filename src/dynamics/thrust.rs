@@ -1,19 +1,20 @@
-//! How far a run can be trusted: the line of thrust along a history.
+//! The thrust line along a history: how far the four-link assumption holds.
 
 use crate::mechanics::chain::Demand;
 
-/// Largest demands of a history, and how much of its rocking keeps the line of thrust (almost) inside.
+/// Largest thrust excess and friction demand of a history, and the share of its rocking time in which the thrust
+/// line stays (almost) inside.
 ///
-/// Taken from the samples of the output: what lies between two of them is not seen.
+/// Taken from the output samples: peaks between them are missed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ThrustRecord {
-    /// Largest excess of the line in parts of the thickness, and when it was first reached, in seconds.
+    /// Largest excess of the thrust line in parts of the thickness, and when it was first reached, in seconds.
     pub largest_excess: Peak,
-    /// Largest friction coefficient that no sliding takes for granted.
+    /// Largest friction coefficient needed to prevent sliding.
     pub largest_friction: Peak,
     /// Samples in motion.
     moving: u64,
-    /// Of these, with an excess not above each of [`EXCESS_LEVELS`].
+    /// Of these, the number with an excess of at most each of [`EXCESS_LEVELS`].
     within: [u64; 2],
 }
 
@@ -34,13 +35,13 @@ impl Peak {
     }
 }
 
-/// Excesses, in parts of the thickness, that are told apart. They measure the assumption, and do not bound
-/// the error of the motion: rigid blocks that are free to part anywhere reached peaks 3 % off for seven
-/// voussoirs with an excess of 0.05, and 23 % off for a continuous semicircle with one of 0.02.
+/// Levels of the excess, in parts of the thickness, for the shares of time. They grade the assumption and do not
+/// bound the error of the motion: peaks with free hinges differed by 3 % for seven voussoirs with an excess of
+/// 0.05, and by 23 % for a continuous semicircle with one of 0.02.
 pub const EXCESS_LEVELS: [f64; 2] = [0.01, 0.05];
 
 impl ThrustRecord {
-    /// Takes a sample, `moving` unless at rest.
+    /// Adds a sample; `moving` is false at rest.
     pub fn note(&mut self, time_s: f64, moving: bool, demand: &Demand) {
         self.largest_excess.note(demand.excess_ratio, time_s);
         self.largest_friction.note(demand.friction, time_s);
@@ -52,7 +53,7 @@ impl ThrustRecord {
         }
     }
 
-    /// Shares of the time in motion in which the excess is not above each of [`EXCESS_LEVELS`]; `None`
+    /// Shares of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None`
     /// if no sample is in motion.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "sample counts are below 2^53")]

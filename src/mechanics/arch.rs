@@ -10,17 +10,17 @@ use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::ring::Ring;
 
-/// Lengths in metres, and densities in kg/m3: so wide that only slips of the pen are outside, and so that no
-/// product of them leaves the range of an `f64`.
+/// Lengths in metres and densities in kg/m3: wide enough for any arch, and no product of them leaves the range of
+/// an `f64`.
 pub(crate) const MAGNITUDE: RangeInclusive<f64> = 1e-3..=1e6;
 
-/// An arch much thinner than a millionth of its radius is lost in rounding.
+/// A thinner arch is lost in rounding.
 pub(crate) const MIN_THICKNESS_RATIO: f64 = 1e-6;
 
 /// An arch as thick as its diameter has no hole.
 pub(crate) const THICKNESS_RATIO_BOUND: f64 = 2.0;
 
-/// Below one degree every ring but the thinnest has room for a straight line, and no push moves it.
+/// Below one degree a straight thrust line fits into all but the thinnest rings, and no push moves them.
 pub(crate) const EMBRACE_DEG: RangeInclusive<f64> = 1.0..=180.0;
 
 /// Voussoirs: a mechanism has four hinges, and three voussoirs have four joints.
@@ -57,7 +57,7 @@ pub struct Arch {
     incipient: Arc<OnceLock<Result<Incipient, LimitError>>>,
 }
 
-/// Arches are equal if all that was said of them is.
+/// Arches are equal if their shape, size and material are.
 impl PartialEq for Arch {
     fn eq(&self, other: &Self) -> bool {
         let said = |arch: &Self| {
@@ -79,7 +79,7 @@ impl Arch {
     ///
     /// `mean_radius_m` is the radius of its middle line (0.001 to 1e6 m), `thickness_ratio` its thickness over
     /// that (from 1e-6, below 2) and `embrace_deg` the angle from springing to springing (1 to 180).
-    /// Whether it stands is told by [`Arch::incipient`].
+    /// [`Arch::incipient`] tells whether it stands.
     ///
     /// # Errors
     /// When an argument is outside its range.
@@ -100,7 +100,7 @@ impl Arch {
         arch.reshaped()
     }
 
-    /// With a shape of its own; says why it is none.
+    /// The arch with its new shape, checked.
     fn reshaped(self) -> Result<Self, ArgumentError> {
         let allowed = MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND;
         if !allowed.contains(&self.thickness_ratio) {

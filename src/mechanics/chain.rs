@@ -1,7 +1,7 @@
 //! Mechanisms with one degree of freedom each that follow one another through impacts: the four-link
 //! mechanisms of an arch, the two of a free-standing column.
 //!
-//! Lengths are in units of the size of what rocks, masses in a unit of its own; every mechanism is seen in
+//! Lengths are in units of the structure's size, masses in its unit of mass; every mechanism is described in
 //! the frame in which it sways right.
 
 use nalgebra::Vector2;
@@ -38,13 +38,13 @@ pub struct Motion {
     pub body_force_g: Vector2<f64>,
 }
 
-/// What the motion asks of the sections of a structure: see [`crate::mechanics::four_link::thrust`].
+/// Thrust excess and friction demand of a structure: see [`crate::mechanics::four_link::thrust`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demand {
     /// How far the line of thrust leaves the structure, in parts of the thickness; zero inside. The
     /// largest over its sections.
     pub excess_ratio: f64,
-    /// Friction coefficient that keeps the sections from sliding, the largest over them.
+    /// Friction coefficient needed to prevent sliding, the largest over the sections.
     pub friction: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct Link<M> {
     pub restitution: f64,
 }
 
-/// A place about which one part of a structure turns against another, or against the ground.
+/// A hinge: where one part of a structure turns against another, or against the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hinge {
     /// At an edge of a section of an arch.
@@ -105,7 +105,7 @@ pub enum Hinge {
     Joint {
         /// The joint, from 0 at the left springing or the base.
         joint: usize,
-        /// The edge about which it opens; `None` where it parts altogether.
+        /// The edge about which it opens; `None` where both edges open.
         edge: Option<Edge>,
     },
 }
@@ -142,7 +142,7 @@ impl<M: Mechanism> Link<M> {
 /// The mechanisms that a structure rocks by under an impact model.
 ///
 /// Which mechanism follows an impact depends on the one that closes, not on how fast it does: from the
-/// mechanism that starts at the incipient acceleration the sequence is fixed. Whatever implements this is a
+/// mechanism that starts at the incipient acceleration the sequence is fixed. Every implementor is a
 /// [`Model`](crate::dynamics::model::Model).
 pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// Its mechanisms.
@@ -160,7 +160,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
 
     /// Horizontal acceleration at which it starts to rock from rest, on either side, in units of gravity.
     fn incipient_g(&self) -> f64;
-    /// What the equilibrium of one of its mechanisms in motion asks of its sections.
+    /// Thrust excess and friction demand of one of its mechanisms in motion.
     fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
     /// The same at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
@@ -179,7 +179,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
 #[must_use]
 pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
     let rise = |q| mechanism.coefficients(q).s_y;
-    // The potential has one top before the limit; the scan only brackets it.
+    // The potential has one maximum before the limit; the scan only brackets it.
     let steps = 64;
     let at = |step: i32| limit_rad * f64::from(step) / f64::from(steps);
     let Some(first) = (1..steps).find(|step| rise(at(*step)) <= 0.0) else {

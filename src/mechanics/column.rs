@@ -92,8 +92,7 @@ impl Mechanism for Tilting {
     }
 }
 
-/// Sizes in metres, and densities in kg/m3: positive, and so that no product of them leaves the range of an
-/// `f64`.
+/// Sizes in metres and densities in kg/m3: no product of them leaves the range of an `f64`.
 const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 
 /// A free-standing column: a rectangular block on rigid ground, which does not slide.
@@ -101,8 +100,8 @@ const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 /// It may have any proportions. A column wider than `sqrt(2)` times its height stops at its first impact;
 /// and one that starts to rock from rest needs a friction coefficient of its width over its height.
 ///
-/// It is one block unless it is cut into drums, and as wide at the top as at the base unless it is tapered. Housner's
-/// model is of one prismatic block; the others are simulated with free hinges.
+/// It is one block unless it is cut into drums, and prismatic unless it is tapered. Housner's model is a single
+/// prismatic block; the others are simulated with free hinges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
     height_m: f64,
@@ -392,7 +391,7 @@ impl MechanismChain for RockingColumn {
             .map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
     }
 
-    /// None: a column is told by the restitution coefficient alone.
+    /// None: the restitution coefficient alone describes the impact of a column.
     fn hinge_impulses(&self, _: usize, _: Sway) -> Vec<Vector2<f64>> {
         Vec::new()
     }
@@ -452,9 +451,9 @@ mod tests {
         assert!((kg_m2 / (kg * (16.0 + 0.64) / 3.0) - 1.0).abs() < 1e-14);
     }
 
-    /// At the release a column falls with `q'' = -3/4 g/R sin(alpha - q)`, like the rod of the textbooks, which the
-    /// ground carries with `1 - 3/4 sin^2` of the weight and pushes with `3/4 sin cos`. At rest it carries all,
-    /// and pushes with the ground's acceleration.
+    /// At the release a column falls with `q'' = -3/4 g/R sin(alpha - q)`, like the rod of the textbooks, which
+    /// the ground carries with `1 - 3/4 sin^2` of the weight and pushes with `3/4 sin cos`. At rest it carries
+    /// all of it, and pushes with the ground's acceleration.
     #[test]
     fn the_base_carries_what_it_has_to() {
         let column = column(0.3, ImpactModel::MaxRestitution);

@@ -1,4 +1,4 @@
-//! The free-standing block that rocks like a structure, as far as one block can.
+//! The equivalent free-standing block of a structure.
 //!
 //! A structure with one degree of freedom has the kinetic energy `M(q) q'^2 / 2`. In the coordinate
 //! `s = int sqrt(M) dq` its mass is one, and it falls through the potential `U = g int S_y dq` by
@@ -13,8 +13,8 @@
 //! - at the unstable equilibrium, where `U' = 0`: `p_c^2 = -U''(q_c) / M(q_c)`, or
 //! - at rest: `p_0^2 = n^2(0) / cos(alpha)`.
 //!
-//! The two agree for a column, whose own `p` and `alpha` they are. For an arch they part: the mechanism
-//! stiffens or softens on its way. The first describes narrow escapes and overturning, the second
+//! The two agree for a column, whose own `p` and `alpha` they are. For an arch they differ: the mechanism
+//! stiffens or softens on its way. The first describes overturning and near-overturning, the second
 //! small rocking.
 
 use super::chain::{Link, Mechanism, MechanismChain};

@@ -1,10 +1,10 @@
 //! Whether a row stands, and the push that starts it, by limit analysis with any number of hinges.
 //!
-//! The row gives way under a load per unit mass when the velocities nearest to that load, among those that its joints
-//! allow, are not zero ([`super::contact`]); what they are then is a mechanism, and the load at which that one just does no work
-//! is an upper bound of the strength. Under that load the row either stands, and the bound is the strength, or another
-//! mechanism lowers it. There are finitely many, and the bounds fall fast (Dinkelbach, "On nonlinear fractional
-//! programming", Management Science 13, 1967): a few programs are enough.
+//! The row gives way under a load per unit mass when the velocities nearest to that load, among those that its
+//! joints allow, are not zero ([`super::contact`]); what they are then is a mechanism, and the load at which
+//! that one just does no work is an upper bound of the strength. Under that load the row either stands, and the
+//! bound is the strength, or another mechanism lowers it. There are finitely many, and the bounds fall fast
+//! (Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967): a few programs are enough.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -16,7 +16,7 @@ use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
 
-/// Velocities below this part of those without contact are none.
+/// Velocities below this part of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
 
 /// A joint that opens in a mechanism.
@@ -24,7 +24,7 @@ const STANDSTILL: f64 = 1e-9;
 pub struct Opening {
     /// Which joint.
     pub joint: usize,
-    /// The corner about which it opens; `None` where it parts altogether.
+    /// The corner about which it opens; `None` where both edges open.
     pub hinge: Option<Edge>,
     /// Rates of the gaps at intrados and extrados, up to a common factor.
     pub rates: [f64; 2],

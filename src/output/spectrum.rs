@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::ending::number;
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite};
-use crate::studies::spectrum::{OverturningSpectrum, PointRow, Shaken};
+use crate::studies::spectrum::{OverturningSpectrum, PointRow, StructureKind};
 
 /// Names of the columns.
 const COLUMNS: [&str; 9] = [
@@ -108,20 +108,20 @@ pub fn draw(title: &str, spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) 
     );
     let size = spectrum.sizes().len();
     let beside_arch = spectrum.structures().len() > 1;
-    for (index, ((shaken, _), rows)) in spectrum
+    for (index, ((kind, _), rows)) in spectrum
         .structures()
         .iter()
         .zip(rows.chunks(size))
         .enumerate()
     {
-        let look = match shaken {
-            Shaken::Arch => ARCH,
-            Shaken::Column => COLUMN,
+        let look = match kind {
+            StructureKind::Arch => ARCH,
+            StructureKind::Column => COLUMN,
         };
         drawing.within(&axes.frame, |drawing| curves(drawing, &axes, &look, rows));
-        let called = match shaken {
-            Shaken::Column if beside_arch => "equivalent column",
-            _ => shaken.name(),
+        let called = match kind {
+            StructureKind::Column if beside_arch => "equivalent column",
+            _ => kind.name(),
         };
         #[expect(clippy::cast_precision_loss, reason = "one or two")]
         let y = 54.0 + 22.0 * index as f64;
@@ -136,8 +136,8 @@ pub fn draw(title: &str, spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) 
     drawing.finish()
 }
 
-/// Peak accelerations to be drawn, ascending: from the least tried to the largest result, unless that is beyond all
-/// that were tried and beyond the half as much again of the least result.
+/// Peak accelerations to be drawn, ascending: from the least tried to the largest result, unless that is beyond
+/// all that were tried and beyond the half as much again of the least result.
 fn heights(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> Vec<f64> {
     let tried = spectrum.over_incipient();
     let last = tried[tried.len() - 1];

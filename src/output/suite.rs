@@ -44,8 +44,8 @@ pub fn write_table(
     csv.flush().map_err(OutputError::io(WHAT))
 }
 
-/// What the results of a suite say of its scenario. That can be had from the resolved text alone, so that parts are
-/// joined where the records are not.
+/// What the results of a suite say of its scenario. That can be had from the resolved text alone, so that parts
+/// are joined where the records are not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heading {
     scenario: Value,

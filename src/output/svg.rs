@@ -91,7 +91,7 @@ pub struct Drawing {
 const TEXT_PX: f64 = 13.0;
 
 /// Characters of a title that fit even if they are wide.
-const MOST_TITLE: usize = 90;
+const MAX_TITLE: usize = 90;
 
 impl Drawing {
     /// A white sheet, in pixels.
@@ -111,8 +111,8 @@ impl Drawing {
 
     /// A title in the middle above all else; a long one is cut.
     pub fn title(&mut self, title: &str) {
-        let mut shown: String = title.chars().take(MOST_TITLE).collect();
-        if title.chars().nth(MOST_TITLE).is_some() {
+        let mut shown: String = title.chars().take(MAX_TITLE).collect();
+        if title.chars().nth(MAX_TITLE).is_some() {
             shown.push_str("...");
         }
         let at = Vector2::new(0.5 * self.width, 26.0);

@@ -391,8 +391,8 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     }
 }
 
-/// Places for labels near the given ascending places, side by side between `left` and `right`; fewer where there is
-/// not room for all.
+/// Places for labels near the given ascending places, side by side between `left` and `right`; fewer where
+/// there is not room for all.
 fn spread(places: &[f64], left: f64, right: f64) -> Vec<f64> {
     #[expect(
         clippy::cast_possible_truncation,

@@ -11,8 +11,9 @@ use super::table::{Number, Reading, Table};
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 
 /// Largest acceleration of the ground: beyond it the unit must be wrong.
-pub(crate) const LARGEST_G: f64 = 1e3;
-pub(super) const AMPLITUDE_G: Number = Number(Included(-LARGEST_G), Included(LARGEST_G));
+pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
+pub(super) const AMPLITUDE_G: Number =
+    Number(Included(-MAX_ACCELERATION_G), Included(MAX_ACCELERATION_G));
 pub(super) const DURATION_S: Number = Number(Included(1e-6), Included(1e6));
 /// Inverses of durations.
 pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
@@ -36,8 +37,8 @@ pub enum Ground {
 }
 
 impl Ground {
-    /// Reads `[ground]`, which holds one table, named by its kind (an inner key for the kind would not keep the keys
-    /// of different kinds apart), and builds the motion.
+    /// Reads `[ground]`, which holds one table, named by its kind (an inner key for the kind would not keep the
+    /// keys of different kinds apart), and builds the motion.
     pub(super) fn read(
         table: &mut Table<'_>,
         folder: &Path,

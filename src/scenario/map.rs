@@ -6,8 +6,8 @@
 //! amplitude_g = { from = 0.15, to = 1.5, count = 80, spacing = "logarithmic" }
 //! ```
 //!
-//! Two quantities of the scenario vary; all else stays as it is. With free hinges, `spread = true` computes every cell
-//! with half and with double steps as well, to see whether its outcome depends on them.
+//! Two quantities of the scenario vary; all else stays as it is. With free hinges, `spread = true` computes
+//! every cell with half and with double steps as well, to see whether its outcome depends on them.
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 

@@ -54,7 +54,7 @@ use crate::dynamics::model::{Initial, Model, Request};
 use crate::mechanics::four_link::impact::ImpactModel;
 use error::Fault;
 pub use error::{Place, ScenarioError, ScenarioErrors};
-pub(crate) use ground::LARGEST_G;
+pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
 pub use map::{Axis, Map, Quantity};
 pub use record::{
@@ -81,8 +81,8 @@ named! {
 
 /// What to simulate, every default resolved.
 ///
-/// A scenario is read from text, which checks it; it is serialized as it is read, to TOML by [`Scenario::to_toml`] and
-/// to JSON by [`Scenario::to_json`].
+/// A scenario is read from text, which checks it; it is serialized as it is read, to TOML by
+/// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scenario {
     /// Free text for the results.
@@ -153,8 +153,8 @@ impl Scenario {
 
     /// Reads a scenario file as if it chose this model of motion; `None`: the model that it chooses.
     ///
-    /// Free hinges take the steps of `[free_hinges]` if that is there, and do not ask for `[impact]`; four links do not ask
-    /// for `[free_hinges]`.
+    /// Free hinges take the steps of `[free_hinges]` if that is there, and do not ask for `[impact]`; four
+    /// links do not ask for `[free_hinges]`.
     ///
     /// # Errors
     ///

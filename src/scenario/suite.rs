@@ -288,7 +288,8 @@ fn list(
 
 /// The files that match a pattern, relative to the folder; or why there are none, as words to follow the pattern.
 fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
-    // A file whose name looks like a pattern is taken as that file, so that a resolved scenario reads back the same.
+    // A file whose name looks like a pattern is taken as that file, so that a resolved scenario reads back the
+    // same.
     let path = folder.join(pattern);
     if path.is_dir() {
         return Err("is a folder; must be a file or a pattern such as \"folder/*.at2\"".to_owned());

@@ -1,5 +1,5 @@
-//! The boundaries of a map whose y is the amplitude of the pulse: where rocking starts, and from where on the first
-//! fall overturns, before any impact.
+//! The boundaries of a map whose y is the amplitude of the pulse: the onset of rocking, and the amplitude
+//! from which the first fall overturns, before any impact.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,10 +12,10 @@ use crate::scenario::Quantity;
 /// The boundaries at a value of x, as magnitudes: the mirror image of a pulse has the same.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Boundary {
-    /// Below this peak acceleration nothing moves, in g.
+    /// Peak acceleration below which the structure does not move, in g.
     pub incipient_g: f64,
-    /// The least amplitude with which the first fall overturns, before any impact, in g; `None` where no amplitude
-    /// does that a scenario may have.
+    /// The smallest amplitude that overturns in the first fall, before any impact, in g; `None` if no allowed
+    /// amplitude does.
     pub impact_free_g: Option<f64>,
 }
 
@@ -50,7 +50,7 @@ impl<'m> ImpactFreeBoundary<'m> {
             return Ok(None);
         };
         let request = self.map.scenario().request_from_rest();
-        // The cells are looked at as well, so that none contradicts the boundary.
+        // The cells' amplitudes are tried too, so that no cell contradicts the boundary.
         let tried_g: Vec<f64> = amplitudes_g.iter().map(|value| value.abs()).collect();
         let found = self
             .map
@@ -89,8 +89,8 @@ impl Study for ImpactFreeBoundary<'_> {
     }
 }
 
-/// A map with its boundaries, where it has any: first the cells, then the boundaries, in one study, so that threads,
-/// parts and interruptions serve both.
+/// A map with its boundaries, if any, as one study: first the cells, then the boundaries. Threads, parts and
+/// resuming serve both.
 #[derive(Clone, Copy, Debug)]
 pub struct MapWithBoundary<'m> {
     map: &'m OverturningMap<'m>,

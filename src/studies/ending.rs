@@ -11,7 +11,7 @@ use crate::dynamics::model::{Model, Request};
 pub struct Ending {
     /// How it ended.
     pub outcome: Outcome,
-    /// When that was decided, in seconds.
+    /// When, in seconds.
     pub outcome_time_s: f64,
     /// Number of impacts; where the structure overturns, all are before.
     pub impacts: usize,
@@ -34,7 +34,7 @@ impl Ending {
         }
     }
 
-    /// Shakes a structure from rest and says how that ended.
+    /// Simulates a structure from rest and returns how that ended.
     ///
     /// # Errors
     /// Says why there is no history, or none that could be kept.
@@ -71,7 +71,7 @@ impl Ending {
     }
 }
 
-/// Refuses what is not a number. That is a defect of the program.
+/// Refuses what is not finite, which is a defect of the program.
 pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

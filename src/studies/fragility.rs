@@ -9,15 +9,15 @@
 //! fragility function fitting using dynamic structural analysis", Earthquake Spectra 31(1), 2015): for
 //! every case the logarithm of the probability of what it did, added up. With `eta = a + b ln x`,
 //! `b = 1 / beta` and `theta = exp(-a / b)` this is probit regression. Its log-likelihood is concave in
-//! `a` and `b`, so that Newton's method finds the one maximum from anywhere, and whether there is one can
-//! be told beforehand: in one dimension there is none if and only if the cases of either kind lie on two
+//! `a` and `b`, so Newton's method finds the one maximum from anywhere, and whether there is one is
+//! known beforehand: in one dimension there is none if and only if the cases of either kind lie on two
 //! sides of a point (Silvapulle, "On the existence of maximum likelihood estimators for the binomial
 //! response models", Journal of the Royal Statistical Society B 43, 1981).
 //!
-//! # How certain
+//! # Uncertainty
 //!
 //! There are two sets of standard errors. The plain one is the inverse of the observed information, and
-//! takes all cases for independent. Those of one record are not: a record that is harmless for its
+//! assumes all cases independent. Those of one record are not: a record that is harmless for its
 //! intensity is so at every scale, and adding levels without adding records adds less than it seems. The
 //! other set allows for any dependence within a record (Liang and Zeger, "Longitudinal data analysis using
 //! generalized linear models", Biometrika 73, 1986): the scores of the likelihood are summed record by
@@ -89,16 +89,18 @@ pub struct Fragility {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoFit {
     /// An intensity without a finite logarithm.
-    #[error("an intensity of {intensity}: intensities are positive and finite")]
+    #[error("intensity {intensity}: must be positive and finite")]
     Intensity {
         /// The intensity.
         intensity: f64,
     },
     /// No cases at all.
-    #[error("there are no cases to fit a fragility curve to: run records at several intensities")]
+    #[error("no cases to fit a fragility curve to: run records at several intensities")]
     NoObservations,
     /// Every case survives.
-    #[error("none of {cases} cases overturns, up to an intensity of {highest}: add higher ones")]
+    #[error(
+        "none of {cases} cases overturns up to the intensity {highest}: add higher intensities"
+    )]
     NoneOverturned {
         /// Number of cases.
         cases: usize,
@@ -106,14 +108,14 @@ pub enum NoFit {
         highest: f64,
     },
     /// No case survives.
-    #[error("all {cases} cases overturn, down to an intensity of {lowest}: add lower ones")]
+    #[error("all {cases} cases overturn down to the intensity {lowest}: add lower intensities")]
     AllOverturned {
         /// Number of cases.
         cases: usize,
         /// Lowest intensity.
         lowest: f64,
     },
-    /// One intensity does not tell how the fraction grows.
+    /// One intensity does not show how the fraction grows.
     #[error(
         "{overturned} of {cases} cases overturn, but all at the intensity {intensity}: add lower and higher \
          ones"
@@ -154,8 +156,8 @@ pub enum NoFit {
     /// The fraction grows, but so little, or within so narrow a range, that the parameters or their errors
     /// are beyond the range of numbers.
     #[error(
-        "the cases hardly tell how the fraction that overturns grows with the intensity, and the likeliest \
-         curve is beyond what can be computed; add intensities at which few and at which most cases overturn"
+        "the fraction that overturns hardly grows with the intensity, and the likeliest curve cannot be \
+         computed; add intensities at which few and at which most cases overturn"
     )]
     Undetermined,
 }

@@ -1,9 +1,9 @@
 //! Overturning without impact: in the first fall from rest, before the hinges ever close.
 //!
-//! Nothing of the impact model enters here, so this boundary is what other programs and closed forms can be
-//! compared with. Along the amplitude of a pulse with one lobe it has one edge. A pulse with side lobes can
-//! overturn within narrow windows of the amplitude, in which a lobe carries the structure just over and the next
-//! does not catch it; so the edge is looked for in small strides, and bisected where it is found.
+//! The impact model plays no part, so this boundary can be compared with other programs and closed forms. Along
+//! the amplitude of a pulse with one lobe it has one edge. A pulse with side lobes can overturn within narrow
+//! windows of the amplitude, in which a lobe carries the structure just over and the next does not catch it; so
+//! the edge is searched in small strides, then bisected.
 
 use nalgebra::Vector2;
 
@@ -11,17 +11,17 @@ use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::model::{MechanismModel, Request, SimulationError};
 use crate::mechanics::four_link::mechanism::Sway;
-use crate::scenario::{LARGEST_G, PulseGround};
+use crate::scenario::{MAX_ACCELERATION_G, PulseGround};
 
-/// Ratio of the amplitudes at which the edge of a pulse with lobes to both sides is looked for: a window that is
-/// narrower may go unseen. The narrowest found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
+/// Ratio of the amplitudes at which the edge of a pulse with lobes to both sides is searched: a narrower window
+/// may be missed. The narrowest found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
 const STRIDE: f64 = 1.005;
 
-/// The same for pulses to one side. More of these pushes harder at every instant, so there is one edge, however far
-/// the strides.
+/// The same for pulses to one side. A larger amplitude pushes harder at every instant, so there is only one
+/// edge and strides can be long.
 const ONE_SIDED_STRIDE: f64 = 1.5;
 
-/// Relative width to which the edge is bisected: the integration at the default tolerance knows no more.
+/// Relative width to which the edge is bisected: the integration at the default tolerance resolves no more.
 const RESOLUTION: f64 = 1e-9;
 
 /// A pulse whose amplitude varies, all else as it is.
@@ -57,9 +57,9 @@ impl ScalablePulse {
         self.motion(magnitude_g.copysign(self.pulse.amplitude_g))
     }
 
-    /// The least amplitude, as a magnitude in g, with which the pulse overturns a structure without impact, and the
-    /// side to which it does; `None` if no amplitude does that a scenario may have. It is looked for in strides
-    /// and, where there can be windows between these, at `tried_g` as well.
+    /// The smallest amplitude, as a magnitude in g, that overturns the structure without impact, and the side
+    /// to which it does; `None` if no allowed amplitude does. The search goes in strides and, where there can
+    /// be windows between these, also tries `tried_g`.
     ///
     /// # Errors
     /// When the integration fails.
@@ -81,9 +81,9 @@ impl ScalablePulse {
         // Ground that falls makes the structure lighter.
         let from_g = incipient_g * (1.0 - self.pulse.vertical_amplitude_g.abs().min(0.99));
         let tried_g: &[f64] = if one_sided { &[] } else { tried_g };
-        let mut ascending_g: Vec<f64> = strides(one_sided, from_g, LARGEST_G)
+        let mut ascending_g: Vec<f64> = strides(one_sided, from_g, MAX_ACCELERATION_G)
             .chain(tried_g.iter().copied())
-            .filter(|amplitude_g| *amplitude_g <= LARGEST_G)
+            .filter(|amplitude_g| *amplitude_g <= MAX_ACCELERATION_G)
             .collect();
         ascending_g.sort_by(f64::total_cmp);
         let least_g = minimum_amplitude(ascending_g, |amplitude_g| {
@@ -104,7 +104,7 @@ fn strides(one_sided: bool, from: f64, to: f64) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The least amplitude that overturns without impact, from a function that tells whether one does: the first
+/// The smallest amplitude that overturns without impact, from a function that tells whether one does: the first
 /// of ascending ones, bisected to `1e-9` of it against the one before. `None` if none does.
 ///
 /// # Errors

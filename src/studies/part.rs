@@ -1,9 +1,9 @@
-//! The file of a study at work: what it computes, and the rows that it has so far.
+//! The part file of a running study: what it computes, and the rows so far.
 //!
-//! The first line says to what the rows belong; every other line is a checksum, the index of a case and its row,
-//! with commas between. Header and rows are JSON, whose numbers read back as the same `f64`. Lines are only ever
-//! appended, so what a killed program leaves is good up to its last complete line, and the checksums tell if
-//! anything else happened to them. A study that is computed in shards, on several machines, is joined from such
+//! The first line is a header that identifies the study; every other line is a checksum, the index of a case
+//! and its row, with commas between. Header and rows are JSON, whose numbers read back as the same `f64`. Lines
+//! are only ever appended, so the file of a killed program is valid up to its last complete line, and the
+//! checksums reveal any other damage. A study computed in shards, on several machines, is merged from such
 //! files.
 
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ const MAX_SHARDS: usize = 100_000;
 
 /// Which of the cases: the one whose number, counted from 1, is `index` and every `count`-th after.
 ///
-/// Neighbouring cases cost alike, so dealing them out like cards gives all shards the same work.
+/// Neighbouring cases cost about the same, so dealing them out in turn gives all shards equal work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Shard {
@@ -90,7 +90,7 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
             format!(
-                "{text:?} is no part of a whole; allowed is i/n with 1 <= i <= n <= {MAX_SHARDS}, such as 2/4"
+                "{text:?} is not a part; must be I/N with 1 <= I <= N <= {MAX_SHARDS}, such as 2/4"
             )
         };
         let (index, count) = text.split_once('/').ok_or_else(wrong)?;
@@ -104,7 +104,7 @@ impl FromStr for Shard {
     }
 }
 
-/// To what rows belong: equal headers, but for the shard, are of one study.
+/// Identifies the study of the rows: headers of one study differ in the shard only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the program.
@@ -156,7 +156,7 @@ impl Header {
     fn other_input(&self, other: &Self) -> Option<String> {
         fn only<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
             let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
-            // The checksum is no news to anybody.
+            // The checksum means nothing to the user.
             Some(input.rsplit_once(' ').map_or(input, |(name, _)| name))
         }
         match (only(self, other), only(other, self)) {
@@ -235,7 +235,7 @@ pub enum PartError {
         what: String,
     },
     /// The file has rows of something else.
-    #[error("{}: belongs to something else, with {difference}", path.display())]
+    #[error("{}: belongs to another study: {difference}", path.display())]
     Other {
         /// The file.
         path: PathBuf,
@@ -243,7 +243,7 @@ pub enum PartError {
         difference: String,
     },
     /// The file has some of the cases that are to be computed, and nobody asked to resume.
-    #[error("{}: has {done} cases of this very study, interrupted", path.display())]
+    #[error("{}: has {done} cases of this study, from an interrupted run", path.display())]
     Interrupted {
         /// The file.
         path: PathBuf,
@@ -281,7 +281,8 @@ fn read_lines(path: &Path) -> Result<(String, u64), PartError> {
         .rposition(|byte| *byte == b'\n')
         .map_or(0, |last| last + 1);
     bytes.truncate(complete);
-    let text = String::from_utf8(bytes).map_err(|_| unusable(path, "is not a part of a study"))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| unusable(path, "is not a part of a study (a .part file of archrock)"))?;
     Ok((text, complete as u64))
 }
 
@@ -296,7 +297,10 @@ fn header_of<'t>(
     };
     match serde_json::from_str::<Header>(first) {
         Ok(header) if header.program == env!("CARGO_PKG_NAME") => Ok(Some((header, lines))),
-        _ => Err(unusable(path, "is not a part of a study by this program")),
+        _ => Err(unusable(
+            path,
+            "is not a part of a study (a .part file of archrock)",
+        )),
     }
 }
 
@@ -312,13 +316,12 @@ fn rows_of<R: DeserializeOwned>(
             let what = format!("line {}: {what}; compute this part again", number + 2);
             unusable(path, what)
         };
-        let (index, row) =
-            from_line(line).ok_or_else(|| damaged("not as this program wrote it"))?;
+        let (index, row) = from_line(line).ok_or_else(|| damaged("damaged"))?;
         if !header.shard.has(index) || index >= header.cases {
-            return Err(damaged("a case that does not belong here"));
+            return Err(damaged("a case of another part"));
         }
         if rows.insert(index, row).is_some() {
-            return Err(damaged("a case for the second time"));
+            return Err(damaged("a case that appears twice"));
         }
     }
     Ok(rows)
@@ -357,8 +360,8 @@ impl PartFile {
     /// computed again. The folder must be there.
     ///
     /// # Errors
-    /// When the system refuses, another program is at work on it, a part to `resume` is of something else, or
-    /// one that was interrupted would be lost.
+    /// When the system refuses, another program is at work on it, a part to `resume` belongs to another study, or
+    /// an interrupted one would be lost.
     pub fn open<R: DeserializeOwned>(
         path: &Path,
         header: &Header,
@@ -370,7 +373,7 @@ impl PartFile {
             .append(true)
             .open(path)
             .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
-        // Where files cannot be locked, two programs are not kept apart.
+        // Where files cannot be locked, two programs may write to the same file.
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
         }
@@ -378,7 +381,7 @@ impl PartFile {
         let rows = match header_of(path, &text)? {
             None => Rows::new(),
             Some((found, lines)) => {
-                // Work is not thrown away unasked; a header alone is none.
+                // Rows are not thrown away unasked; a header alone may be.
                 let begun = resume || lines.clone().next().is_some();
                 if begun && let Some(difference) = header.other(&found) {
                     let path = path.to_owned();
@@ -429,7 +432,7 @@ impl PartFile {
         written.map_err(self.cannot("write"))
     }
 
-    /// Takes it away, when its rows have found their place.
+    /// Removes it, once the results are complete.
     ///
     /// # Errors
     /// When the system refuses.
@@ -451,7 +454,7 @@ impl PartFile {
 /// Joins the parts of a study: its header as a whole, and all its rows in the order of their cases.
 ///
 /// # Errors
-/// When a file is no part, or they do not belong together, or do not make up the whole, or their rows are not of
+/// When a file is not a part, the parts do not belong to one study or are not all there, or their rows are not of
 /// this type.
 pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>), PartError> {
     let mut whole: Option<(Header, Rows<R>)> = None;
@@ -491,13 +494,12 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
         }
     }
     let Some((mut header, rows)) = whole else {
-        return Err(unusable(Path::new("merge"), "no parts"));
+        return Err(unusable(Path::new("merge"), "no parts given"));
     };
     let count = header.shard.count;
     if let Some(first) = (1..=count).find(|index| !places.contains_key(index)) {
         let missing = count - places.len();
-        let what =
-            format!("goes with parts of which {missing} are missing: the first is {first}/{count}");
+        let what = format!("{missing} of {count} parts missing: the first is {first}/{count}");
         return Err(unusable(&paths[0], what));
     }
     header.shard = Shard::WHOLE;

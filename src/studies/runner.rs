@@ -90,7 +90,7 @@ pub struct Progress {
 /// Why the rows of a study are not complete.
 #[derive(Debug, Error)]
 pub enum RunnerError {
-    /// The caller broke off.
+    /// The caller cancelled.
     #[error("cancelled: {} of {} cases are done", .0.done, .0.all)]
     Cancelled(Progress),
     /// The file of the part cannot be used.
@@ -104,7 +104,7 @@ pub enum RunnerError {
         /// What the system said.
         source: io::Error,
     },
-    /// The system has no threads to spare.
+    /// The threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(String),
 }
@@ -136,7 +136,7 @@ pub struct Runner {
     pub threads: Option<NonZeroUsize>,
 }
 
-/// How often rows are written and progress is told.
+/// How often rows are written and progress is reported.
 const TICK: Duration = Duration::from_millis(100);
 
 impl Runner {
@@ -222,7 +222,7 @@ impl Runner {
                 if cancelled.load(Ordering::Relaxed) {
                     return None;
                 }
-                // When rows cannot be kept any more, nobody listens.
+                // Sending fails only after the receiver has given up.
                 sender.send((*index, study.row(*index))).ok()
             })
         };
@@ -246,7 +246,7 @@ impl Runner {
                 if over {
                     break;
                 }
-                // What comes meanwhile is kept in one go; nobody loses time in waking this thread.
+                // Rows that arrive meanwhile are written together, which spares waking this thread for each.
                 thread::park_timeout(TICK);
                 let mut new = Vec::new();
                 over = loop {

@@ -15,7 +15,7 @@ use crate::dynamics::model::{MechanismModel, Request};
 use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::four_link::mechanism::Sway;
-use crate::scenario::{Ground, LARGEST_G, PulseGround, Scenario, Structure, block};
+use crate::scenario::{Ground, MAX_ACCELERATION_G, PulseGround, Scenario, Structure, block};
 
 /// Why a scenario has no spectrum.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -30,12 +30,12 @@ pub enum NoSpectrum {
     FreeHinges,
     /// There is no pulse whose duration could vary.
     #[error(
-        "a spectrum needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]; its \
-         amplitude says to which side, and the durations and amplitudes are those of [spectrum]"
+        "a spectrum needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]; only \
+         the sign of its amplitude is used, durations and amplitudes are those of [spectrum]"
     )]
     NoPulse,
     /// There is no size to compare with.
-    #[error("the structure has no unstable equilibrium, and so no equivalent block")]
+    #[error("the structure has no unstable equilibrium, hence no equivalent block")]
     NoBlock,
     /// There is no such arch.
     #[error(transparent)]
@@ -43,8 +43,8 @@ pub enum NoSpectrum {
 }
 
 named! {
-    /// What is shaken for a spectrum.
-    pub enum Shaken {
+    /// The structures of a spectrum.
+    pub enum StructureKind {
         /// The arch.
         Arch = "arch",
         /// The column, or that which is equivalent to the arch.
@@ -66,8 +66,8 @@ pub struct Overturning {
 /// A point of a spectrum: a structure of some size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointRow {
-    /// What is shaken.
-    pub structure: Shaken,
+    /// Which structure.
+    pub structure: StructureKind,
     /// `p t_p`.
     pub p_t: f64,
     /// Duration of the pulse, in seconds.
@@ -101,7 +101,7 @@ pub struct OverturningSpectrum<'a> {
     pulse: &'a PulseGround,
     request: Request,
     frequency_rad_s: f64,
-    structures: Vec<(Shaken, Box<dyn MechanismModel>)>,
+    structures: Vec<(StructureKind, Box<dyn MechanismModel>)>,
     p_t: Vec<f64>,
     over_incipient: Vec<f64>,
 }
@@ -131,7 +131,7 @@ impl<'a> OverturningSpectrum<'a> {
         let (slenderness_rad, block) =
             block(&*model, request.gravity_m_s2).ok_or(NoSpectrum::NoBlock)?;
         let structures = match &scenario.structure {
-            Structure::Column(_) => vec![(Shaken::Column, model)],
+            Structure::Column(_) => vec![(StructureKind::Column, model)],
             Structure::Arch(arch) => {
                 let (sin, cos) = slenderness_rad.sin_cos();
                 let diagonal_m = 2.0 * block.half_diagonal_m;
@@ -140,7 +140,10 @@ impl<'a> OverturningSpectrum<'a> {
                     .and_then(|column| column.with_density_kg_m3(arch.density_kg_m3()))
                     .and_then(|column| RockingColumn::new(&column, scenario.impact))
                     .map_err(FourLinkError::from)?;
-                vec![(Shaken::Arch, model), (Shaken::Column, Box::new(column))]
+                vec![
+                    (StructureKind::Arch, model),
+                    (StructureKind::Column, Box::new(column)),
+                ]
             }
         };
         let spectrum = scenario.spectrum.clone().unwrap_or_default();
@@ -155,9 +158,9 @@ impl<'a> OverturningSpectrum<'a> {
         })
     }
 
-    /// What is shaken: the arch and its equivalent column, or the column.
+    /// The structures: the arch and its equivalent column, or the column.
     #[must_use]
-    pub fn structures(&self) -> &[(Shaken, Box<dyn MechanismModel>)] {
+    pub fn structures(&self) -> &[(StructureKind, Box<dyn MechanismModel>)] {
         &self.structures
     }
 
@@ -230,7 +233,7 @@ impl Study for OverturningSpectrum<'_> {
             .over_incipient
             .iter()
             .map(|over_incipient| over_incipient * incipient_g)
-            .filter(|amplitude_g| *amplitude_g <= LARGEST_G)
+            .filter(|amplitude_g| *amplitude_g <= MAX_ACCELERATION_G)
             .collect();
         let edge = pulse.minimum_without_impact(&**model, &self.request, &tried_g);
         let edge = edge.map_err(|error| error.to_string()).and_then(|edge| {

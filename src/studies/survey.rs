@@ -7,7 +7,7 @@ use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::mechanism::HingeSites;
 
-/// What a shape tells of its rocking.
+/// Incipient acceleration and restitution of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeResult {
     /// Embrace angle in degrees.
@@ -26,8 +26,8 @@ pub struct ShapeResult {
 /// by ever smaller, nearly geometric amounts, so that what is left is of the order of ten times as much.
 const SETTLED: f64 = 1e-7;
 
-/// Impacts after which a chain is taken as it is.
-const LONGEST: usize = 200;
+/// Impacts after which a chain counts as settled in any case.
+const MAX_IMPACTS: usize = 200;
 
 /// Incipient acceleration and restitution coefficients of one shape; `None` if no four-link mechanism
 /// starts: the arch cannot stand, or is too thick.
@@ -46,7 +46,7 @@ pub fn shape_result(
     let chain = arch.chain();
     let restitution = |index: usize| chain.link(index).map(|link| link.link.restitution);
     let mut last = restitution(1);
-    for index in 2..LONGEST {
+    for index in 2..MAX_IMPACTS {
         let next = restitution(index);
         let settled = match (last, next) {
             (Some(last), Some(next)) => (next - last).abs() <= SETTLED,
@@ -66,8 +66,8 @@ pub fn shape_result(
     })
 }
 
-/// The results of shapes, given by embrace angle in degrees and thickness over mean radius, in their order and on all
-/// processors; those of which no four-link mechanism starts are left out.
+/// The results of shapes, given by embrace angle in degrees and thickness over mean radius, in their order and
+/// on all processors; those of which no four-link mechanism starts are left out.
 #[must_use]
 pub fn shape_results(
     shapes: &[(f64, f64)],

@@ -77,7 +77,7 @@ impl Factors {
     /// All of them, ascending.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
-        // A last stride that is nothing but rounding is none.
+        // A last stride that is only rounding is dropped.
         let end = self.to * (1.0 - 1e-9);
         let next = |factor: &f64| Some(factor * (1.0 + self.stride));
         let mut values: Vec<f64> = std::iter::successors(Some(self.from), next)
@@ -205,8 +205,8 @@ pub enum ThresholdError {
 /// `watch` is told of the progress as by [`Runner::rows`]: first over all factors, then over the edges as well.
 ///
 /// # Errors
-/// When `watch` breaks, threads cannot be started, or the request is not possible. Histories that fail are among the
-/// results.
+/// When `watch` breaks, threads cannot be started, or the request is not possible. Histories that fail are
+/// among the results.
 pub fn thresholds(
     models: &[(&str, &dyn Model)],
     ground: &GroundMotion,
@@ -267,7 +267,7 @@ pub fn thresholds(
         .collect())
 }
 
-/// What is shaken, and how.
+/// The models and the ground motion.
 #[derive(Clone, Copy)]
 struct Shaking<'a> {
     models: &'a [(&'a str, &'a dyn Model)],

@@ -1,24 +1,24 @@
-//! Why there is no such ground motion.
+//! Errors of ground motions.
 
 use thiserror::Error;
 
 use crate::argument::{ArgumentError, within};
 
-/// Durations, spacings of samples and times in seconds that a ground motion may have. Far wider than anything
-/// that moves ground; no sum, product or slope of them leaves the range of an `f64`.
+/// Durations, spacings of samples and times in seconds that a ground motion may have. Far wider than any
+/// real ground motion; no sum, product or slope of them leaves the range of an `f64`.
 const MIN_STEP_S: f64 = 1e-12;
 const MAX_TIME_S: f64 = 1e9;
 /// Magnitudes of accelerations, in m/s2.
 const MAX_ACCELERATION_M_S2: f64 = 1e12;
 
-/// Why there is no such ground motion.
+/// Why a ground motion cannot be built.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum GroundError {
     /// An argument is outside its range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
-    /// There is nothing to draw a line between.
-    #[error("`{argument}` has {count} samples: it must have at least 2")]
+    /// A line needs two samples.
+    #[error("`{argument}` has too few samples ({count}): it must have at least 2")]
     TooFewSamples {
         /// Name of the argument.
         argument: &'static str,
@@ -35,7 +35,7 @@ pub enum GroundError {
         /// What is wrong with it.
         fault: ArgumentError,
     },
-    /// A time does not follow the one before.
+    /// Times do not rise.
     #[error(
         "sample {index} of `{argument}` is at {time_s:?} s and the one before at {before_s:?} s: times must rise by \
          at least 1e-8 s"

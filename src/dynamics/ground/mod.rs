@@ -57,7 +57,7 @@ impl GroundMotion {
         let mut pieces = Vec::new();
         let mut piece_start_s = 0.0;
         for (end_s, origin_s, formula) in all {
-            // Nothing is left of a piece that is shorter than the spacing of times around it.
+            // A piece shorter than the spacing of floating-point times around it vanishes.
             if end_s > piece_start_s {
                 pieces.push(Piece {
                     start_s: piece_start_s,
@@ -90,7 +90,7 @@ impl GroundMotion {
             .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at))
     }
 
-    /// When the ground falls quiet for good, in seconds.
+    /// End of the ground motion, in seconds: the acceleration is zero from here on.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.pieces.last().map_or(0.0, |piece| piece.start_s)
@@ -104,7 +104,7 @@ impl GroundMotion {
     }
 
     /// The first time at which the ground falls as fast as a free body or faster, `g + a_v <= 0`, so that
-    /// nothing presses a structure on it any more; `None` if that never happens.
+    /// it no longer carries a structure; `None` if that never happens.
     #[must_use]
     pub fn free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
         let falls = |acceleration: Vector2<f64>| gravity_m_s2 + acceleration.y <= 0.0;
@@ -136,8 +136,7 @@ impl GroundMotion {
         })
     }
 
-    /// The same motion with further corners at these times (0 to 1e9), which change nothing: for tests of the
-    /// integration.
+    /// The same motion with additional corners at these times (0 to 1e9), for tests of the integration.
     ///
     /// # Errors
     /// When a time is outside its range.

@@ -103,13 +103,13 @@ impl Piece {
         self.at(time_s).0.y
     }
 
-    /// Whether the acceleration is zero from here on for ever.
+    /// Whether the acceleration is zero from here on.
     #[must_use]
     pub fn stays_still(&self) -> bool {
         self.end_s == f64::INFINITY
     }
 
-    /// A step that cannot miss the shape of the piece.
+    /// Longest step that resolves the shape of the piece.
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         match self.formula {
@@ -118,7 +118,7 @@ impl Piece {
         }
     }
 
-    /// The accelerations at both ends, between which all others lie.
+    /// The accelerations at both ends, which bound those in between.
     pub(super) fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
         if self.stays_still() {
             [Vector2::zeros(); 2]

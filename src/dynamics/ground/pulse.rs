@@ -31,11 +31,11 @@ named! {
         /// is the period of its central frequency and the peak is at `s = 2 T`. Beyond, it would be below
         /// `6e-16 a`, and is zero.
         Ricker = "ricker",
-        /// Antisymmetric Ricker wavelet `(a / b) (y^3 - 3 y) exp(-y^2 / 2)`, `y = 2 pi (s - 5 T / 2) / (sqrt(3) T)`,
-        /// for `0 <= s < 5 T`, first to the side of `a` and then to the other; `b = 1.3801` makes `a` the
-        /// peak, and `T` is the period of its central frequency. Beyond, it would be below `8e-16 a`, and is
-        /// zero. Source: Vassiliou and Makris, "Estimating time scales and length scales in pulselike
-        /// earthquake acceleration records with wavelet analysis", BSSA 101(2), 2011.
+        /// Antisymmetric Ricker wavelet `(a / b) (y^3 - 3 y) exp(-y^2 / 2)`,
+        /// `y = 2 pi (s - 5 T / 2) / (sqrt(3) T)`, for `0 <= s < 5 T`, first to the side of `a` and then to the
+        /// other; `b = 1.3801` makes `a` the peak, and `T` is the period of its central frequency. Beyond, it
+        /// would be below `8e-16 a`, and is zero. Source: Vassiliou and Makris, "Estimating time scales and length
+        /// scales in pulselike earthquake acceleration records with wavelet analysis", BSSA 101(2), 2011.
         AntisymmetricRicker = "antisymmetric_ricker",
         /// Pulse of Mavroeidis and Papageorgiou ("A mathematical representation of near-fault ground
         /// motions", BSSA 93(3), 2003): the ground velocity is a multiple of
@@ -92,7 +92,8 @@ impl Default for WaveTrain {
 
 impl GroundMotion {
     /// A single horizontal pulse that starts at `start_s` (0 to 1e9), with peak acceleration `amplitude_m_s2`
-    /// (at most 1e12 in magnitude) and length `duration_s` (1e-12 to 1e9). A wave train has [`WaveTrain::default`].
+    /// (at most 1e12 in magnitude) and length `duration_s` (1e-12 to 1e9). A wave train has
+    /// [`WaveTrain::default`].
     ///
     /// # Errors
     /// When an argument is outside its range.
@@ -125,8 +126,8 @@ impl GroundMotion {
 
 /// A pulse of any amplitude: its kind, its duration and when it starts.
 ///
-/// To find the extrema of a wave train takes far longer than to shake a structure with it once. They are the same
-/// at every amplitude; so a study that varies the amplitude finds them once.
+/// Finding the extrema of a wave train takes far longer than one history under it. They do not depend on the
+/// amplitude, so a study that varies it finds them once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PulseShape {
     pulse: Pulse,
@@ -373,7 +374,7 @@ mod tests {
             let amplitude = Vector2::new(2.0, 0.0);
             let ground = GroundMotion::pulse_along(pulse, amplitude, 0.3, 0.1, train).unwrap();
             assert!((ground.peaks_m_s2(f64::INFINITY).x - 2.0).abs() < 1e-12);
-            // The pieces end at the extrema: nothing between is beyond.
+            // The pieces end at the extrema, which bound what is between.
             let moving = ground.pieces().iter().filter(|p| !p.stays_still());
             let inside = moving.flat_map(|piece| {
                 let width = piece.end_s - piece.start_s;

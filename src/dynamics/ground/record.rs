@@ -7,14 +7,14 @@ use super::error::{self, GroundError};
 use super::piece::Formula;
 use crate::argument::within;
 
-/// Least spacing of samples, in seconds.
+/// Smallest spacing of samples, in seconds.
 const MIN_STEP_S: f64 = 1e-8;
-/// Corners of the two components that are closer than this, in seconds, are one.
+/// Corners of the two components closer than this, in seconds, are merged.
 const MIN_CORNER_SPACING_S: f64 = 1e-9;
 
 impl GroundMotion {
-    /// Horizontal accelerations in m/s2, one every `step_s` (1e-8 to 1e9) from time zero on, joined by straight lines;
-    /// zero after the last.
+    /// Horizontal accelerations in m/s2, one every `step_s` (1e-8 to 1e9) from time zero on, joined by straight
+    /// lines; zero after the last.
     ///
     /// ```
     /// use archrock::GroundMotion;
@@ -41,8 +41,8 @@ impl GroundMotion {
     /// Recorded motion: straight lines between samples `(time in s, acceleration in m/s2)`, zero before the
     /// first and after the last. One of the two components may be empty.
     ///
-    /// Times count from `start_s` (0 to 1e9); they rise by at least 1e-8 s, and none falls before time zero. Times are at
-    /// most 1e9 in magnitude, accelerations 1e12.
+    /// Times count from `start_s` (0 to 1e9); they rise by at least 1e-8 s, and none falls before time zero.
+    /// Times are at most 1e9 in magnitude, accelerations 1e12.
     ///
     /// # Errors
     /// When both components are empty, one has a single sample, or times and accelerations are not like that.
@@ -52,7 +52,7 @@ impl GroundMotion {
         start_s: f64,
     ) -> Result<Self, GroundError> {
         error::time_s("start_s", start_s)?;
-        // Of two empty components, the first is said to be.
+        // Of two empty components, the error names the first.
         if !horizontal.is_empty() || vertical.is_empty() {
             check("horizontal", horizontal)?;
         }
@@ -87,7 +87,7 @@ impl GroundMotion {
     }
 }
 
-/// Refuses samples between which there are no lines.
+/// Checks that samples can be joined by lines.
 fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundError> {
     if samples.len() < 2 {
         return Err(GroundError::TooFewSamples {
@@ -131,7 +131,7 @@ impl<'a> Polyline<'a> {
         Self { samples }
     }
 
-    /// Value at `start` and slope of the line that holds between two times, which no sample parts.
+    /// Value at `start` and slope of the line between two times without a sample in between.
     fn line(&mut self, start: f64, end: f64) -> (f64, f64) {
         let middle = 0.5 * (start + end);
         while self.samples.len() > 1 && self.samples[1].0 <= middle {

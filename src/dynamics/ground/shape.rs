@@ -191,7 +191,8 @@ impl Shape {
 /// `steepest` bounds the magnitude of its slope.
 ///
 /// A part in whose middle the function is farther from zero than it can fall over the length of the part
-/// has no zero, not even at its ends to rounding; others are halved. Pairs of zeros closer than `resolution` may be missed.
+/// has no zero, not even at its ends to rounding; others are halved. Pairs of zeros closer than `resolution`
+/// may be missed.
 fn zeros(function: impl Fn(f64) -> f64, steepest: f64, end: f64, resolution: f64) -> Vec<f64> {
     let mut zeros = Vec::new();
     let mut parts = vec![(0.0, end)];

@@ -49,7 +49,8 @@ mod tests {
     use super::*;
     use crate::dynamics::ground::{Pulse, WaveTrain};
 
-    /// Simpson's rule on fine parts that respect the corners errs by the fourth power of their length, below 1e-11.
+    /// Simpson's rule on fine parts that respect the corners errs by the fourth power of their length, below
+    /// 1e-11.
     #[test]
     fn the_velocity_is_the_integral_of_the_acceleration() {
         let amplitude = Vector2::new(2.0, -0.7);

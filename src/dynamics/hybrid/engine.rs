@@ -31,10 +31,10 @@ pub trait HybridSystem<const N: usize> {
     /// End of a piece of the forcing, in seconds; infinite for the last.
     fn piece_end_s(&self, piece: usize) -> f64;
 
-    /// Whether nothing can happen any more in this mode from this piece on.
+    /// Whether no guard of this mode can fire from this piece on.
     fn is_over(&self, mode: Self::Mode, piece: usize) -> bool;
 
-    /// Whether the state stays as it is in this mode.
+    /// Whether the state is constant in this mode.
     fn is_still(&self, mode: Self::Mode) -> bool;
 
     /// Rate of change of the state, per second. Called with times in the piece, its ends included.
@@ -59,7 +59,7 @@ pub trait HybridSystem<const N: usize> {
     /// The guards of a mode.
     fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
 
-    /// GuardValue of a guard. It fires when it falls below zero.
+    /// Value of a guard, which fires when it falls below zero.
     fn guard_value(
         &self,
         guard: Self::Guard,
@@ -149,14 +149,14 @@ impl<S: HybridSystem<N>, A: Observer<S, N>, B: Observer<S, N>, const N: usize> O
     }
 }
 
-/// What an integration needs beside the system.
+/// Settings of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// End of the simulation, in seconds.
     pub end_s: f64,
     /// Error allowed in a step, relative to the state's components or to their scales.
     pub relative_tolerance: f64,
-    /// More transitions than this are an error.
+    /// Largest number of transitions; more are an error.
     pub max_transitions: usize,
 }
 
@@ -183,14 +183,14 @@ pub enum EngineError {
     Integrator(#[from] IntegratorError),
     /// Too many events.
     #[error(
-        "more than {most} transitions by {time_s:?} s: the motion chatters; raise rest_energy_ratio, so that \
-         it rests earlier, or shorten duration_s"
+        "more than {max_transitions} transitions by {time_s:?} s: the motion chatters; raise rest_energy_ratio to bring \
+         it to rest earlier, or shorten duration_s"
     )]
     TooManyTransitions {
         /// Time in seconds.
         time_s: f64,
-        /// The bound that was hit.
-        most: usize,
+        /// The largest number allowed.
+        max_transitions: usize,
     },
 }
 
@@ -235,7 +235,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
             if transitions > settings.max_transitions {
                 return Err(EngineError::TooManyTransitions {
                     time_s: now.time_s,
-                    most: settings.max_transitions,
+                    max_transitions: settings.max_transitions,
                 });
             }
             let (to, after) = system.reset(guard, now.mode, piece, now.time_s, &now.state);
@@ -360,9 +360,10 @@ fn advance<S: HybridSystem<N>, const N: usize>(
 
 /// The step again, cut off where the guard fires.
 ///
-/// Near the end of the step interpolation is as exact as the end. Elsewhere it tells the instant almost;
-/// integrating up to there tells the state as exactly as every other step, and what is left of the guard's value is closed along the tangent. That last bit is so
-/// short (`d`, about 1e-10 of the step) that its curvature, of the order `d^2`, is below rounding.
+/// Near the end of the step interpolation is as exact as the end. Elsewhere it gives the instant approximately:
+/// integrating up to there gives the state as accurately as any other step, and a last step along the tangent
+/// brings the guard to zero. It is so short (`d`, about 1e-10 of the step) that its curvature, of order `d^2`,
+/// is below rounding.
 #[expect(
     clippy::too_many_arguments,
     reason = "the pieces of one call of `advance`"
@@ -421,7 +422,7 @@ const INTERPOLATED: f64 = 2e-4;
 /// Largest part of a step that may be closed along the tangent on landing.
 const CLOSED_BY_TANGENT: f64 = 1e-4;
 
-/// A guard's guard at an instant.
+/// A guard's value at an instant.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     time_s: f64,
@@ -455,16 +456,16 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
     first
 }
 
-/// How often a step is halved in search of an event: what a guard does within a millionth of a step
-/// goes unseen.
+/// How often a step is halved in search of an event: shorter excursions of a guard, a millionth of a step,
+/// are missed.
 const HALVINGS: u32 = 20;
 
 /// The first instant after `start`, up to `end`, at which a guard falls below zero.
 ///
 /// Between two points the guard is taken for the cubic with their values and rates. It lies within the
-/// range of its Bernstein coefficients, and is monotone if they are; so they mostly show that nothing
-/// happens, or that the guard falls and no more. Where they show neither, the interval is halved. A
-/// guard that is negative at the start cannot fall below zero before it has risen above.
+/// range of its Bernstein coefficients, and is monotone if they are; so they mostly show that it does
+/// not fire, or that it only falls. Otherwise the interval is halved. A
+/// guard that is negative at the start must rise above zero before it can fire.
 fn first_crossing(
     start: Point,
     end: Point,
@@ -492,8 +493,8 @@ fn first_crossing(
         .or_else(|| first_crossing(middle, end, halvings - 1, at))
 }
 
-/// Where a falling guard that is not negative at the start but at the end is zero: Newton's method from
-/// the end, kept inside the bracket by bisection.
+/// The zero of a falling guard that is negative at the end and not at the start: Newton's method from
+/// the end, safeguarded by bisection.
 pub(crate) fn falling_root(start_s: f64, end_s: f64, guard: impl Fn(f64) -> GuardValue) -> f64 {
     let (mut positive_s, mut negative_s) = (start_s, end_s);
     let mut guess_s = end_s;

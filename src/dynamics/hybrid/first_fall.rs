@@ -1,5 +1,5 @@
-//! Overturning without impact: in the first fall from rest, before the hinges ever close. Nothing of the impact
-//! model enters.
+//! Overturning without impact: in the first fall from rest, before the hinges ever close. Independent of the
+//! impact model.
 
 use std::ops::ControlFlow;
 
@@ -8,8 +8,8 @@ use super::rocking::{Guard, Mode, Rocking, RockingState};
 use crate::mechanics::chain::MechanismChain;
 use crate::mechanics::four_link::mechanism::Sway;
 
-/// So long after the ground fell quiet that the first fall is over: near the unstable equilibrium a motion dwells
-/// for some forty of its time scales before rounding decides.
+/// Time after the end of the ground motion by which the first fall is over, in seconds: near the unstable
+/// equilibrium a motion dwells for some forty of its time scales before rounding decides.
 const AFTER_S: f64 = 1e6;
 
 /// The side to which a structure at rest is overturned before its first impact; `None` if it is not.
@@ -23,7 +23,7 @@ pub fn overturns<C: MechanismChain>(
     let settings = Settings {
         end_s: rocking.ground().end_s() + AFTER_S,
         relative_tolerance,
-        // Leaving the rest, and what ends that.
+        // Uplift, and the event that ends the first fall.
         max_transitions: 2,
     };
     let state = RockingState::zeros();

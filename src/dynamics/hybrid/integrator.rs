@@ -3,7 +3,7 @@
 //! Only `Dopri5` with sparse output is used. In `ode_solvers` 0.6.2 `Dop853` evaluates its last two
 //! stages at the wrong time, `OutputType::Dense` can return an extrapolated last point and hands
 //! `solout` a state and a time that do not belong together, and continuous output takes the absolute
-//! value of the time; sparse `Dopri5` has none of these. The solver's `solout` is told of every
+//! value of the time; sparse `Dopri5` has none of these. The solver's `solout` sees every
 //! accepted step and can only stop, so looking inside steps is left to the caller.
 
 use std::cell::Cell;
@@ -82,7 +82,7 @@ pub enum IntegratorError {
 }
 
 /// Steps of one call of the solver: far more than any stretch of motion needs.
-const MOST_STEPS: u32 = 1_000_000;
+const MAX_STEPS: u32 = 1_000_000;
 
 /// Integrates `slope(time_s, state)` as the task says, and shows every accepted step to `watch`, which
 /// may end the integration. Returns the last state.
@@ -125,7 +125,7 @@ pub fn integrate<const N: usize>(
         largest_factor,
         task.longest_step_s.min(span_s),
         task.first_step_s.min(task.longest_step_s).min(span_s),
-        MOST_STEPS,
+        MAX_STEPS,
         never_test_stiffness,
         OutputType::Sparse,
     );
@@ -176,8 +176,8 @@ where
             (self.slope)(self.task.start_s + x, &state)
         };
         *dy = slope.component_mul(&self.per_scale);
-        // A trial step may go too far and is then rejected and shortened, as the error estimate is not
-        // a number either. If that never ends, this tells why.
+        // A trial step may go too far; its error estimate is then not a number either, so it is rejected and
+        // shortened. If that never ends, this is the reason to report.
         self.not_finite.set(!dy.sum().is_finite());
     }
 

@@ -3,10 +3,10 @@
 //! | mode | moves by | until |
 //! |---|---|---|
 //! | rest | not at all | the ground, seen against gravity, passes the incipient acceleration on either side |
-//! | rocking | the equation of motion of one mechanism | its hinges close, or it is lost |
+//! | rocking | the equation of motion of one mechanism | its hinges close, or it overturns |
 //! | overturned | - | - |
 //!
-//! Which structure rocks does not matter here: see [`MechanismChain`].
+//! The structure is any [`MechanismChain`].
 
 use nalgebra::Vector2;
 
@@ -31,7 +31,7 @@ pub enum Mode<'a, M> {
         /// The mechanism.
         link: &'a Link<M>,
     },
-    /// Lost.
+    /// Overturned.
     Overturned {
         /// To which side.
         sway: Sway,
@@ -54,7 +54,7 @@ impl<M> Mode<'_, M> {
     }
 }
 
-// Not derived: a copy of the mode does not need a copy of the mechanism.
+// Not derived, because that would require the mechanism to be `Clone`.
 impl<M> Clone for Mode<'_, M> {
     fn clone(&self) -> Self {
         *self
@@ -65,7 +65,7 @@ impl<M> Copy for Mode<'_, M> {}
 /// Events of a rocking structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guard {
-    /// At rest: `A_L (g + a_v) - push`, where the ground pushes the structure to this side.
+    /// Uplift: `A_L (g + a_v) - push`, where the ground pushes the structure to this side.
     Uplift(Sway),
     /// Rocking: `q`, all hinges close.
     Closing,
@@ -78,12 +78,12 @@ pub enum Guard {
 /// The coordinate `q`, its rate, and the work done by the ground since time zero.
 pub type RockingState = State<3>;
 
-/// A push lifts the structure off when it is this many times the incipient one: by so much more than rounding
-/// that the mechanism really opens. At the very threshold it could close again at once, for ever.
+/// A push lifts the structure off when it is this many times the incipient one: by enough above rounding
+/// for the mechanism to open. At the very threshold it could close again at once, over and over.
 const UPLIFT_FACTOR: f64 = 1.0 + 1e-12;
 
 /// Likewise over the acceleration at which the equation of motion of the first mechanism changes sign. That is
-/// the incipient one but for rounding, which grows relative to it as the arch gets thinner, and drowns the
+/// the incipient one up to rounding, which grows relative to it as the arch gets thinner, and exceeds the
 /// first factor in arches that hardly stand.
 const OPENING_FACTOR: f64 = 1.0 + 1e-13;
 
@@ -186,8 +186,8 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         ground_m_s2
     }
 
-    /// `q''` under gravity and a ground acceleration in the mechanism's own frame. On ground that rises
-    /// ever faster a structure is as much heavier.
+    /// `q''` under gravity and a ground acceleration in the mechanism's own frame. An upward acceleration of
+    /// the ground adds to gravity.
     fn acceleration(
         &self,
         coefficients: &Coefficients,
@@ -201,7 +201,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         -(force + length_m * inertial) / (length_m * coefficients.inertia)
     }
 
-    /// What the internal forces ask of the structure's sections.
+    /// Thrust excess and friction demand.
     #[must_use]
     pub fn demand(
         &self,

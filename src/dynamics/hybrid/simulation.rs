@@ -21,7 +21,7 @@ use crate::mechanics::equivalent::{Equivalent, equivalent};
 use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::pose::Pose;
 
-/// Transitions that a history may have; only a chattering that the model does not know could need more.
+/// Most transitions of a history: more would mean chatter, which the model should not produce.
 const MAX_TRANSITIONS: usize = 1_000_000;
 
 impl<C: MechanismChain> Model for C {
@@ -68,7 +68,7 @@ impl<C: MechanismChain> Model for C {
         if let Some(sampler) = &mut sampler
             && !finish.stopped
         {
-            // It ends here anyway.
+            // The history ends here whether the recorder breaks or not.
             let _ = sampler.finish(&rocking, finish.mode, finish.time_s, &finish.state);
         }
         tally.note_peak(finish.mode, &finish.state);
@@ -140,7 +140,7 @@ impl<C: MechanismChain> MechanismModel for C {
     }
 }
 
-/// The structure on its ground, if what is asked is possible.
+/// The structure on its ground, if the request is valid.
 fn checked<'a, C: MechanismChain>(
     chain: &'a C,
     ground: &'a GroundMotion,
@@ -174,7 +174,7 @@ type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::Rotations;
 type RockingTransition<'a, C> = Transition<Mode<'a, <C as MechanismChain>::Mechanism>, Guard, 3>;
 
 /// Rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground: a
-/// sway to the left is seen in a mirror, which swaps the bodies and turns their rotations round.
+/// sway to the left is the mirror image, which swaps the bodies and changes the sign of their rotations.
 fn seen_from_ground<C: MechanismChain>(
     sway: Sway,
     mut rotations: Rotations<C>,
@@ -224,7 +224,7 @@ struct Closing<'a, C: MechanismChain> {
     after: Option<&'a Link<C::Mechanism>>,
     /// Rate of `q` just before, negative.
     rate_before_rad_s: f64,
-    /// Rate of `q` just after, of the new mechanism, also where it is too small to go on.
+    /// Rate of `q` of the new mechanism just after, even where that is too small to go on.
     rate_after_rad_s: f64,
 }
 
@@ -293,7 +293,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
     }
 }
 
-/// Keeps what a summary needs.
+/// Collects what a summary needs.
 struct Tally<C: MechanismChain> {
     impacts: usize,
     peak_rotations_rad: Rotations<C>,
@@ -324,7 +324,7 @@ impl<C: MechanismChain> Tally<C> {
         tally
     }
 
-    /// All rotations grow with `q`: the largest are where it turns round, or at the start or the end.
+    /// All rotations grow with `q`: the largest are at its turning points, at the start or at the end.
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } = mode {
             let rotations = seen_from_ground::<C>(sway, link.mechanism.rotations(state[0]), 1.0);
@@ -360,7 +360,7 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
         let Mode::Rocking { link, .. } = mode else {
             return ControlFlow::Continue(());
         };
-        // It may turn round in the very step in which it leaves the rest, at no rate.
+        // It may turn back in the very step of uplift, in which it starts at zero rate.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
             let bend = step.end_slope[1] - step.start_slope[1];
             let turn_s = falling_root(step.start_s, step.end_s, |time_s| GuardValue {
@@ -403,7 +403,7 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
         }
         if let Mode::Rest = transition.to {
             self.last_rest_s = Some(transition.time_s);
-            // At rest there is no energy; what is left is the defect so far, and goes on.
+            // At rest the energy is zero: the balance that is left is the defect so far, carried on.
         }
         ControlFlow::Continue(())
     }
@@ -446,7 +446,7 @@ struct Sampler<'r> {
     phase: usize,
     /// The last sample is held back, in case the end falls on it.
     held: Option<Sample>,
-    /// One that is used again, so that samples cost no memory.
+    /// Reused, so that samples need no allocation.
     spare: Option<Sample>,
     /// Positions of the hinges, likewise.
     positions: Vec<Vector2<f64>>,
@@ -596,7 +596,7 @@ impl<'r> Sampler<'r> {
         let pieces = rocking.ground().pieces();
         let piece = pieces.partition_point(|piece| piece.start_s <= time_s) - 1;
         let last = self.sample(rocking, mode, piece, time_s, state);
-        // A sample that rounding alone parts from the end is replaced.
+        // A sample that differs from the end by rounding only is replaced.
         if let Some(held) = self.held.take()
             && held.time_s < time_s - 1e-9 * self.output_step_s
         {

@@ -29,7 +29,7 @@ pub enum FourLinkError {
     /// It does not start as one.
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// The impact model is not one.
+    /// The restitution coefficient is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
 }

@@ -4,8 +4,8 @@
 //! motion with more. Let `K` be the velocity fields that open and never close a joint of the ring, without
 //! sliding: rotations about the edge points of joints, as many as there are, none of them backwards. `K` is a
 //! convex cone, and the velocity `w` of the closing mechanism has one nearest field `P w` in it, the motion
-//! after the perfectly inelastic impact of Moreau. It keeps `r = <Pw, Pw> / <w, w>`, which no four-link
-//! mechanism with hinges at these joints exceeds.
+//! after the perfectly inelastic impact of Moreau. Its restitution `r = <Pw, Pw> / <w, w>` is not exceeded by
+//! any four-link mechanism with hinges at these joints.
 //!
 //! On a ring cut into rigid voussoirs the projection is a convex quadratic program. Its multipliers are the
 //! impulses at the edges of the joints. Compression at both edges is what makes the resultant pass inside the
@@ -24,8 +24,8 @@ use super::resultant::SectionResultant;
 use crate::mechanics::geometry::field::{Field, Twist};
 use crate::mechanics::geometry::ring::{Edge, Ring};
 
-/// Number of equal parts from which the projection of a continuous ring is computed by default. The error of `r` falls
-/// with the square of the number; here it is about 1e-6, by test.
+/// Number of equal parts from which the projection of a continuous ring is computed by default. The error of
+/// `r` falls with the square of the number; here it is about 1e-6, by test.
 pub const DEFAULT_JOINTS: usize = 720;
 
 /// The field nearest to the closing velocity, over all admissible fields.
@@ -38,13 +38,13 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Joints that open: index, edge about which, and rotation rate. Rotations that are small beside the largest are
-    /// left out.
+    /// Joints that open: index, edge about which, and rotation rate. Rotations that are small beside the
+    /// largest are left out.
     ///
     /// In a continuous ring whole zones open, where the impulse line follows an edge.
     pub fn opened(&self) -> impl Iterator<Item = (usize, Edge, f64)> {
         let rates = self.joints.iter().flat_map(|joint| joint.opening_rates);
-        let least = LEAST_OPENING * rates.fold(LEAST_OPENING, f64::max);
+        let threshold = MIN_OPENING * rates.fold(MIN_OPENING, f64::max);
         self.joints
             .iter()
             .enumerate()
@@ -52,16 +52,15 @@ impl Projection {
                 [Edge::Intrados, Edge::Extrados]
                     .into_iter()
                     .zip(joint.opening_rates)
-                    .filter(move |(_, rate)| *rate > least)
+                    .filter(move |(_, rate)| *rate > threshold)
                     .map(move |(edge, rate)| (index, edge, rate))
             })
     }
 }
 
-/// Joints that rotate less than this part of the largest rotation count as closed: the solver leaves so
-/// much where both the opening and the impulse vanish, at the ends of zones. The same part of the
-/// rate of the closing mechanism counts as no rotation.
-const LEAST_OPENING: f64 = 1e-3;
+/// Joints that rotate less than this part of the largest rotation, or of the rate of the closing mechanism, count
+/// as closed: the solver leaves that much at the ends of zones, where both opening and impulse vanish.
+const MIN_OPENING: f64 = 1e-3;
 
 /// A joint at the impact; rates and impulses are per unit rate of the closing mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +76,7 @@ pub struct Joint {
 /// The projection could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
-    "the motion that keeps the most energy was not found with {joints} joints ({reason}): try another number"
+    "the motion of largest restitution was not found with {joints} joints ({reason}): try another number of joints"
 )]
 pub struct ProjectionError {
     joints: usize,
@@ -87,9 +86,9 @@ pub struct ProjectionError {
 /// Joints at which the projection opens the ring: those of the voussoirs, or the springings and the sections
 /// between `count` equal parts.
 ///
-/// Where hinges sit anywhere those of `mechanism`, the one that is to be certified, are joints too, in place of their
-/// next neighbours. The cone then has that mechanism in it, and bounds its restitution coefficient from above
-/// whatever the number of joints.
+/// In a continuous ring the hinges of `mechanism`, the one to be certified, replace the joints nearest to them.
+/// The cone then contains that mechanism, and bounds its restitution coefficient from above for any number of
+/// joints.
 #[must_use]
 pub fn joints_rad(
     ring: &Ring,
@@ -103,7 +102,7 @@ pub fn joints_rad(
             let mut joints = ring.sections(count);
             let (spacing, end) = (joints[1], ring.embrace_rad());
             let mut hinges: Vec<f64> = mechanism.map_or(Vec::new(), |m| m.hinges_rad().to_vec());
-            // A hinge at a springing has its joint; a body in between would have no mass.
+            // A hinge at a springing already has its joint; a body in between would have no mass.
             hinges.retain(|hinge| *hinge > 1e-6 * spacing && end - hinge > 1e-6 * spacing);
             joints.retain(|joint| {
                 let apart = |hinge: &f64| (hinge - joint).abs() > 0.5 * spacing;
@@ -198,7 +197,7 @@ pub fn project(
 
     let joints = joints_rad.iter().enumerate().map(|(joint, angle)| {
         let edge_rows = [count + 2 * joint, count + 2 * joint + 1];
-        // Turning about one edge parts the other.
+        // Turning about one edge opens the other.
         let [gap_intrados, gap_extrados] = edge_rows.map(|row| solution.s[row] * scale);
         let [intrados, extrados] = edge_rows.map(|row| solution.z[row] * scale);
         let normal = intrados + extrados;

@@ -2,7 +2,7 @@
 //!
 //! Which mechanism follows an impact depends on the one that closes, not on how fast: from the mechanism
 //! that starts at the incipient acceleration the whole sequence is a property of the arch. Links are
-//! computed when first asked for and kept; threads may share a chain.
+//! computed when first asked for and cached; threads may share a chain.
 
 use std::sync::OnceLock;
 
@@ -14,13 +14,13 @@ use super::mechanism::{FourLink, HingeSites};
 use crate::mechanics::chain::Link;
 use crate::mechanics::geometry::ring::Ring;
 
-/// A link whose hinges are as close as this to those of the link two before it closes the chain into a
-/// repeating pair. Far below what the search resolves in `r` (which is flat at a maximum).
+/// A link whose hinges are this close to those of the link two before it closes the chain into a repeating
+/// pair. The effect on `r`, which is flat at a maximum, is far below what the search resolves.
 const REPETITION_RAD: f64 = 1e-9;
 
 /// Chains converge to a pair within 20 to 120 links. One that has not by this length (none is known)
-/// goes on with its last two.
-const LONGEST_CHAIN: usize = 256;
+/// repeats its last two.
+const MAX_CHAIN_LENGTH: usize = 256;
 
 /// A mechanism of the chain: in the undeformed configuration, and in motion.
 #[derive(Clone, Debug)]
@@ -54,9 +54,9 @@ pub struct Chain {
     sites: HingeSites,
     model: ImpactModel,
     incipient: Incipient,
-    /// Boxed, because a chain has room for many links and mostly needs few.
+    /// Boxed, because a chain has room for many links and usually needs few.
     links: Box<[OnceLock<Option<Box<ArchLink>>>]>,
-    /// First link of the pair that repeats for ever; the second has the mechanism of the link before it.
+    /// First link of the pair that repeats; the second has the mechanism of the link before it.
     pair: OnceLock<usize>,
 }
 
@@ -73,7 +73,7 @@ impl Chain {
             sites,
             model,
             incipient,
-            links: (0..LONGEST_CHAIN).map(|_| OnceLock::new()).collect(),
+            links: (0..MAX_CHAIN_LENGTH).map(|_| OnceLock::new()).collect(),
             pair: OnceLock::new(),
         }
     }
@@ -97,10 +97,10 @@ impl Chain {
     }
 
     /// The mechanism after `index` impacts; `None` when an impact before it stops the ring, because
-    /// no admissible mechanism takes the motion over.
+    /// no admissible mechanism can follow.
     #[must_use]
     pub fn link(&self, index: usize) -> Option<&ArchLink> {
-        for known in 0..LONGEST_CHAIN {
+        for known in 0..MAX_CHAIN_LENGTH {
             let wanted = match self.pair.get() {
                 Some(pair) if index > *pair => pair + (index - pair) % 2,
                 _ => index,
@@ -125,7 +125,7 @@ impl Chain {
         };
         let mechanism = |index: usize| Some(self.links[index].get()?.as_ref()?.mechanism);
         let closing = mechanism(previous)?;
-        if index == LONGEST_CHAIN - 1 {
+        if index == MAX_CHAIN_LENGTH - 1 {
             self.pair.get_or_init(|| previous);
         }
         let impact = if self.pair.get() == Some(&previous) {
@@ -180,7 +180,7 @@ mod tests {
             let hinges = |i| chain.link(i).unwrap().mechanism.hinges_rad();
             assert_eq!(hinges(400), hinges(402));
             let pair = *chain.pair.get().unwrap();
-            assert!(pair < LONGEST_CHAIN - 2, "{pair}");
+            assert!(pair < MAX_CHAIN_LENGTH - 2, "{pair}");
             // Each link of the pair keeps what its own impact leaves, also where the chain closes.
             for index in pair..pair + 4 {
                 let (before, after) = (chain.link(index).unwrap(), chain.link(index + 1).unwrap());

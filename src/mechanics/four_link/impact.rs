@@ -20,9 +20,9 @@ use crate::mechanics::geometry::ring::Ring;
 pub enum ImpactModel {
     /// The mechanism that keeps the most kinetic energy.
     ///
-    /// Assumes that hinges form wherever the least energy is spent, and that impulses pass through the hinges
+    /// Assumes that hinges form wherever the least energy is lost, and that impulses pass through the hinges
     /// of the new mechanism only, Eqs. (7)-(10). The model of the paper. The projection onto all admissible
-    /// fields ([`super::certificate`]) tells how far four hinges are from the least expense of all.
+    /// fields ([`super::certificate`]) tells how far four hinges are from the smallest possible loss.
     MaxRestitution,
     /// Hinges at the opposite edges of the sections that close.
     ///
@@ -33,7 +33,7 @@ pub enum ImpactModel {
     /// Hinges at the mirror image of those that close.
     ///
     /// Assumes that the arch sways back as it swayed out. The paper names it as the usual choice of the
-    /// literature, and objects that it spends more energy than it has to. The rate follows from the same
+    /// literature, and objects that it loses more energy than necessary. The rate follows from the same
     /// momentum theorems, with impulses at the new hinges; its impulse line leaves the ring.
     Mirrored,
     /// Mirrored hinges, and a given restitution coefficient in place of the momentum theorems.
@@ -47,7 +47,7 @@ pub enum ImpactModel {
 }
 
 impl ImpactModel {
-    /// Refuses a restitution coefficient that is none.
+    /// Checks a prescribed restitution coefficient.
     pub(crate) fn check(self) -> Result<(), ArgumentError> {
         match self {
             Self::Prescribed { restitution } => {
@@ -93,8 +93,8 @@ pub fn closing_field(mechanism: &FourLink, ring: &Ring) -> Field {
     mechanism.field().scaled(-1.0).mirrored(ring)
 }
 
-/// What follows when `mechanism` closes, by the given model; `None` when no admissible mechanism takes
-/// the motion over.
+/// The impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can
+/// follow.
 #[must_use]
 pub fn impact(
     mechanism: &FourLink,
@@ -118,7 +118,7 @@ pub fn impact(
     impact_onto(next, mechanism, ring, model)
 }
 
-/// What follows when `mechanism` closes and `next` is known to take over; `None` when that would have to
+/// The impact when `mechanism` closes and `next` is known to follow; `None` when that would have to
 /// move backwards.
 pub(crate) fn impact_onto(
     next: FourLink,
@@ -248,7 +248,7 @@ impl RetainedEnergy<'_> {
         let field = mechanism.field();
         let shared = field.product(self.before, self.ring);
         let rate = shared / field.product(&field, self.ring);
-        // A mechanism that would have to move backwards keeps nothing.
+        // A mechanism that would have to move backwards retains no energy.
         (if rate > 0.0 { shared * rate } else { -f64::MAX }, rate)
     }
 }

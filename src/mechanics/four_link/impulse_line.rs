@@ -14,8 +14,8 @@ use crate::mechanics::geometry::ring::Ring;
 
 /// The impulses of an impact over the ring.
 ///
-/// Per unit rate of the closing mechanism, in units of `rho d R^3`, and in the frame in which the new mechanism sways
-/// right, unless a name ends in `from_left`.
+/// Per unit rate of the closing mechanism, in units of `rho d R^3`, and in the frame in which the new mechanism
+/// sways right, unless a name ends in `from_left`.
 #[derive(Clone, Debug)]
 pub struct ImpulseLine {
     ring: Ring,
@@ -43,8 +43,8 @@ impl ImpulseLine {
         &self.resultants
     }
 
-    /// Impulses at the hinges A, B, C, D on the part towards the crown: by the ground on the left body, by the left
-    /// body on the middle one, by the right body on the middle one, by the ground on the right body.
+    /// Impulses at the hinges A, B, C, D on the part towards the crown: by the ground on the left body, by the
+    /// left body on the middle one, by the right body on the middle one, by the ground on the right body.
     ///
     /// The outer two are the unknowns `F' dt` of Eqs. (7)-(10) of the paper.
     #[must_use]
@@ -54,8 +54,8 @@ impl ImpulseLine {
         std::array::from_fn(|i| self.resultants.at(hinges[i]).linear * sides[i])
     }
 
-    /// [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new mechanism
-    /// sways to the given side.
+    /// [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new
+    /// mechanism sways to the given side.
     #[must_use]
     pub fn hinge_impulses_from_left(&self, sway: Sway) -> [Vector2<f64>; 4] {
         let mut impulses = self.hinge_impulses();
@@ -81,7 +81,8 @@ impl ImpulseLine {
         }
     }
 
-    /// [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the given side.
+    /// [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the
+    /// given side.
     #[must_use]
     pub fn extremes_from_left(&self, sites: HingeSites, sway: Sway) -> Extremes {
         let mut extremes = self.resultants.extremes(sites);

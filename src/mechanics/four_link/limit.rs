@@ -1,4 +1,4 @@
-//! Incipient rocking: the least horizontal acceleration that moves the ring, by limit analysis.
+//! Incipient rocking: the smallest horizontal acceleration that moves the ring, by limit analysis.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -29,10 +29,10 @@ pub enum LimitError {
     #[error("the arch cannot carry its own weight")]
     CannotStand,
     /// The ring stands, but statics does not confirm the best four-link mechanism: its thrust line leaves the
-    /// ring, or two of its hinges merge into one section that would part altogether.
+    /// ring, or two of its hinges merge into one section that would open at both edges.
     #[error(
         "the arch stands, but does not start to rock as a four-link mechanism: the best one moves at \
-         {acceleration_g:.4} g and statics does not confirm it; another mechanism governs, as in thick shallow rings"
+         {acceleration_g:.4} g, and the thrust line does not confirm it; another mechanism governs, as in thick shallow arches"
     )]
     OtherMechanism {
         /// Acceleration of the best four-link mechanism found, in units of gravity: not below the true
@@ -40,7 +40,7 @@ pub enum LimitError {
         acceleration_g: f64,
     },
     /// The ring stands, and no push moves it as a four-link mechanism.
-    #[error("the arch stands, and no horizontal push moves it as a four-link mechanism")]
+    #[error("the arch stands, but no horizontal push moves it as a four-link mechanism")]
     NoPush,
 }
 
@@ -69,10 +69,11 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
     })
 }
 
-/// The least thickness ratio at which a ring of this embrace angle carries its own weight, by up to `accuracy` too
-/// large.
+/// The smallest thickness ratio at which a ring of this embrace angle carries its own weight; at most `accuracy`
+/// above the exact value.
 ///
-/// It is below 0.11: a semicircle needs 0.1075 (Milankovitch), and any other ring less. Every thicker ring stands as well.
+/// It is below 0.11: a semicircle needs 0.1075 (Milankovitch), and any other ring less. Every thicker ring stands
+/// too.
 ///
 /// # Errors
 /// When the angle is not in `(0, pi]`.
@@ -96,8 +97,8 @@ fn push(acceleration_g: f64) -> Field {
 
 /// Minimum of `int v_y / int v_x` for a ring that stands, the kinematic theorem.
 ///
-/// In such a ring a mechanism that sways to the right also rises: one that does not is the rounding of a mechanism that
-/// does neither, as where hinges merge, or sways to the left.
+/// In such a ring a mechanism that sways to the right also rises. One that seems not to either does neither but
+/// for rounding, as where hinges merge, or sways to the left.
 fn least_acceleration(ring: &Ring, sites: HingeSites) -> Option<(f64, FourLink)> {
     let lattice = Lattice::new(ring, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.

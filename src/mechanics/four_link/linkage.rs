@@ -4,8 +4,8 @@
 //! three moving bodies the others. The coordinate `q` is the **clockwise rotation of the left body** A-B
 //! (of the mechanism that sways right): while the arch falls, B flattens until A, B and C are on one
 //! line, which is the limit position of the right body. Seen from the right body the others would there
-//! turn infinitely fast; seen from the left body nothing happens, and the equation of motion stays
-//! well conditioned beyond the limit.
+//! turn infinitely fast; seen from the left body nothing special happens, and the equation of motion
+//! stays well conditioned beyond the limit.
 
 use nalgebra::Vector2;
 
@@ -226,7 +226,7 @@ impl Linkage {
         )
     }
 
-    /// The limit position: the least `q` at which A, B, C, or else C, D, A, are on one line, so that
+    /// The limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that
     /// the right body or the ground bar cannot follow any further.
     #[must_use]
     pub fn limit_rad(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! The four-link mechanism in the undeformed configuration.
 //!
-//! A ring is its own mirror image, so one orientation is enough: everything in [`crate::mechanics`] speaks
-//! of the mechanism that **sways right**, with hinges on intrados, extrados, intrados, extrados from
+//! A ring is its own mirror image, so one orientation is enough: everything in [`crate::mechanics`] is
+//! about the mechanism that **sways right**, with hinges on intrados, extrados, intrados, extrados from
 //! the left springing. A sway to the left is the same mechanism seen in a mirror ([`Sway`]);
 //! left and right thus agree to the last bit.
 
@@ -92,7 +92,7 @@ pub(crate) fn openings(points: &[Vector2<f64>; 4]) -> Option<[f64; 4]> {
 
 /// A kinematically admissible four-link mechanism that sways right.
 ///
-/// The hinges A, B, C, D part the ring into bodies that stand (before A, after D) and move: left
+/// The hinges A, B, C, D divide the ring into bodies that stand (before A, after D) and move: left
 /// (A-B), middle (B-C) and right (C-D). Its rate `q'` is the clockwise rate of the left body, the one
 /// that turns about the first hinge; see [`super::linkage`] for the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]

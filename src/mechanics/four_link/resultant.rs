@@ -1,6 +1,6 @@
 //! Lines of resultants: the thrust line of a load and the impulse line of an impact.
 //!
-//! Cut the ring at a section. What the part before it hands on to the part after it is the reaction
+//! Cut the ring at a section. The part before it transmits to the part after it the reaction
 //! at the left springing plus the whole load in between: a force with a line of action, or, when
 //! the load is a change of velocity, an impulse. The points where these lines cross their sections
 //! make the thrust line (the impulse line). Through a hinge it passes by definition.
@@ -72,14 +72,14 @@ pub struct Extremum {
     pub angle_rad: f64,
 }
 
-/// What a line asks of a ring that bears no tension.
+/// Extremes of a line, for a ring without tensile strength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
     /// Largest `|e|/t`: 0.5 at the edges, infinite if there is tension.
     pub eccentricity_ratio: Extremum,
-    /// Least normal resultant.
+    /// Smallest normal resultant.
     pub normal: Extremum,
-    /// Largest ratio of the tangential to the normal resultant: the friction that keeps joints from
+    /// Largest ratio of the tangential to the normal resultant: the friction coefficient needed to prevent
     /// sliding; infinite if there is tension.
     pub friction_ratio: Extremum,
 }
@@ -166,7 +166,7 @@ impl ResultantLine {
     }
 
     /// The largest value of a quantity. Where the load is rigid the quantity is smooth: it is sampled, and
-    /// every top is then refined.
+    /// every maximum is then refined.
     fn largest(&self, sites: HingeSites, of: &dyn Fn(&SectionResultant) -> f64) -> Extremum {
         let at = |angle_rad: f64| Extremum {
             value: of(&self.section(angle_rad)),
@@ -219,10 +219,10 @@ impl ResultantLine {
     }
 }
 
-/// Samples of a line over a continuous ring: fine enough to tell its tops apart.
+/// Samples of a line over a continuous ring: fine enough to separate its maxima.
 const SAMPLES: usize = 720;
 
-/// How closely tops between samples are found: a quantity differs from its top by about the square of this.
+/// Accuracy of the section of a maximum, in radians: the value is off by about the square of this.
 const TOP_ACCURACY_RAD: f64 = 1e-9;
 
 /// The largest.
@@ -232,7 +232,7 @@ fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
         .expect("a ring has sections")
 }
 
-/// The top of a smooth quantity with one top between two sections, to `accuracy_rad` of its section, by
+/// The maximum of a smooth quantity with one maximum between two sections, to `accuracy_rad` of its section, by
 /// golden section.
 pub(super) fn climb(
     mut from: f64,

@@ -3,7 +3,7 @@
 //! Both questions of the mechanics - which mechanism moves first, which one follows an impact - ask for
 //! the largest value of a function of four ordered angles, with several local maxima, often on the
 //! bounds. The search is deterministic: every quadruple of a lattice of sections is scored, then each
-//! local maximum of the lattice is followed to the top, by Newton's method where hinges sit anywhere
+//! local maximum of the lattice is followed to its maximum, by Newton's method where hinges sit anywhere
 //! and by neighbour steps where only joints are allowed.
 
 use nalgebra::{DMatrix, DVector, Vector2};
@@ -178,8 +178,8 @@ impl Lattice {
 pub(crate) trait Objective {
     /// Sections where the gradient may jump, in radians.
     fn kinks_rad(&self) -> &[f64];
-    /// The value, and its derivatives with respect to the sections of the hinges. `above` tells for each
-    /// hinge whether the derivative towards larger angles is meant, where the two differ.
+    /// The value, and its derivatives with respect to the sections of the hinges. Where the derivatives
+    /// to either side differ, `above` chooses for each hinge that towards larger angles.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]);
 }
 
@@ -208,7 +208,7 @@ pub(crate) fn best_mechanism(
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
 }
 
-/// Relative differences of values below this are put down to rounding.
+/// Relative differences of values below this are rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// Newton's method from `start` to a local maximum of `objective` over ordered sections of `ring`.
@@ -228,7 +228,7 @@ fn ascend(
         cells: start.map(|angle| Cell::containing(ends, angle)),
     };
     let mut mechanism = FourLink::new(ring, start)?;
-    for _ in 0..MOST_NEWTON_STEPS {
+    for _ in 0..MAX_NEWTON_STEPS {
         match climber.step(&mechanism) {
             Some(better) => mechanism = better,
             None if climber.cross_kinks(&mechanism, ends) => {}
@@ -238,7 +238,7 @@ fn ascend(
     Some((climber.value(&mechanism), mechanism))
 }
 
-/// Like [`ascend`], and from the top found on to its twins: where the slope jumps up at a kink there is a
+/// Like [`ascend`], and on from the maximum found to its twins: where the slope jumps up at a kink there is a
 /// maximum on either side of it, often within one interval of the lattice, which then starts from one of
 /// them only.
 fn ascend_all_sides(
@@ -271,10 +271,10 @@ fn ascend_all_sides(
 }
 
 /// Newton's method converges in under ten steps from the lattice; crossing kinks adds a few.
-const MOST_NEWTON_STEPS: usize = 100;
+const MAX_NEWTON_STEPS: usize = 100;
 
-/// A body shorter than this is none: its hinges have merged.
-const LEAST_BODY_RAD: f64 = 1e-7;
+/// A shorter body counts as vanished: its hinges have merged.
+const MIN_BODY_RAD: f64 = 1e-7;
 
 /// Interval of a hinge in which the objective is smooth.
 #[derive(Clone, Copy, Debug)]
@@ -331,10 +331,10 @@ impl<O: Objective> Climber<'_, O> {
         let cell = self.cells[i];
         let before = i
             .checked_sub(1)
-            .map_or(cell.low, |j| angles[j] + LEAST_BODY_RAD);
+            .map_or(cell.low, |j| angles[j] + MIN_BODY_RAD);
         let after = angles
             .get(i + 1)
-            .map_or(cell.high, |angle| angle - LEAST_BODY_RAD);
+            .map_or(cell.high, |angle| angle - MIN_BODY_RAD);
         (cell.low.max(before), cell.high.min(after))
     }
 
@@ -385,7 +385,7 @@ impl<O: Objective> Climber<'_, O> {
                     .filter(|i| !self.is_stopped(&moved, **i, trial_gradient[**i]))
                     .map(|i| trial_gradient[*i].abs())
                     .fold(0.0, f64::max);
-                // Near the top the value is flat to rounding, and the slope tells.
+                // Near the maximum the value is flat to rounding, and the slope decides.
                 let level = trial >= value - ROUNDING * value.abs();
                 if trial > value + ROUNDING * value.abs() || (level && trial_slope < 0.5 * slope) {
                     return Some(candidate);

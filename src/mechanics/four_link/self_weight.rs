@@ -1,10 +1,10 @@
 //! Whether a ring carries its own weight, by statics alone.
 //!
-//! The static theorem: a ring without tensile strength stands if and only if some thrust line under its weight stays
-//! inside it at every section (at every joint, for voussoirs, which are rigid). Ring and weight are symmetric, and
-//! the mean of an admissible line and its mirror image is admissible: only symmetric lines need be looked at, whose
-//! resultant at the crown is horizontal. That leaves two unknowns, the thrust `h` and its moment `k` about the
-//! centre, in units of the weight per radian and of the mean radius.
+//! The static theorem: a ring without tensile strength stands if and only if some thrust line under its weight
+//! stays inside it at every section (at every joint, for voussoirs, which are rigid). Ring and weight are
+//! symmetric, and the mean of an admissible line and its mirror image is admissible: so only symmetric lines
+//! matter, whose resultant at the crown is horizontal. That leaves two unknowns, the thrust `h` and its moment
+//! `k` about the centre, in units of the weight per radian and of the mean radius.
 //!
 //! At the angle `phi` from the crown the resultant has the normal component `N = h cos phi + phi sin phi` and the
 //! moment `k + c (1 - cos phi)` about the centre, where `c = 1 + t^2/12` is the distance of a slice's weight from
@@ -14,10 +14,10 @@
 //! r_i N <= k + c (1 - cos phi) <= r_e N
 //! ```
 //!
-//! with `r_i` and `r_e` the radii of intrados and extrados: a linear programme in two variables. For a given `h` the
-//! sections bound `k` from below by a convex function of `h` and from above by a concave one; the ring stands if there
-//! is room between them at the best `h`. Where hinges sit anywhere the governing sections are known in closed form or
-//! by one equation, so that the answer is exact to rounding for both kinds of ring.
+//! with `r_i` and `r_e` the radii of intrados and extrados: a linear programme in two variables. For a given
+//! `h` the sections bound `k` from below by a convex function of `h` and from above by a concave one; the ring
+//! stands if there is room between them at the best `h`. Where hinges sit anywhere the governing sections are
+//! known in closed form or by one equation, so the answer is exact to rounding for both kinds of ring.
 //!
 //! A thicker ring stands if a thinner one does: the line of the thinner one is inside, since by the right-hand
 //! inequality `r_e N` grows with `t` faster than `c (1 - cos phi)` up to `t = 2`.
@@ -81,7 +81,7 @@ impl SymmetricLines {
         }
     }
 
-    /// The least `k` of a line of thrust `h` that is nowhere below the intrados.
+    /// The smallest `k` of a line of thrust `h` that is nowhere below the intrados.
     fn least(&self, h: f64) -> Bound {
         let inside = match self.sites {
             HingeSites::Anywhere => Some(self.haunch_rad(h)),
@@ -120,18 +120,18 @@ impl SymmetricLines {
         last(0.0, 0.5 * self.ring.embrace_rad(), rises)
     }
 
-    /// The largest room for `k` at any thrust: positive if the ring stands. `None`: unbounded, since a straight line
-    /// fits into the ring.
+    /// The largest room for `k` at any thrust: positive if the ring stands. `None`: unbounded, since a straight
+    /// line fits into the ring.
     fn largest_margin(&self) -> Option<f64> {
         let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad());
         let slope = |edge: Edge, angle: f64| self.touching(edge, 0.0, angle).slope;
         if slope(Edge::Extrados, springing) >= slope(Edge::Intrados, first) {
             return None;
         }
-        // The margin is concave in h. Up to the first change of the section that bounds k from above it rises, after the
-        // last change on either side it falls. Two sections change places at
-        // h = (phi sin phi - psi sin psi) / (cos psi - cos phi) - c/r, where the quotient lies between 0 and 2 by
-        // Cauchy's mean value theorem: the best thrust is in (0, 2).
+        // The margin is concave in h. Up to the first change of the section that bounds k from above it rises,
+        // after the last change on either side it falls. Two sections change places at h = (phi sin phi - psi
+        // sin psi) / (cos psi - cos phi) - c/r, where the quotient lies between 0 and 2 by Cauchy's mean value
+        // theorem: the best thrust is in (0, 2).
         let rises = |h: f64| self.largest(h).slope > self.least(h).slope;
         let h = last(0.0, 2.0, rises);
         Some(self.largest(h).value - self.least(h).value)

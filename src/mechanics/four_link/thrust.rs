@@ -1,4 +1,4 @@
-//! The thrust line in motion, and what it asks of the sections.
+//! The thrust line in motion: its excess beyond the ring, and the friction that it needs.
 //!
 //! Between impacts gravity, the ground's acceleration and the bodies' own inertia are in equilibrium with
 //! the forces at the hinges. In the frame of its material a moving body looks undeformed, and its
@@ -7,7 +7,7 @@
 //! of the displaced ring is found section by section in the undeformed one.
 //!
 //! Where the line leaves the ring, four hinges are not enough: the joint there would open, the hinges
-//! travel, and the four-link motion is no longer that of rigid blocks without tension.
+//! would travel, and the four-link motion is no longer that of rigid blocks without tension.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -20,10 +20,10 @@ use crate::mechanics::chain::Demand;
 use crate::mechanics::geometry::field::{Momentum, Twist, turned};
 use crate::mechanics::geometry::ring::{MassMoments, Ring};
 
-/// Samples of a continuous ring per right angle, between which the line has one top at most.
+/// Samples of a continuous ring per right angle; between two of them the line has at most one maximum.
 const SAMPLES: f64 = 90.0;
 
-/// How closely tops between samples are found: the excess is then exact to about 1e-10 of the thickness.
+/// Accuracy of a maximum between samples, in radians: the excess is off by about 1e-10 of the thickness.
 const TOP_ACCURACY_RAD: f64 = 1e-6;
 
 /// Excess below which the line is inside: it touches the edge at the hinges, to rounding.
@@ -31,20 +31,20 @@ const ROUNDING: f64 = 1e-9;
 
 /// A normal force below this part of the structure's weight, tension included, counts as this
 /// much in a [`Demand`], which stays finite and goes on growing with the moment (the tension).
-const LEAST_NORMAL: f64 = 0.01;
+const MIN_NORMAL: f64 = 0.01;
 
 impl Demand {
-    /// Nothing is asked.
+    /// No excess, no friction.
     pub const NONE: Self = Self {
         excess_ratio: 0.0,
         friction: 0.0,
     };
 
-    /// What resultants ask of their sections of the given thickness; `weight` is that of the whole
+    /// Measures resultants against sections of the given thickness; `weight` is that of the whole
     /// structure, in the unit of the resultants.
     ///
     /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, for the moment `M` about the axis and the
-    /// components `N` and `V`. Where `N < 0.01 weight` no line can be inside, or almost none: there the
+    /// components `N` and `V`. Where `N < 0.01 weight` a line is hardly ever inside: there the
     /// excess is `(|M| - N t / 2) / (0.01 weight t)` and the friction `|V| / (0.01 weight)`, which
     /// continue the others and are always finite.
     #[must_use]
@@ -58,9 +58,9 @@ impl Demand {
         })
     }
 
-    /// What a resultant asks of its section; a negative excess tells how far the line is inside.
+    /// The demand of a resultant on its section; a negative excess is the distance inside.
     fn of_section(section: &SectionResultant, thickness: f64, weight: f64) -> Self {
-        let normal = section.normal.max(LEAST_NORMAL * weight);
+        let normal = section.normal.max(MIN_NORMAL * weight);
         let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
         Self {
             excess_ratio: beyond / (normal * thickness),
@@ -173,7 +173,7 @@ impl ThrustLine {
 
     /// A line of the ring at rest under a force per unit mass in g.
     ///
-    /// At rest the ring is hyperstatic, and one admissible line proves that it may stay so. This is the
+    /// At rest the ring is hyperstatic, and one admissible line proves that it can stay at rest. This is the
     /// mean of the two limit lines, at `A_L` to the right and to the left, weighted so that their loads
     /// add up to the load: moments and normal forces being linear in the load, it is
     /// inside wherever both are, and grows into that of the mechanism that starts.
@@ -214,7 +214,7 @@ impl ThrustLine {
         SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
     }
 
-    /// What the line asks of the joints, or of all sections where hinges sit anywhere.
+    /// The largest demands over the joints, or over all sections of a continuous ring.
     #[must_use]
     pub fn demand(&self, sites: HingeSites) -> Demand {
         let thickness = self.ring.thickness_ratio();
@@ -248,8 +248,8 @@ impl ThrustLine {
     }
 }
 
-/// The largest of `known` and the demands `at` all sections of a rigid part of the ring, over which they are smooth
-/// but for a few kinks.
+/// The largest of `known` and the demands `at` all sections of a rigid part of the ring, over which they are
+/// smooth but for a few kinks.
 fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Demand) -> Demand {
     let intervals = (SAMPLES * (end_rad - start_rad) / FRAC_PI_2)
         .ceil()
@@ -267,8 +267,8 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
         .iter()
         .fold(known, |demand, (_, sample)| demand.max(*sample));
     for i in 0..samples.len() {
-        let least = demand.excess_ratio.max(ROUNDING);
-        let excess_ratio = top_near(i, &samples, least, at, |d| d.excess_ratio);
+        let floor = demand.excess_ratio.max(ROUNDING);
+        let excess_ratio = top_near(i, &samples, floor, at, |d| d.excess_ratio);
         let friction = top_near(i, &samples, demand.friction, at, |d| d.friction);
         demand = demand.max(Demand {
             excess_ratio: excess_ratio.unwrap_or(0.0),
@@ -278,11 +278,11 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
     demand
 }
 
-/// The top of a quantity between the neighbours of a sample, if it may be above `least`.
+/// The maximum of a quantity between the neighbours of a sample, if it may be above `floor`.
 fn top_near(
     i: usize,
     samples: &[(f64, Demand)],
-    least: f64,
+    floor: f64,
     at: &impl Fn(f64) -> Demand,
     of: impl Fn(&Demand) -> f64,
 ) -> Option<f64> {
@@ -292,10 +292,10 @@ fn top_near(
     if value(i) < value(before) || value(i) < value(after) {
         return None;
     }
-    // A parabola through equidistant samples rises above the largest by an eighth of the drop to the least at most.
+    // A parabola through equidistant samples exceeds the largest by at most an eighth of the drop to the smallest.
     let near = i.saturating_sub(2)..=(i + 2).min(last);
     let drop = near.map(|near| value(i) - value(near)).fold(0.0, f64::max);
-    if value(i) + drop <= least {
+    if value(i) + drop <= floor {
         return None;
     }
     let inwards = match i {

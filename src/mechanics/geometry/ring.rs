@@ -31,7 +31,7 @@ impl Edge {
     }
 }
 
-/// Why two numbers do not describe a ring.
+/// Why a ring cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RingError {
     /// The thickness must leave a hole: `0 < t/R < 2`.

@@ -4,13 +4,13 @@
 //! many wordings, and then the accelerations in units of gravity, as Fortran wrote them: several to a
 //! line, of fixed width, so that a minus sign may be all that parts two of them.
 
-use super::{LONGEST_S, LineFault, MAX_SAMPLES, MIN_STEP_S, Samples, number};
+use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, number};
 use crate::scenario::error::excerpt;
 
-/// Lines among which the number of samples is looked for.
-const LONGEST_HEADER: usize = 64;
-/// Characters of these lines that are looked at.
-const LONGEST_HEADER_LINE: usize = 1000;
+/// The header is searched up to this line.
+const MAX_HEADER_LINES: usize = 64;
+/// Only so many characters of each line are searched.
+const MAX_HEADER_LINE_CHARS: usize = 1000;
 
 /// Reads the samples, in units of gravity; the first is at time zero.
 pub(super) fn parse(text: &str) -> Result<Samples, LineFault> {
@@ -76,7 +76,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// What the header tells.
+/// What the header says.
 struct Header {
     /// Its last line, from 1.
     line: usize,
@@ -96,9 +96,9 @@ enum Item {
 impl Header {
     fn parse(text: &str) -> Result<Self, LineFault> {
         let mut items = Vec::new();
-        for (index, line) in text.lines().enumerate().take(LONGEST_HEADER) {
+        for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
             let line_number = index + 1;
-            let end = line.char_indices().nth(LONGEST_HEADER_LINE);
+            let end = line.char_indices().nth(MAX_HEADER_LINE_CHARS);
             let line = end.map_or(line, |(end, _)| &line[..end]);
             let fault = |message: String| {
                 Err(LineFault {
@@ -110,7 +110,7 @@ impl Header {
                 return fault(what);
             }
             let here = Item::all(line);
-            // The two may stand on two lines, but nothing else between them.
+            // The two may be on two consecutive lines.
             if here.contains(&Item::Count) || !items.is_empty() {
                 items.extend_from_slice(&here);
             }
@@ -128,7 +128,7 @@ impl Header {
                 }
             }
         }
-        let line = text.lines().take(LONGEST_HEADER).count().max(1);
+        let line = text.lines().take(MAX_HEADER_LINES).count().max(1);
         let message = if items.is_empty() {
             "there is no NPTS (number of samples) up to here: is this an AT2 file?"
         } else {
@@ -147,15 +147,15 @@ impl Header {
             ));
         }
         #[expect(clippy::cast_precision_loss, reason = "the bound is below 2^53")]
-        let most = MAX_SAMPLES as f64;
-        if !(count.fract() == 0.0 && (2.0..=most).contains(&count)) {
+        let max_count = MAX_SAMPLES as f64;
+        if !(count.fract() == 0.0 && (2.0..=max_count).contains(&count)) {
             return Err(format!(
                 "NPTS is {count:?}; must be a whole number from 2 to {MAX_SAMPLES}"
             ));
         }
-        if (count - 1.0) * step_s > LONGEST_S {
+        if (count - 1.0) * step_s > MAX_TIME_S {
             return Err(format!(
-                "NPTS and DT make a record of {:?} s; at most {LONGEST_S:?} s are allowed",
+                "NPTS and DT make a record of {:?} s; at most {MAX_TIME_S:?} s are allowed",
                 (count - 1.0) * step_s
             ));
         }
@@ -300,7 +300,7 @@ mod tests {
             values("1,-2-3\n\n 4\r\n\u{1a}").unwrap(),
             [1.0, -2.0, -3.0, 4.0]
         );
-        // Where not even a sign parts them nothing is guessed.
+        // Numbers not even separated by a sign are not guessed at.
         for line in [
             "0.12340.5678 0 0 0",
             ".12E-03.56E-03 0 0",

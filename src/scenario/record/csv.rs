@@ -5,7 +5,7 @@ use std::io::Read as _;
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
 use super::{
-    COLUMN_NUMBER, LONGEST_S, LineFault, MAX_SAMPLES, MIN_STEP_S, Samples, TableColumn, number,
+    COLUMN_NUMBER, LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, TableColumn, number,
 };
 use crate::scenario::error::excerpt;
 
@@ -56,9 +56,9 @@ pub(super) fn parse(
             *value = number(cell).map_err(fault)?;
         }
         let [time_s, acceleration] = values;
-        if time_s.abs() > LONGEST_S {
+        if time_s.abs() > MAX_TIME_S {
             return Err(fault(format!(
-                "the time {time_s:?} s is out of range; its magnitude must be at most {LONGEST_S:?} s"
+                "the time {time_s:?} s is out of range; its magnitude must be at most {MAX_TIME_S:?} s"
             )));
         }
         if let Some((before_s, _)) = samples.last()

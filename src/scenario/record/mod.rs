@@ -34,7 +34,7 @@ use serde::Serialize;
 use toml::de::DeValue;
 
 use super::error::excerpt;
-use super::ground::{LARGEST_G, free_fall};
+use super::ground::{MAX_ACCELERATION_G, free_fall};
 use super::table::{Count, Number, OneOf, Reading, Rule, Table, Text};
 use crate::dynamics::ground::GroundMotion;
 
@@ -46,13 +46,13 @@ const MAX_BYTES: u64 = 64 << 20;
 /// Largest number of samples: an hour at 500 Hz.
 const MAX_SAMPLES: usize = 1_800_000;
 /// Times of a record are at most this far from zero.
-const LONGEST_S: f64 = 1e6;
+const MAX_TIME_S: f64 = 1e6;
 /// Least spacing of samples: a jump may take a microsecond.
 const MIN_STEP_S: f64 = 1e-6;
 
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
-pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(LARGEST_G));
-const START_S: Number = Number(Included(0.0), Included(LONGEST_S));
+pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(MAX_ACCELERATION_G));
+const START_S: Number = Number(Included(0.0), Included(MAX_TIME_S));
 const COLUMN_NUMBER: Count = Count {
     range: 1..=10_000,
     why: "the first column",
@@ -271,11 +271,11 @@ impl Series {
     /// Refuses accelerations that are too large for any ground.
     pub(super) fn check_strength(&self, gravity_m_s2: f64) -> Result<(), String> {
         let peak_g = self.peak_g(gravity_m_s2);
-        if peak_g <= LARGEST_G {
+        if peak_g <= MAX_ACCELERATION_G {
             Ok(())
         } else {
             Err(format!(
-                "reaches {peak_g:?} g as scaled; must be at most {LARGEST_G:?} g"
+                "reaches {peak_g:?} g as scaled; must be at most {MAX_ACCELERATION_G:?} g"
             ))
         }
     }
