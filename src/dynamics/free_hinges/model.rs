@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use super::{
-    FreeHingeError, Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder,
-    Sample as RowSample, Settings,
+    Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder, Sample as RowSample,
+    Settings,
 };
 use crate::argument::{ArgumentError, above};
 use crate::dynamics::ground::GroundMotion;
@@ -27,9 +27,6 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Pose as RowPose;
 use crate::mechanics::stability::{StabilityError, onset};
-
-/// How often the steps of a study are halved where an arch does not close.
-const MAX_HALVINGS: u32 = 4;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
 ///
@@ -318,21 +315,11 @@ impl Model for FreeHinges {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
         request.check()?;
-        let mut settings = self.settings(request, recorder.is_some());
+        let settings = self.settings(request, recorder.is_some());
         let initial_rad = request
             .initial
             .map(|initial| self.released(initial))
             .transpose()?;
-        let simulate = |settings: &Settings, recorder: &mut Relay<'_, '_>| {
-            super::simulate(
-                &self.row,
-                ground,
-                request.gravity_m_s2,
-                settings,
-                initial_rad.as_deref(),
-                recorder,
-            )
-        };
         let mut relay = Relay {
             model: self,
             ground,
@@ -343,16 +330,14 @@ impl Model for FreeHinges {
             sample: undeformed(self.row.blocks().len()),
             recorder,
         };
-        let mut run = simulate(&settings, &mut relay);
-        // Fast collapses can be too much for the steps of studies. Nothing has been recorded: again, with shorter ones.
-        for _ in 0..MAX_HALVINGS {
-            if relay.recorder.is_some() || !matches!(run, Err(FreeHingeError::Closure { .. })) {
-                break;
-            }
-            settings = settings.times(0.5);
-            run = simulate(&settings, &mut relay);
-        }
-        let run = run?;
+        let run = super::simulate(
+            &self.row,
+            ground,
+            request.gravity_m_s2,
+            &settings,
+            initial_rad.as_deref(),
+            &mut relay,
+        )?;
         let (outcome, outcome_time_s) = match run.outcome {
             RowOutcome::NeverMoved => (Outcome::NeverMoved, run.end_s),
             RowOutcome::Rest { time_s } => (Outcome::Rest, time_s),
