@@ -73,43 +73,31 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         scenario.check_for_run().map_err(Failure::Input)?;
         Ok(scenario)
     };
-    let (four, free) = (Some(Hinges::Four), Some(Hinges::Free));
-    let task = match arguments.hinges {
+    let (models, scenario) = match arguments.hinges {
         None => {
             let scenario = read(None)?;
-            match scenario.free_hinges {
-                None => Task::Four(scenario),
-                Some(_) => Task::Free(scenario),
-            }
+            let own = scenario.free_hinges.map_or(Models::Four, |_| Models::Free);
+            (own, scenario)
         }
-        Some(Models::Four) => Task::Four(read(four)?),
-        Some(Models::Free) => Task::Free(read(free)?),
-        Some(Models::Both) => Task::Both(read(four)?, read(free)?),
+        Some(Models::Four) => (Models::Four, read(Some(Hinges::Four))?),
+        Some(models) => (models, read(Some(Hinges::Free))?),
     };
-    let (Task::Four(scenario) | Task::Free(scenario) | Task::Both(_, scenario)) = &task;
     let title = scenario.title.as_ref();
     let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
-    if let Some(ignored) = impact_ignored(scenario) {
+    if let Some(ignored) = impact_ignored(&scenario) {
         let _ = writeln!(text, "  {ignored}");
     }
     let place = Place::of(arguments);
-    text += &match &task {
-        Task::Four(scenario) => four_links(scenario, &place, arguments.dimensionless, None)?,
-        Task::Free(scenario) => free_hinges::run(scenario, &place, arguments.options()?, None)?,
-        Task::Both(four, free) => both(four, free, arguments)?,
+    text += &match models {
+        Models::Four => four_links(&scenario, &place, arguments.dimensionless, None)?,
+        Models::Free => free_hinges::run(&scenario, &place, arguments.options()?, None)?,
+        Models::Both => both(&read(Some(Hinges::Four))?, &scenario, arguments)?,
     };
     if !quiet {
         // Nobody is left to be told when standard error fails.
         let _ = io::stderr().write_all(text.as_bytes());
     }
     Ok(())
-}
-
-/// What is to be run.
-enum Task {
-    Four(Scenario),
-    Free(Scenario),
-    Both(Scenario, Scenario),
 }
 
 impl Arguments {

@@ -49,6 +49,9 @@ impl Curves {
     }
 }
 
+/// A curve with its name.
+type Curve<'a> = (&'a str, &'a Envelope, Stroke);
+
 /// The picture of histories with their names: the ground, the largest rotation of a body, upwards while the structure
 /// sways right and downwards while it sways left, and the energy.
 #[must_use]
@@ -70,7 +73,7 @@ pub fn draw(title: &str, histories: &[(&str, &Curves)]) -> String {
             .map(|((name, curves), stroke)| (*name, quantity(curves), stroke))
             .collect()
     };
-    let panels: [(&str, f64, Vec<(&str, &Envelope, Stroke)>); 3] = [
+    let panels: [(&str, f64, Vec<Curve<'_>>); 3] = [
         ("Ground (g)", 110.0, ground.into_iter().collect()),
         (
             "Largest rotation (rad)",

@@ -286,7 +286,7 @@ fn words(
     {
         let _ = writeln!(
             text,
-            "  the one that takes most at {time_s:.4} s: {}",
+            "  largest loss in one impact at {time_s:.4} s: {}",
             landing(impact)
         );
     }
