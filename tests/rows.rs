@@ -1,5 +1,4 @@
 //! Rows of blocks from numbers of any kind: an error, or a row that can be shaken.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
 use archrock::dynamics::free_hinges::{FreeHinges, Steps};
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
