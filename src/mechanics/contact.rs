@@ -173,6 +173,28 @@ struct Press {
     impulse: f64,
 }
 
+/// A corner that pulls or closes.
+#[derive(Clone, Copy, Debug)]
+struct Wrong {
+    joint: usize,
+    edge: usize,
+    /// Its impulse or its rate, below zero.
+    by: f64,
+    /// The last joint of the run of neighbours that it stands for.
+    last: usize,
+}
+
+impl Wrong {
+    fn new(joint: usize, edge: usize, by: f64) -> Self {
+        Self {
+            joint,
+            edge,
+            by,
+            last: joint,
+        }
+    }
+}
+
 const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
 
 /// The program of a row, with all the memory that it needs and the active set of the last solution.
@@ -194,7 +216,7 @@ pub struct Program {
     velocities: Vec<Twist>,
     force_floor: f64,
     /// Corners that pull or close.
-    wrong: Vec<(usize, usize)>,
+    wrong: Vec<Wrong>,
 }
 
 impl Program {
@@ -695,7 +717,8 @@ impl Program {
         resultant + self.change(&twist, pin.joint, loaded)
     }
 
-    /// Releases all corners that pull and stops all that close, again and again, while that leaves fewer of them. It
+    /// Releases all corners that pull and stops all that close, again and again, while that leaves fewer of them; then
+    /// only the worst one of each run of neighbours, whose release often lets the others press again. It
     /// solves impacts at which many corners change in a few rounds, but may go in circles: what it leaves is for
     /// the dual method.
     fn exchange(
@@ -707,47 +730,82 @@ impl Program {
     ) {
         let mut fewest = usize::MAX;
         let mut patience = EXCHANGE_PATIENCE;
+        let mut worst_only = false;
         loop {
-            let pulling = self.pull_limit();
-            self.wrong.clear();
-            for (joint, active) in self.active.iter().enumerate() {
-                for (edge, active) in active.iter().enumerate() {
-                    if *active && self.answer.corners[joint][edge] < pulling {
-                        self.wrong.push((joint, edge));
-                    }
-                }
-            }
-            for (pin, rates) in self.pins.iter().zip(&self.answer.rates) {
-                for edge in 0..2 {
-                    let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
-                    if free && rates[edge] < -tolerance {
-                        self.wrong.push((pin.joint, edge));
-                    }
-                }
-            }
+            self.find_wrong(touching, tolerance);
             if self.wrong.is_empty() {
                 return;
             }
             if self.wrong.len() < fewest {
                 fewest = self.wrong.len();
                 patience = EXCHANGE_PATIENCE;
-            } else if patience == 0 {
+            } else if patience > 0 {
+                patience -= 1;
+            } else if worst_only {
                 return;
             } else {
-                patience -= 1;
+                worst_only = true;
+                patience = EXCHANGE_PATIENCE;
             }
-            for (joint, edge) in &self.wrong {
-                self.active[*joint][*edge] ^= true;
+            if worst_only {
+                self.keep_worst();
             }
+            self.flip_wrong();
             if !exceeds(self.factor(frames), DEPENDENCE) {
-                for (joint, edge) in &self.wrong {
-                    self.active[*joint][*edge] ^= true;
-                }
+                self.flip_wrong();
                 self.factor(frames);
-                return;
+                if worst_only {
+                    return;
+                }
+                worst_only = true;
+                continue;
             }
             self.answer_load(frames, None);
             *iterations += 1;
+        }
+    }
+
+    /// Finds the corners that pull and those that close, edge by edge from left to right.
+    fn find_wrong(&mut self, touching: &[Corners], tolerance: f64) {
+        let pulling = self.pull_limit();
+        self.wrong.clear();
+        for edge in 0..2 {
+            for (joint, active) in self.active.iter().enumerate() {
+                let by = self.answer.corners[joint][edge];
+                if active[edge] && by < pulling {
+                    self.wrong.push(Wrong::new(joint, edge, by));
+                }
+            }
+            for (pin, rates) in self.pins.iter().zip(&self.answer.rates) {
+                let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
+                if free && rates[edge] < -tolerance {
+                    self.wrong.push(Wrong::new(pin.joint, edge, rates[edge]));
+                }
+            }
+        }
+    }
+
+    /// Keeps the worst one of each run of neighbours that are wrong in the same way.
+    fn keep_worst(&mut self) {
+        let active = &self.active;
+        self.wrong.dedup_by(|next, kept| {
+            let alike = active[next.joint][next.edge] == active[kept.joint][kept.edge];
+            let run = next.edge == kept.edge && alike && next.joint == kept.last + 1;
+            if run {
+                let last = next.joint;
+                if next.by < kept.by {
+                    *kept = *next;
+                }
+                kept.last = last;
+            }
+            run
+        });
+    }
+
+    /// Releases the wrong corners that are active, and stops the others.
+    fn flip_wrong(&mut self) {
+        for wrong in &self.wrong {
+            self.active[wrong.joint][wrong.edge] ^= true;
         }
     }
 
