@@ -68,7 +68,7 @@ pub(super) fn none(reason: &str, free_hinges: bool) -> Vec<String> {
     fields
 }
 
-/// A number with the digits that it takes to read the same back.
+/// A number with the fewest digits that read back as the same `f64`.
 pub(super) fn number(value: f64) -> String {
     format!("{value:?}")
 }

@@ -11,10 +11,10 @@ use super::OutputError;
 /// A folder in which results are being prepared.
 ///
 /// Every file is written under a hidden name and gets its own when all are complete. The last of them,
-/// the seal, is taken away first and comes back last: a folder that has it holds results of one run.
+/// the seal, is removed first and written last: a folder that has it holds the results of one run.
 ///
-/// A run that is killed leaves its hidden files. They are locked as long as they are being written, so
-/// that the next run knows them from those of one that is still at work, and takes them away.
+/// A killed run leaves its hidden files behind. Files in use are locked, so the next run can tell those left
+/// behind and removes them.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -138,17 +138,17 @@ impl Folder {
 }
 
 impl Drop for Folder {
-    /// Leaves nothing behind when it was not completed.
+    /// Removes everything if the results were not completed.
     fn drop(&mut self) {
         self.files.clear();
         for made in self.made.iter().rev() {
-            // Somebody else may have put something there meanwhile; then it stays.
+            // A folder that is no longer empty stays.
             let _ = fs::remove_dir(made);
         }
     }
 }
 
-/// Removes the hidden files of runs that were killed. That is tidiness: what cannot be had stays.
+/// Removes the hidden files of killed runs, as far as possible.
 fn remove_abandoned(path: &Path) {
     let entries = fs::read_dir(path).into_iter().flatten().flatten();
     for entry in entries {
@@ -172,7 +172,7 @@ fn remove_if_there(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Temporary files are private by default; results are to be as readable as any other file.
+/// Temporary files are private by default; results get the usual permissions.
 trait PermissionsLikeOthers {
     fn permissions_like_others(&mut self) -> &mut Self;
 }
@@ -181,7 +181,7 @@ trait PermissionsLikeOthers {
 impl PermissionsLikeOthers for tempfile::Builder<'_, '_> {
     fn permissions_like_others(&mut self) -> &mut Self {
         use std::os::unix::fs::PermissionsExt as _;
-        // The system takes off what the user's mask forbids.
+        // The system applies the user's umask.
         self.permissions(fs::Permissions::from_mode(0o666))
     }
 }

@@ -1,4 +1,4 @@
-//! What impacts tell: the chain, its impulses and their certificate as JSON, the impulse line as CSV.
+//! Results of `impact`: the chain, its impulses and their certificate as JSON, the impulse line as CSV.
 //!
 //! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before.
 
@@ -97,8 +97,8 @@ fn sections(arch: &FourLinkArch, impact: &Impact, sway: Sway) -> [Hinge; 4] {
     hinges.map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
 }
 
-/// Impact models side by side, for the impact that leads to link `index`; null where a model finds no
-/// mechanism that could follow.
+/// Comparison of the impact models, for the impact that leads to link `index`; null where by a model no
+/// mechanism can follow.
 #[must_use]
 pub fn models(
     arch: &FourLinkArch,
@@ -160,7 +160,7 @@ pub fn certificate(
     })
 }
 
-/// Least number of parts of the ring between the rows of an impulse line.
+/// Smallest number of parts of the ring between the rows of an impulse line.
 const LINE_PARTS: usize = 720;
 
 /// Writes the impulse line of the impact that leads to link `index` as CSV: a row at each section of a fine

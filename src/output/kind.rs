@@ -12,7 +12,7 @@ pub(super) const NOT_FOUR_LINKS: &str = "not_four_links";
 /// Outcome where the ground falls as fast as a free body.
 pub(super) const GROUND_FALLS: &str = "ground_falls";
 
-/// What a result is coloured by.
+/// Kind of outcome, which sets the colour of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     pub(super) name: &'static str,

@@ -70,7 +70,7 @@ impl OutputError {
     }
 }
 
-/// Refuses what is not a number.
+/// Refuses what is not finite.
 fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

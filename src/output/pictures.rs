@@ -191,7 +191,7 @@ fn shape(ring: &Ring) -> String {
     )
 }
 
-/// A number for reading, without what rounding left behind.
+/// A number for people, without rounding residue.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

@@ -86,7 +86,8 @@ const COLUMN: Look = Look {
 
 const RADIUS_PX: f64 = 3.0;
 
-/// Draws the spectrum: what overturns without impact as curves, and where less does after impacts, as points.
+/// Draws the spectrum: overturning without impact as curves, and weaker pulses that overturn after impacts as
+/// points.
 #[must_use]
 pub fn draw(title: &str, spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
     let mut drawing = Drawing::new(900.0, 660.0);
@@ -165,7 +166,7 @@ fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[PointRow]) {
             .iter()
             .filter_map(|row| Some(axes.place(row.p_t, edge(row)?)))
             .collect();
-        // A single point is no curve.
+        // A single point is not a curve.
         let name = format!("{} no-impact", look.name);
         if let [only] = places[..] {
             let reach = Vector2::new(6.0, 0.0);

@@ -105,7 +105,7 @@ pub fn records_in_words(results: &SuiteFragility) -> String {
     }
 }
 
-/// Writes the fragility, a row per level. What there is not is left empty.
+/// Writes the fragility, a row per level. Missing values are left empty.
 ///
 /// # Errors
 /// When the system refuses, or a value is not finite.
@@ -155,7 +155,7 @@ pub fn write_fragility(writer: impl Write, results: &SuiteFragility) -> Result<(
     csv.flush().map_err(OutputError::io(WHAT))
 }
 
-/// The fragility as JSON. What there is not is null.
+/// The fragility as JSON. Missing values are null.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -224,7 +224,7 @@ pub fn curve_in_words(results: &SuiteFragility) -> Option<String> {
     };
     let quantity = |value: f64, error: fn(&Errors) -> f64, unit: &str| {
         let independent = error(&fit.independent);
-        // Two digits of the error are known at best.
+        // The error has two significant digits at best.
         let digits = digits(independent);
         let by_record = fit.clustered.as_ref().map_or(String::new(), |clustered| {
             format!(" (by record ± {:.digits$}{unit})", error(clustered))
