@@ -284,7 +284,7 @@ fn the_model_of_motion_can_be_chosen_on_the_command_line() {
     let shard = ["map", "s.toml", "--shard", "1/2", "--out", "f"];
     done(path, &shard);
     let free = [&shard[..], &["--resume", "--hinges", "free"]].concat();
-    refused(path, &free, "belongs to something else");
+    refused(path, &free, "belongs to another study");
 }
 
 #[test]
@@ -344,7 +344,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
     .unwrap();
     let errors = Scenario::read_with(&file, Some(Hinges::Free)).unwrap_err();
     assert!(
-        errors.to_string().contains("has no `voussoirs`"),
+        errors.to_string().contains("lacks `voussoirs`"),
         "{errors}"
     );
 }
