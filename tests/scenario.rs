@@ -395,7 +395,7 @@ fn grounds() {
                 5,
                 9,
                 &[
-                    "`halfsine` in [ground], did you mean `half_sine`?",
+                    "`halfsine` in [ground] (did you mean `half_sine`?)",
                     "record",
                 ],
             ),

@@ -723,7 +723,7 @@ fn faults_of_the_table_have_places() {
                 ],
             ),
             (1, 55, &["is a folder", "folder/*.at2"]),
-            (1, 66, &["is not a pattern of files"]),
+            (1, 66, &["is not a valid file pattern"]),
         ],
     );
     // Keys of tables go with tables, and with them only.
