@@ -343,10 +343,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
     )
     .unwrap();
     let errors = Scenario::read_with(&file, Some(Hinges::Free)).unwrap_err();
-    assert!(
-        errors.to_string().contains("lacks `voussoirs`"),
-        "{errors}"
-    );
+    assert!(errors.to_string().contains("lacks `voussoirs`"), "{errors}");
 }
 
 #[test]
