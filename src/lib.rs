@@ -70,6 +70,6 @@ pub use mechanics::chain::Hinge;
 pub use mechanics::column::{Column, RockingColumn};
 pub use mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 pub use mechanics::four_link::impact::ImpactModel;
-pub use mechanics::four_link::mechanism::Sway;
 pub use mechanics::geometry::pose::Pose;
+pub use mechanics::sway::Sway;
 pub use scenario::Scenario;

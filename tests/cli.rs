@@ -345,7 +345,15 @@ fn a_run_that_nothing_moves_is_refused() {
     scenario(folder.path(), ARCH);
     let output = archrock(folder.path(), &["run", "s.toml", "--out", "o"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("[ground.<kind>]") && stderr(&output).contains("[initial]"));
+    let said = stderr(&output);
+    assert!(
+        said.contains("s.toml: nothing moves the structure"),
+        "{said}"
+    );
+    assert!(
+        said.contains("[ground.<kind>]") && said.contains("[initial]"),
+        "{said}"
+    );
     assert_eq!(entries(folder.path()), ["s.toml"]);
 }
 

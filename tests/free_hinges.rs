@@ -16,11 +16,12 @@ use archrock::mechanics::four_link::certificate;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::linkage::Linkage;
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
+use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::joints::Placement;
 use archrock::mechanics::stability::{StabilityError, falls, onset};
+use archrock::mechanics::sway::Sway;
 use archrock::{Column, Model, Request, RockingColumn};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{

@@ -8,9 +8,10 @@ use std::process::{Command, Output};
 use archrock::mechanics::four_link::impact::{
     ImpactModel, MomentumTheorems, closing_field, impact,
 };
-use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites, Sway};
+use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites};
 use archrock::mechanics::geometry::field::Side;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::mechanics::sway::Sway;
 use archrock::{Arch, FourLinkArch};
 use nalgebra::Vector2;
 

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::Path;
 
 use archrock::dynamics::history::Outcome;
-use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::mechanics::sway::Sway;
 use archrock::output::suite::{Heading, draw, to_json, write_fragility};
 use archrock::scenario::{Layout, Measure, Scenario};
 use archrock::studies::ending::Ending;

@@ -9,8 +9,8 @@ use archrock::dynamics::model::MechanismModel;
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::equivalent::Block;
 use archrock::mechanics::four_link::arch::FourLinkArch;
-use archrock::mechanics::four_link::mechanism::Sway;
 use archrock::mechanics::geometry::ring::Edge;
+use archrock::mechanics::sway::Sway;
 use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
 

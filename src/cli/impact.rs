@@ -14,9 +14,10 @@ use archrock::mechanics::four_link::chain::ArchLink;
 use archrock::mechanics::four_link::impact::{
     Impact, ImpactModel, closing_field, impact as impact_by,
 };
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
+use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::four_link::resultant::{Extremes, Extremum};
 use archrock::mechanics::geometry::ring::Edge;
+use archrock::mechanics::sway::Sway;
 use archrock::output::{Folder, impact as output, pictures};
 use archrock::scenario::{Scenario, Structure};
 use serde_json::json;

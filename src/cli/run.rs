@@ -11,7 +11,7 @@ use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Outcome, Sample, Summary};
 use archrock::dynamics::model::{MechanismModel, Recorder};
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
-use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::mechanics::sway::Sway;
 use archrock::output::overlay::{self, Curves};
 use archrock::output::results::{self, EventsWriter};
 use archrock::output::rotations::{RotationsWriter, Scales};
@@ -70,7 +70,8 @@ const OVERLAY: &str = "overlay.svg";
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let read = |hinges| -> Result<Scenario, Failure> {
         let scenario = Scenario::read_with(&arguments.scenario, hinges)?;
-        scenario.check_for_run().map_err(Failure::Input)?;
+        let named = |reason| Failure::Input(format!("{}: {reason}", arguments.scenario.display()));
+        scenario.check_for_run().map_err(named)?;
         Ok(scenario)
     };
     let (models, scenario) = match arguments.hinges {

@@ -17,8 +17,8 @@ use self::engine::Engine;
 use super::ground::GroundMotion;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::ContactError;
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::joints::{Frame, Pose};
+use crate::mechanics::sway::Sway;
 
 /// A row has overturned when it is lower than at rest by this part of weight times size.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;

@@ -9,8 +9,8 @@ pub use super::hybrid::integrator::Cost;
 use super::model::Recorder;
 use super::thrust::ThrustRecord;
 use crate::mechanics::chain::{Demand, Hinge};
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::sway::Sway;
 
 /// How a history ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

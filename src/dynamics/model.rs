@@ -13,7 +13,7 @@ pub use super::hybrid::engine::EngineError;
 use crate::argument::{ArgumentError, above, within};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 
 /// A structure under ground motion, as a model of its motion.
 ///

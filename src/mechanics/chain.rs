@@ -7,9 +7,9 @@
 use nalgebra::Vector2;
 
 use crate::bisection::{Width, bisect, middle};
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
 
 /// Coefficients of the equation of motion of a system with one degree of freedom,
 /// `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`, at some `q`.

@@ -25,11 +25,11 @@ use super::blocks::MAX_BLOCKS;
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::MassMoments;
+use crate::mechanics::sway::Sway;
 
 /// The column turning about its right toe; lengths in half diagonals, unit density and depth.
 #[derive(Clone, Copy, Debug)]

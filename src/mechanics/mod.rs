@@ -12,3 +12,4 @@ pub mod geometry;
 #[doc(hidden)]
 pub mod joints;
 pub mod stability;
+pub mod sway;

@@ -12,9 +12,9 @@ use thiserror::Error;
 use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
 use super::joints::Placement;
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
 
 /// Velocities below this part of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;

@@ -11,7 +11,7 @@ use crate::dynamics::free_hinges::spread::Spread;
 use crate::dynamics::history::{Impact, Sample, Summary};
 use crate::dynamics::model::Model as _;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
 /// Writes the gaps of all joints at both edges, a row per sample: `time_s`, `gap_0_intrados_m`, `gap_0_extrados_m`

@@ -15,7 +15,8 @@ use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::chain::ArchLink;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
-use crate::mechanics::four_link::mechanism::{FourLink, HingeSites, Sway};
+use crate::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use crate::mechanics::sway::Sway;
 
 /// The sway of a link of the chain that begins with a sway to the right.
 #[must_use]

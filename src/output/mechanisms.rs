@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Block;
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
 
 /// Hinges from left to right: `{angle_deg, edge}`, the angle from the left springing, for an arch,
 /// `{toe}` for a column.

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::svg::{Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
 use super::timeline::{COLUMNS, Envelope};
 use crate::dynamics::history::Sample;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 
 /// What any model tells of a history, thinned.
 #[derive(Clone, Debug)]

@@ -7,10 +7,11 @@ use super::svg::{Anchor, Drawing, Stroke, color};
 use crate::mechanics::chain::Mechanism as _;
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
 use crate::mechanics::four_link::impact::closing_field;
-use crate::mechanics::four_link::mechanism::{HingeSites, Sway};
+use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::four_link::resultant::ResultantLine;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::sway::Sway;
 
 /// Part of the way to its limit position at which a mechanism is drawn, so that one sees it open.
 const DRAWN_PART: f64 = 0.25;

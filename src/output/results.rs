@@ -10,7 +10,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Event, Outcome, Summary, impacts};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 use crate::scenario::{Ground, Scenario};
 
 /// Writes events, a row per transition.

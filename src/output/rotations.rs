@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{OutputError, finite};
 use crate::dynamics::history::Sample;
 use crate::dynamics::model::MechanismModel;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 
 /// Column of a quantity of a body: `rotation_left_rad`, or `rotation_rad` where there is only one body.
 fn column(quantity: &str, body: &str, unit: &str) -> String {

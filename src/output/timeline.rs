@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::svg::{Anchor, Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
 use crate::dynamics::history::{Event, Sample, State, impacts};
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 
 /// Columns that a curve is thinned to, at most: about two to a pixel.
 pub(super) const COLUMNS: usize = 1600;

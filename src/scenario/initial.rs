@@ -7,7 +7,7 @@ use super::Structure;
 use super::table::{Number, OneOf, Reading, Table};
 use crate::dynamics::model::{Initial, MIN_RELEASE_RAD};
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 
 const ROTATION_RAD: Number = Number(Included(MIN_RELEASE_RAD), Excluded(PI));
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::ending::check_finite;
 use super::map::{CellRow, OverturningMap};
 use super::runner::Study;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 use crate::scenario::Quantity;
 
 /// The boundaries at a value of x, as magnitudes: the mirror image of a pulse has the same.

@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::model::{MechanismModel, Request, SimulationError};
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 use crate::scenario::{MAX_ACCELERATION_G, PulseGround};
 
 /// Ratio of the amplitudes at which the edge of a pulse with lobes to both sides is searched: a narrower window

@@ -14,7 +14,7 @@ use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{MechanismModel, Request};
 use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::FourLinkError;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 use crate::scenario::{Ground, MAX_ACCELERATION_G, PulseGround, Scenario, Structure, block};
 
 /// Why a scenario has no spectrum.

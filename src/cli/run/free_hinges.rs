@@ -11,7 +11,7 @@ use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::{Model as _, Recorder};
 use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::four_link::mechanism::Sway;
+use archrock::mechanics::sway::Sway;
 use archrock::output::free_hinges::{JointsWriter, LandingsWriter, summary};
 use archrock::output::overlay::Curves;
 use archrock::output::results::EventsWriter;

@@ -17,10 +17,10 @@ use super::{Cost, FreeHingeError, HalfCycle, Outcome, Recorder, Run, Settings, f
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::contact::{Corners, Load, Program};
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::{Placement, SHUT_RATIO};
+use crate::mechanics::sway::Sway;
 
 /// An arch whose ends miss each other by more than this part of the thickness of a joint is in error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;

@@ -22,11 +22,11 @@ use crate::mechanics::chain::{Demand, Hinge, Mechanism, MechanismChain};
 use crate::mechanics::column::Column;
 use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Pose as RowPose;
 use crate::mechanics::stability::{StabilityError, onset};
+use crate::mechanics::sway::Sway;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
 ///

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::engine::{EngineError, Observer, Settings, Transition, simulate};
 use super::rocking::{Guard, Mode, Rocking, RockingState};
 use crate::mechanics::chain::MechanismChain;
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 
 /// Time after the end of the ground motion by which the first fall is over, in seconds: near the unstable
 /// equilibrium a motion dwells for some forty of its time scales before rounding decides.

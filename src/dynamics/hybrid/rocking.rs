@@ -15,7 +15,7 @@ use super::integrator::{State, Step};
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::dynamics::history::State as Doing;
 use crate::mechanics::chain::{Coefficients, Demand, Link, Mechanism, MechanismChain, Motion};
-use crate::mechanics::four_link::mechanism::Sway;
+use crate::mechanics::sway::Sway;
 
 /// Discrete state of a rocking structure.
 #[derive(Debug)]

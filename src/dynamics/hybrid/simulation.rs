@@ -18,8 +18,8 @@ use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, Simulatio
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::equivalent::{Equivalent, equivalent};
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::sway::Sway;
 
 /// Most transitions of a history: more would mean chatter, which the model should not produce.
 const MAX_TRANSITIONS: usize = 1_000_000;

@@ -9,11 +9,11 @@ use super::chain::Chain;
 use super::impact::ImpactModel;
 use super::limit::LimitError;
 use super::linkage::Linkage;
-use super::mechanism::Sway;
 use super::thrust::ThrustLine;
 use crate::argument::ArgumentError;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::chain::{Demand, Hinge, Link, MechanismChain, Motion};
+use crate::mechanics::sway::Sway;
 
 /// An arch with its chain of four-link mechanisms under an impact model. The chain depends on neither size nor
 /// material, and clones share it.

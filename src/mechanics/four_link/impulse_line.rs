@@ -7,10 +7,11 @@
 
 use nalgebra::Vector2;
 
-use super::mechanism::{FourLink, HingeSites, Sway};
+use super::mechanism::{FourLink, HingeSites};
 use super::resultant::{Extremes, ResultantLine, SectionResultant};
 use crate::mechanics::geometry::field::Field;
 use crate::mechanics::geometry::ring::Ring;
+use crate::mechanics::sway::Sway;
 
 /// The impulses of an impact over the ring.
 ///

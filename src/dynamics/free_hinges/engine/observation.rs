@@ -4,8 +4,8 @@ use nalgebra::Vector2;
 
 use super::{Engine, Piece};
 use crate::dynamics::free_hinges::{FreeHingeError, HalfCycle, Impact, Recorder, Sample};
-use crate::mechanics::four_link::mechanism::Sway;
 use crate::mechanics::geometry::field::Twist;
+use crate::mechanics::sway::Sway;
 
 /// At rest, kinetic and potential energy are below this part of weight times size.
 const REST_ENERGY_RATIO: f64 = 1e-9;
