@@ -322,7 +322,7 @@ fn what_half_and_double_steps_change_is_said_and_written() {
     assert!(said.contains(&same), "{said}");
     let parts_s = spread["parts_at_s"].as_f64().unwrap();
     assert!(
-        said.contains(&format!("from {parts_s:.4} s on they part")),
+        said.contains(&format!("from {parts_s:.4} s on they differ")),
         "{said}"
     );
 }

@@ -224,7 +224,7 @@ fn failed_cells_keep_their_reason() {
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(
-        said.contains("2 failed; the first that failed: the first reason\n"),
+        said.contains("2 failed; the first: the first reason\n"),
         "{said}"
     );
     assert!(said.contains("has gaps: no boundary\n"), "{said}");

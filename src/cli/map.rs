@@ -24,7 +24,7 @@ pub struct Arguments {
 /// What the results of a map may have besides.
 #[derive(clap::Args, Clone, Copy)]
 pub struct BoundaryOption {
-    /// Write the least amplitude that overturns without impact as well, as no_impact.csv.
+    /// Also write the least amplitude that overturns without impact, as no_impact.csv.
     #[arg(long)]
     no_impact: bool,
 }
@@ -178,7 +178,7 @@ fn summary(cells: &[CellRow]) -> String {
         _ => None,
     });
     if let Some(reason) = reason {
-        text += &format!("; the first that failed: {reason}");
+        text += &format!("; the first: {reason}");
     }
     text
 }

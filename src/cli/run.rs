@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(long, value_name = "-", value_parser = ["-"])]
     rotations: Option<String>,
     /// Add dimensionless columns to the rotations: p_t (time), acceleration_over_incipient and
-    /// rotation_over_critical. Of four links and columns only.
+    /// rotation_over_critical. For four links and columns only.
     #[arg(long)]
     dimensionless: bool,
     /// Model of motion [default: free if the scenario has [free_hinges], else four].
@@ -53,7 +53,7 @@ pub enum Models {
     Four,
     /// Blocks whose joints open and shut anywhere.
     Free,
-    /// One beside the other: results in the folders `four` and `free`, and a picture of both.
+    /// Both: results in the folders `four` and `free`, and a picture of both.
     Both,
 }
 

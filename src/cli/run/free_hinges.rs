@@ -353,7 +353,7 @@ fn words(
 fn landing(impact: &Impact) -> String {
     let mut text = String::new();
     for (hinges, one, many) in [
-        (&impact.closed, "shuts", "shut"),
+        (&impact.closed, "closes", "close"),
         (&impact.opened, "opens", "open"),
     ] {
         let named = joints(hinges);
@@ -406,11 +406,11 @@ fn sure(spread: &Spread) -> String {
         (0, Some(_)) => write!(text, "; the first half cycles differ already"),
         (1, Some(time_s)) => write!(
             text,
-            ", peak of the first half cycle within {percent} %;\n    from {time_s:.4} s on they part"
+            ", peak of the first half cycle within {percent} %;\n    from {time_s:.4} s on they differ"
         ),
         (_, Some(time_s)) => write!(
             text,
-            ", peaks of the first {same} half cycles within {percent} %;\n    from {time_s:.4} s on they part"
+            ", peaks of the first {same} half cycles within {percent} %;\n    from {time_s:.4} s on they differ"
         ),
     };
     if let Some(peak) = spread.half_cycles.get(same) {
