@@ -650,7 +650,7 @@ fn messages_say_what_was_seen() {
     let message = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err().to_string();
     assert_eq!(
         message(&[(0.2, 3, 0), (0.4, 5, 0)]),
-        "none of 8 cases overturns, up to an intensity of 0.4: add higher ones"
+        "none of 8 cases overturns up to the intensity 0.4: add higher intensities"
     );
     let separated = message(&[(0.2, 3, 0), (0.4, 5, 5)]);
     assert!(
