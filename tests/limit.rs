@@ -321,7 +321,7 @@ fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
                 continue;
             };
             let message = errors.to_string();
-            let (_, advice) = message.split_once("of at least ").expect(&message);
+            let (_, advice) = message.split_once("must be at least ").expect(&message);
             let (advised, _) = advice.split_once(' ').unwrap();
             assert!(read(advised).is_ok(), "{message}");
             // And no more than the digits said are to spare.

@@ -180,7 +180,7 @@ fn ground_that_falls_freely_is_an_input_error() {
     assert!(check(&record(0.49)).is_ok());
     let error = check(&record(1.0)).unwrap_err();
     assert!(
-        error.contains("s.toml:10:8: `file = 'up.csv'` lets the ground fall"),
+        error.contains("s.toml:10:8: `file = 'up.csv'` makes the ground fall"),
         "{error}"
     );
     assert!(error.contains("at 3.5 s"), "{error}");
@@ -193,7 +193,7 @@ fn ground_that_falls_freely_is_an_input_error() {
     assert!(check(&pulse(-0.99)).is_ok() && check(&pulse(50.0)).is_ok());
     let error = check(&pulse(-2.0)).unwrap_err();
     assert!(
-        error.contains("s.toml:8:24: `vertical_amplitude_g = -2.0` lets"),
+        error.contains("s.toml:8:24: `vertical_amplitude_g = -2.0` makes"),
         "{error}"
     );
     assert!(error.contains("at 0.25 s"), "{error}");

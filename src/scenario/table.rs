@@ -255,7 +255,28 @@ impl<'a> Table<'a> {
 
     /// Records that the value which the file gives for `key` is wrong: `message` follows the two.
     pub(super) fn wrong(&mut self, key: &'static str, message: impl fmt::Display) -> Reported {
-        let Some(entry) = self.entries.get(key) else {
+        self.wrong_entry(self.entries.get(key), key, message)
+    }
+
+    /// The same of a value in a table of this one.
+    pub(super) fn wrong_in(
+        &mut self,
+        table: &str,
+        key: &'static str,
+        message: impl fmt::Display,
+    ) -> Reported {
+        let inner = self.entries.get(table).map(Spanned::get_ref);
+        let entry = inner.and_then(|inner| inner.as_table()?.get(key));
+        self.wrong_entry(entry, key, message)
+    }
+
+    fn wrong_entry(
+        &mut self,
+        entry: Option<&Spanned<DeValue<'_>>>,
+        key: &'static str,
+        message: impl fmt::Display,
+    ) -> Reported {
+        let Some(entry) = entry else {
             return self.fault(self.offset, format!("`{key}` {message}"));
         };
         let span = entry.span();

@@ -220,12 +220,11 @@ impl Record {
         );
         let motion = record.motion(gravity_m_s2);
         if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
-            let key = if record.vertical.is_some() {
-                "vertical"
-            } else {
-                "file"
-            };
-            return Err(table.wrong(key, free_fall(time_s)));
+            let wrong = free_fall(time_s);
+            return Err(match record.vertical {
+                Some(_) => table.wrong_in("vertical", "file", wrong),
+                None => table.wrong("file", wrong),
+            });
         }
         Ok((record, motion))
     }
