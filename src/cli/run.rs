@@ -68,37 +68,46 @@ const SUMMARY: &str = "summary.json";
 const OVERLAY: &str = "overlay.svg";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let read = |hinges| -> Result<Scenario, Failure> {
-        let scenario = Scenario::read_with(&arguments.scenario, hinges)?;
-        let named = |reason| Failure::Input(format!("{}: {reason}", arguments.scenario.display()));
-        scenario.check_for_run().map_err(named)?;
-        Ok(scenario)
-    };
-    let (models, scenario) = match arguments.hinges {
-        None => {
-            let scenario = read(None)?;
-            let own = scenario.free_hinges.map_or(Models::Four, |_| Models::Free);
-            (own, scenario)
-        }
-        Some(Models::Four) => (Models::Four, read(Some(Hinges::Four))?),
-        Some(models) => (models, read(Some(Hinges::Free))?),
-    };
+    let (scenario, other) = Models::read(arguments.hinges, &arguments.scenario)?;
+    let named = |reason| Failure::Input(format!("{}: {reason}", arguments.scenario.display()));
+    scenario.check_for_run().map_err(named)?;
     let title = scenario.title.as_ref();
     let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
-    if let Some(ignored) = impact_ignored(&scenario) {
+    if let Some(ignored) = impact_ignored(other.as_ref().unwrap_or(&scenario)) {
         let _ = writeln!(text, "  {ignored}");
     }
     let place = Place::of(arguments);
-    text += &match models {
-        Models::Four => four_links(&scenario, &place, arguments.dimensionless, None)?,
-        Models::Free => free_hinges::run(&scenario, &place, arguments.options()?, None)?,
-        Models::Both => both(&read(Some(Hinges::Four))?, &scenario, arguments)?,
+    text += &match (&scenario.free_hinges, &other) {
+        (_, Some(free)) => both(&scenario, free, arguments)?,
+        (Some(_), None) => free_hinges::run(&scenario, &place, arguments.options()?, None)?,
+        (None, None) => {
+            if arguments.no_spread {
+                let message =
+                    "--no-spread goes with free hinges: four links and columns are not repeated";
+                return Err(Failure::Input(message.to_owned()));
+            }
+            four_links(&scenario, &place, arguments.dimensionless, None)?
+        }
     };
     if !quiet {
         // Nobody is left to be told when standard error fails.
         let _ = io::stderr().write_all(text.as_bytes());
     }
     Ok(())
+}
+
+impl Models {
+    /// Reads a scenario for the model that is asked for, or that it chooses; with both, for four links and then
+    /// for free hinges.
+    pub fn read(asked: Option<Self>, path: &Path) -> Result<(Scenario, Option<Scenario>), Failure> {
+        let read = |hinges| Scenario::read_with(path, hinges);
+        Ok(match asked {
+            None => (read(None)?, None),
+            Some(Self::Four) => (read(Some(Hinges::Four))?, None),
+            Some(Self::Free) => (read(Some(Hinges::Free))?, None),
+            Some(Self::Both) => (read(Some(Hinges::Four))?, Some(read(Some(Hinges::Free))?)),
+        })
+    }
 }
 
 impl Arguments {

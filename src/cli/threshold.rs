@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::Write as _;
+use std::iter;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -17,7 +18,7 @@ use archrock::studies::threshold::{
 };
 
 use super::run::Models;
-use super::study::{Display, say};
+use super::study::{Display, impact_ignored, say};
 use super::{Failure, Format, commands, open_folder, print, results_folder};
 
 #[derive(clap::Args)]
@@ -55,11 +56,22 @@ const SUMMARY: &str = "threshold.json";
 pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
-    let scenario = Scenario::read(&arguments.scenario)?;
+    let (scenario, other) = Models::read(arguments.hinges, &arguments.scenario)?;
     check(&scenario).map_err(|message| {
         Failure::Input(format!("{}: {message}", arguments.scenario.display()))
     })?;
-    let models = models(&scenario, arguments.hinges)?;
+    let scenarios: Vec<&Scenario> = iter::once(&scenario).chain(&other).collect();
+    if !quiet
+        && let Some(ignored) = scenarios
+            .iter()
+            .find_map(|scenario| impact_ignored(scenario))
+    {
+        say(ignored);
+    }
+    let models = scenarios
+        .iter()
+        .map(|scenario| model(scenario))
+        .collect::<Result<Vec<_>, _>>()?;
     let models: Vec<(&str, &dyn Model)> = models
         .iter()
         .map(|(name, model)| (*name, &**model))
@@ -92,7 +104,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .as_deref()
         .unwrap_or("Threshold of overturning");
     let peak_g = output::peak_g(&scenario, ground);
-    let json = output::to_json(&scenario, ground, &factors, &found)?;
+    let json = output::to_json(&scenarios, ground, &factors, &found)?;
     let json = commands::pretty(&json);
     let picture = output::draw(title, peak_g, &factors, &found);
     for (name, text) in [(PICTURE, &picture), (SUMMARY, &json)] {
@@ -118,28 +130,18 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 /// A model of motion, and its name in the results.
 type NamedModel = (&'static str, Box<dyn Model>);
 
-/// The models of motion that are asked: that which the scenario chooses.
-fn models(scenario: &Scenario, hinges: Option<Models>) -> Result<Vec<NamedModel>, Failure> {
-    let own = match scenario.free_hinges {
-        Some(_) => Models::Free,
-        None => Models::Four,
+/// The model that a scenario was read for.
+fn model(scenario: &Scenario) -> Result<NamedModel, Failure> {
+    let name = match (&scenario.free_hinges, &scenario.structure) {
+        (Some(_), _) => "free_hinges",
+        (None, Structure::Arch(_)) => "four_links",
+        (None, Structure::Column(_)) => "column",
     };
-    let hinges = hinges.unwrap_or(own);
-    let mut models: Vec<NamedModel> = Vec::new();
-    if hinges != Models::Free {
-        let name = match scenario.structure {
-            Structure::Arch(_) => "four_links",
-            Structure::Column(_) => "column",
-        };
-        models.push((name, commands::model(scenario)?));
-    }
-    if hinges != Models::Four {
-        let steps = scenario.free_hinges.unwrap_or_default();
-        let model = scenario.structure.free_hinges(steps);
-        let model = model.map_err(|error| Failure::Input(error.to_string()))?;
-        models.push(("free_hinges", Box::new(model)));
-    }
-    Ok(models)
+    let model = scenario.model();
+    Ok((
+        name,
+        model.map_err(|error| Failure::Input(error.to_string()))?,
+    ))
 }
 
 /// Checks that the scenario has a ground motion to scale, and starts from rest.
@@ -224,11 +226,9 @@ fn words(
 fn bands(text: &mut String, peak_g: f64, threshold: &Threshold) {
     let at = |factor: f64| format!("{} ({} g)", rounded(factor), rounded(factor * peak_g));
     let Some(first) = threshold.bands.first() else {
-        let known = threshold.samples.iter().rev();
-        let last = known
-            .filter(|sample| sample.result.is_ok())
-            .map(|sample| sample.factor);
-        let last = last.into_iter().next().unwrap_or_default();
+        let mut known = threshold.samples.iter().rev();
+        let last = known.find(|sample| sample.result.is_ok());
+        let last = last.map_or(0.0, |sample| sample.factor);
         let _ = writeln!(text, "  does not overturn up to factor {}", at(last));
         return;
     };

@@ -101,12 +101,12 @@ pub fn write_table(writer: impl Write, thresholds: &[Threshold]) -> Result<(), O
 /// # Errors
 /// When a value is not finite.
 pub fn to_json(
-    scenario: &Scenario,
+    scenarios: &[&Scenario],
     ground: &GroundMotion,
     factors: &Factors,
     thresholds: &[Threshold],
 ) -> Result<Value, OutputError> {
-    let peak_g = peak_g(scenario, ground);
+    let peak_g = scenarios.first().map_or(0.0, |first| peak_g(first, ground));
     finite("peak_acceleration_g", &[peak_g])?;
     let ranges = |ranges: &[FactorRange]| -> Vec<Value> {
         let ranges = ranges.iter();
@@ -114,10 +114,12 @@ pub fn to_json(
     };
     let models: Vec<Value> = thresholds
         .iter()
-        .map(|threshold| {
+        .zip(scenarios)
+        .map(|(threshold, scenario)| {
             let samples: Vec<Value> = threshold.samples.iter().map(sample_to_json).collect();
             json!({
                 "model": threshold.model,
+                "scenario": scenario.to_json(),
                 "lowest_factor": threshold.lowest_factor(),
                 "bands": ranges(&threshold.bands),
                 "gaps": ranges(&threshold.gaps),
@@ -128,7 +130,6 @@ pub fn to_json(
     Ok(json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
-        "scenario": scenario.to_json(),
         "peak_acceleration_g": peak_g,
         "factors": { "from": factors.first(), "to": factors.last(), "stride": factors.stride() },
         "models": models,
