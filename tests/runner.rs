@@ -224,10 +224,19 @@ fn failed_cells_keep_their_reason() {
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(
-        said.contains("2 failed; the first: the first reason\n"),
+        said.contains(": the first reason; all are in map.json\n")
+            && said.contains("failed: 3; the first: "),
         "{said}"
     );
-    assert!(said.contains("has gaps: no boundary\n"), "{said}");
+    let summary = fs::read_to_string(folder.path().join("map.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let reasons: Vec<_> = summary["failures"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|failed| &failed["reason"])
+        .collect();
+    assert_eq!(reasons, ["the first reason", "another", "no boundary"]);
     let lines = |name| {
         let text = fs::read_to_string(folder.path().join(name)).unwrap();
         text.lines().map(str::to_owned).collect::<Vec<_>>()

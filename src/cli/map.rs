@@ -3,13 +3,13 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use archrock::output::{Folder, ending, map as output};
+use archrock::output::{ending, map as output};
 use archrock::scenario::{Quantity, Scenario};
-use archrock::studies::boundary::{BoundaryRow, MapRow, MapWithBoundary};
-use archrock::studies::map::{CellResult, CellRow, OverturningMap};
+use archrock::studies::boundary::{MapRow, MapWithBoundary};
+use archrock::studies::map::{CellRow, OverturningMap};
 
-use super::Failure;
-use super::study::{HingesOption, Options, say, write_summary};
+use super::study::{HingesOption, Options, failed_in_words, say, write_summary};
+use super::{Failure, open_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -113,7 +113,7 @@ fn finish(
     if boundary.no_impact {
         files.insert(0, BOUNDARY);
     }
-    let mut folder = Folder::open(path, &files)?;
+    let mut folder = open_folder(path, &files)?;
     if boundary.no_impact {
         output::write_boundaries(folder.file(BOUNDARY), map.axes()[0], &boundaries)?;
     } else {
@@ -125,7 +125,8 @@ fn finish(
         .file(PICTURE)
         .write_all(picture.as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-    write_summary(folder.file(SUMMARY), scenario, cells.len())?;
+    let failures = output::failures(map, &cells, &boundaries);
+    write_summary(folder.file(SUMMARY), scenario, cells.len(), &failures)?;
     output::write_table(folder.file(TABLE), map, &cells)?;
     folder.complete()?;
     if !quiet {
@@ -141,8 +142,8 @@ fn finish(
                 "  free hinges: without the boundary of overturning without impact, which is of four links",
             );
         }
-        if let Some(reason) = first_failed(&boundaries) {
-            say(&format!("  the boundary without impact has gaps: {reason}"));
+        if let Some(words) = failed_in_words(&failures, SUMMARY) {
+            say(&format!("  {words}"));
         }
         say(&format!(
             "  results in {}: {}",
@@ -153,7 +154,7 @@ fn finish(
     Ok(())
 }
 
-/// How many cells came to what, and why some to nothing.
+/// How many cells came to what.
 fn summary(cells: &[CellRow]) -> String {
     let counts = output::counts(cells);
     let outcomes = [
@@ -172,18 +173,5 @@ fn summary(cells: &[CellRow]) -> String {
         .into_iter()
         .filter_map(|(outcome, label)| Some(format!("{} {label}", counts.get(outcome)?)))
         .collect();
-    let mut text = format!("{} cells: {}", cells.len(), parts.join(", "));
-    let reason = cells.iter().find_map(|cell| match &cell.result {
-        CellResult::Failed(reason) => Some(reason),
-        _ => None,
-    });
-    if let Some(reason) = reason {
-        text += &format!("; the first: {reason}");
-    }
-    text
-}
-
-/// Why a boundary could not be found, if there is such.
-fn first_failed(boundaries: &[BoundaryRow]) -> Option<&String> {
-    boundaries.iter().find_map(|row| row.result.as_ref().err())
+    format!("{} cells: {}", cells.len(), parts.join(", "))
 }

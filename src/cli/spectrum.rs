@@ -3,12 +3,13 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use archrock::output::{Folder, spectrum as output};
+use archrock::output::ending::Failed;
+use archrock::output::spectrum as output;
 use archrock::scenario::Scenario;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow};
 
-use super::Failure;
-use super::study::{Options, say, write_summary};
+use super::study::{Options, failed_in_words, say, write_summary};
+use super::{Failure, open_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -59,17 +60,18 @@ fn finish(
     path: &Path,
     quiet: bool,
 ) -> Result<(), Failure> {
-    let mut folder = Folder::open(path, &[PICTURE, SUMMARY, TABLE])?;
+    let mut folder = open_folder(path, &[PICTURE, SUMMARY, TABLE])?;
     let title = scenario.title.as_deref().unwrap_or("Overturning spectrum");
     folder
         .file(PICTURE)
         .write_all(output::draw(title, spectrum, rows).as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-    write_summary(folder.file(SUMMARY), scenario, rows.len())?;
+    let failures = output::failures(rows);
+    write_summary(folder.file(SUMMARY), scenario, rows.len(), &failures)?;
     output::write_table(folder.file(TABLE), rows)?;
     folder.complete()?;
     if !quiet {
-        say(&summary(spectrum, rows));
+        say(&summary(spectrum, rows, &failures));
         say(&format!(
             "  results in {}: {PICTURE}, {SUMMARY}, {TABLE}",
             path.display()
@@ -79,7 +81,7 @@ fn finish(
 }
 
 /// Counts the points by outcome, and says what is uncertain.
-fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
+fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], failures: &[Failed]) -> String {
     let count = |wanted: fn(Option<usize>) -> bool| {
         let impacts = rows
             .iter()
@@ -104,10 +106,8 @@ fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
             "; {rocking} histories were still rocking long after their pulse, and count as survived"
         );
     }
-    let failures: Vec<&String> = rows.iter().flat_map(|row| &row.failures).collect();
-    if let Some(first) = failures.first() {
-        let failed = failures.len();
-        text += &format!("; {failed} histories failed; the first: {first}");
+    if let Some(words) = failed_in_words(failures, SUMMARY) {
+        text += &format!("; {words}");
     }
     text
 }

@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::output::ending::Failed;
 use archrock::output::results;
 use archrock::scenario::{Hinges, Scenario};
 use archrock::studies::part::{PartError, PartFile, Shard};
@@ -192,15 +193,28 @@ fn listen_to_interrupts() {
 /// The exit code of shells for a program ended by Ctrl-C.
 const INTERRUPTED_CODE: i32 = 130;
 
-/// Writes the summary of a study: its scenario and number of cases.
+/// Writes the summary of a study: its scenario, number of cases, and what failed.
 pub fn write_summary(
     mut file: impl io::Write,
     scenario: &Scenario,
     cases: usize,
+    failures: &[Failed],
 ) -> Result<(), Failure> {
-    let summary = results::study_summary(scenario, cases);
+    let summary = results::study_summary(scenario, cases, failures);
     writeln!(file, "{summary:#}")
         .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))
+}
+
+/// How many cases failed, why the first did, and where the others are; `None` where none did.
+pub fn failed_in_words(failures: &[Failed], file: &str) -> Option<String> {
+    let first = failures.first()?;
+    let (count, more) = (failures.len(), failures.len() > 1);
+    let others = if more {
+        format!("; all are in {file}")
+    } else {
+        String::new()
+    };
+    Some(format!("failed: {count}; the first: {first}{others}"))
 }
 
 /// Prints a line on standard error.

@@ -4,14 +4,13 @@ use std::io::Write as _;
 use std::path::Path;
 
 use archrock::dynamics::history::Outcome;
-use archrock::output::Folder;
 use archrock::output::suite::{self as output, Heading};
 use archrock::scenario::{Scenario, Suite};
 use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 
-use super::Failure;
 use super::commands::pretty;
-use super::study::{HingesOption, Options, say};
+use super::study::{HingesOption, Options, failed_in_words, say};
+use super::{Failure, open_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -73,7 +72,7 @@ pub fn merge(
 fn finish(heading: &Heading, rows: Vec<CaseRow>, path: &Path, quiet: bool) -> Result<(), Failure> {
     let results = SuiteFragility::new(heading.measure, rows);
     let files = [PICTURE, LEVELS, FRAGILITY, TABLE];
-    let mut folder = Folder::open(path, &files)?;
+    let mut folder = open_folder(path, &files)?;
     output::write_fragility(folder.file(LEVELS), &results)?;
     for (name, text) in [
         (PICTURE, output::draw(heading, &results)),
@@ -118,14 +117,8 @@ fn summary(results: &SuiteFragility) -> String {
             "those still rocking at duration_s of [simulation] count as not overturned".to_owned(),
         );
     }
-    if let Some((case, reason)) = results.first_failed() {
-        lines.push(format!(
-            "those that failed do not count; the first: {}{}, {} {:?}: {reason}",
-            case.record,
-            if case.mirrored { " mirrored" } else { "" },
-            results.measure.column(),
-            case.level(results.measure)
-        ));
+    if let Some(words) = failed_in_words(&output::failures(results), FRAGILITY) {
+        lines.push(format!("{words}; what failed does not count"));
     }
     lines.join("\n  ")
 }

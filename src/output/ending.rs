@@ -1,5 +1,9 @@
 //! How histories ended, as columns of a table.
 
+use std::fmt;
+
+use serde_json::{Value, json};
+
 use super::{OutputError, finite};
 use crate::dynamics::history::Outcome;
 use crate::studies::ending::Ending;
@@ -71,4 +75,38 @@ pub(super) fn none(reason: &str, free_hinges: bool) -> Vec<String> {
 /// A number with the fewest digits that read back as the same `f64`.
 pub(super) fn number(value: f64) -> String {
     format!("{value:?}")
+}
+
+/// A case of a study that failed, as results list it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failed {
+    /// Which case, in words.
+    pub case: String,
+    /// Why.
+    pub reason: String,
+}
+
+impl Failed {
+    pub(super) fn new(case: String, reason: &str) -> Self {
+        Self {
+            case,
+            reason: reason.to_owned(),
+        }
+    }
+
+    /// Adds the list of failures to a summary, if there are any.
+    pub(super) fn list_in(summary: &mut Value, failures: &[Self]) {
+        if !failures.is_empty() {
+            let list = failures
+                .iter()
+                .map(|failed| json!({ "case": failed.case, "reason": failed.reason }));
+            summary["failures"] = list.collect();
+        }
+    }
+}
+
+impl fmt::Display for Failed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.case, self.reason)
+    }
 }

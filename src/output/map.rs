@@ -6,7 +6,7 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::ending;
+use super::ending::{self, Failed};
 use super::kind::{self, CANNOT_STAND, Kind, NOT_FOUR_LINKS};
 use super::svg::{Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite};
@@ -35,7 +35,34 @@ pub fn doubtful(rows: &[CellRow]) -> usize {
 }
 
 fn is_doubtful(row: &CellRow) -> bool {
-    row.spread > Some(1)
+    matches!(row.spread, Some(Ok(2..)))
+}
+
+/// The cells that failed, and those of which a repetition or a boundary did: where, and why.
+#[must_use]
+pub fn failures(
+    map: &OverturningMap<'_>,
+    cells: &[CellRow],
+    boundaries: &[BoundaryRow],
+) -> Vec<Failed> {
+    let [x_name, y_name] = map.axes().map(|axis| axis.quantity.name());
+    let mut failures = Vec::new();
+    for cell in cells {
+        let case = || format!("{x_name} {:?}, {y_name} {:?}", cell.x, cell.y);
+        if let CellResult::Failed(reason) = &cell.result {
+            failures.push(Failed::new(case(), reason));
+        }
+        if let Some(Err(reason)) = &cell.spread {
+            failures.push(Failed::new(case(), reason));
+        }
+    }
+    for row in boundaries {
+        if let Err(reason) = &row.result {
+            let case = format!("boundary without impact at {x_name} {:?}", row.x);
+            failures.push(Failed::new(case, reason));
+        }
+    }
+    failures
 }
 
 /// How many cells have each outcome.
@@ -72,10 +99,11 @@ pub fn write_table(
             other => ending::none(outcome(other), free_hinges),
         });
         if map.has_spread() {
-            fields.push(
-                row.spread
-                    .map_or(String::new(), |spread| spread.to_string()),
-            );
+            fields.push(match &row.spread {
+                None => String::new(),
+                Some(Ok(count)) => count.to_string(),
+                Some(Err(_)) => ending::FAILED.to_owned(),
+            });
         }
         csv.write_record(fields).map_err(OutputError::csv(WHAT))?;
     }
@@ -228,7 +256,7 @@ pub fn draw(
             }
         }
         if !path.is_empty() {
-            // The stroke closes the seams between map.
+            // The stroke closes the seams between cells.
             drawing.path(kind.name, &path, kind.fill, Stroke::new(kind.fill, 0.4, ""));
         }
     }

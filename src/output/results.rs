@@ -4,6 +4,7 @@ use std::io::Write;
 
 use serde_json::{Value, json};
 
+use super::ending::Failed;
 use super::rotations::{Scales, columns};
 use super::{OutputError, finite};
 use crate::dynamics::ground::GroundMotion;
@@ -178,15 +179,17 @@ fn sections_deg(hinges: &[Hinge]) -> Vec<Option<f64>> {
     sections.collect()
 }
 
-/// What a study was of: program, version, scenario as resolved, number of cases.
+/// What a study was of: program, version, scenario as resolved, number of cases; and `failures`, where there are any.
 #[must_use]
-pub fn study_summary(scenario: &Scenario, cases: usize) -> Value {
-    json!({
+pub fn study_summary(scenario: &Scenario, cases: usize, failures: &[Failed]) -> Value {
+    let mut summary = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": scenario.to_json(),
         "cases": cases,
-    })
+    });
+    Failed::list_in(&mut summary, failures);
+    summary
 }
 
 /// The summary of a run as JSON.

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::ending::number;
+use super::ending::{Failed, number};
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite};
 use crate::studies::spectrum::{OverturningSpectrum, PointRow, StructureKind};
@@ -35,6 +35,23 @@ pub fn write_table(writer: impl Write, rows: &[PointRow]) -> Result<(), OutputEr
             .map_err(OutputError::csv(WHAT))?;
     }
     csv.flush().map_err(OutputError::io(WHAT))
+}
+
+/// What failed: where, and why.
+#[must_use]
+pub fn failures(rows: &[PointRow]) -> Vec<Failed> {
+    let mut failures = Vec::new();
+    for row in rows {
+        for failure in &row.failures {
+            let what = match failure.over_incipient {
+                Some(over_incipient) => format!("at {over_incipient:?} A_L"),
+                None => "least without impact".to_owned(),
+            };
+            let case = format!("{} with p t_p {:?}, {what}", row.structure.name(), row.p_t);
+            failures.push(Failed::new(case, &failure.reason));
+        }
+    }
+    failures
 }
 
 fn fields(row: &PointRow) -> Result<[String; 9], OutputError> {

@@ -5,7 +5,7 @@ use std::io::Write;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
-use super::ending;
+use super::ending::{self, Failed};
 use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
 use super::{OutputError, finite};
 use crate::scenario::{Measure, Scenario, Spacing, Suite};
@@ -185,7 +185,7 @@ pub fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, Out
     }
     let total =
         |count: fn(&FragilityRow) -> usize| -> usize { results.levels.iter().map(count).sum() };
-    Ok(json!({
+    let mut json = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": heading.scenario,
@@ -205,7 +205,22 @@ pub fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, Out
         "failed_left_out": total(|level| level.failed),
         "records_that_never_overturn": results.always(false),
         "records_that_always_overturn": results.always(true),
-    }))
+    });
+    Failed::list_in(&mut json, &failures(results));
+    Ok(json)
+}
+
+/// The cases that failed: which, and why.
+#[must_use]
+pub fn failures(results: &SuiteFragility) -> Vec<Failed> {
+    let failed = results.cases.iter().filter_map(|case| {
+        let reason = case.result.as_ref().err()?;
+        let mirrored = if case.mirrored { " mirrored" } else { "" };
+        let (column, level) = (results.measure.column(), case.level(results.measure));
+        let case = format!("{}{mirrored}, {column} {level:?}", case.record);
+        Some(Failed::new(case, reason))
+    });
+    failed.collect()
 }
 
 /// Why there is no curve.

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ending::check_finite;
-use super::map::{CellRow, OverturningMap};
+use super::map::{CellResult, CellRow, OverturningMap};
 use super::runner::Study;
 use crate::mechanics::sway::Sway;
 use crate::scenario::Quantity;
@@ -46,7 +46,16 @@ impl<'m> ImpactFreeBoundary<'m> {
     fn result(&self, x: usize) -> Result<Option<Boundary>, String> {
         let amplitudes_g = &self.map.values()[1];
         let index = x * amplitudes_g.len();
-        let Some(model) = self.map.mechanism_model(index) else {
+        let model = match self.map.mechanism_model(index) {
+            Ok(model) => model,
+            Err(error) => {
+                return match CellResult::from(error) {
+                    CellResult::Failed(reason) => Err(reason),
+                    _ => Ok(None),
+                };
+            }
+        };
+        let Some(model) = model else {
             return Ok(None);
         };
         let request = self.map.scenario().request_from_rest();

@@ -8,8 +8,10 @@ use super::ending::Ending;
 use super::impact_free::ScalablePulse;
 use super::runner::Study;
 use crate::argument::ArgumentError;
+use crate::dynamics::free_hinges::spread::REPETITIONS;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError};
 use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
@@ -63,9 +65,10 @@ pub struct CellRow {
     /// What became of it.
     pub result: CellResult,
     /// How many outcomes it has with the steps as they are, half and double: one, if it does not depend on them. To
-    /// which side it overturns does not count. `None` where that was not asked, or there is no history.
+    /// which side it overturns does not count. Or why a repetition failed. `None` where that was not asked, or there
+    /// is no history.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spread: Option<usize>,
+    pub spread: Option<Result<usize, String>>,
 }
 
 /// The cells of a map: cell `i` has the `i / m`-th value of x and the `i % m`-th of y, of which there are `m`.
@@ -242,12 +245,15 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// The model of what stands in a cell, where it has one degree of freedom at a time.
-    pub(super) fn mechanism_model(&self, index: usize) -> Option<Arc<dyn MechanismModel>> {
-        match self.standing(index).ok()? {
-            Standing::Arch(arch) => Some(Arc::new(arch)),
-            Standing::Column(column) => Some(Arc::new(column)),
+    pub(super) fn mechanism_model(
+        &self,
+        index: usize,
+    ) -> Result<Option<Box<dyn MechanismModel>>, ModelError> {
+        Ok(match self.standing(index)? {
+            Standing::Arch(arch) => Some(Box::new(arch)),
+            Standing::Column(column) => Some(Box::new(column)),
             Standing::Row(_) => None,
-        }
+        })
     }
 
     /// The structure of a cell.
@@ -257,13 +263,13 @@ impl<'a> OverturningMap<'a> {
             column @ Structure::Column(_) => return Ok(column.clone()),
         };
         let mut arch = arch.clone();
-        // Arches of one shape share their limit analysis.
         if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
             arch = arch.with_thickness_ratio(thickness_ratio)?;
         }
         if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
             arch = arch.with_embrace_deg(embrace_deg)?;
         }
+        // Arches of one shape share their limit analysis.
         if let Some(mean_radius_m) = self.value(index, Quantity::MeanRadius) {
             arch = arch.with_mean_radius_m(mean_radius_m)?;
         }
@@ -305,7 +311,7 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// What becomes of a cell, and how many outcomes it has with other steps.
-    fn result(&self, index: usize) -> (CellResult, Option<usize>) {
+    fn result(&self, index: usize) -> (CellResult, Option<Result<usize, String>>) {
         let standing = match self.standing(index) {
             Ok(standing) => standing,
             Err(error) => return (error.into(), None),
@@ -316,8 +322,10 @@ impl<'a> OverturningMap<'a> {
             .motion(amplitude_g.unwrap_or(self.pulse.amplitude_g));
         let request = self.scenario.request_from_rest();
         let ending = Ending::of(standing.model(), &ground, &request);
-        let spread = match &standing {
-            Standing::Row(row) if self.spread => Some(self.outcomes(row, &ground, &ending)),
+        let spread = match (&standing, &ending) {
+            (Standing::Row(row), Ok(own)) if self.spread => {
+                Some(self.outcomes(row, &ground, own.outcome))
+            }
             _ => None,
         };
         (ending.into(), spread)
@@ -328,21 +336,20 @@ impl<'a> OverturningMap<'a> {
         &self,
         row: &FreeHinges,
         ground: &GroundMotion,
-        own: &Result<Ending, String>,
-    ) -> usize {
-        let name = |ending: &Result<Ending, String>| {
-            ending.as_ref().ok().map(|ending| ending.outcome.name())
-        };
+        own: Outcome,
+    ) -> Result<usize, String> {
         let request = self.scenario.request_from_rest();
-        let mut names = vec![name(own)];
-        for factor in [0.5, 2.0] {
+        let mut names = vec![own.name()];
+        for factor in REPETITIONS {
             let row = row.with_coarse_steps_times(factor, &request);
-            let other = name(&Ending::of(&row, ground, &request));
+            let ending = Ending::of(&row, ground, &request)
+                .map_err(|error| format!("with {factor} times the steps: {error}"))?;
+            let other = ending.outcome.name();
             if !names.contains(&other) {
                 names.push(other);
             }
         }
-        names.len()
+        Ok(names.len())
     }
 }
 

@@ -152,8 +152,21 @@ impl Runner {
         study: &S,
         watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<S::Row>, RunnerError> {
+        self.each(study.count(), |index| study.row(index), watch)
+    }
+
+    /// The same of so many cases that are no study: what is made of each index, in their order.
+    ///
+    /// # Errors
+    /// As [`Runner::rows`].
+    pub fn each<R: Send>(
+        &self,
+        count: usize,
+        row: impl Fn(usize) -> R + Sync,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<R>, RunnerError> {
         let mut rows = Rows::new();
-        self.complete(study, Shard::WHOLE, &mut rows, |_| Ok(()), watch)?;
+        self.complete(0..count, row, &mut rows, |_| Ok(()), watch)?;
         Ok(rows.into_values().collect())
     }
 
@@ -183,7 +196,8 @@ impl Runner {
         let header = Header::new(study, shard);
         let (mut part, mut rows) = PartFile::open(&path, &header, resume)?;
         let keep = |new: &[_]| part.append(new);
-        self.complete(study, shard, &mut rows, keep, watch)?;
+        let cases = shard.cases(study.count());
+        self.complete(cases, |index| study.row(index), &mut rows, keep, watch)?;
         Ok(if shard.is_whole() {
             Computed::Whole(rows.into_values().collect(), part)
         } else {
@@ -199,18 +213,15 @@ impl Runner {
     }
 
     /// Computes the rows that are missing, and hands them to `keep` as they come.
-    fn complete<S: Study>(
+    fn complete<R: Send>(
         &self,
-        study: &S,
-        shard: Shard,
-        rows: &mut Rows<S::Row>,
-        mut keep: impl FnMut(&[(usize, S::Row)]) -> Result<(), PartError>,
+        cases: impl Iterator<Item = usize>,
+        row: impl Fn(usize) -> R + Sync,
+        rows: &mut Rows<R>,
+        mut keep: impl FnMut(&[(usize, R)]) -> Result<(), PartError>,
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), RunnerError> {
-        let todo: Vec<usize> = shard
-            .cases(study.count())
-            .filter(|index| !rows.contains_key(index))
-            .collect();
+        let todo: Vec<usize> = cases.filter(|index| !rows.contains_key(index)).collect();
         let all = rows.len() + todo.len();
         let pool = self.pool()?;
         let cancelled = AtomicBool::new(false);
@@ -223,7 +234,7 @@ impl Runner {
                     return None;
                 }
                 // Sending fails only after the receiver has given up.
-                sender.send((*index, study.row(*index))).ok()
+                sender.send((*index, row(*index))).ok()
             })
         };
         let keeper = thread::current();

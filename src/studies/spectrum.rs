@@ -80,8 +80,17 @@ pub struct PointRow {
     pub minimum: Option<Overturning>,
     /// How many of the accelerations tried left the structure rocking at the end. They count as survived.
     pub still_rocking: usize,
-    /// Why histories could not be computed, for each of them. They count as survived.
-    pub failures: Vec<String>,
+    /// What could not be computed. It counts as survived.
+    pub failures: Vec<Failure>,
+}
+
+/// What could not be computed of a point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// Peak acceleration of the history over `g A_L`; `None`: the search for the least without impact.
+    pub over_incipient: Option<f64>,
+    /// Why.
+    pub reason: String,
 }
 
 impl PointRow {
@@ -254,7 +263,10 @@ impl Study for OverturningSpectrum<'_> {
                 }
             }
             Ok(None) => {}
-            Err(reason) => row.failures.push(reason),
+            Err(reason) => row.failures.push(Failure {
+                over_incipient: None,
+                reason,
+            }),
         }
         // One by one, and never by bisection: above the least there are others that do not overturn.
         for (over_incipient, amplitude_g) in self.over_incipient.iter().copied().zip(tried_g) {
@@ -276,7 +288,10 @@ impl Study for OverturningSpectrum<'_> {
                 }
                 Ok(ending) if ending.outcome == Outcome::StillRocking => row.still_rocking += 1,
                 Ok(_) => {}
-                Err(reason) => row.failures.push(reason),
+                Err(reason) => row.failures.push(Failure {
+                    over_incipient: Some(over_incipient),
+                    reason,
+                }),
             }
         }
         row

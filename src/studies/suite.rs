@@ -232,14 +232,6 @@ impl SuiteFragility {
         let alike = alike.into_iter().filter(|(_, alike)| *alike);
         alike.map(|(record, _)| record).collect()
     }
-
-    /// The first case whose history could not be computed, and why.
-    #[must_use]
-    pub fn first_failed(&self) -> Option<(&CaseRow, &str)> {
-        self.cases
-            .iter()
-            .find_map(|case| Some((case, case.result.as_ref().err()?.as_str())))
-    }
 }
 
 /// Names of the records.

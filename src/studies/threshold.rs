@@ -7,11 +7,10 @@
 
 use std::ops::ControlFlow;
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::ending::Ending;
-use super::runner::{Progress, Runner, RunnerError, Study};
+use super::runner::{Progress, Runner, RunnerError};
 use crate::argument::{ArgumentError, above, within};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::GroundMotion;
@@ -89,7 +88,7 @@ impl Factors {
 }
 
 /// The history on the ground motion times a factor.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FactorSample {
     /// The factor.
     pub factor: f64,
@@ -100,7 +99,7 @@ pub struct FactorSample {
 }
 
 /// Why there is no history at a factor.
-#[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoHistory {
     /// The ground falls as fast as a free body, which is beyond the model.
     #[error("{0}")]
@@ -222,11 +221,10 @@ pub fn thresholds(
         ground,
         request,
     };
-    let samples = AtFactors {
-        shaking,
-        factors: &factors,
-    };
-    let samples = runner.rows(&samples, &mut watch)?;
+    // Model by model.
+    let sampled = models.len() * factors.len();
+    let sample = |index| shaking.sample(index / factors.len(), factors[index % factors.len()]);
+    let samples = runner.each(sampled, sample, &mut watch)?;
     let samples: Vec<&[FactorSample]> = samples.chunks(factors.len()).collect();
 
     let mut changes: Vec<Change<'_>> = Vec::new();
@@ -235,12 +233,8 @@ pub fn thresholds(
         let pairs = pairs.filter(|pair| changes_outcome(&pair[0], &pair[1]));
         changes.extend(pairs.map(|pair| (index, &pair[0], &pair[1])));
     }
-    let sampled = models.len() * factors.len();
-    let edges = AtEdges {
-        shaking,
-        changes: &changes,
-    };
-    let edges = runner.rows(&edges, |progress| {
+    let edge = |index: usize| shaking.edge(changes[index]);
+    let edges = runner.each(changes.len(), edge, |progress| {
         watch(Progress {
             done: sampled + progress.done,
             all: sampled + progress.all,
@@ -279,29 +273,17 @@ impl Shaking<'_> {
     fn sample(&self, model: usize, factor: f64) -> FactorSample {
         FactorSample::of(self.models[model].1, self.ground, self.request, factor)
     }
-}
 
-/// All models at all factors, model by model. The rows are not kept in files.
-struct AtFactors<'a> {
-    shaking: Shaking<'a>,
-    factors: &'a [f64],
-}
-
-impl Study for AtFactors<'_> {
-    type Row = FactorSample;
-    const NAME: &'static str = "threshold";
-
-    fn scenario(&self) -> String {
-        String::new()
-    }
-
-    fn count(&self) -> usize {
-        self.shaking.models.len() * self.factors.len()
-    }
-
-    fn row(&self, index: usize) -> FactorSample {
-        let (model, factor) = (index / self.factors.len(), index % self.factors.len());
-        self.shaking.sample(model, self.factors[factor])
+    /// The edge between neighbours of different outcomes, or the history that failed in the search.
+    fn edge(&self, (model, below, above): Change<'_>) -> Result<Edge, FactorSample> {
+        let width = Width::Relative(EDGE_WIDTH);
+        try_bisect(below.factor, above.factor, width, |factor| {
+            let sample = self.sample(model, factor);
+            match sample.overturns() {
+                None => Err(sample),
+                overturns => Ok(overturns == above.overturns()),
+            }
+        })
     }
 }
 
@@ -314,37 +296,6 @@ type Edge = (f64, f64);
 fn changes_outcome(below: &FactorSample, above: &FactorSample) -> bool {
     let both = below.overturns().zip(above.overturns());
     both.is_some_and(|(below, above)| below != above)
-}
-
-/// The edges between neighbours of different outcomes, or the histories that failed in the search.
-struct AtEdges<'a> {
-    shaking: Shaking<'a>,
-    changes: &'a [Change<'a>],
-}
-
-impl Study for AtEdges<'_> {
-    type Row = Result<Edge, FactorSample>;
-    const NAME: &'static str = "threshold-edges";
-
-    fn scenario(&self) -> String {
-        String::new()
-    }
-
-    fn count(&self) -> usize {
-        self.changes.len()
-    }
-
-    fn row(&self, index: usize) -> Self::Row {
-        let (model, below, above) = self.changes[index];
-        let width = Width::Relative(EDGE_WIDTH);
-        try_bisect(below.factor, above.factor, width, |factor| {
-            let sample = self.shaking.sample(model, factor);
-            match sample.overturns() {
-                None => Err(sample),
-                overturns => Ok(overturns == above.overturns()),
-            }
-        })
-    }
 }
 
 impl Threshold {
