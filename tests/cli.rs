@@ -36,7 +36,7 @@ fn run(name: &str) -> (Value, Vec<csv::StringRecord>) {
     let file = scenarios().join(name).with_extension("toml");
     let output = archrock(folder.path(), &["run", file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(output.stdout.is_empty());
+    assert!(output.stderr.is_empty());
     let results = folder.path().join("results").join(name);
     let mut rows = csv::Reader::from_path(results.join("rotations.csv")).unwrap();
     let rows = rows.records().map(Result::unwrap).collect();

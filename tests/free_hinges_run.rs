@@ -32,8 +32,8 @@ impl Results {
         fs::write(root.path().join("s.toml"), scenario).unwrap();
         let all = [&["run", "s.toml", "--out", "out"], arguments].concat();
         let output = archrock(root.path(), &all);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = String::from_utf8(output.stdout).unwrap();
         Self { root, said }
     }
 

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use archrock::dynamics::free_hinges::{FreeHinges, Steps};
 use archrock::output::map::draw;
-use archrock::scenario::{Hinges, Scenario};
+use archrock::scenario::{Changes, Hinges, Scenario, ScenarioErrors, Source};
 use archrock::studies::boundary::ImpactFreeBoundary;
 use archrock::studies::ending::Ending;
 use archrock::studies::map::{CellResult, OverturningMap};
@@ -327,14 +327,22 @@ fn what_is_of_four_links_is_refused() {
     assert!(errors.to_string().contains(words), "{errors}");
 }
 
+fn read_with(file: &Path, hinges: Hinges) -> Result<Scenario, ScenarioErrors> {
+    let changes = Changes {
+        hinges: Some(hinges),
+        set: &[],
+    };
+    Scenario::of(&Source::of_file(file)?, &changes)
+}
+
 #[test]
 fn a_scenario_with_another_model_is_written_as_it_was_read() {
     let work = folder(&map_text());
     let file = work.path().join("s.toml");
     let chosen = Scenario::read(&file).unwrap();
-    let free = Scenario::read_with(&file, Some(Hinges::Free)).unwrap();
+    let free = read_with(&file, Hinges::Free).unwrap();
     assert_eq!(free, chosen);
-    let four = Scenario::read_with(&file, Some(Hinges::Four)).unwrap();
+    let four = read_with(&file, Hinges::Four).unwrap();
     assert_eq!(four.free_hinges, None);
     for scenario in [free, four] {
         assert_eq!(parse(&scenario.to_toml()), scenario);
@@ -345,7 +353,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
         map_text().replace("voussoirs = 7\n[free_hinges]\n", ""),
     )
     .unwrap();
-    let errors = Scenario::read_with(&file, Some(Hinges::Free)).unwrap_err();
+    let errors = read_with(&file, Hinges::Free).unwrap_err();
     assert!(errors.to_string().contains("lacks `voussoirs`"), "{errors}");
 }
 

@@ -5,16 +5,17 @@ use std::path::PathBuf;
 
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::output::chart;
-use archrock::scenario::{Scenario, Structure};
+use archrock::scenario::Structure;
 use archrock::studies::survey::shape_results;
 
+use super::scenario_file::ScenarioFile;
 use super::study::say;
-use super::{Failure, commands, open_folder, results_folder};
+use super::{Failure, commands};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario file (TOML): its embrace angle, voussoirs and impact model are used.
-    scenario: PathBuf,
+    #[command(flatten)]
+    scenario: ScenarioFile,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -34,15 +35,16 @@ const THICKNESSES: u32 = 24;
 const MAX_THICKNESS_RATIO: f64 = 0.3;
 
 pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let scenario = Scenario::read(&arguments.scenario)?;
+    let input = arguments.scenario.open()?;
+    let scenario = input.read(None)?;
     let Structure::Arch(arch) = &scenario.structure else {
         let message = "chart is for arches only; the scenario has a column";
         return Err(Failure::Input(message.to_owned()));
     };
     // An arch without results of its own is refused, with the reason.
     commands::model(&scenario)?;
-    let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
-    let mut folder = open_folder(&path, &[PICTURE, TABLE])?;
+    let place = input.results(arguments.out.as_deref())?;
+    let mut folder = place.open(&[PICTURE, TABLE])?;
     let mut embraces_deg = EMBRACES_DEG.to_vec();
     if !embraces_deg.contains(&arch.embrace_deg()) {
         embraces_deg.push(arch.embrace_deg());
@@ -69,7 +71,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         let count = results.len();
         say(&format!(
             "{count} arches in {}: {PICTURE}, {TABLE}",
-            path.display()
+            place.path().display()
         ));
     }
     Ok(())

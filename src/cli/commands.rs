@@ -14,6 +14,7 @@ use archrock::mechanics::sway::Sway;
 use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
 
+use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, print};
 
 /// The model of a scenario.
@@ -22,12 +23,12 @@ pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
     model.map_err(|error| Failure::Input(error.to_string()))
 }
 
-pub fn check(path: &Path) -> Result<(), Failure> {
-    print(&Scenario::read(path)?.to_toml())
+pub fn check(file: &ScenarioFile) -> Result<(), Failure> {
+    print(&file.open()?.read(None)?.to_toml())
 }
 
-pub fn limit(path: &Path, format: Format, plot: Option<&Path>) -> Result<(), Failure> {
-    let scenario = Scenario::read(path)?;
+pub fn limit(file: &ScenarioFile, format: Format, plot: Option<&Path>) -> Result<(), Failure> {
+    let scenario = file.open()?.read(None)?;
     if let Some(plot) = plot {
         let arch = arch(&scenario, "--plot is")?;
         write_picture(plot, &pictures::limit(arch.chain()))?;

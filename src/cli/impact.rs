@@ -23,12 +23,13 @@ use archrock::scenario::{Scenario, Structure};
 use serde_json::json;
 
 use super::commands::{self, degrees, pretty};
+use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario file (TOML).
-    scenario: PathBuf,
+    #[command(flatten)]
+    scenario: ScenarioFile,
     /// Number of impacts to print.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     count: u16,
@@ -71,7 +72,7 @@ struct Chosen<'a> {
 }
 
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
-    let scenario = Scenario::read(&arguments.scenario)?;
+    let scenario = arguments.scenario.open()?.read(None)?;
     let arch = match &scenario.structure {
         Structure::Column(_) if !arguments.of_arches_only() => {
             let model = commands::model(&scenario)?;

@@ -1,15 +1,15 @@
 //! The command `map`.
 
 use std::io::Write as _;
-use std::path::Path;
 
 use archrock::output::{ending, map as output};
 use archrock::scenario::{Quantity, Scenario};
 use archrock::studies::boundary::{MapRow, MapWithBoundary};
 use archrock::studies::map::{CellRow, OverturningMap};
 
+use super::Failure;
+use super::scenario_file::Destination;
 use super::study::{HingesOption, Options, failed_in_words, say, write_summary};
-use super::{Failure, open_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -37,14 +37,16 @@ const TABLE: &str = "map.csv";
 
 pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
-    let scenario = arguments.hinges.read(&options.scenario, quiet)?;
-    let map = overturning_map(&scenario).map_err(|failure| options.about_scenario(failure))?;
+    let input = options.open()?;
+    let scenario = arguments.hinges.read(&input, quiet)?;
+    let map = overturning_map(&scenario).map_err(|failure| input.about(failure))?;
     let study = MapWithBoundary::new(&map);
     arguments.boundary.check(&map)?;
-    let Some((rows, part)) = options.compute(&study, quiet)? else {
+    let place = options.results(&input)?;
+    let Some((rows, part)) = options.compute(&study, &place, quiet)? else {
         return Ok(());
     };
-    finish(&map, rows, &options.folder(), arguments.boundary, quiet)?;
+    finish(&map, rows, &place, arguments.boundary, quiet)?;
     Ok(part.remove()?)
 }
 
@@ -89,21 +91,21 @@ impl BoundaryOption {
 pub fn merge(
     scenario: &str,
     rows: Vec<MapRow>,
-    folder: &Path,
+    place: &Destination,
     boundary: BoundaryOption,
     quiet: bool,
 ) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
     let map = overturning_map(&scenario)?;
     boundary.check(&map)?;
-    finish(&map, rows, folder, boundary, quiet)
+    finish(&map, rows, place, boundary, quiet)
 }
 
 /// Writes the results.
 fn finish(
     map: &OverturningMap<'_>,
     rows: Vec<MapRow>,
-    path: &Path,
+    place: &Destination,
     boundary: BoundaryOption,
     quiet: bool,
 ) -> Result<(), Failure> {
@@ -113,7 +115,7 @@ fn finish(
     if boundary.no_impact {
         files.insert(0, BOUNDARY);
     }
-    let mut folder = open_folder(path, &files)?;
+    let mut folder = place.open(&files)?;
     if boundary.no_impact {
         output::write_boundaries(folder.file(BOUNDARY), map.axes()[0], &boundaries)?;
     } else {
@@ -147,7 +149,7 @@ fn finish(
         }
         say(&format!(
             "  results in {}: {}",
-            path.display(),
+            place.path().display(),
             files.join(", ")
         ));
     }

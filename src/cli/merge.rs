@@ -10,6 +10,7 @@ use archrock::studies::suite::RecordSuite;
 
 use super::Failure;
 use super::map::{self, BoundaryOption};
+use super::scenario_file::Destination;
 use super::spectrum;
 use super::suite;
 
@@ -30,21 +31,21 @@ pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let beside = parts[0].parent();
     let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
     let beside = beside.unwrap_or(Path::new("."));
-    let folder = arguments.out.as_deref().unwrap_or(beside);
+    let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
     match part::read_header(&parts[0])?.study.as_str() {
         MapWithBoundary::NAME => {
             let (header, rows) = part::merge(parts)?;
-            map::merge(&header.scenario, rows, folder, arguments.boundary, quiet)
+            map::merge(&header.scenario, rows, &place, arguments.boundary, quiet)
         }
         OverturningSpectrum::NAME => {
             arguments.boundary.refuse()?;
             let (header, rows) = part::merge(parts)?;
-            spectrum::merge(&header.scenario, &rows, folder, quiet)
+            spectrum::merge(&header.scenario, &rows, &place, quiet)
         }
         RecordSuite::NAME => {
             arguments.boundary.refuse()?;
             let (header, rows) = part::merge(parts)?;
-            suite::merge(&header.scenario, rows, folder, quiet)
+            suite::merge(&header.scenario, rows, &place, quiet)
         }
         study => Err(Failure::Input(format!(
             "unknown study {study:?}: merge with the version of archrock that wrote the parts"

@@ -6,28 +6,32 @@
 mod chart;
 mod commands;
 mod impact;
+mod init;
 mod map;
 mod merge;
 mod run;
+mod scenario_file;
 mod spectrum;
 mod study;
 mod suite;
 mod threshold;
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use archrock::dynamics::model::SimulationError;
-use archrock::output::{Folder, OutputError};
+use archrock::output::OutputError;
 use archrock::scenario::ScenarioErrors;
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
+
+use scenario_file::ScenarioFile;
 
 /// Simulates masonry arches and free-standing columns that rock under ground motion.
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
 struct Arguments {
-    /// Print only errors on standard error.
+    /// Print nothing but errors and what was asked for.
     #[arg(long, global = true)]
     quiet: bool,
     #[command(subcommand)]
@@ -36,12 +40,14 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Write a commented scenario to begin with.
+    Init(init::Arguments),
     /// Simulate the time history of a scenario and write it as CSV and JSON.
     Run(run::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
     Limit {
-        /// Scenario file (TOML).
-        scenario: PathBuf,
+        #[command(flatten)]
+        scenario: ScenarioFile,
         /// Output format.
         #[arg(long, value_enum, default_value_t)]
         format: Format,
@@ -66,8 +72,14 @@ enum Command {
     Merge(merge::Arguments),
     /// Check a scenario and print it with every default written out.
     Check {
-        /// Scenario file (TOML).
-        scenario: PathBuf,
+        #[command(flatten)]
+        scenario: ScenarioFile,
+    },
+    /// Print a script that completes commands and options in a shell.
+    Completions {
+        /// The shell.
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
     },
 }
 
@@ -124,6 +136,7 @@ impl From<OutputError> for Failure {
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match arguments.command {
+        Command::Init(init) => init::init(&init, arguments.quiet),
         Command::Run(run) => run::run(&run, arguments.quiet),
         Command::Limit {
             scenario,
@@ -138,6 +151,7 @@ pub fn main() -> ExitCode {
         Command::Threshold(threshold) => threshold::threshold(&threshold, arguments.quiet),
         Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
         Command::Check { scenario } => commands::check(&scenario),
+        Command::Completions { shell } => completions(shell),
     };
     let (code, message) = match result {
         Ok(()) | Err(Failure::ClosedPipe) => return ExitCode::SUCCESS,
@@ -149,16 +163,12 @@ pub fn main() -> ExitCode {
     ExitCode::from(code)
 }
 
-/// The folder for the results of a scenario, unless another is asked for.
-fn results_folder(out: Option<&Path>, scenario: &Path) -> PathBuf {
-    let own = || Path::new("results").join(scenario.file_stem().unwrap_or_default());
-    out.map_or_else(own, Path::to_owned)
-}
-
-/// Opens the folder for results; a failure suggests `--out`.
-fn open_folder(path: &Path, names: &[&str]) -> Result<Folder, Failure> {
-    Folder::open(path, names)
-        .map_err(|error| Failure::Input(format!("{error}; choose another folder with --out")))
+/// Prints the completions of a shell.
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    let mut command = Arguments::command();
+    clap_complete::generate(shell, &mut command, "archrock", &mut script);
+    print(&String::from_utf8_lossy(&script))
 }
 
 /// Prints a result on standard output.

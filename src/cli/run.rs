@@ -19,21 +19,31 @@ use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError};
 use archrock::scenario::{Hinges, Scenario, Structure};
 use clap::ValueEnum;
+use serde_json::{Value, json};
 
+use super::scenario_file::{Destination, Input, SetOption};
 use super::study::impact_ignored;
-use super::{Failure, commands, results_folder};
+use super::{Failure, Format, commands, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario file (TOML).
-    scenario: PathBuf,
-    /// Folder for the results [default: results/<name of the scenario file>].
+    /// Scenario files (TOML); `-` for standard input.
+    #[arg(required = true, value_name = "SCENARIO")]
+    scenarios: Vec<PathBuf>,
+    #[command(flatten)]
+    set: SetOption,
+    /// Folder for the results, or for the folders of several scenarios [default: results/<name of the scenario
+    /// file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Where the rotations go instead of a file: `-` for standard output. No other results are then
     /// written unless --out is given.
     #[arg(long, value_name = "-", value_parser = ["-"])]
     rotations: Option<String>,
+    /// How the summary is printed; as JSON, which is that of summary.json, files are written with --out only. Of
+    /// several scenarios it is an array.
+    #[arg(long, value_enum, default_value_t, conflicts_with = "rotations")]
+    format: Format,
     /// Add dimensionless columns to the rotations: p_t (time), acceleration_over_incipient and
     /// rotation_over_critical. For four links and columns only.
     #[arg(long)]
@@ -68,39 +78,154 @@ const SUMMARY: &str = "summary.json";
 const OVERLAY: &str = "overlay.svg";
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let (scenario, other) = Models::read(arguments.hinges, &arguments.scenario)?;
-    let named = |reason| Failure::Input(format!("{}: {reason}", arguments.scenario.display()));
-    scenario.check_for_run().map_err(named)?;
-    let title = scenario.title.as_ref();
-    let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
-    if let Some(ignored) = impact_ignored(other.as_ref().unwrap_or(&scenario)) {
-        let _ = writeln!(text, "  {ignored}");
-    }
-    let place = Place::of(arguments);
-    text += &match (&scenario.free_hinges, &other) {
-        (_, Some(free)) => both(&scenario, free, arguments)?,
-        (Some(_), None) => free_hinges::run(&scenario, &place, arguments.options()?, None)?,
-        (None, None) => {
-            if arguments.no_spread {
-                let message =
-                    "--no-spread goes with free hinges: four links and columns are not repeated";
-                return Err(Failure::Input(message.to_owned()));
+    let jobs = Job::all(arguments)?;
+    let mut summaries = Vec::new();
+    let mut failures = Vec::new();
+    for job in &jobs {
+        let told = match job.run(arguments) {
+            Ok(told) => told,
+            // The others are run all the same.
+            Err(Failure::Work(message)) if jobs.len() > 1 => {
+                failures.push(format!("{}: {message}", job.name));
+                continue;
             }
-            four_links(&scenario, &place, arguments.dimensionless, None)?
+            Err(failure) => return Err(failure),
+        };
+        match arguments.format {
+            Format::Json => summaries.push(told.summary),
+            Format::Text if quiet => {}
+            // What the rotations are read from gets nothing else.
+            Format::Text if job.place.to_stdout => {
+                // Nobody is left to be told when standard error fails.
+                let _ = io::stderr().write_all(told.text.as_bytes());
+            }
+            Format::Text => print(&told.text)?,
         }
-    };
-    if !quiet {
-        // Nobody is left to be told when standard error fails.
-        let _ = io::stderr().write_all(text.as_bytes());
     }
-    Ok(())
+    if let Format::Json = arguments.format {
+        let only = (jobs.len() == 1).then(|| summaries.pop()).flatten();
+        print(&commands::pretty(&only.unwrap_or(Value::Array(summaries))))?;
+    }
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Work(failures.join("\nerror: ")))
+    }
+}
+
+/// A scenario to run.
+struct Job {
+    /// Its file.
+    name: String,
+    scenario: Scenario,
+    /// The same with free hinges, where both models are asked for.
+    other: Option<Scenario>,
+    place: Place,
+}
+
+impl Job {
+    /// All that are asked for, or all that is wrong with them.
+    fn all(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
+        let several = arguments.scenarios.len() > 1;
+        if several && arguments.rotations.is_some() {
+            let message = "--rotations - is for one scenario: run them one by one";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        let read = arguments
+            .scenarios
+            .iter()
+            .map(|path| Self::read(path, arguments));
+        let mut jobs: Vec<Self> = Vec::new();
+        let mut wrong = Vec::new();
+        for job in read {
+            match job {
+                Ok(job) => jobs.push(job),
+                Err(Failure::Input(message)) => wrong.push(message),
+                Err(failure) => return Err(failure),
+            }
+        }
+        for (index, job) in jobs.iter().enumerate() {
+            let Some(path) = job.place.path() else {
+                continue;
+            };
+            let mut before = jobs[..index].iter();
+            if let Some(other) = before.find(|other| other.place.path() == Some(path)) {
+                wrong.push(format!(
+                    "{} and {} would both have their results in {}: run them one by one with --out",
+                    other.name,
+                    job.name,
+                    path.display()
+                ));
+            }
+        }
+        if wrong.is_empty() {
+            Ok(jobs)
+        } else {
+            Err(Failure::Input(wrong.join("\n")))
+        }
+    }
+
+    fn read(path: &Path, arguments: &Arguments) -> Result<Self, Failure> {
+        let input = arguments.set.open(path)?;
+        let (scenario, other) = Models::read(arguments.hinges, &input)?;
+        scenario
+            .check_for_run()
+            .map_err(|reason| input.about(Failure::Input(reason)))?;
+        Ok(Self {
+            name: path.display().to_string(),
+            scenario,
+            other,
+            place: Place::of(arguments, &input)?,
+        })
+    }
+
+    /// Runs it, and says what happened.
+    fn run(&self, arguments: &Arguments) -> Result<Told, Failure> {
+        let Self {
+            scenario,
+            other,
+            place,
+            ..
+        } = self;
+        let title = scenario.title.as_ref();
+        let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
+        if let Some(ignored) = impact_ignored(other.as_ref().unwrap_or(scenario)) {
+            let _ = writeln!(text, "  {ignored}");
+        }
+        let told = match (&scenario.free_hinges, other) {
+            (_, Some(free)) => both(scenario, free, place, arguments)?,
+            (Some(_), None) => free_hinges::run(scenario, place, arguments.options()?, None)?,
+            (None, None) => {
+                if arguments.no_spread {
+                    let message = "--no-spread goes with free hinges: four links and columns are not repeated";
+                    return Err(Failure::Input(message.to_owned()));
+                }
+                four_links(scenario, place, arguments.dimensionless, None)?
+            }
+        };
+        Ok(Told {
+            text: text + &told.text,
+            summary: told.summary,
+        })
+    }
+}
+
+/// What a run says.
+struct Told {
+    /// For people.
+    text: String,
+    /// What `summary.json` has.
+    summary: Value,
 }
 
 impl Models {
     /// Reads a scenario for the model that is asked for, or that it chooses; with both, for four links and then
     /// for free hinges.
-    pub fn read(asked: Option<Self>, path: &Path) -> Result<(Scenario, Option<Scenario>), Failure> {
-        let read = |hinges| Scenario::read_with(path, hinges);
+    pub fn read(
+        asked: Option<Self>,
+        input: &Input<'_>,
+    ) -> Result<(Scenario, Option<Scenario>), Failure> {
+        let read = |hinges| input.read(hinges);
         Ok(match asked {
             None => (read(None)?, None),
             Some(Self::Four) => (read(Some(Hinges::Four))?, None),
@@ -127,32 +252,48 @@ impl Arguments {
 /// Where results go.
 struct Place {
     /// The folder, if there are to be files.
-    folder: Option<PathBuf>,
+    results: Option<Destination>,
     /// Whether the rotations go to standard output.
     to_stdout: bool,
 }
 
 impl Place {
-    fn of(arguments: &Arguments) -> Self {
+    fn of(arguments: &Arguments, input: &Input<'_>) -> Result<Self, Failure> {
         let to_stdout = arguments.rotations.is_some();
-        let folder = || results_folder(arguments.out.as_deref(), &arguments.scenario);
+        let results = match &arguments.out {
+            Some(out) if arguments.scenarios.len() > 1 => {
+                Some(Destination::of(out).within(input.stem()))
+            }
+            None if to_stdout || matches!(arguments.format, Format::Json) => None,
+            out => Some(input.results(out.as_deref())?),
+        };
+        Ok(Self { results, to_stdout })
+    }
+
+    /// The folder.
+    fn path(&self) -> Option<&Path> {
+        self.results.as_ref().map(Destination::path)
+    }
+
+    /// A folder in that one.
+    fn within(&self, name: &str) -> Self {
         Self {
-            folder: (!to_stdout || arguments.out.is_some()).then(folder),
-            to_stdout,
+            results: self.results.as_ref().map(|results| results.within(name)),
+            to_stdout: false,
         }
     }
 
     /// Opens the folder for these results, the rotations before them unless they go elsewhere. Others that
     /// earlier runs may have left there go when these are complete.
     fn open(&self, names: &[&str]) -> Result<Option<Folder>, Failure> {
-        let Some(path) = &self.folder else {
+        let Some(results) = &self.results else {
             return Ok(None);
         };
         let mut all = names.to_vec();
         if !self.to_stdout {
             all.insert(0, ROTATIONS);
         }
-        let mut folder = super::open_folder(path, &all)?;
+        let mut folder = results.open(&all)?;
         for name in [ROTATIONS, JOINTS, OVERLAY] {
             if !all.contains(&name) {
                 folder.forget(name);
@@ -160,47 +301,62 @@ impl Place {
         }
         Ok(Some(folder))
     }
+
+    /// Where rotations go that do not go to a file.
+    fn elsewhere<'a>(&self) -> Box<dyn io::Write + 'a> {
+        if self.to_stdout {
+            Box::new(BufWriter::new(io::stdout().lock()))
+        } else {
+            Box::new(io::sink())
+        }
+    }
 }
 
 /// Runs both models and draws them in one picture.
-fn both(four: &Scenario, free: &Scenario, arguments: &Arguments) -> Result<String, Failure> {
+fn both(
+    four: &Scenario,
+    free: &Scenario,
+    place: &Place,
+    arguments: &Arguments,
+) -> Result<Told, Failure> {
     if arguments.rotations.is_some() {
         let message = "--rotations - is for one model: choose --hinges four or --hinges free";
         return Err(Failure::Input(message.to_owned()));
     }
     let options = arguments.options()?;
-    let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
-    let within = |name: &str| Place {
-        folder: Some(path.join(name)),
-        to_stdout: false,
-    };
     // Neither is run where the other cannot be.
     commands::model(four)?;
     free_hinges::model(free)?;
-    let mut folder = super::open_folder(&path, &[OVERLAY])?;
-    for name in [SUMMARY, ROTATIONS, JOINTS, EVENTS, IMPACTS, PICTURE] {
-        folder.forget(name);
-    }
+    let mut folder = match &place.results {
+        Some(results) => Some(results.open(&[OVERLAY])?),
+        None => None,
+    };
     let gravity_m_s2 = four.simulation.gravity_m_s2;
     let mut curves = [Curves::new(gravity_m_s2), Curves::new(gravity_m_s2)];
     let [of_four, of_free] = &mut curves;
-    let mut text = "four links\n".to_owned();
-    text += &four_links(four, &within("four"), false, Some(of_four))?;
-    text += "free hinges\n";
-    text += &free_hinges::run(free, &within("free"), options, Some(of_free))?;
-    let title = four
-        .title
-        .as_deref()
-        .unwrap_or("Four links and free hinges");
-    let [of_four, of_free] = &curves;
-    let picture = overlay::draw(title, &[("four links", of_four), ("free hinges", of_free)]);
-    folder
-        .file(OVERLAY)
-        .write_all(picture.as_bytes())
-        .map_err(cannot_write("the picture"))?;
-    folder.complete()?;
-    let _ = writeln!(text, "both in {}", path.join(OVERLAY).display());
-    Ok(text)
+    let of_four = four_links(four, &place.within("four"), false, Some(of_four))?;
+    let of_free = free_hinges::run(free, &place.within("free"), options, Some(of_free))?;
+    let mut text = format!("four links\n{}free hinges\n{}", of_four.text, of_free.text);
+    if let Some(mut folder) = folder.take() {
+        for name in [SUMMARY, ROTATIONS, JOINTS, EVENTS, IMPACTS, PICTURE] {
+            folder.forget(name);
+        }
+        let title = four
+            .title
+            .as_deref()
+            .unwrap_or("Four links and free hinges");
+        let [of_four, of_free] = &curves;
+        let picture = overlay::draw(title, &[("four links", of_four), ("free hinges", of_free)]);
+        folder
+            .file(OVERLAY)
+            .write_all(picture.as_bytes())
+            .map_err(cannot_write("the picture"))?;
+        let path = folder.path().join(OVERLAY);
+        folder.complete()?;
+        let _ = writeln!(text, "both in {}", path.display());
+    }
+    let summary = json!({ "four": of_four.summary, "free": of_free.summary });
+    Ok(Told { text, summary })
 }
 
 fn cannot_write(what: &str) -> impl FnOnce(io::Error) -> Failure {
@@ -213,7 +369,7 @@ fn four_links(
     place: &Place,
     dimensionless: bool,
     curves: Option<&mut Curves>,
-) -> Result<String, Failure> {
+) -> Result<Told, Failure> {
     let model = commands::model(scenario)?;
     let ground = scenario.ground_motion();
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
@@ -235,7 +391,7 @@ fn four_links(
     let (summary, rows) = {
         let writer: Box<dyn io::Write + '_> = match &mut folder {
             Some(folder) if !place.to_stdout => Box::new(folder.file(ROTATIONS)),
-            _ => Box::new(BufWriter::new(io::stdout().lock())),
+            _ => place.elsewhere(),
         };
         let mut results = Results {
             table: RotationsWriter::new(writer, &bodies, ground.has_vertical(), scales)?,
@@ -249,6 +405,7 @@ fn four_links(
         (summary, results.table.finish()?)
     };
     let mut text = human_summary(scenario, &*model, ground, &summary, &events);
+    let json = results::summary(scenario, &*model, ground, &summary)?;
     if let Some(mut folder) = folder {
         let mut table = EventsWriter::new(folder.file(EVENTS), &bodies)?;
         for event in &events {
@@ -261,13 +418,15 @@ fn four_links(
             .file(PICTURE)
             .write_all(timeline.draw(title, &events).as_bytes())
             .map_err(cannot_write("the picture"))?;
-        let summary = results::summary(scenario, &*model, ground, &summary)?;
-        writeln!(folder.file(SUMMARY), "{summary:#}").map_err(cannot_write("the summary"))?;
+        writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
         text += &written(&path, place, rows, &[EVENTS, IMPACTS, PICTURE, SUMMARY]);
     }
-    Ok(text)
+    Ok(Told {
+        text,
+        summary: json,
+    })
 }
 
 /// Says which files there are.

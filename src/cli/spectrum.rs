@@ -1,15 +1,15 @@
 //! The command `spectrum`.
 
 use std::io::Write as _;
-use std::path::Path;
 
 use archrock::output::ending::Failed;
 use archrock::output::spectrum as output;
 use archrock::scenario::Scenario;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow};
 
+use super::Failure;
+use super::scenario_file::Destination;
 use super::study::{Options, failed_in_words, say, write_summary};
-use super::{Failure, open_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -30,24 +30,31 @@ impl From<NoSpectrum> for Failure {
 
 pub fn spectrum(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
-    let scenario = Scenario::read(&options.scenario)?;
-    let spectrum = OverturningSpectrum::new(&scenario)
-        .map_err(|error| options.about_scenario(error.into()))?;
-    let Some((rows, part)) = options.compute(&spectrum, quiet)? else {
+    let input = options.open()?;
+    let scenario = input.read(None)?;
+    let spectrum =
+        OverturningSpectrum::new(&scenario).map_err(|error| input.about(error.into()))?;
+    let place = options.results(&input)?;
+    let Some((rows, part)) = options.compute(&spectrum, &place, quiet)? else {
         return Ok(());
     };
-    finish(&scenario, &spectrum, &rows, &options.folder(), quiet)?;
+    finish(&scenario, &spectrum, &rows, &place, quiet)?;
     Ok(part.remove()?)
 }
 
 /// The results of a spectrum whose rows are all there, from several parts of it.
-pub fn merge(scenario: &str, rows: &[PointRow], folder: &Path, quiet: bool) -> Result<(), Failure> {
+pub fn merge(
+    scenario: &str,
+    rows: &[PointRow],
+    place: &Destination,
+    quiet: bool,
+) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
     finish(
         &scenario,
         &OverturningSpectrum::new(&scenario)?,
         rows,
-        folder,
+        place,
         quiet,
     )
 }
@@ -57,10 +64,10 @@ fn finish(
     scenario: &Scenario,
     spectrum: &OverturningSpectrum<'_>,
     rows: &[PointRow],
-    path: &Path,
+    place: &Destination,
     quiet: bool,
 ) -> Result<(), Failure> {
-    let mut folder = open_folder(path, &[PICTURE, SUMMARY, TABLE])?;
+    let mut folder = place.open(&[PICTURE, SUMMARY, TABLE])?;
     let title = scenario.title.as_deref().unwrap_or("Overturning spectrum");
     folder
         .file(PICTURE)
@@ -74,7 +81,7 @@ fn finish(
         say(&summary(spectrum, rows, &failures));
         say(&format!(
             "  results in {}: {PICTURE}, {SUMMARY}, {TABLE}",
-            path.display()
+            place.path().display()
         ));
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -19,12 +19,13 @@ use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Failure;
+use super::scenario_file::{Destination, Input, ScenarioFile};
 
 /// Options of every study.
 #[derive(clap::Args)]
 pub struct Options {
-    /// Scenario file (TOML).
-    pub scenario: PathBuf,
+    #[command(flatten)]
+    scenario: ScenarioFile,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -57,12 +58,12 @@ enum Model {
 
 impl HingesOption {
     /// Reads a scenario with that model.
-    pub fn read(self, path: &Path, quiet: bool) -> Result<Scenario, Failure> {
+    pub fn read(self, input: &Input<'_>, quiet: bool) -> Result<Scenario, Failure> {
         let hinges = self.hinges.map(|model| match model {
             Model::Four => Hinges::Four,
             Model::Free => Hinges::Free,
         });
-        let scenario = Scenario::read_with(path, hinges)?;
+        let scenario = input.read(hinges)?;
         if !quiet && let Some(ignored) = impact_ignored(&scenario) {
             say(ignored);
         }
@@ -111,19 +112,14 @@ impl From<RunnerError> for Failure {
 type Complete<R> = (Vec<R>, PartFile);
 
 impl Options {
-    /// The folder for the results.
-    pub fn folder(&self) -> PathBuf {
-        super::results_folder(self.out.as_deref(), &self.scenario)
+    /// Takes the text of the scenario.
+    pub fn open(&self) -> Result<Input<'_>, Failure> {
+        self.scenario.open()
     }
 
-    /// The failure, prefixed with the name of the scenario file.
-    pub fn about_scenario(&self, failure: Failure) -> Failure {
-        match failure {
-            Failure::Input(message) => {
-                Failure::Input(format!("{}: {message}", self.scenario.display()))
-            }
-            other => other,
-        }
+    /// Where the results go.
+    pub fn results(&self, input: &Input<'_>) -> Result<Destination, Failure> {
+        input.results(self.out.as_deref())
     }
 
     /// Computes the rows of all cases, or of the part that was asked for: all rows, with the file that they are in
@@ -131,14 +127,14 @@ impl Options {
     pub fn compute<S: Study>(
         &self,
         study: &S,
+        place: &Destination,
         quiet: bool,
     ) -> Result<Option<Complete<S::Row>>, Failure> {
         let runner = Runner {
             threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
         };
-        let folder = self.folder();
         let task = Task {
-            folder: &folder,
+            folder: place.path(),
             shard: self.shard.unwrap_or(Shard::WHOLE),
             resume: self.resume,
         };

@@ -1,16 +1,16 @@
 //! The command `suite`.
 
 use std::io::Write as _;
-use std::path::Path;
 
 use archrock::dynamics::history::Outcome;
 use archrock::output::suite::{self as output, Heading};
 use archrock::scenario::{Scenario, Suite};
 use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 
+use super::Failure;
 use super::commands::pretty;
+use super::scenario_file::Destination;
 use super::study::{HingesOption, Options, failed_in_words, say};
-use super::{Failure, open_folder};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -28,15 +28,17 @@ const TABLE: &str = "suite.csv";
 
 pub fn suite(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
-    let scenario = arguments.hinges.read(&options.scenario, quiet)?;
-    let suite = suite_of(&scenario).map_err(|failure| options.about_scenario(failure))?;
+    let input = options.open()?;
+    let scenario = arguments.hinges.read(&input, quiet)?;
+    let suite = suite_of(&scenario).map_err(|failure| input.about(failure))?;
     let study = RecordSuite::new(&scenario, suite)
-        .map_err(|error| options.about_scenario(Failure::Input(error.to_string())))?;
-    let Some((rows, part)) = options.compute(&study, quiet)? else {
+        .map_err(|error| input.about(Failure::Input(error.to_string())))?;
+    let place = options.results(&input)?;
+    let Some((rows, part)) = options.compute(&study, &place, quiet)? else {
         return Ok(());
     };
     let heading = Heading::of(&scenario, suite);
-    finish(&heading, rows, &options.folder(), quiet)?;
+    finish(&heading, rows, &place, quiet)?;
     Ok(part.remove()?)
 }
 
@@ -58,21 +60,26 @@ fn suite_of(scenario: &Scenario) -> Result<&Suite, Failure> {
 pub fn merge(
     scenario: &str,
     rows: Vec<CaseRow>,
-    folder: &Path,
+    place: &Destination,
     quiet: bool,
 ) -> Result<(), Failure> {
     let heading = Heading::of_resolved(scenario).ok_or_else(|| {
         let message = "the scenario of the parts is damaged: compute them again";
         Failure::Input(message.to_owned())
     })?;
-    finish(&heading, rows, folder, quiet)
+    finish(&heading, rows, place, quiet)
 }
 
 /// Writes the results.
-fn finish(heading: &Heading, rows: Vec<CaseRow>, path: &Path, quiet: bool) -> Result<(), Failure> {
+fn finish(
+    heading: &Heading,
+    rows: Vec<CaseRow>,
+    place: &Destination,
+    quiet: bool,
+) -> Result<(), Failure> {
     let results = SuiteFragility::new(heading.measure, rows);
     let files = [PICTURE, LEVELS, FRAGILITY, TABLE];
-    let mut folder = open_folder(path, &files)?;
+    let mut folder = place.open(&files)?;
     output::write_fragility(folder.file(LEVELS), &results)?;
     for (name, text) in [
         (PICTURE, output::draw(heading, &results)),
@@ -89,7 +96,7 @@ fn finish(heading: &Heading, rows: Vec<CaseRow>, path: &Path, quiet: bool) -> Re
         say(&summary(&results));
         say(&format!(
             "  results in {}: {}",
-            path.display(),
+            place.path().display(),
             files.join(", ")
         ));
     }

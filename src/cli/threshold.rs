@@ -18,13 +18,14 @@ use archrock::studies::threshold::{
 };
 
 use super::run::Models;
+use super::scenario_file::ScenarioFile;
 use super::study::{Display, impact_ignored, say};
-use super::{Failure, Format, commands, open_folder, print, results_folder};
+use super::{Failure, Format, commands, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario file (TOML).
-    scenario: PathBuf,
+    #[command(flatten)]
+    scenario: ScenarioFile,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -56,10 +57,9 @@ const SUMMARY: &str = "threshold.json";
 pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
-    let (scenario, other) = Models::read(arguments.hinges, &arguments.scenario)?;
-    check(&scenario).map_err(|message| {
-        Failure::Input(format!("{}: {message}", arguments.scenario.display()))
-    })?;
+    let input = arguments.scenario.open()?;
+    let (scenario, other) = Models::read(arguments.hinges, &input)?;
+    check(&scenario).map_err(|message| input.about(Failure::Input(message.to_owned())))?;
     let scenarios: Vec<&Scenario> = iter::once(&scenario).chain(&other).collect();
     if !quiet
         && let Some(ignored) = scenarios
@@ -78,8 +78,8 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .collect();
     let ground = scenario.ground_motion();
     // Opened before the work starts, so that a folder that cannot be written costs no time.
-    let path = results_folder(arguments.out.as_deref(), &arguments.scenario);
-    let mut folder = open_folder(&path, &[PICTURE, TABLE, SUMMARY])?;
+    let place = input.results(arguments.out.as_deref())?;
+    let mut folder = place.open(&[PICTURE, TABLE, SUMMARY])?;
 
     let runner = Runner {
         threads: arguments.threads.and_then(|n| NonZeroUsize::new(n.into())),
@@ -118,7 +118,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     if !quiet {
         say(&format!(
             "results in {}: {PICTURE}, {TABLE}, {SUMMARY}",
-            path.display()
+            place.path().display()
         ));
     }
     match arguments.format {

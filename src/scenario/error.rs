@@ -2,12 +2,15 @@
 
 use std::fmt;
 
+use super::assignment::{Assignment, Behind};
+use super::source::Source;
+
 /// One thing that is wrong with a scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScenarioError {
-    /// Name of the file, as the caller gave it.
+    /// Name of the file, as the caller gave it, or the assignment after `--set`.
     pub file: String,
-    /// Where in the file; `None` when it could not be read at all.
+    /// Where in the file; `None` when it could not be read at all, and of an assignment.
     pub place: Option<Place>,
     /// The offending key and value, and what is allowed instead.
     pub message: String,
@@ -58,7 +61,11 @@ impl ScenarioErrors {
     }
 
     /// Gives the faults found in `text` their lines and columns.
-    pub(super) fn placed(file: &str, text: &str, mut faults: Vec<Fault>) -> Self {
+    ///
+    /// A fault in an assignment has the assignment for its file, and no place.
+    pub(super) fn placed(source: &Source, set: &[Assignment], mut faults: Vec<Fault>) -> Self {
+        let text = &source.text;
+        let behind = Behind::new(text, set);
         faults.sort_by_key(|fault| fault.offset);
         // One pass over the text serves all faults: a hostile file can have very many.
         let mut chars = text.char_indices().peekable();
@@ -76,10 +83,17 @@ impl ScenarioErrors {
                     },
                 };
             }
-            ScenarioError {
-                file: file.to_owned(),
-                place: Some(place),
-                message: fault.message,
+            match behind.at(fault.offset) {
+                Some(assignment) => ScenarioError {
+                    file: format!("--set {}", excerpt(assignment)),
+                    place: None,
+                    message: fault.message,
+                },
+                None => ScenarioError {
+                    file: source.name.clone(),
+                    place: Some(place),
+                    message: fault.message,
+                },
             }
         });
         Self(errors.collect())

@@ -25,6 +25,7 @@
 //!
 //! Field names are the keys of the file, units included.
 
+mod assignment;
 mod error;
 mod free_hinges;
 mod ground;
@@ -34,14 +35,13 @@ mod map;
 mod record;
 mod sequence;
 mod simulation;
+mod source;
 mod spectrum;
 mod structure;
 mod suite;
 mod table;
 mod toml_text;
 
-use std::fs::File;
-use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ use crate::dynamics::free_hinges::Steps;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, Model, Request};
 use crate::mechanics::four_link::impact::ImpactModel;
-use error::Fault;
+pub use assignment::Assignment;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
@@ -62,6 +62,7 @@ pub use record::{
 };
 pub use sequence::{Sequence, Spacing};
 pub use simulation::Simulation;
+pub use source::Source;
 pub use spectrum::Spectrum;
 pub(crate) use spectrum::block;
 pub use structure::{ModelError, Structure};
@@ -77,6 +78,18 @@ named! {
         /// A row of blocks whose joints open and shut anywhere.
         Free = "free",
     }
+}
+
+/// What changes a scenario as it is read.
+///
+/// With free hinges asked for, the steps are those of `[free_hinges]` if that is there, and `[impact]` is not asked
+/// for; with four links `[free_hinges]` is not asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Changes<'a> {
+    /// The model of motion; `None`: the one that the scenario chooses.
+    pub hinges: Option<Hinges>,
+    /// Values that take the place of those in the text; of two for one key, the later.
+    pub set: &'a [Assignment],
 }
 
 /// What to simulate, every default resolved.
@@ -128,64 +141,30 @@ impl Scenario {
     /// All that is wrong with the text and with its records. After twenty lines that are not TOML it stops
     /// looking.
     pub fn parse(text: &str, name: &str) -> Result<Self, ScenarioErrors> {
-        Self::parse_in(folder_of(Path::new(name)), text, name, None)
-    }
-
-    fn parse_in(
-        folder: &Path,
-        text: &str,
-        name: &str,
-        hinges: Option<Hinges>,
-    ) -> Result<Self, ScenarioErrors> {
-        table::read_text(text, |table| Self::read_table(table, folder, hinges))
-            .map_err(|faults| ScenarioErrors::placed(name, text, faults))
+        Self::of(&Source::of_text(text, name), &Changes::default())
     }
 
     /// Reads a scenario file.
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`], and when there is no such file, it cannot be read, is not UTF-8
-    /// text or is larger than 1 MiB.
+    /// As [`Scenario::parse`] and [`Source::of_file`].
     pub fn read(path: &Path) -> Result<Self, ScenarioErrors> {
-        Self::read_with(path, None)
+        Self::of(&Source::of_file(path)?, &Changes::default())
     }
 
-    /// Reads a scenario file as if it chose this model of motion; `None`: the model that it chooses.
-    ///
-    /// Free hinges take the steps of `[free_hinges]` if that is there, and do not ask for `[impact]`; four
-    /// links do not ask for `[free_hinges]`.
+    /// Reads a scenario, changed.
     ///
     /// # Errors
     ///
-    /// As [`Scenario::read`], and when the rest does not go with that model.
-    pub fn read_with(path: &Path, hinges: Option<Hinges>) -> Result<Self, ScenarioErrors> {
-        const MAX_BYTES: u64 = 1 << 20;
-        let name = path.display().to_string();
-        let unreadable = |message: String| ScenarioErrors::unreadable(&name, message);
-        if path.is_dir() {
-            return Err(unreadable("is a folder, not a scenario file".to_owned()));
-        }
-        let mut bytes = Vec::new();
-        // The limit is on what is read, because not every file knows its size.
-        File::open(path)
-            .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-            .map_err(|error| unreadable(format!("cannot be read: {error}")))?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(unreadable(
-                "is larger than 1 MiB, too large for a scenario".to_owned(),
-            ));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            // What precedes the fault is the same in the lossy text.
-            let text = String::from_utf8_lossy(error.as_bytes());
-            let fault = Fault {
-                offset: error.utf8_error().valid_up_to(),
-                message: "not UTF-8 text from here".to_owned(),
-            };
-            ScenarioErrors::placed(&name, &text, vec![fault])
-        })?;
-        Self::parse_in(folder_of(path), &text, &name, hinges)
+    /// As [`Scenario::parse`], and when a change does not go with the rest. Errors in an assignment have no place but
+    /// the assignment, which stands for the file.
+    pub fn of(source: &Source, changes: &Changes<'_>) -> Result<Self, ScenarioErrors> {
+        let Source { folder, text, .. } = source;
+        table::read_text(text, changes.set, |table| {
+            Self::read_table(table, folder, changes.hinges)
+        })
+        .map_err(|faults| ScenarioErrors::placed(source, changes.set, faults))
     }
 
     /// Reads a scenario whose files are relative to `folder`.
@@ -322,9 +301,4 @@ impl Scenario {
         }
         table
     }
-}
-
-/// The folder that a file is in.
-fn folder_of(file: &Path) -> &Path {
-    file.parent().unwrap_or(Path::new(""))
 }

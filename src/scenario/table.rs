@@ -8,6 +8,7 @@ use std::ops::{Bound, RangeBounds, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::assignment::{Assignment, Behind};
 use super::error::{Fault, excerpt};
 use crate::argument::short;
 
@@ -20,20 +21,27 @@ pub(super) struct Reported;
 /// A value, or [`Reported`]: its fault is recorded.
 pub(super) type Reading<T> = Result<T, Reported>;
 
-/// Reads a whole TOML text with `read`, or says all that is wrong with it.
+/// Reads a whole TOML text with `read`, values replaced as `set` says, or says all that is wrong with it. What is
+/// wrong with an assignment is [behind](Behind) the text.
 pub(super) fn read_text<T>(
     text: &str,
+    set: &[Assignment],
     read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
 ) -> Result<T, Vec<Fault>> {
-    let legible = Legible::of(text);
+    let mut legible = Legible::of(text);
     if !legible.is_toml {
         return Err(legible.faults);
     }
-    let (root, _) = DeTable::parse_recoverable(&legible.text);
+    let behind = Behind::new(text, set);
+    legible.text += &behind.text();
+    let padded = behind.padded();
+    let (root, _) = DeTable::parse_recoverable(&legible.text[..text.len()]);
+    let mut root = root.into_inner();
+    Behind::assign(&mut root, &padded);
     let mut table = Table {
         name: "the scenario".to_owned(),
         offset: 0,
-        entries: root.get_ref(),
+        entries: &root,
         legible: &legible,
         known: Vec::new(),
         faults: Vec::new(),

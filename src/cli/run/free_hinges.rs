@@ -1,7 +1,7 @@
 //! `run` with free hinges.
 
 use std::fmt::Write as _;
-use std::io::{self, BufWriter, Write as _};
+use std::io::{self, Write as _};
 use std::ops::ControlFlow;
 use std::thread;
 
@@ -21,8 +21,8 @@ use archrock::output::{Folder, OutputError};
 use archrock::scenario::Scenario;
 
 use super::{
-    EVENTS, IMPACTS, JOINTS, PICTURE, Place, ROTATIONS, SUMMARY, cannot_write, cut_short, outcome,
-    reaches, written,
+    EVENTS, IMPACTS, JOINTS, PICTURE, Place, ROTATIONS, SUMMARY, Told, cannot_write, cut_short,
+    outcome, reaches, written,
 };
 use crate::cli::Failure;
 
@@ -48,7 +48,7 @@ pub fn run(
     place: &Place,
     options: Options,
     curves: Option<&mut Curves>,
-) -> Result<String, Failure> {
+) -> Result<Told, Failure> {
     let model = model(scenario)?;
     let ground = scenario.ground_motion();
     let mut folder = place.open(&[JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY])?;
@@ -67,20 +67,23 @@ pub fn run(
         (summary, spread, results.tables.finish()?)
     };
     let mut text = words(scenario, &model, &summary, spread.as_ref(), &impacts);
+    let json = self::summary(scenario, &model, &summary, spread.as_ref())?;
     if let Some(mut folder) = folder {
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
         folder
             .file(PICTURE)
             .write_all(timeline.draw(title, &summary).as_bytes())
             .map_err(cannot_write("the picture"))?;
-        let json = self::summary(scenario, &model, &summary, spread.as_ref())?;
         writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
         let names = [JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY];
         text += &written(&path, place, rows, &names);
     }
-    Ok(text)
+    Ok(Told {
+        text,
+        summary: json,
+    })
 }
 
 /// The history, and at the same time its repetitions with other steps.
@@ -157,7 +160,7 @@ impl<'a> Tables<'a> {
                 landings: LandingsWriter::new(landings)?,
             });
         }
-        let rotations = rotations.unwrap_or_else(|| Box::new(BufWriter::new(io::stdout().lock())));
+        let rotations = rotations.unwrap_or_else(|| place.elsewhere());
         Ok(Self {
             rotations: RotationsWriter::of_row(rotations, &blocks, ground.has_vertical())?,
             others,

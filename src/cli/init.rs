@@ -1,0 +1,104 @@
+//! The command `init`: a scenario to begin with.
+
+use std::fs::File;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use super::scenario_file::is_stdin;
+use super::study::say;
+use super::{Failure, print};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// What the scenario is of.
+    #[arg(value_enum, default_value_t)]
+    kind: Kind,
+    /// The file to write; `-` for standard output [default: <KIND>.toml].
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+}
+
+/// What a scenario is of.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum Kind {
+    /// An arch under a pulse.
+    #[default]
+    Arch,
+    /// A free-standing column under a pulse.
+    Column,
+    /// An arch under a record.
+    Record,
+    /// A map of pulses.
+    Map,
+    /// A suite of records.
+    Suite,
+}
+
+/// The record that scenarios of records begin with, beside them.
+const RECORD: (&str, &str) = ("record.csv", include_str!("init/record.csv"));
+
+impl Kind {
+    const fn text(self) -> &'static str {
+        match self {
+            Self::Arch => include_str!("init/arch.toml"),
+            Self::Column => include_str!("init/column.toml"),
+            Self::Record => include_str!("init/record.toml"),
+            Self::Map => include_str!("init/map.toml"),
+            Self::Suite => include_str!("init/suite.toml"),
+        }
+    }
+
+    /// Its name, the command that it is for, and whether it has a record.
+    const fn about(self) -> (&'static str, &'static str, bool) {
+        match self {
+            Self::Arch => ("arch", "run", false),
+            Self::Column => ("column", "run", false),
+            Self::Record => ("record", "run", true),
+            Self::Map => ("map", "map", false),
+            Self::Suite => ("suite", "suite", true),
+        }
+    }
+}
+
+pub fn init(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+    let (name, command, has_record) = arguments.kind.about();
+    let text = arguments.kind.text();
+    let default = || PathBuf::from(name).with_extension("toml");
+    let file = arguments.file.clone().unwrap_or_else(default);
+    if is_stdin(&file) {
+        return print(text);
+    }
+    write_new(&file, text)?;
+    let mut written = file.display().to_string();
+    if has_record {
+        let (name, record) = RECORD;
+        let path = file.with_file_name(name);
+        // Of two scenarios in one folder, both may have it.
+        if !path.exists() {
+            write_new(&path, record)?;
+            written += &format!(" and {}", path.display());
+        }
+    }
+    if !quiet {
+        say(&format!(
+            "{written} written; now: archrock {command} {}",
+            file.display()
+        ));
+    }
+    Ok(())
+}
+
+/// Writes a file that was not there before.
+fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
+    let cannot = |error: std::io::Error| match error.kind() {
+        ErrorKind::AlreadyExists => Failure::Input(format!(
+            "{} exists already: give another name for the scenario, as in `archrock init arch other.toml`",
+            path.display()
+        )),
+        _ => Failure::Input(format!("cannot write {}: {error}", path.display())),
+    };
+    let mut file = File::create_new(path).map_err(cannot)?;
+    file.write_all(text.as_bytes()).map_err(cannot)
+}

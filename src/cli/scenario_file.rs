@@ -1,0 +1,162 @@
+//! The scenario of a command: where it is read from, what changes it, and where its results go.
+
+use std::env;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use archrock::output::Folder;
+use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source};
+
+use super::Failure;
+
+/// The scenario of a command.
+#[derive(clap::Args)]
+pub struct ScenarioFile {
+    /// Scenario file (TOML); `-` for standard input.
+    scenario: PathBuf,
+    #[command(flatten)]
+    set: SetOption,
+}
+
+/// What changes a scenario.
+#[derive(clap::Args)]
+pub struct SetOption {
+    /// Replace a value of the scenario or add one, such as --set arch.thickness_ratio=0.12; can be repeated.
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    set: Vec<Assignment>,
+}
+
+impl ScenarioFile {
+    /// Takes its text.
+    pub fn open(&self) -> Result<Input<'_>, Failure> {
+        self.set.open(&self.scenario)
+    }
+}
+
+impl SetOption {
+    /// Takes the text of a scenario file.
+    pub fn open<'a>(&'a self, path: &'a Path) -> Result<Input<'a>, Failure> {
+        let source = if is_stdin(path) {
+            Source::of_reader(io::stdin().lock(), "<stdin>")?
+        } else {
+            Source::of_file(path)?
+        };
+        Ok(Input {
+            path,
+            source,
+            set: &self.set,
+        })
+    }
+}
+
+/// Whether this stands for standard input.
+pub fn is_stdin(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// The text of a scenario, and what changes it.
+pub struct Input<'a> {
+    path: &'a Path,
+    source: Source,
+    set: &'a [Assignment],
+}
+
+impl Input<'_> {
+    /// The scenario with the model of motion that is asked for; `None`: the one that it chooses.
+    pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
+        let set = self.set;
+        Ok(Scenario::of(&self.source, &Changes { hinges, set })?)
+    }
+
+    /// The failure, prefixed with the name of the scenario file.
+    pub fn about(&self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Input(message) => Failure::Input(format!("{}: {message}", self.source.name())),
+            other => other,
+        }
+    }
+
+    /// Name of the folder for its results.
+    pub fn stem(&self) -> &Path {
+        if is_stdin(self.path) {
+            return Path::new("stdin");
+        }
+        Path::new(self.path.file_stem().unwrap_or_default())
+    }
+
+    /// Where its results go: to `out`, or else to a folder that has its name. The latter is refused where it holds
+    /// results of a scenario file elsewhere that has the same name.
+    pub fn results(&self, out: Option<&Path>) -> Result<Destination, Failure> {
+        if let Some(out) = out {
+            return Ok(Destination::of(out));
+        }
+        let path = Path::new("results").join(self.stem());
+        let origin = (!is_stdin(self.path)).then(|| origin(self.path));
+        if let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(path.join(ORIGIN)))
+            && ours != theirs.trim_end()
+        {
+            return Err(Failure::Input(format!(
+                "{} holds the results of {}: choose another folder with --out, or remove that one",
+                path.display(),
+                theirs.trim_end().replace(char::is_control, "\u{fffd}")
+            )));
+        }
+        Ok(Destination { path, origin })
+    }
+}
+
+/// A hidden file that tells which scenario file the results beside it are of.
+const ORIGIN: &str = ".scenario";
+
+/// A scenario file by its path from the current folder, if it is below that, or else from the root.
+fn origin(path: &Path) -> String {
+    let own = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let here = env::current_dir().and_then(|here| here.canonicalize());
+    let below = here.ok().and_then(|here| own.strip_prefix(here).ok());
+    below.unwrap_or(&own).display().to_string()
+}
+
+/// Where results go.
+#[derive(Clone)]
+pub struct Destination {
+    path: PathBuf,
+    /// The scenario file that the folder has its name from.
+    origin: Option<String>,
+}
+
+impl Destination {
+    /// A folder that was asked for.
+    pub fn of(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            origin: None,
+        }
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// A folder in that one.
+    pub fn within(&self, name: impl AsRef<Path>) -> Self {
+        Self::of(&self.path.join(name))
+    }
+
+    /// Opens the folder for files of these names, the seal last; a failure suggests `--out`.
+    pub fn open(&self, names: &[&str]) -> Result<Folder, Failure> {
+        let mut all = names.to_vec();
+        if self.origin.is_some() {
+            all.insert(0, ORIGIN);
+        }
+        let mut folder = Folder::open(&self.path, &all).map_err(|error| {
+            Failure::Input(format!("{error}; choose another folder with --out"))
+        })?;
+        if let Some(origin) = &self.origin {
+            writeln!(folder.file(ORIGIN), "{origin}")
+                .map_err(|error| Failure::Work(format!("cannot write {ORIGIN}: {error}")))?;
+        }
+        Ok(folder)
+    }
+}

@@ -1,0 +1,179 @@
+//! A value given beside the text of a scenario: `table.key=value`.
+
+use std::ops::Range;
+use std::str::FromStr;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::toml_text::quoted;
+
+/// A value that takes the place of the one in a scenario's text, or is added to it.
+///
+/// It is written as in a scenario whose tables are parts of the key, `arch.thickness_ratio=0.12`. What is no TOML
+/// value is a text, so that `impact.model=mirrored` needs no quotation marks. A table between braces replaces the
+/// table of that name as a whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// As it was given.
+    given: String,
+    /// The same in TOML.
+    text: String,
+    /// Number of parts of its key.
+    depth: usize,
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(given: &str) -> Result<Self, String> {
+        let wrong = || {
+            "must be a key, `=` and a value, such as arch.thickness_ratio=0.12 or impact.model=mirrored"
+                .to_owned()
+        };
+        let (key, value) = given.split_once('=').ok_or_else(wrong)?;
+        let (key, value) = (key.trim(), value.trim());
+        let depth = depth(key).ok_or_else(wrong)?;
+        if value.is_empty() {
+            return Err(wrong());
+        }
+        let text = [value.to_owned(), quoted(value)]
+            .into_iter()
+            .map(|value| format!("{key} = {value}"))
+            .find(|text| DeTable::parse(text).is_ok_and(|table| table.get_ref().len() == 1))
+            .ok_or_else(wrong)?;
+        Ok(Self {
+            given: given.to_owned(),
+            text,
+            depth,
+        })
+    }
+}
+
+/// Number of parts of a key; `None` where it is none.
+fn depth(key: &str) -> Option<usize> {
+    let text = format!("{key} = 0");
+    let table = DeTable::parse(&text).ok()?;
+    let mut parts = 1;
+    let mut table = table.get_ref();
+    while let Some(DeValue::Table(inner)) = only(table) {
+        (parts, table) = (parts + 1, inner);
+    }
+    Some(parts)
+}
+
+/// The only value of a table.
+fn only<'a, 'i>(table: &'a DeTable<'i>) -> Option<&'a DeValue<'i>> {
+    let mut values = table.values();
+    let value = values.next()?;
+    values.next().is_none().then(|| value.get_ref())
+}
+
+/// Assignments behind a text of that length, each on a line of its own: where they are told apart from the text, and
+/// from one another, by their offsets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Behind<'a> {
+    length: usize,
+    assignments: &'a [Assignment],
+}
+
+impl<'a> Behind<'a> {
+    pub(super) const fn new(text: &str, assignments: &'a [Assignment]) -> Self {
+        Self {
+            length: text.len(),
+            assignments,
+        }
+    }
+
+    /// The assignments with the offsets of their texts.
+    fn places(self) -> impl Iterator<Item = (Range<usize>, &'a Assignment)> {
+        self.assignments
+            .iter()
+            .scan(self.length, |end, assignment| {
+                let start = *end + 1;
+                *end = start + assignment.text.len();
+                Some((start..*end, assignment))
+            })
+    }
+
+    /// The assignment, as it was given, that has something at this offset.
+    pub(super) fn at(self, offset: usize) -> Option<&'a str> {
+        let mut places = self.places();
+        let found = places.find(|(place, _)| place.start <= offset && offset <= place.end);
+        found.map(|(_, assignment)| assignment.given.as_str())
+    }
+
+    /// What follows the text.
+    pub(super) fn text(self) -> String {
+        let lines = self.assignments.iter();
+        lines
+            .map(|assignment| format!("\n{}", assignment.text))
+            .collect()
+    }
+
+    /// Texts with each assignment at its offset, to be read for [`Behind::assign`].
+    pub(super) fn padded(self) -> Vec<(String, usize)> {
+        self.places()
+            .map(|(place, assignment)| {
+                let text = format!("{}{}", " ".repeat(place.start), assignment.text);
+                (text, assignment.depth)
+            })
+            .collect()
+    }
+
+    /// Puts the values of all assignments into the table.
+    pub(super) fn assign<'i>(table: &mut DeTable<'i>, padded: &'i [(String, usize)]) {
+        for (text, depth) in padded {
+            let (assignment, _) = DeTable::parse_recoverable(text);
+            put(table, assignment.into_inner(), *depth);
+        }
+    }
+}
+
+/// Puts the value of the one key of `assignment`, so many tables deep, into the same place of `table`.
+fn put<'i>(table: &mut DeTable<'i>, assignment: DeTable<'i>, depth: usize) {
+    for (key, value) in assignment {
+        let span = value.span();
+        let value = match value.into_inner() {
+            DeValue::Table(inner) if depth > 1 => {
+                if let Some(DeValue::Table(known)) = table.get_mut(&key).map(Spanned::get_mut) {
+                    put(known, inner, depth - 1);
+                    continue;
+                }
+                DeValue::Table(inner)
+            }
+            value => value,
+        };
+        table.insert(key, Spanned::new(span, value));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_have_parts_and_values_need_no_marks() {
+        let text = |given: &str| {
+            let assignment: Assignment = given.parse().unwrap();
+            (assignment.text, assignment.depth)
+        };
+        assert_eq!(
+            text("arch.thickness_ratio=0.12"),
+            ("arch.thickness_ratio = 0.12".to_owned(), 2)
+        );
+        assert_eq!(text("title = A = B"), ("title = \"A = B\"".to_owned(), 1));
+        assert_eq!(
+            text("ground.record.unit=cm/s2"),
+            ("ground.record.unit = \"cm/s2\"".to_owned(), 3)
+        );
+        assert_eq!(text("a={b=1}").1, 1);
+        for wrong in ["", "a", "=1", "a=", "a b=1", "a..b=1", "[a]=1", "a=1\nb=2"] {
+            let result = wrong.parse::<Assignment>();
+            assert!(
+                result.as_ref().is_err() || result.as_ref().is_ok_and(|one| one.text.contains('"')),
+                "{wrong:?} {result:?}"
+            );
+        }
+    }
+}

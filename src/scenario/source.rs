@@ -1,0 +1,94 @@
+//! Where the text of a scenario comes from.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::error::{Fault, ScenarioErrors};
+
+/// Largest text of a scenario.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// The text of a scenario, not yet read, and what stands for it in errors.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    pub(super) name: String,
+    pub(super) folder: PathBuf,
+    pub(super) text: String,
+}
+
+impl Source {
+    /// A text; `name` stands for the file in errors. Records of ground motion are read from files relative to the
+    /// folder of `name`.
+    #[must_use]
+    pub fn of_text(text: &str, name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            folder: folder_of(Path::new(name)).to_owned(),
+            text: text.to_owned(),
+        }
+    }
+
+    /// What stands for it in errors.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text of a file.
+    ///
+    /// # Errors
+    /// When there is no such file, it cannot be read, is not UTF-8 text or is larger than 1 MiB.
+    pub fn of_file(path: &Path) -> Result<Self, ScenarioErrors> {
+        let name = path.display().to_string();
+        let unreadable = |message: String| ScenarioErrors::unreadable(&name, message);
+        if path.is_dir() {
+            return Err(unreadable("is a folder, not a scenario file".to_owned()));
+        }
+        let file =
+            File::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
+        Ok(Self {
+            folder: folder_of(path).to_owned(),
+            ..Self::of_reader(file, &name)?
+        })
+    }
+
+    /// What a reader holds; `name` stands for it in errors, and records of ground motion are relative to the current
+    /// folder.
+    ///
+    /// # Errors
+    /// When it cannot be read, is not UTF-8 text or is larger than 1 MiB.
+    pub fn of_reader(reader: impl Read, name: &str) -> Result<Self, ScenarioErrors> {
+        let unreadable = |message: String| ScenarioErrors::unreadable(name, message);
+        let mut bytes = Vec::new();
+        // The limit is on what is read, because not every file knows its size.
+        reader
+            .take(MAX_BYTES + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|error| unreadable(format!("cannot be read: {error}")))?;
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(unreadable(
+                "is larger than 1 MiB, too large for a scenario".to_owned(),
+            ));
+        }
+        let text = String::from_utf8(bytes).map_err(|error| {
+            // What precedes the fault is the same in the lossy text.
+            let text = String::from_utf8_lossy(error.as_bytes());
+            let fault = Fault {
+                offset: error.utf8_error().valid_up_to(),
+                message: "not UTF-8 text from here".to_owned(),
+            };
+            ScenarioErrors::placed(&Self::of_text(&text, name), &[], vec![fault])
+        })?;
+        Ok(Self {
+            name: name.to_owned(),
+            folder: PathBuf::new(),
+            text,
+        })
+    }
+}
+
+/// The folder that a file is in.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
+}
