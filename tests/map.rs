@@ -321,7 +321,7 @@ fn refuse(folder: &Path, arguments: &[&str], words: &[&str]) {
     }
 }
 
-/// All files of a folder with their contents.
+/// All files of a folder with their contents, but for the one that names the scenario file.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     fs::read_dir(folder)
         .unwrap()
@@ -330,6 +330,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
             let name = entry.file_name().into_string().unwrap();
             (name, fs::read(entry.path()).unwrap())
         })
+        .filter(|(name, _)| name != ".scenario")
         .collect()
 }
 
