@@ -214,6 +214,14 @@ pub struct Summary {
     pub free_hinges: Option<Box<Run>>,
 }
 
+impl Summary {
+    /// Largest magnitude of the rotation of any body, in radians.
+    #[must_use]
+    pub fn largest_rotation_rad(&self) -> f64 {
+        self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 /// A history with all its samples and events.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {

@@ -41,13 +41,12 @@ pub(super) fn fields(ending: &Ending) -> Result<Vec<String>, OutputError> {
         outcome,
         outcome_time_s,
         impacts,
-        peak_over_critical,
         energy_defect_ratio,
-        peak_rotation_rad,
+        peak,
     } = *ending;
     finite("of a history", &[outcome_time_s, energy_defect_ratio])?;
-    finite("of a history", peak_over_critical.as_slice())?;
-    finite("of a history", peak_rotation_rad.as_slice())?;
+    finite("of a history", peak.over_critical().as_slice())?;
+    finite("of a history", peak.rad().as_slice())?;
     let (sway, before) = match outcome {
         Outcome::Overturned(sway) => (sway.name().to_owned(), impacts.to_string()),
         _ => (String::new(), String::new()),
@@ -58,10 +57,10 @@ pub(super) fn fields(ending: &Ending) -> Result<Vec<String>, OutputError> {
         impacts.to_string(),
         before,
         number(outcome_time_s),
-        peak_over_critical.map_or(String::new(), number),
+        peak.over_critical().map_or(String::new(), number),
         number(energy_defect_ratio),
     ];
-    fields.extend(peak_rotation_rad.map(number));
+    fields.extend(peak.rad().map(number));
     Ok(fields)
 }
 

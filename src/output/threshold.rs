@@ -86,7 +86,7 @@ pub fn write_table(writer: impl Write, thresholds: &[Threshold]) -> Result<(), O
                 ending.and_then(overturning_sway),
                 ending.map(|ending| ending.impacts),
                 ending.map(|ending| ending.outcome_time_s),
-                ending.and_then(|ending| ending.peak_over_critical),
+                ending.and_then(|ending| ending.peak.over_critical()),
                 sample.peak_rotation_rad,
             ))
             .map_err(OutputError::csv(WHAT))?;
@@ -155,7 +155,7 @@ fn sample_to_json(sample: &FactorSample) -> Value {
             "overturning_sway": overturning_sway(ending),
             "impacts": ending.impacts,
             "outcome_time_s": ending.outcome_time_s,
-            "peak_rotation_over_critical": ending.peak_over_critical,
+            "peak_rotation_over_critical": ending.peak.over_critical(),
             "peak_rotation_rad": sample.peak_rotation_rad,
         }),
         Err(error) => json!({
@@ -289,7 +289,7 @@ impl Rotation {
         let mut samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
         let known = samples.all(|sample| {
             let ending = sample.result.as_ref();
-            ending.map_or(true, |ending| ending.peak_over_critical.is_some())
+            ending.map_or(true, |ending| ending.peak.over_critical().is_some())
         });
         if known {
             Self::OverCritical
@@ -307,7 +307,7 @@ impl Rotation {
 
     fn peak(self, sample: &FactorSample) -> Option<f64> {
         match self {
-            Self::OverCritical => sample.result.as_ref().ok()?.peak_over_critical,
+            Self::OverCritical => sample.result.as_ref().ok()?.peak.over_critical(),
             Self::Plain => sample.peak_rotation_rad,
         }
     }

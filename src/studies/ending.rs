@@ -15,22 +15,58 @@ pub struct Ending {
     pub outcome_time_s: f64,
     /// Number of impacts; where the structure overturns, all are before.
     pub impacts: usize,
-    /// Largest rotation over that at the unstable equilibrium, where that is known.
-    pub peak_over_critical: Option<f64>,
-    /// Largest gap in the energy balance, over the energy barrier.
+    /// Largest gap in the energy balance: of a mechanism over its energy barrier, of free hinges over weight times
+    /// size.
     pub energy_defect_ratio: f64,
-    /// Largest rotation of any block, in radians; with free hinges only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak_rotation_rad: Option<f64>,
+    /// How far it went.
+    pub peak: PeakRotation,
+}
+
+/// The largest rotation, measured as the model can.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PeakRotation {
+    /// Of one mechanism at a time, all of whose hinges close at once: over that at the unstable equilibrium, where
+    /// that is known.
+    OverCritical(Option<f64>),
+    /// Of free hinges, which close one by one: that of any block, in radians.
+    Rad(f64),
+}
+
+impl PeakRotation {
+    fn of(summary: &Summary) -> Self {
+        match summary.free_hinges {
+            Some(_) => Self::Rad(summary.largest_rotation_rad()),
+            None => Self::OverCritical(summary.peak_over_critical),
+        }
+    }
+
+    /// Over that at the unstable equilibrium, where that is known.
+    #[must_use]
+    pub const fn over_critical(self) -> Option<f64> {
+        match self {
+            Self::OverCritical(ratio) => ratio,
+            Self::Rad(_) => None,
+        }
+    }
+
+    /// In radians, of free hinges.
+    #[must_use]
+    pub const fn rad(self) -> Option<f64> {
+        match self {
+            Self::OverCritical(_) => None,
+            Self::Rad(rotation_rad) => Some(rotation_rad),
+        }
+    }
 }
 
 impl Ending {
-    /// Number of impacts at which all hinges close at once; `None` of free hinges, which land one by one.
+    /// Number of impacts at which all hinges close at once; `None` of free hinges, which close one by one.
     #[must_use]
     pub const fn impacts_of_all_hinges(&self) -> Option<usize> {
-        match self.peak_rotation_rad {
-            Some(_) => None,
-            None => Some(self.impacts),
+        match self.peak {
+            PeakRotation::OverCritical(_) => Some(self.impacts),
+            PeakRotation::Rad(_) => None,
         }
     }
 
@@ -54,19 +90,12 @@ impl Ending {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
             impacts: summary.impacts,
-            peak_over_critical: summary.peak_over_critical,
             energy_defect_ratio: summary.energy_defect_ratio,
-            peak_rotation_rad: summary.free_hinges.is_some().then(|| {
-                summary
-                    .peak_rotations_rad
-                    .iter()
-                    .copied()
-                    .fold(0.0, f64::max)
-            }),
+            peak: PeakRotation::of(summary),
         };
         check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
-        check_finite(ending.peak_over_critical.as_slice())?;
-        check_finite(ending.peak_rotation_rad.as_slice())?;
+        check_finite(ending.peak.over_critical().as_slice())?;
+        check_finite(ending.peak.rad().as_slice())?;
         Ok(ending)
     }
 }

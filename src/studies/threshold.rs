@@ -14,7 +14,7 @@ use super::runner::{Progress, Runner, RunnerError};
 use crate::argument::{ArgumentError, above, within};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Outcome;
+use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Model, Request, SimulationError};
 
 /// How closely an edge is enclosed, as a part of its factor: far closer than any motion of the ground is known,
@@ -115,10 +115,7 @@ impl FactorSample {
             .scaled(factor)
             .map_err(SimulationError::from)
             .and_then(|ground| model.simulate(&ground, request, None));
-        let peak_rotation_rad = summary.as_ref().ok().map(|summary| {
-            let peaks = summary.peak_rotations_rad.iter();
-            peaks.copied().fold(0.0, f64::max)
-        });
+        let peak_rotation_rad = summary.as_ref().ok().map(Summary::largest_rotation_rad);
         let result = match summary {
             Ok(summary) => Ending::from_summary(&summary).map_err(NoHistory::Failed),
             Err(error @ SimulationError::FreeFall { .. }) => {
