@@ -494,12 +494,18 @@ fn human_summary(
             "  peak rotation in rad: {}",
             commands::by_body(&model.bodies(), &history.peak_rotations_rad),
         );
-        if let Some(peak) = history.peak_over_critical {
-            let _ = writeln!(
-                text,
-                "  largest rotation {peak:.4} of that at the unstable equilibrium of the mechanism that moved"
-            );
-        }
+        let equilibrium = "the unstable equilibrium of the mechanism that moved";
+        let _ = match (history.outcome, history.peak_over_critical) {
+            // How far it fell on until the run ended says nothing.
+            (Outcome::Overturned(_), Some(_)) => writeln!(text, "  passed {equilibrium}"),
+            (_, Some(peak)) => {
+                writeln!(
+                    text,
+                    "  largest rotation {peak:.4} of that at {equilibrium}"
+                )
+            }
+            (_, None) => Ok(()),
+        };
         let _ = writeln!(
             text,
             "  energy defect {:.1e} of the first mechanism's barrier, {} steps, {} evaluations",

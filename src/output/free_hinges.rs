@@ -134,7 +134,8 @@ fn joints(hinges: &[Hinge]) -> String {
 ///
 /// Normal forces and friction are those outside impacts; `largest_friction_demand` is that of the samples, as in
 /// `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the diagonal of
-/// a column). `spread` is left out where the run was not repeated.
+/// a column). `spread` is left out where the run was not repeated; where a repetition failed it
+/// says why, as `failed`.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -142,17 +143,14 @@ pub fn summary(
     scenario: &Scenario,
     model: &FreeHinges,
     history: &Summary,
-    spread: Option<&Spread>,
+    spread: Option<Result<&Spread, &str>>,
 ) -> Result<Value, OutputError> {
     let mut summary = beginning(scenario, history, &model.bodies())?;
     let more = summary.as_object_mut().expect("the summary is an object");
     let mut put = |name: &str, value: Value| more.insert(name.to_owned(), value);
     let incipient_g = |sway| model.incipient_acceleration_g(sway);
-    let peaks_rad = history.peak_rotations_rad.iter().copied();
-    put(
-        "largest_peak_rotation_rad",
-        json!(peaks_rad.fold(0.0, f64::max)),
-    );
+    let largest_rad = history.largest_rotation_rad();
+    put("largest_peak_rotation_rad", json!(largest_rad));
     put(
         "incipient_acceleration_g",
         json!({ "right": incipient_g(Sway::Right), "left": incipient_g(Sway::Left) }),
@@ -202,9 +200,11 @@ pub fn summary(
             put(name, json!(count));
         }
     }
-    if let Some(spread) = spread {
-        put("spread", of_spread(spread)?);
-    }
+    match spread {
+        Some(Ok(spread)) => put("spread", of_spread(spread)?),
+        Some(Err(reason)) => put("spread", json!({ "failed": reason })),
+        None => None,
+    };
     Ok(summary)
 }
 

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::ops::ControlFlow;
-use std::thread;
+use std::thread::{self, JoinHandle};
 
 use archrock::dynamics::free_hinges::spread::{REPETITIONS, SAME_PEAK_RATIO, Spread};
 use archrock::dynamics::free_hinges::{FreeHinges, HalfCycle};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
-use archrock::dynamics::model::{Model as _, Recorder};
+use archrock::dynamics::model::{Model as _, Recorder, Request, SimulationError};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::sway::Sway;
 use archrock::output::free_hinges::{JointsWriter, LandingsWriter, summary};
@@ -54,7 +54,10 @@ pub fn run(
     let mut folder = place.open(&[JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY])?;
     let mut timeline = RowTimeline::new(model.row(), scenario.simulation.gravity_m_s2);
     let mut impacts = Notable::default();
-    let (summary, spread, rows) = {
+    let repetitions = options
+        .spread
+        .then(|| Repetitions::start(&model, ground, scenario.request()));
+    let (summary, rows) = {
         let mut results = Results {
             tables: Tables::new(&model, ground, place, folder.as_mut())?,
             timeline: &mut timeline,
@@ -62,12 +65,17 @@ pub fn run(
             curves,
             written: Ok(()),
         };
-        let (summary, spread) = simulate(scenario, &model, options, &mut results)?;
+        let summary = model.simulate(ground, &scenario.request(), Some(&mut results))?;
         results.written?;
-        (summary, spread, results.tables.finish()?)
+        (summary, results.tables.finish()?)
     };
-    let mut text = words(scenario, &model, &summary, spread.as_ref(), &impacts);
-    let json = self::summary(scenario, &model, &summary, spread.as_ref())?;
+    let spread = repetitions.map(|repetitions| repetitions.spread(&summary));
+    let spread = spread.as_ref().map(|spread| match spread {
+        Ok(spread) => Ok(spread),
+        Err(reason) => Err(reason.as_str()),
+    });
+    let mut text = words(scenario, &model, &summary, spread, &impacts);
+    let json = self::summary(scenario, &model, &summary, spread)?;
     if let Some(mut folder) = folder {
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
         folder
@@ -86,39 +94,31 @@ pub fn run(
     })
 }
 
-/// The history, and at the same time its repetitions with other steps.
-fn simulate(
-    scenario: &Scenario,
-    model: &FreeHinges,
-    options: Options,
-    results: &mut Results<'_>,
-) -> Result<(Summary, Option<Spread>), Failure> {
-    let (ground, request) = (scenario.ground_motion(), scenario.request());
-    thread::scope(|scope| {
-        let factors = REPETITIONS.iter().filter(|_| options.spread);
-        let repetitions: Vec<_> = factors
-            .map(|factor| scope.spawn(|| model.repeated(*factor, ground, &request)))
-            .collect();
-        let own = model.simulate(ground, &request, Some(results))?;
+/// The repetitions with other steps, on threads of their own while the history is computed. Where that fails or cannot
+/// be written nobody waits for them: they end with the program.
+struct Repetitions([JoinHandle<Result<Summary, SimulationError>>; 2]);
+
+impl Repetitions {
+    fn start(model: &FreeHinges, ground: &GroundMotion, request: Request) -> Self {
+        Self(REPETITIONS.map(|factor| {
+            let (model, ground) = (model.clone(), ground.clone());
+            thread::spawn(move || model.repeated(factor, &ground, &request))
+        }))
+    }
+
+    /// How they differ from the history, or why that is not known.
+    fn spread(self, own: &Summary) -> Result<Spread, String> {
         let mut repeated = Vec::new();
-        for (factor, repetition) in REPETITIONS.iter().zip(repetitions) {
-            let ended = repetition.join().map_err(|_| {
-                Failure::Work(format!(
-                    "the repetition with {factor} times the steps crashed"
-                ))
-            })?;
-            repeated.push(ended.map_err(|error| {
-                Failure::Work(format!(
-                    "the repetition with {factor} times the steps failed: {error}; --no-spread leaves it out"
-                ))
-            })?);
+        for (factor, repetition) in REPETITIONS.iter().zip(self.0) {
+            let ended = match repetition.join() {
+                Ok(ended) => ended.map_err(|error| format!("failed: {error}")),
+                Err(_) => Err("crashed".to_owned()),
+            };
+            let failed = |how| format!("the repetition with {factor} times the steps {how}");
+            repeated.push(ended.map_err(failed)?);
         }
-        let spread = match &repeated[..] {
-            [half, double] => Some(Spread::new(&own, half, double)),
-            _ => None,
-        };
-        Ok((own, spread))
-    })
+        Ok(Spread::new(own, &repeated[0], &repeated[1]))
+    }
 }
 
 /// The tables that are written while the motion is computed.
@@ -276,7 +276,7 @@ fn words(
     scenario: &Scenario,
     model: &FreeHinges,
     history: &Summary,
-    spread: Option<&Spread>,
+    spread: Option<Result<&Spread, &str>>,
     impacts: &Notable,
 ) -> String {
     let ground = scenario.ground_motion();
@@ -302,13 +302,13 @@ fn words(
             "  peaks of the first half cycles in rad: {}",
             cycles.collect::<Vec<_>>().join(", ")
         );
-        let peaks = history.peak_rotations_rad.iter().enumerate();
-        if let Some((block, peak)) = peaks.max_by(|a, b| a.1.total_cmp(b.1)) {
+        let (peak, peaks) = (history.largest_rotation_rad(), &history.peak_rotations_rad);
+        if let Some(block) = peaks.iter().rposition(|other| *other == peak) {
             let _ = writeln!(
                 text,
                 "  largest rotation {peak:.6} rad, of block {} of {}",
                 block + 1,
-                history.peak_rotations_rad.len()
+                peaks.len()
             );
         }
         let _ = writeln!(
@@ -344,10 +344,15 @@ fn words(
             friction.value, friction.time_s
         );
     }
-    if let Some(spread) = spread
-        && history.outcome != Outcome::NeverMoved
-    {
-        text += &sure(spread);
+    match spread {
+        Some(Ok(spread)) if history.outcome != Outcome::NeverMoved => text += &sure(spread),
+        Some(Err(reason)) => {
+            let _ = writeln!(
+                text,
+                "  how far it depends on its steps is not known: {reason}"
+            );
+        }
+        _ => {}
     }
     text
 }
