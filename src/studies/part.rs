@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write as _};
+use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -271,10 +271,9 @@ fn unusable(path: &Path, what: impl Into<String>) -> PartError {
     }
 }
 
-/// Reads a file; returns its complete lines and how many bytes these are.
-fn read_lines(path: &Path) -> Result<(String, u64), PartError> {
-    let mut bytes =
-        fs::read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
+/// The complete lines of what was read of a file, and how many bytes these are.
+fn complete_lines(path: &Path, read: io::Result<Vec<u8>>) -> Result<(String, u64), PartError> {
+    let mut bytes = read.map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
     // A line without end was being written when the program was killed.
     let complete = bytes
         .iter()
@@ -332,20 +331,14 @@ fn rows_of<R: DeserializeOwned>(
 /// # Errors
 /// When the file cannot be read or is not a part.
 pub fn read_header(path: &Path) -> Result<Header, PartError> {
-    let (text, _) = read_lines(path)?;
+    let first = File::open(path).and_then(|file| {
+        let mut line = Vec::new();
+        BufReader::new(file).read_until(b'\n', &mut line)?;
+        Ok(line)
+    });
+    let (text, _) = complete_lines(path, first)?;
     let (header, _) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
     Ok(header)
-}
-
-/// Reads a part that was computed before, complete or not.
-///
-/// # Errors
-/// When the file cannot be read or is not a part, or its rows are not of this type.
-pub fn read<R: DeserializeOwned>(path: &Path) -> Result<(Header, Rows<R>), PartError> {
-    let (text, _) = read_lines(path)?;
-    let (header, lines) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
-    let rows = rows_of(path, &header, lines)?;
-    Ok((header, rows))
 }
 
 /// The file of a shard that is being computed. It is locked as long as this lives.
@@ -377,7 +370,7 @@ impl PartFile {
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
         }
-        let (text, length) = read_lines(path)?;
+        let (text, length) = complete_lines(path, fs::read(path))?;
         let rows = match header_of(path, &text)? {
             None => Rows::new(),
             Some((found, lines)) => {
@@ -460,7 +453,7 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
     let mut whole: Option<(Header, Rows<R>)> = None;
     let mut places: BTreeMap<usize, &Path> = BTreeMap::new();
     for path in paths {
-        let (text, _) = read_lines(path)?;
+        let (text, _) = complete_lines(path, fs::read(path))?;
         let (header, lines) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
         let shard = header.shard;
         if let Some((first, _)) = &whole {
