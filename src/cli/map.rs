@@ -2,14 +2,15 @@
 
 use std::io::Write as _;
 
-use archrock::output::{ending, map as output};
+use archrock::dynamics::history::Outcome;
+use archrock::output::map as output;
 use archrock::scenario::{Quantity, Scenario};
 use archrock::studies::boundary::{MapRow, MapWithBoundary};
-use archrock::studies::map::{CellRow, OverturningMap};
+use archrock::studies::map::{CellResult, CellRow, OverturningMap};
 
 use super::Failure;
 use super::scenario_file::Destination;
-use super::study::{HingesOption, Options, failed_in_words, say, write_summary};
+use super::study::{HingesOption, Options, counts, failed_in_words, in_words, say, write_summary};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -41,7 +42,7 @@ pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = arguments.hinges.read(&input, quiet)?;
     let map = overturning_map(&scenario).map_err(|failure| input.about(failure))?;
     let study = MapWithBoundary::new(&map);
-    arguments.boundary.check(&map)?;
+    arguments.boundary.check(&study)?;
     let place = options.results(&input)?;
     let Some((rows, part)) = options.compute(&study, &place, quiet)? else {
         return Ok(());
@@ -65,13 +66,13 @@ fn overturning_map(scenario: &Scenario) -> Result<OverturningMap<'_>, Failure> {
 }
 
 impl BoundaryOption {
-    fn check(self, map: &OverturningMap<'_>) -> Result<(), Failure> {
-        if self.no_impact && map.has_free_hinges() {
+    fn check(self, study: &MapWithBoundary<'_>) -> Result<(), Failure> {
+        if self.no_impact && study.map().has_free_hinges() {
             let message = "--no-impact is about four links, and the hinges of this map are free: leave it out, or \
                            give --hinges four";
             return Err(Failure::Input(message.to_owned()));
         }
-        if MapWithBoundary::new(map).has_boundary() {
+        if study.has_boundary() {
             return Ok(());
         }
         self.refuse()
@@ -97,7 +98,7 @@ pub fn merge(
 ) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
     let map = overturning_map(&scenario)?;
-    boundary.check(&map)?;
+    boundary.check(&MapWithBoundary::new(&map))?;
     finish(&map, rows, place, boundary, quiet)
 }
 
@@ -158,22 +159,14 @@ fn finish(
 
 /// How many cells came to what.
 fn summary(cells: &[CellRow]) -> String {
-    let counts = output::counts(cells);
-    let outcomes = [
-        ("never_moved", "never move"),
-        ("rest", "come to rest"),
-        ("overturned", "overturn"),
-        (
-            "still_rocking",
-            "are still rocking at duration_s of [simulation]",
-        ),
-        ("cannot_stand", "cannot stand"),
-        ("not_four_links", "are too thick for four links"),
-        (ending::FAILED, "failed"),
-    ];
-    let parts: Vec<_> = outcomes
-        .into_iter()
-        .filter_map(|(outcome, label)| Some(format!("{} {label}", counts.get(outcome)?)))
-        .collect();
-    format!("{} cells: {}", cells.len(), parts.join(", "))
+    let words = |cell: &CellRow| match &cell.result {
+        CellResult::Ended(ending) if ending.outcome == Outcome::StillRocking => {
+            (3, "are still rocking at duration_s of [simulation]")
+        }
+        CellResult::Ended(ending) => in_words(ending.outcome),
+        CellResult::CannotStand => (4, "cannot stand"),
+        CellResult::NotFourLinks => (5, "are too thick for four links"),
+        CellResult::Failed(_) => (6, "failed"),
+    };
+    format!("{} cells: {}", cells.len(), counts(cells.iter().map(words)))
 }

@@ -1,7 +1,7 @@
 //! Commands: from arguments to exit codes.
 //!
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
-//! 2 bad usage or bad input.
+//! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
 mod chart;
 mod commands;

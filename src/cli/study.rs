@@ -1,5 +1,6 @@
 //! Long work as the program does it: its options, its progress on the terminal, and Ctrl-C.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::num::NonZeroUsize;
@@ -9,6 +10,7 @@ use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use archrock::dynamics::history::Outcome;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::output::ending::Failed;
 use archrock::output::results;
@@ -29,15 +31,31 @@ pub struct Options {
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of threads [default: number of processors].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: Threads,
     /// Continue an interrupted run, if there is one.
     #[arg(long)]
     resume: bool,
     /// Compute only part I of N, into a file for `archrock merge`.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+}
+
+/// On how many threads.
+#[derive(clap::Args, Clone, Copy)]
+pub struct Threads {
+    /// Number of threads [default: number of processors].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Threads {
+    /// What computes on them.
+    pub fn runner(self) -> Runner {
+        Runner {
+            threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
+        }
+    }
 }
 
 /// Which model of motion is asked for.
@@ -130,9 +148,7 @@ impl Options {
         place: &Destination,
         quiet: bool,
     ) -> Result<Option<Complete<S::Row>>, Failure> {
-        let runner = Runner {
-            threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
-        };
+        let runner = self.threads.runner();
         let task = Task {
             folder: place.path(),
             shard: self.shard.unwrap_or(Shard::WHOLE),
@@ -211,6 +227,31 @@ pub fn failed_in_words(failures: &[Failed], file: &str) -> Option<String> {
         String::new()
     };
     Some(format!("failed: {count}; the first: {first}{others}"))
+}
+
+/// Words for what became of cases, and their place among the counts.
+pub type Words = (u8, &'static str);
+
+/// The words of an outcome.
+pub const fn in_words(outcome: Outcome) -> Words {
+    match outcome {
+        Outcome::NeverMoved => (0, "never move"),
+        Outcome::Rest => (1, "come to rest"),
+        Outcome::Overturned(_) => (2, "overturn"),
+        Outcome::StillRocking => (3, "are still rocking"),
+    }
+}
+
+/// How many cases came to what.
+pub fn counts(cases: impl Iterator<Item = Words>) -> String {
+    let mut counts = BTreeMap::new();
+    for words in cases {
+        *counts.entry(words).or_insert(0_usize) += 1;
+    }
+    let parts = counts
+        .into_iter()
+        .map(|((_, words), count)| format!("{count} {words}"));
+    parts.collect::<Vec<_>>().join(", ")
 }
 
 /// Prints a line on standard error.

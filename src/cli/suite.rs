@@ -10,7 +10,7 @@ use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 use super::Failure;
 use super::commands::pretty;
 use super::scenario_file::Destination;
-use super::study::{HingesOption, Options, failed_in_words, say};
+use super::study::{HingesOption, Options, counts, failed_in_words, in_words, say};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -105,7 +105,7 @@ fn finish(
 
 /// What the results say, line by line.
 fn summary(results: &SuiteFragility) -> String {
-    let mut lines = vec![counts(results)];
+    let mut lines = vec![counted(results)];
     lines.push(match output::curve_in_words(results) {
         Some(words) => format!("fragility over {}: {words}", results.measure.column()),
         None => format!(
@@ -119,7 +119,8 @@ fn summary(results: &SuiteFragility) -> String {
             lines.push(format!("{how} overturn: {}", records.join(", ")));
         }
     }
-    if count(results, Some(Outcome::StillRocking.name())) > 0 {
+    let still_rocking = |case: &CaseRow| case.outcome() == Some(Outcome::StillRocking);
+    if results.cases.iter().any(still_rocking) {
         lines.push(
             "those still rocking at duration_s of [simulation] count as not overturned".to_owned(),
         );
@@ -130,33 +131,13 @@ fn summary(results: &SuiteFragility) -> String {
     lines.join("\n  ")
 }
 
-/// Number of cases with an outcome; `None`: of those that failed.
-fn count(results: &SuiteFragility, outcome: Option<&str>) -> usize {
-    let cases = results.cases.iter();
-    cases
-        .filter(|case| case.outcome().map(Outcome::name) == outcome)
-        .count()
-}
-
 /// How many cases came to what.
-fn counts(results: &SuiteFragility) -> String {
-    let outcomes = [
-        (Some("never_moved"), "never move"),
-        (Some("rest"), "come to rest"),
-        (Some("overturned"), "overturn"),
-        (Some("still_rocking"), "are still rocking"),
-        (None, "failed"),
-    ];
-    let counts: Vec<_> = outcomes
-        .into_iter()
-        .map(|(outcome, label)| (count(results, outcome), label))
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, label)| format!("{count} {label}"))
-        .collect();
+fn counted(results: &SuiteFragility) -> String {
+    let words = |case: &CaseRow| case.outcome().map_or((4, "failed"), in_words);
     format!(
         "{} cases of {}: {}",
         results.cases.len(),
         output::records_in_words(results),
-        counts.join(", ")
+        counts(results.cases.iter().map(words))
     )
 }

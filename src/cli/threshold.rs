@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::iter;
-use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -12,14 +11,13 @@ use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
 use archrock::output::threshold::{self as output, rounded};
 use archrock::scenario::{Scenario, Structure};
-use archrock::studies::runner::Runner;
 use archrock::studies::threshold::{
     FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
 };
 
 use super::run::Models;
 use super::scenario_file::ScenarioFile;
-use super::study::{Display, impact_ignored, say};
+use super::study::{Display, Threads, impact_ignored, say};
 use super::{Failure, Format, commands, print};
 
 #[derive(clap::Args)]
@@ -41,9 +39,8 @@ pub struct Arguments {
     /// Relative step from one factor to the next; narrower bands and gaps may be missed.
     #[arg(long, value_name = "PART", default_value_t = Factors::default().stride())]
     stride: f64,
-    /// Number of threads [default: number of processors].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    threads: Threads,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -81,9 +78,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let place = input.results(arguments.out.as_deref())?;
     let mut folder = place.open(&[PICTURE, TABLE, SUMMARY])?;
 
-    let runner = Runner {
-        threads: arguments.threads.and_then(|n| NonZeroUsize::new(n.into())),
-    };
+    let runner = arguments.threads.runner();
     let mut display = None;
     let watch = |progress| {
         let display = display.get_or_insert_with(|| Display::new(progress, quiet));

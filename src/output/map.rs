@@ -1,6 +1,5 @@
 //! The overturning map: its table, its boundaries, its picture.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write;
 
@@ -63,16 +62,6 @@ pub fn failures(
         }
     }
     failures
-}
-
-/// How many cells have each outcome.
-#[must_use]
-pub fn counts(rows: &[CellRow]) -> BTreeMap<&'static str, usize> {
-    let mut counts = BTreeMap::new();
-    for row in rows {
-        *counts.entry(outcome(&row.result)).or_default() += 1;
-    }
-    counts
 }
 
 /// Writes the table, a row per cell: x varies slowly, y fast.

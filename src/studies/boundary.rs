@@ -141,6 +141,12 @@ impl<'m> MapWithBoundary<'m> {
         }
     }
 
+    /// The map.
+    #[must_use]
+    pub const fn map(&self) -> &'m OverturningMap<'m> {
+        self.map
+    }
+
     /// Whether the map has boundaries.
     #[must_use]
     pub const fn has_boundary(&self) -> bool {
