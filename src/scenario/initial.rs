@@ -6,7 +6,6 @@ use std::ops::Bound::{Excluded, Included};
 use super::Structure;
 use super::table::{Number, OneOf, Reading, Table};
 use crate::dynamics::model::{Initial, MIN_RELEASE_RAD};
-use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::sway::Sway;
 
 const ROTATION_RAD: Number = Number(Included(MIN_RELEASE_RAD), Excluded(PI));
@@ -20,9 +19,12 @@ impl Initial {
         let sway = table.required("sway", &sways);
         let rotation_rad = table.required("rotation_rad", &ROTATION_RAD);
         if let (Some(structure), Ok(rotation_rad)) = (structure, &rotation_rad) {
-            // The limit position does not depend on the impact model.
-            let model = structure.model(ImpactModel::MaxRestitution);
-            let limit_rad = model.map_or(0.0, |model| model.limit_rad());
+            let Some(limit_rad) = structure.release_limit_rad() else {
+                return Err(table.wrong_itself(
+                    "releases from the first mechanism of four links, and this arch does not start as one; leave \
+                     [initial] out",
+                ));
+            };
             if *rotation_rad >= limit_rad {
                 let wrong = format!(
                     "is beyond the limit position of the mechanism; must be \

@@ -1,5 +1,6 @@
 //! What stands on the ground: `[arch]` or `[column]`.
 
+use std::f64::consts::FRAC_PI_2;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 use serde::Serialize;
@@ -76,6 +77,19 @@ impl Structure {
             Self::Arch(arch) => Box::new(FourLinkArch::new(arch.clone(), impact)?),
             Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
         })
+    }
+
+    /// The rotation below which it can be released: the limit position of its first mechanism. `None` where that is
+    /// none of one degree of freedom. Drums turn as one about the base.
+    pub(super) fn release_limit_rad(&self) -> Option<f64> {
+        match self {
+            Self::Arch(arch) => {
+                // The limit position does not depend on the impact model.
+                let arch = FourLinkArch::new(arch.clone(), ImpactModel::MaxRestitution);
+                arch.ok().map(|arch| arch.limit_rad())
+            }
+            Self::Column(_) => Some(FRAC_PI_2),
+        }
     }
 
     /// The model of its motion as a row of blocks whose joints open and shut.
