@@ -55,9 +55,11 @@ impl Folder {
                 .prefix(&format!("{PREFIX}{name}-"))
                 .permissions_like_others()
                 .tempfile_in(path)
+                // The system's words would name the hidden file.
+                .map_err(|error| error.kind().into())
                 .map_err(OutputError::io(format!(
-                    "cannot write in the folder {}",
-                    path.display()
+                    "cannot write {}",
+                    path.join(name).display()
                 )))?;
             // Where files cannot be locked, what a killed run leaves stays, or goes while it is still
             // being written by another; the latter then says so.
