@@ -6,9 +6,9 @@ mod program;
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
-use program::{archrock, scenarios, stderr};
+use program::{archrock, command, printed, refused, scenarios, stderr};
 use serde_json::Value;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
@@ -216,19 +216,72 @@ fn check_prints_a_scenario_that_reads_back() {
 }
 
 /// Runs a scenario that is wrong, and returns the message.
-fn refused(text: &[u8]) -> String {
+fn faulty(text: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), text).unwrap();
-    let output = archrock(folder.path(), &["run", "s.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-    assert!(output.stdout.is_empty());
+    let message = refused(folder.path(), &["run", "s.toml"], &[]);
     assert_eq!(entries(folder.path()), ["s.toml"], "something was written");
-    let message = stderr(&output);
     assert!(
         message.starts_with("error: s.toml") && message.len() < 1000,
         "{message}"
     );
     message
+}
+
+/// Whatever is asked of a faulty scenario, or of one that lacks what the command is about.
+#[test]
+fn every_command_refuses_wrong_input_with_exit_code_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let commands = [
+        "run",
+        "limit",
+        "impact",
+        "chart",
+        "map",
+        "spectrum",
+        "suite",
+        "threshold",
+        "check",
+    ];
+    let pulse = "[ground.half_sine]\namplitude_g = nan\nduration_s = 1\n";
+    scenario(folder, &format!("{ARCH}{pulse}"));
+    for command in commands {
+        refused(
+            folder,
+            &[command, "s.toml"],
+            &["error: s.toml:6:15: `amplitude_g = nan`"],
+        );
+        refused(
+            folder,
+            &[command, "none.toml"],
+            &["error: none.toml: cannot be read"],
+        );
+        refused(folder, &[command], &["<SCENARIO>", "Usage: archrock"]);
+        refused(folder, &[command, "s.toml", "--no-such"], &["--no-such"]);
+    }
+    scenario(folder, ARCH);
+    for (command, words) in [
+        ("map", "the scenario has no [map]"),
+        ("spectrum", "a spectrum needs a pulse"),
+        ("suite", "the scenario has no [suite]"),
+        ("threshold", "a threshold needs a ground motion"),
+    ] {
+        refused(folder, &[command, "s.toml"], &["error: s.toml: ", words]);
+    }
+    refused(
+        folder,
+        &["merge", "none.part"],
+        &["none.part: cannot be read"],
+    );
+    refused(folder, &["merge", "."], &[".: cannot be read"]);
+    refused(
+        folder,
+        &["merge", "s.toml"],
+        &["s.toml: is not a part of a study"],
+    );
+    refused(folder, &["merge"], &["<PART>"]);
+    assert_eq!(entries(folder), ["s.toml"]);
 }
 
 #[test]
@@ -275,18 +328,18 @@ fn bad_input_is_refused_with_its_place() {
             "larger than 1 MiB",
         ),
     ] {
-        let message = refused(text.as_bytes());
+        let message = faulty(text.as_bytes());
         assert!(message.contains(words), "{words}: {message}");
     }
-    assert!(refused(b"title = \"\xff\"\n").contains(":1:10: not UTF-8 text"));
+    assert!(faulty(b"title = \"\xff\"\n").contains(":1:10: not UTF-8 text"));
     // The thickness that stands is Milankovitch's.
     let thin = ARCH.replace("0.15", "0.10");
-    assert!(refused(thin.as_bytes()).contains("at least 0.1075"));
+    assert!(faulty(thin.as_bytes()).contains("at least 0.1075"));
     let shallow = ARCH.replace("180.0", "90");
     let thick = shallow.replace("0.15", "0.40");
-    assert!(refused(thick.as_bytes()).contains("no horizontal push"));
+    assert!(faulty(thick.as_bytes()).contains("no horizontal push"));
     let thick = shallow.replace("0.15", "0.30");
-    assert!(refused(thick.as_bytes()).contains("another mechanism governs"));
+    assert!(faulty(thick.as_bytes()).contains("another mechanism governs"));
 }
 
 #[test]
@@ -297,22 +350,14 @@ fn a_place_that_cannot_be_written_is_said_before_the_work() {
     // A file is not a folder, not even for those who may write anywhere.
     for (command, option) in [
         ("run", "--out"),
+        ("threshold", "--out"),
         ("chart", "--out"),
         ("limit", "--plot"),
         ("impact", "--plot"),
         ("impact", "--line"),
     ] {
-        let output = archrock(
-            folder.path(),
-            &[command, "s.toml", option, "s.toml/results"],
-        );
-        assert_eq!(output.status.code(), Some(2), "{command}");
-        let message = stderr(&output);
-        assert!(
-            message.contains("s.toml") && message.contains(option),
-            "{message}"
-        );
-        assert!(output.stdout.is_empty());
+        let arguments = [command, "s.toml", option, "s.toml/results"];
+        refused(folder.path(), &arguments, &["s.toml/results", option]);
         assert_eq!(entries(folder.path()), ["s.toml"]);
     }
 }
@@ -333,7 +378,7 @@ fn numbers_too_small_for_anything_are_refused() {
             "from 1e-6 to 1e6",
         ),
     ] {
-        let message = refused(text.as_bytes());
+        let message = faulty(text.as_bytes());
         assert!(message.contains(word), "{message}");
     }
 }
@@ -380,11 +425,7 @@ fn a_closed_pipe_is_no_failure() {
     let many_rows = "[simulation]\noutput_step_s = 1e-5\n";
     let pulse = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.2\n";
     scenario(folder.path(), &format!("{ARCH}{many_rows}{pulse}"));
-    let mut child = Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(["run", "s.toml", "--rotations", "-"])
-        .current_dir(folder.path())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
+    let mut child = command(folder.path(), &["run", "s.toml", "--rotations", "-"])
         .spawn()
         .unwrap();
     drop(child.stdout.take());
@@ -393,6 +434,46 @@ fn a_closed_pipe_is_no_failure() {
         (output.status.code(), stderr(&output)),
         (Some(0), String::new())
     );
+}
+
+/// The repetitions of a run that nobody reads would take minutes.
+#[test]
+fn a_closed_pipe_ends_a_run_with_free_hinges_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let shaken = "voussoirs = 7\n[free_hinges]\nlongest_step_s = 1e-6\nshortest_step_s = 1e-7\n\
+                  [ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.4\n";
+    scenario(folder.path(), &format!("{ARCH}{shaken}"));
+    let mut child = command(folder.path(), &["run", "s.toml", "--rotations", "-"])
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let begun = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(
+        (output.status.code(), stderr(&output)),
+        (Some(0), String::new())
+    );
+    assert!(
+        begun.elapsed() < Duration::from_secs(20),
+        "{:?}",
+        begun.elapsed()
+    );
+}
+
+/// How far it has fallen when the run ends is no measure of anything.
+#[test]
+fn of_what_overturns_the_largest_rotation_is_not_said() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, overturns) in [("overturning-at-once", true), ("semicircle-pulse", false)] {
+        let file = scenarios().join(name).with_extension("toml");
+        let said = printed(folder.path(), &["run", file.to_str().unwrap()]);
+        assert_eq!(
+            said.contains("  passed the unstable equilibrium of the"),
+            overturns,
+            "{said}"
+        );
+        assert_eq!(said.contains("largest rotation 0."), !overturns, "{said}");
+    }
 }
 
 #[test]

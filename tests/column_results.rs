@@ -1,24 +1,20 @@
 //! Result files and printed results of a column, and the events of any run.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+mod program;
+
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use program::{printed, refused};
 use serde_json::{Value, json};
 
 const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
 
 fn archrock(arguments: &[&str], scenario: &Path) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(arguments)
-        .arg(scenario)
-        .output()
-        .unwrap();
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(0), "{message}");
-    String::from_utf8(output.stdout).unwrap()
+    let arguments = [arguments, &[scenario.to_str().unwrap()]].concat();
+    printed(Path::new("."), &arguments)
 }
 
 /// A folder with the results of a run of this scenario.
@@ -230,13 +226,9 @@ fn limit_and_impact_name_the_toes() {
     // Pictures of mechanisms are of arches: said before anything is drawn.
     for command in ["limit", "impact"] {
         let picture = folder.path().join("p.svg");
-        let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
-            .args([command, "--plot"])
-            .args([&picture, &path])
-            .output()
-            .unwrap();
-        assert_eq!(output.status.code(), Some(2));
-        assert!(!picture.exists() && output.stdout.is_empty());
+        let arguments = [command, "--plot", "p.svg", "s.toml"];
+        refused(folder.path(), &arguments, &["arches"]);
+        assert!(!picture.exists());
     }
 
     // A flat one stops.

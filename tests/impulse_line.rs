@@ -1,9 +1,10 @@
 //! The impulses of an impact against the momentum theorems, published numbers and statics by hand.
 #![allow(clippy::unwrap_used)]
 
+mod program;
+
 use std::f64::consts::PI;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use archrock::mechanics::four_link::impact::{
     ImpactModel, MomentumTheorems, closing_field, impact,
@@ -14,6 +15,7 @@ use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::sway::Sway;
 use archrock::{Arch, FourLinkArch};
 use nalgebra::Vector2;
+use program::{printed, refused};
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
 
@@ -300,25 +302,13 @@ fn scenario(folder: &Path, more: &str) -> String {
     path.display().to_string()
 }
 
-fn archrock(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-fn text(output: &Output) -> String {
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    String::from_utf8(output.stdout.clone()).unwrap()
+fn text(arguments: &[&str]) -> String {
+    printed(Path::new("."), arguments)
 }
 
 fn json(arguments: &[&str]) -> serde_json::Value {
     let arguments = [&["impact", "--format", "json"], arguments].concat();
-    serde_json::from_str(&text(&archrock(&arguments))).unwrap()
+    serde_json::from_str(&text(&arguments)).unwrap()
 }
 
 #[test]
@@ -385,9 +375,8 @@ fn a_prescribed_restitution_stands_beside_the_models() {
     assert_eq!(result["models"][3]["model"], "prescribed");
     assert_eq!(result["models"][3]["impact"]["restitution"], 0.8);
     assert!(result["impacts"][0]["impulses"].is_null());
-    let refused = archrock(&["impact", &path, "--line", "-"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("prescribed"));
+    let arguments = ["impact", &path, "--line", "-"];
+    refused(folder.path(), &arguments, &["prescribed"]);
 }
 
 #[test]
@@ -416,9 +405,7 @@ fn the_line_as_csv_touches_the_edges_at_the_hinges() {
             ],
         ),
     ] {
-        text(&archrock(&[
-            "impact", &path, "--line", file, "--link", link,
-        ]));
+        text(&["impact", &path, "--line", file, "--link", link]);
         let mut table = csv::Reader::from_path(file).unwrap();
         let header: Vec<_> = table.headers().unwrap().iter().map(str::to_owned).collect();
         let expected = [
@@ -435,11 +422,14 @@ fn the_line_as_csv_touches_the_edges_at_the_hinges() {
             let row = rows.iter().find(near).unwrap();
             assert!((row[1] - eccentricity).abs() < 1e-10, "{row:?}");
         }
-        let piped = text(&archrock(&["impact", &path, "--line", "-", "--link", link]));
+        let piped = text(&["impact", &path, "--line", "-", "--link", link]);
         assert_eq!(piped, std::fs::read_to_string(file).unwrap());
     }
-    let refused = archrock(&["impact", &path, "--line", folder.path().to_str().unwrap()]);
-    assert_eq!(refused.status.code(), Some(2));
+    refused(
+        folder.path(),
+        &["impact", &path, "--line", "."],
+        &["--line"],
+    );
 }
 
 #[test]
@@ -450,13 +440,7 @@ fn impulses_of_a_run_are_in_newton_seconds() {
         "[ground.rectangular]\namplitude_g = -0.3\nduration_s = 0.15\n",
     );
     let out = folder.path().join("out");
-    text(&archrock(&[
-        "run",
-        &path,
-        "--quiet",
-        "--out",
-        out.to_str().unwrap(),
-    ]));
+    text(&["run", &path, "--quiet", "--out", out.to_str().unwrap()]);
     let mut table = csv::Reader::from_path(out.join("impacts.csv")).unwrap();
     let header = table.headers().unwrap().clone();
     let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();

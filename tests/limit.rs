@@ -304,8 +304,9 @@ fn rings_of_hardly_any_thickness_fall_in_finite_time() {
 
 #[test]
 fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
+    let mut as_thin_as_can_be = Vec::new();
     for embrace in [
-        10.0, 12.5, 20.0, 45.0, 90.0, 120.0, 141.8, 142.0, 157.5, 170.0, 180.0,
+        1.0, 10.0, 12.5, 20.0, 45.0, 90.0, 120.0, 141.8, 142.0, 157.5, 170.0, 180.0,
     ] {
         for voussoirs in ["", "voussoirs = 4\n", "voussoirs = 7\n", "voussoirs = 60\n"] {
             let read = |thickness: &str| {
@@ -316,8 +317,7 @@ fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
                 Scenario::parse(&text, "s.toml")
             };
             let Err(errors) = read("1e-6") else {
-                // Four voussoirs of 10 degrees.
-                assert!(embrace == 10.0);
+                as_thin_as_can_be.push((embrace, voussoirs));
                 continue;
             };
             let message = errors.to_string();
@@ -329,6 +329,11 @@ fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
             assert!(read(&format!("{less:?}")).is_err(), "{message}");
         }
     }
+    // The thrust line follows the middle of a ring of 1 degree to less than a millionth, and at the few joints of
+    // one of 10 degrees.
+    let (shallowest, others) = as_thin_as_can_be.split_at(4);
+    assert!(shallowest.iter().all(|(embrace, _)| *embrace == 1.0));
+    assert_eq!(others, [(10.0, "voussoirs = 4\n")]);
 }
 
 #[test]
@@ -410,8 +415,17 @@ fn critical_and_limit_rotations() {
     assert!((critical - 0.069_065).abs() <= 0.5e-6, "{critical}");
 }
 
+/// The verdict of a judge that has one; where it has none another case is tried, of which there may be few.
+fn judged<T>(verdict: Option<T>) -> Result<T, TestCaseError> {
+    verdict.ok_or_else(|| TestCaseError::reject("no verdict"))
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None,
+        max_global_rejects: 12,
+        ..ProptestConfig::with_cases(24)
+    })]
 
     /// Both theorems of limit analysis: statics can carry the push that is found, and no more.
     #[test]
@@ -441,17 +455,17 @@ proptest! {
                 }
             }
             Err(LimitError::CannotStand) => {
-                let push = static_limit_g(&ring, &sections([0.0; 4]));
-                // An arch that cannot stand may still do so while it is pushed.
-                if let Some(push) = push {
+                // No line fits, or none but one that leaves the ring between sections. An arch that cannot stand
+                // may still do so while it is pushed.
+                let room = judged(room_for_a_line(&ring, &sections([0.0; 4])))?;
+                prop_assert!(room < 1e-5, "{room}");
+                if let Some(push) = static_limit_g(&ring, &sections([0.0; 4])) {
                     prop_assert!(push < 0.05, "{push}");
                 }
             }
             Err(LimitError::OtherMechanism { acceleration_g }) => {
                 // The programme of the test itself finds no corner to start from in some of these rings.
-                let Some(push) = static_limit_g(&ring, &sections([0.0; 4])) else {
-                    return Ok(());
-                };
+                let push = judged(static_limit_g(&ring, &sections([0.0; 4])))?;
                 // Statics at 180 sections asks less of the line than all over the ring, by the square of their
                 // distance; the mechanism is the best there is where its hinges merge.
                 prop_assert!(push <= acceleration_g * (1.0 + 1e-3), "{push} {acceleration_g}");
@@ -475,7 +489,7 @@ proptest! {
             let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
             (HingeSites::Voussoirs(voussoirs), joints)
         };
-        let Some(room) = room_for_a_line(&ring, &sections) else { return Ok(()) };
+        let room = judged(room_for_a_line(&ring, &sections))?;
         // What the line may leave the ring by between sections, or the solver leaves over.
         if room.abs() > 1e-5 {
             prop_assert_eq!(carries_its_weight(&ring, sites), room > 0.0, "{}", room);
@@ -495,9 +509,8 @@ proptest! {
         for (factor, stands) in [(1.0 - 1e-3, false), (1.0 + 1e-3, true)] {
             let ring = ring(least * factor, embrace);
             let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
-            if let Some(room) = room_for_a_line(&ring, &joints) {
-                prop_assert_eq!(room > 0.0, stands, "{}", room);
-            }
+            let room = judged(room_for_a_line(&ring, &joints))?;
+            prop_assert_eq!(room > 0.0, stands, "{}", room);
         }
     }
 
@@ -505,7 +518,7 @@ proptest! {
     #[test]
     fn no_mechanism_moves_earlier(t in 0.11_f64..0.3, embrace in 100.0_f64..180.0, seed in 0_u64..1 << 60) {
         let ring = ring(t, embrace);
-        let Ok(found) = incipient(&ring, HingeSites::Anywhere) else { return Ok(()) };
+        let found = judged(incipient(&ring, HingeSites::Anywhere).ok())?;
         let score = |angles: [f64; 4]| {
             let mechanism = FourLink::new(&ring, angles)?;
             let push = acceleration_g(&mechanism, &ring);

@@ -5,10 +5,9 @@
 mod common;
 mod program;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command, Output};
+use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -18,7 +17,7 @@ use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::Study as _;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
 use common::{GRAVITY, request, seven_voussoirs};
-use program::command;
+use program::{command, done, files, refused};
 
 const SEMICIRCLE: &str =
     "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
@@ -113,7 +112,7 @@ fn maps_have_the_symmetries_of_the_mechanics() {
         (small.outcome, small.impacts),
         (large.outcome, large.impacts)
     );
-    let [small_peak, large_peak] = [small, large].map(|one| one.peak_over_critical.unwrap());
+    let [small_peak, large_peak] = [small, large].map(|one| one.peak.over_critical().unwrap());
     assert!((small_peak - large_peak).abs() < 1e-9);
     assert!((2.0 * small.outcome_time_s - large.outcome_time_s).abs() < 1e-6);
     assert!(small.impacts > 0);
@@ -299,41 +298,6 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
 
 // The program, in pieces.
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    program::archrock(folder, arguments)
-}
-
-#[track_caller]
-fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    let stderr = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
-    stderr
-}
-
-#[track_caller]
-fn refuse(folder: &Path, arguments: &[&str], words: &[&str]) {
-    let output = run(folder, arguments);
-    let stderr = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{stderr}");
-    for word in words {
-        assert!(stderr.contains(word), "{word:?} is not in: {stderr}");
-    }
-}
-
-/// All files of a folder with their contents, but for the one that names the scenario file.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| {
-            let entry = entry.unwrap();
-            let name = entry.file_name().into_string().unwrap();
-            (name, fs::read(entry.path()).unwrap())
-        })
-        .filter(|(name, _)| name != ".scenario")
-        .collect()
-}
-
 /// A folder with `s.toml`: a map of so many cells each way.
 fn folder_with_map(count: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -350,7 +314,7 @@ fn folder_with_map(count: usize) -> tempfile::TempDir {
 fn threads_and_parts_do_not_change_a_bit() {
     let folder = folder_with_map(13);
     let path = folder.path();
-    let said = succeed(path, &["map", "s.toml", "--threads", "1", "--no-impact"]);
+    let said = done(path, &["map", "s.toml", "--threads", "1", "--no-impact"]);
     assert!(said.contains("169 cells: "), "{said}");
     let whole = files(&path.join("results/s"));
     assert_eq!(
@@ -364,7 +328,7 @@ fn threads_and_parts_do_not_change_a_bit() {
          outcome_time_s,peak_rotation_over_critical,energy_defect_ratio\n0.1,0.1,never_moved,,0,,"
     ));
 
-    succeed(
+    done(
         path,
         &[
             "--quiet",
@@ -380,7 +344,7 @@ fn threads_and_parts_do_not_change_a_bit() {
     assert_eq!(files(&path.join("three")), whole);
 
     for shard in ["1/3", "2/3", "3/3"] {
-        let said = succeed(path, &["map", "s.toml", "--shard", shard, "--out", "parts"]);
+        let said = done(path, &["map", "s.toml", "--shard", shard, "--out", "parts"]);
         assert!(said.contains("archrock merge"), "{said}");
     }
     let parts = [
@@ -388,13 +352,13 @@ fn threads_and_parts_do_not_change_a_bit() {
         "parts/map-1-of-3.part",
         "parts/map-3-of-3.part",
     ];
-    succeed(
+    done(
         path,
         &[&["merge", "--no-impact", "--out", "merged"], &parts[..]].concat(),
     );
     assert_eq!(files(&path.join("merged")), whole);
     // Without the option there is no boundary, not even an old one; the parts stay where they are.
-    succeed(path, &[&["merge"], &parts[..]].concat());
+    done(path, &[&["merge"], &parts[..]].concat());
     assert_eq!(
         fs::read(path.join("parts/map.csv")).unwrap(),
         whole["map.csv"]
@@ -407,27 +371,27 @@ fn parts_that_do_not_belong_together_are_refused() {
     let folder = folder_with_map(4);
     let path = folder.path();
     for shard in ["1/2", "2/2"] {
-        succeed(path, &["map", "s.toml", "--shard", shard, "--out", "a"]);
+        done(path, &["map", "s.toml", "--shard", shard, "--out", "a"]);
     }
-    succeed(path, &["map", "s.toml", "--shard", "1/4", "--out", "a"]);
+    done(path, &["map", "s.toml", "--shard", "1/4", "--out", "a"]);
     let (one, two) = ("a/map-1-of-2.part", "a/map-2-of-2.part");
-    refuse(
+    refused(
         path,
         &["merge", one],
         &["1 of 2 parts missing: the first is 2/2"],
     );
-    refuse(
+    refused(
         path,
         &["merge", one, two, one],
         &["part 1/2, and so is a/map-1-of-2.part"],
     );
-    refuse(
+    refused(
         path,
         &["merge", two, "a/map-1-of-4.part"],
         &["4 parts instead of 2"],
     );
-    refuse(path, &["merge", one, "s.toml"], &["s.toml: ", "not a part"]);
-    refuse(
+    refused(path, &["merge", one, "s.toml"], &["s.toml: ", "not a part"]);
+    refused(
         path,
         &["merge", one, "nowhere"],
         &["nowhere: cannot be read"],
@@ -439,8 +403,8 @@ fn parts_that_do_not_belong_together_are_refused() {
         text.replace("amplitude_g = 0.4", "amplitude_g = 0.5"),
     )
     .unwrap();
-    succeed(path, &["map", "s.toml", "--shard", "2/2", "--out", "b"]);
-    refuse(
+    done(path, &["map", "s.toml", "--shard", "2/2", "--out", "b"]);
+    refused(
         path,
         &["merge", one, "b/map-2-of-2.part"],
         &["\"amplitude_g = 0.5\" instead of \"amplitude_g = 0.4\""],
@@ -449,20 +413,20 @@ fn parts_that_do_not_belong_together_are_refused() {
     let part = fs::read_to_string(path.join(two)).unwrap();
     let older = part.replacen(env!("CARGO_PKG_VERSION"), "0.0.9", 1);
     fs::write(path.join("older.part"), older).unwrap();
-    refuse(path, &["merge", one, "older.part"], &["version \"0.0.9\""]);
+    refused(path, &["merge", one, "older.part"], &["version \"0.0.9\""]);
     let lines: Vec<_> = part.lines().collect();
     fs::write(
         path.join("short.part"),
         lines[..lines.len() - 1].join("\n") + "\n",
     )
     .unwrap();
-    refuse(
+    refused(
         path,
         &["merge", one, "short.part"],
         &["9 of its 10 cases", "--shard 2/2 --resume"],
     );
     fs::write(path.join("twice.part"), format!("{part}{}\n", lines[3])).unwrap();
-    refuse(
+    refused(
         path,
         &["merge", one, "twice.part"],
         &["line 12", "appears twice"],
@@ -470,7 +434,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     let other = fs::read_to_string(path.join(one)).unwrap();
     let alien = other.lines().last().unwrap();
     fs::write(path.join("alien.part"), format!("{part}{alien}\n")).unwrap();
-    refuse(
+    refused(
         path,
         &["merge", one, "alien.part"],
         &["line 12", "another part"],
@@ -486,7 +450,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     ] {
         assert!(edited != row);
         fs::write(path.join("edited.part"), part.replace(row, &edited)).unwrap();
-        refuse(
+        refused(
             path,
             &["merge", one, "edited.part"],
             &["edited.part: line 5: damaged", "compute this part again"],
@@ -499,10 +463,10 @@ fn parts_that_do_not_belong_together_are_refused() {
 fn a_torn_part_is_resumed_to_the_same_results() {
     let folder = folder_with_map(7);
     let path = folder.path();
-    succeed(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);
+    done(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);
     let whole = files(&path.join("whole"));
     // One part of one is the whole.
-    succeed(
+    done(
         path,
         &[
             "map",
@@ -515,8 +479,8 @@ fn a_torn_part_is_resumed_to_the_same_results() {
         ],
     );
     assert_eq!(files(&path.join("one")), whole);
-    succeed(path, &["map", "s.toml", "--out", "parts", "--shard", "1/2"]);
-    succeed(path, &["map", "s.toml", "--out", "parts", "--shard", "2/2"]);
+    done(path, &["map", "s.toml", "--out", "parts", "--shard", "1/2"]);
+    done(path, &["map", "s.toml", "--out", "parts", "--shard", "2/2"]);
     let part = fs::read(path.join("parts/map-1-of-2.part")).unwrap();
     let header = part.iter().position(|byte| *byte == b'\n').unwrap();
     for cut in [
@@ -530,14 +494,14 @@ fn a_torn_part_is_resumed_to_the_same_results() {
         part.len(),
     ] {
         fs::write(path.join("parts/map-1-of-2.part"), &part[..cut]).unwrap();
-        succeed(
+        done(
             path,
             &[
                 "map", "s.toml", "--out", "parts", "--shard", "1/2", "--resume",
             ],
         );
         let parts = ["parts/map-1-of-2.part", "parts/map-2-of-2.part"];
-        succeed(
+        done(
             path,
             &[&["merge", "--no-impact", "--out", "merged"], &parts[..]].concat(),
         );
@@ -549,7 +513,7 @@ fn a_torn_part_is_resumed_to_the_same_results() {
 fn interrupted_work_is_neither_lost_nor_mixed() {
     let folder = folder_with_map(5);
     let path = folder.path();
-    succeed(path, &["map", "s.toml", "--out", "r", "--shard", "1/2"]);
+    done(path, &["map", "s.toml", "--out", "r", "--shard", "1/2"]);
     let part = fs::read_to_string(path.join("r/map-1-of-2.part")).unwrap();
     let some = part
         .lines()
@@ -558,7 +522,7 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
         .collect::<String>();
     fs::write(path.join("r/map-1-of-2.part"), &some).unwrap();
     let again = ["map", "s.toml", "--out", "r", "--shard", "1/2"];
-    refuse(path, &again, &["3 cases", "--resume", "remove it"]);
+    refused(path, &again, &["3 cases", "--resume", "remove it"]);
     // A part under the name of another.
     let renamed = ["map", "s.toml", "--out", "r", "--shard", "2/2", "--resume"];
     fs::copy(
@@ -566,7 +530,7 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
         path.join("r/map-2-of-2.part"),
     )
     .unwrap();
-    refuse(
+    refused(
         path,
         &renamed,
         &["map-2-of-2.part", "part 1/2 instead of 2/2"],
@@ -580,8 +544,8 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
     fs::write(path.join("s.toml"), text.replace("5.0", "6.0")).unwrap();
     let resume = [&again[..], &["--resume"]].concat();
     let difference = "\"mean_radius_m = 5.0\" instead of \"mean_radius_m = 6.0\"";
-    refuse(path, &resume, &[difference, "another folder"]);
-    refuse(path, &again, &[difference, "another folder"]);
+    refused(path, &resume, &[difference, "another folder"]);
+    refused(path, &again, &[difference, "another folder"]);
     assert_eq!(
         fs::read_to_string(path.join("r/map-1-of-2.part")).unwrap(),
         some
@@ -589,8 +553,8 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
     // What is complete is not computed again.
     fs::write(path.join("s.toml"), text).unwrap();
     fs::write(path.join("r/map-1-of-2.part"), &part).unwrap();
-    succeed(path, &again);
-    succeed(path, &resume);
+    done(path, &again);
+    done(path, &resume);
     assert_eq!(
         fs::read_to_string(path.join("r/map-1-of-2.part")).unwrap(),
         part
@@ -601,7 +565,7 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
 fn two_programs_do_not_work_on_one_part() {
     let folder = folder_with_map(300);
     let path = folder.path();
-    let mut child = start_long_work(path);
+    let mut child = start_long_work(path, &[]);
     let part = path.join("r/map.part");
     let begun = Instant::now();
     while fs::metadata(&part).map_or(0, |file| file.len()) < 10_000 {
@@ -610,20 +574,18 @@ fn two_programs_do_not_work_on_one_part() {
     }
     for more in [&[][..], &["--resume"]] {
         let again = [&["map", "s.toml", "--out", "r"], more].concat();
-        refuse(path, &again, &["another program is at work on it"]);
+        refused(path, &again, &["another program is at work on it"]);
     }
     child.kill().unwrap();
     child.wait().unwrap();
 }
 
 /// A map that takes some seconds on one thread.
-fn start_long_work(folder: &Path) -> Child {
-    command(
-        folder,
-        &["map", "s.toml", "--out", "r", "--resume", "--threads", "2"],
-    )
-    .spawn()
-    .unwrap()
+fn start_long_work(folder: &Path, more: &[&str]) -> Child {
+    let arguments = ["map", "s.toml", "--out", "r", "--resume", "--threads", "2"];
+    command(folder, &[&arguments[..], more].concat())
+        .spawn()
+        .unwrap()
 }
 
 #[test]
@@ -631,12 +593,12 @@ fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
     let folder = folder_with_map(60);
     let path = folder.path();
     let begun = Instant::now();
-    succeed(path, &["map", "s.toml", "--out", "whole"]);
+    done(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);
     let whole_s = begun.elapsed().as_secs_f64();
     let mut kills = 0;
     let mut random = common::Random(7);
     for _ in 0..40 {
-        let mut child = start_long_work(path);
+        let mut child = start_long_work(path, &["--no-impact"]);
         sleep(Duration::from_secs_f64(0.4 * whole_s * random.next()));
         if child.try_wait().unwrap().is_none() {
             child.kill().unwrap();
@@ -646,12 +608,15 @@ fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
         // Results are complete or not there.
         if let Ok(table) = fs::read(path.join("r/map.csv")) {
             assert!(table == fs::read(path.join("whole/map.csv")).unwrap());
-            assert!(path.join("r/map.svg").exists() && path.join("r/map.json").exists());
+            for name in ["map.svg", "map.json", "no_impact.csv"] {
+                assert!(path.join("r").join(name).exists(), "{name}");
+            }
             break;
         }
     }
     assert!(kills >= 2, "{kills} kills");
-    succeed(path, &["map", "s.toml", "--out", "r", "--resume"]);
+    let again = ["map", "s.toml", "--out", "r", "--resume", "--no-impact"];
+    done(path, &again);
     assert_eq!(files(&path.join("r")), files(&path.join("whole")));
 }
 
@@ -660,7 +625,7 @@ fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
 fn an_interrupt_ends_the_work_within_a_second_and_says_how_to_go_on() {
     let folder = folder_with_map(200);
     let path = folder.path();
-    let child = start_long_work(path);
+    let child = start_long_work(path, &[]);
     let part = path.join("r/map.part");
     let begun = Instant::now();
     while fs::metadata(&part).map_or(0, |file| file.len()) < 10_000 {
@@ -794,19 +759,19 @@ fn a_map_needs_a_pulse_and_a_column_has_no_radius() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     fs::write(path.join("s.toml"), SEMICIRCLE).unwrap();
-    refuse(path, &["map", "s.toml"], &["no [map]", "amplitude_g = {"]);
-    refuse(path, &["map", "s.toml", "--shard", "3/2"], &["1 <= I <= N"]);
+    refused(path, &["map", "s.toml"], &["no [map]", "amplitude_g = {"]);
+    refused(path, &["map", "s.toml", "--shard", "3/2"], &["1 <= I <= N"]);
     let shapes = "[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
                   [map]\nthickness_ratio = [0.15]\nembrace_deg = [180]\n";
     fs::write(path.join("s.toml"), format!("{SEMICIRCLE}{shapes}")).unwrap();
-    refuse(path, &["map", "s.toml", "--no-impact"], &["amplitude_g"]);
+    refused(path, &["map", "s.toml", "--no-impact"], &["amplitude_g"]);
     let initial = "[initial]\nsway = \"left\"\nrotation_rad = 0.01\n";
     fs::write(
         path.join("s.toml"),
         format!("{SEMICIRCLE}{initial}{shapes}"),
     )
     .unwrap();
-    refuse(path, &["map", "s.toml"], &["leave [initial] out"]);
+    refused(path, &["map", "s.toml"], &["leave [initial] out"]);
 }
 
 #[test]

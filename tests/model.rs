@@ -15,7 +15,7 @@ use archrock::{
     ImpactModel, Initial, Model, OpenHinge, Pose, Pulse, Recorder, Request, RockingColumn, Sample,
     SimulationError, State, Sway,
 };
-use common::{GRAVITY, four_links, run, run_sampled, sampled, semicircle, seven_voussoirs};
+use common::{GRAVITY, four_links, number, run, run_sampled, sampled, semicircle, seven_voussoirs};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -311,26 +311,6 @@ fn energies_of_columns_are_over_the_barrier_of_the_link_that_moves() {
     energies_are_over_the_barrier_of_the_link_that_moves(&column());
 }
 
-/// Numbers that a caller may get wrong, and ones that are fine.
-fn any_number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        3 => any::<f64>(),
-        2 => proptest::num::f64::ANY,
-        3 => (-12.0_f64..12.0, any::<bool>()).prop_map(|(exponent, negative)| {
-            10_f64.powf(exponent) * if negative { -1.0 } else { 1.0 }
-        }),
-        2 => proptest::sample::select(vec![
-            f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MIN_POSITIVE, 5e-324,
-            1e-320, f64::MAX, f64::MIN, f64::EPSILON, 1.0, 180.0, 2.0, -1.0,
-        ]),
-    ]
-}
-
-/// Mostly fine, so that one wrong number is found among right ones.
-fn number(fine: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
-    prop_oneof![3 => fine, 1 => any_number()]
-}
-
 fn any_model() -> impl Strategy<Value = ImpactModel> {
     prop_oneof![
         Just(ImpactModel::MaxRestitution),
@@ -490,6 +470,23 @@ proptest! {
             }
         }
     }
+}
+
+/// At such times the errors of a step are below what numbers tell apart, and no tolerance can be met.
+#[test]
+fn a_history_of_less_than_a_nanosecond_is_refused() {
+    let ground = pulse(Pulse::OneSine, 0.4, 0.3);
+    for end_s in [5e-324, 9.9e-10] {
+        let error = column()
+            .simulate(&ground, &sampled(end_s, 0.001), None)
+            .unwrap_err();
+        assert!(matches!(error, SimulationError::Argument(error) if error.argument == "end_s"));
+    }
+    assert!(
+        column()
+            .simulate(&ground, &sampled(1e-9, 0.001), None)
+            .is_ok()
+    );
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! What the pictures show: read back from the SVG and compared with the mechanics.
 #![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
+mod program;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -15,6 +16,7 @@ use archrock::studies::runner::Study as _;
 use archrock::studies::survey::shape_result;
 use archrock::{Arch, FourLinkArch, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
+use program::{done, printed};
 use roxmltree::{Document, Node};
 
 /// Coordinates are written to thousandths of a pixel, paths of curves to hundredths.
@@ -245,9 +247,9 @@ fn the_second_impact_has_a_picture_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
     fs::write(folder.path().join("s.toml"), text).unwrap();
-    archrock(
-        &["impact", "s.toml", "--link", "2", "--plot", "2.svg"],
+    printed(
         folder.path(),
+        &["impact", "s.toml", "--link", "2", "--plot", "2.svg"],
     );
     assert_eq!(
         fs::read_to_string(folder.path().join("2.svg")).unwrap(),
@@ -302,15 +304,6 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     assert!((worst - 0.50199).abs() < 5e-4, "{worst}");
 }
 
-fn archrock(arguments: &[&str], folder: &Path) {
-    let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{output:?}");
-}
-
 fn scenario(folder: &Path, more: &str) {
     let text = format!(
         "title = \"A < B & C\"\n[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\n\
@@ -327,7 +320,7 @@ fn run_draws_the_history() {
         "[ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n\
          [simulation]\noutput_step_s = 1e-4\n",
     );
-    archrock(&["run", "s.toml", "--out", "out"], folder.path());
+    done(folder.path(), &["run", "s.toml", "--out", "out"]);
     let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
     // Thirty thousand samples of six quantities; thinned.
     assert!(text.len() < 400_000, "{}", text.len());
@@ -414,7 +407,7 @@ fn a_run_in_which_nothing_moves_has_its_picture_too() {
         folder.path(),
         &format!("{weak}[simulation]\nduration_s = 1.0\n"),
     );
-    archrock(&["run", "s.toml", "--out", "out"], folder.path());
+    done(folder.path(), &["run", "s.toml", "--out", "out"]);
     let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     Document::parse(&text).unwrap();
@@ -424,7 +417,7 @@ fn a_run_in_which_nothing_moves_has_its_picture_too() {
 fn chart_has_a_curve_for_every_angle_and_the_published_values() {
     let folder = tempfile::tempdir().unwrap();
     scenario(folder.path(), "");
-    archrock(&["chart", "s.toml", "--out", "out"], folder.path());
+    done(folder.path(), &["chart", "s.toml", "--out", "out"]);
     let table = fs::read_to_string(folder.path().join("out/chart.csv")).unwrap();
     let header = table.lines().next().unwrap();
     assert_eq!(
@@ -467,7 +460,6 @@ fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
     assert!(shape_result(180.0, 0.1, sites, ImpactModel::MaxRestitution).is_none());
 }
 
-/// Rectangles of a path of cells: left, right, top, bottom.
 /// Bands that are wide enough to be seen have the sway of the events between which they lie; hops that are not
 /// share one shade, which is neither.
 #[test]
@@ -477,7 +469,7 @@ fn bands_have_the_sway_of_the_events() {
         folder.path(),
         "[ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n",
     );
-    archrock(&["run", "s.toml", "--out", "out"], folder.path());
+    done(folder.path(), &["run", "s.toml", "--out", "out"]);
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
     let picture = read("history.svg");
     let document = Document::parse(&picture).unwrap();
@@ -492,6 +484,7 @@ fn bands_have_the_sway_of_the_events() {
     let end_s = summary["outcome_time_s"].as_f64().unwrap();
     let place = |time_s: f64| 85.0 + 790.0 * time_s / end_s;
     let mut hops = 0;
+    let mut swaying = [0, 0];
     for name in ["right", "left", "hops"] {
         let bands = named(&document, name);
         let bands = bands.iter().filter(|node| node.has_tag_name("rect"));
@@ -515,12 +508,32 @@ fn bands_have_the_sway_of_the_events() {
                 .rfind(|(time_s, _)| *time_s <= middle_s)
                 .unwrap();
             assert_eq!(here.1, name, "{left} {width}");
+            swaying[usize::from(name == "left")] += 1;
         }
+    }
+    // In each of four panels, for each event that is followed by a visible pause; there are several to each side.
+    let seen = |side: &str| {
+        let ends = events
+            .iter()
+            .skip(1)
+            .map(|(time_s, _)| *time_s)
+            .chain([end_s]);
+        let visible = |((time_s, sway), end_s): &(&(f64, String), f64)| {
+            sway == side && place(*end_s) - place(*time_s) > 5.0
+        };
+        events.iter().zip(ends).filter(visible).count()
+    };
+    for (count, side) in swaying.into_iter().zip(["right", "left"]) {
+        assert!(
+            count >= 4 * seen(side) && seen(side) >= 3,
+            "{side}: {count}"
+        );
     }
     // In each of four panels, at the end of the decay.
     assert!(hops > 4 * 20, "{hops}");
 }
 
+/// Rectangles of a path of cells: left, right, top, bottom.
 fn rectangles(document: &Document<'_>, name: &str) -> Vec<[f64; 4]> {
     let paths = named(document, name);
     let paths = paths.iter().map(|node| node.attribute("d").unwrap());

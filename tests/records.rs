@@ -3,17 +3,18 @@
 
 mod common;
 mod motions;
+mod program;
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use archrock::scenario::Ground;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
-use common::impact_times_s;
+use common::{impact_times_s, pairs};
 use motions::{G, NGA_WEST2, Style, at2, run, scaled, semicircle, synthetic};
+use program::refused;
 
 const ARCH: &str =
     "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n[ground.record]\n";
@@ -46,12 +47,12 @@ fn a_sampled_half_sine_does_what_a_half_sine_does() {
     );
     assert!(a.summary.outcome == Outcome::Rest && b.summary.outcome == Outcome::Rest);
     assert!(a.summary.impacts > 3 && a.summary.peak_rotations_rad[0] > 0.01);
-    for (row_a, row_b) in rows_a.iter().zip(&rows_b) {
-        for (x, y) in row_a.rotations_rad.iter().zip(&row_b.rotations_rad) {
+    for (row_a, row_b) in pairs(&rows_a, &rows_b) {
+        for (x, y) in pairs(&row_a.rotations_rad, &row_b.rotations_rad) {
             assert!((x - y).abs() < 1e-5, "{} s", row_a.time_s);
         }
     }
-    for (x, y) in impact_times_s(&a).into_iter().zip(impact_times_s(&b)) {
+    for (x, y) in pairs(impact_times_s(&a), impact_times_s(&b)) {
         // The error of the rotation over the rate at which it closes.
         assert!((x - y).abs() < 1e-4);
     }
@@ -79,15 +80,11 @@ fn further_corners_change_nothing() {
         run(&arch, &cut, G, None, 8.0),
     );
     assert!(a.summary.impacts > 48 && a.summary.impacts == b.summary.impacts);
-    for (x, y) in impact_times_s(&a).into_iter().zip(impact_times_s(&b)) {
+    for (x, y) in pairs(impact_times_s(&a), impact_times_s(&b)) {
         assert!((x - y).abs() < 1e-9);
     }
-    for (x, y) in a
-        .summary
-        .peak_rotations_rad
-        .iter()
-        .zip(&b.summary.peak_rotations_rad)
-    {
+    let peaks_rad = pairs(a.summary.peak_rotations_rad, b.summary.peak_rotations_rad);
+    for (x, y) in peaks_rad {
         assert!((x / y - 1.0).abs() < 1e-9);
     }
 }
@@ -139,7 +136,7 @@ fn the_way_a_record_is_written_changes_no_bit() {
         panic!("a record")
     };
     // Seven digits were written.
-    for (sample, original) in read.main.samples.iter().zip(&record) {
+    for (sample, original) in pairs(read.main.samples.iter(), &record) {
         assert!((sample.0 - original.0).abs() < 1e-14);
         assert!((sample.1 - original.1).abs() <= 0.5001e-6 * original.1.abs());
     }
@@ -322,18 +319,11 @@ fn a_faulty_record_ends_the_program_with_two() {
     let folder = tempfile::tempdir().unwrap();
     let text = "A\nNPTS= 3, DT= .01\n.1 oops .2\n";
     let _ = scenario(folder.path(), &[("a.at2", text)], "file = 'a.at2'");
-    let output = Command::new(env!("CARGO_BIN_EXE_archrock"))
-        .args(["run", "--out", "results", "s.toml"])
-        .current_dir(&folder)
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        message.contains(
-            "s.toml:6:8: `file = 'a.at2'` is faulty: a.at2:3: `oops` is not a finite number"
-        ),
-        "{message}"
+    let words = "s.toml:6:8: `file = 'a.at2'` is faulty: a.at2:3: `oops` is not a finite number";
+    refused(
+        folder.path(),
+        &["run", "--out", "results", "s.toml"],
+        &[words],
     );
     assert!(!folder.path().join("results").exists());
 }
@@ -369,8 +359,7 @@ fn a_mirrored_record_mirrors_the_history() {
         run(&arch, &mirrored, G, None, 12.0),
     );
     assert!(a.summary.impacts > 10 && a.summary.impacts == b.summary.impacts);
-    assert_eq!(rows_a.len(), rows_b.len());
-    for (x, y) in rows_a.iter().zip(&rows_b) {
+    for (x, y) in pairs(&rows_a, &rows_b) {
         let from_right = y.rotations_rad.iter().rev();
         let seen_in_mirror: Vec<f64> = from_right.map(|rotation| 0.0 - rotation).collect();
         assert_eq!(x.rotations_rad, seen_in_mirror);
@@ -392,8 +381,7 @@ fn the_record_among_the_scenarios_is_the_generated_one() {
     let Some(Ground::Record(record)) = &scenario.ground else {
         panic!("a record")
     };
-    assert_eq!(record.main.samples.len(), generated.len());
-    for (sample, original) in record.main.samples.iter().zip(&generated) {
+    for (sample, original) in pairs(record.main.samples.iter(), &generated) {
         // Seven digits, and sines that differ between platforms in the last place.
         assert!((sample.1 - original.1).abs() < 0.51e-6 * original.1.abs() + 1e-15);
     }

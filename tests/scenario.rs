@@ -1,8 +1,11 @@
 //! Scenario files: what is read, what is refused and where, and how it is written back.
 #![allow(clippy::unwrap_used)]
 
-use archrock::scenario::{Ground, Place, Scenario, ScenarioErrors, Simulation, Structure};
-use archrock::{Column, GroundMotion, ImpactModel, Pulse, Sway};
+use archrock::dynamics::free_hinges::Steps;
+use archrock::scenario::{
+    Ground, Place, Quantity, Scenario, ScenarioErrors, Simulation, Structure,
+};
+use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
@@ -61,8 +64,105 @@ fn defaults() {
     );
     assert_eq!(scenario.impact, ImpactModel::MaxRestitution);
     assert!(scenario.title.is_none() && scenario.ground.is_none() && scenario.initial.is_none());
-    assert!(scenario.map.is_none() && scenario.spectrum.is_none() && scenario.suite.is_none());
+    assert!(
+        scenario.free_hinges.is_none()
+            && scenario.map.is_none()
+            && scenario.spectrum.is_none()
+            && scenario.suite.is_none()
+    );
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
+
+    let scenario = parse(&format!("{COLUMN}[free_hinges]\n")).unwrap();
+    assert_eq!(scenario.free_hinges, Some(Steps::default()));
+    let Structure::Column(column) = &scenario.structure else {
+        panic!("a column")
+    };
+    assert_eq!(
+        [column.height_m(), column.width_m(), column.top_width_m()],
+        [4.0, 0.8, 0.8]
+    );
+    assert_eq!(column.drum_heights_m(), [4.0]);
+    assert_eq!([column.depth_m(), column.density_kg_m3()], [1.0, 2000.0]);
+    let none = Steps {
+        longest_step_s: None,
+        shortest_step_s: None,
+    };
+    assert_eq!(Steps::default(), none);
+}
+
+/// Every key of a row of blocks, as it is read and as it is written back.
+#[test]
+fn every_key_of_a_row() {
+    let scenario = parse(
+        "[free_hinges]\nlongest_step_s = 3e-4\nshortest_step_s = 0.00001\n\
+         [column]\nheight_m = 2\nwidth_m = 0.8\ndrum_heights_m = [0.8, 0.8, 0.4]\ntop_width_m = 0.6\n\
+         depth_m = 0.5\ndensity_kg_m3 = 2400\n",
+    )
+    .unwrap();
+    let steps = Steps {
+        longest_step_s: Some(3e-4),
+        shortest_step_s: Some(1e-5),
+    };
+    assert_eq!(scenario.free_hinges, Some(steps));
+    let column = Column::new(2.0, 0.8)
+        .and_then(|column| column.with_drum_heights_m(vec![0.8, 0.8, 0.4]))
+        .and_then(|column| column.with_top_width_m(0.6))
+        .and_then(|column| column.with_depth_m(0.5))
+        .and_then(|column| column.with_density_kg_m3(2400.0))
+        .unwrap();
+    assert_eq!(scenario.structure, Structure::Column(column));
+    let text = scenario.to_toml();
+    for lines in [
+        "[free_hinges]\nlongest_step_s = 0.0003\nshortest_step_s = 1e-5\n",
+        "[column]\nheight_m = 2.0\nwidth_m = 0.8\ndepth_m = 0.5\ndensity_kg_m3 = 2400.0\n\
+         drum_heights_m = [0.8, 0.8, 0.4]\ntop_width_m = 0.6\n",
+    ] {
+        assert!(text.contains(lines), "{lines}\nis not in:\n{text}");
+    }
+    assert!(!text.contains("[impact]"), "{text}");
+    assert_eq!(parse(&text), Ok(scenario));
+}
+
+/// A row is released from its first mechanism: drums turn about the base, and what does not start as four links has none.
+#[test]
+fn releases_of_rows() {
+    let released = |before: &str, rotation: &str| {
+        parse(&format!(
+            "{before}[free_hinges]\n[initial]\nsway = 'left'\nrotation_rad = {rotation}\n"
+        ))
+    };
+    let drums = format!("{COLUMN}drums = 3\n");
+    assert_eq!(
+        released(&drums, "1.57")
+            .unwrap()
+            .initial
+            .unwrap()
+            .rotation_rad,
+        1.57
+    );
+    let flat = released(&drums, "1.571")
+        .expect_err("lies on its side")
+        .to_string();
+    assert!(flat.ends_with("must be below 1.5707963267948966"), "{flat}");
+    let seven = format!("{ARCH}voussoirs = 7\n");
+    assert!(released(&seven, "0.02").is_ok());
+    let far = released(&seven, "0.9")
+        .expect_err("beyond the limit")
+        .to_string();
+    assert!(
+        far.starts_with("s.toml:9:16: `rotation_rad = 0.9` is beyond the limit"),
+        "{far}"
+    );
+    let thick = seven.replace("0.15", "0.6").replace("180.0", "60.0");
+    assert!(parse(&format!("{thick}[free_hinges]\n")).is_ok());
+    let none = released(&thick, "1e-9")
+        .expect_err("no mechanism")
+        .to_string();
+    assert!(
+        none.starts_with("s.toml:7:1: [initial] releases from the first mechanism"),
+        "{none}"
+    );
+    assert!(none.ends_with("leave [initial] out"), "{none}");
 }
 
 /// Every key of a history, as it is read and as it is written back.
@@ -142,14 +242,41 @@ p_t = [1.0]
 acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "logarithmic" }
 "#
     );
+    // What is written is what was read, not only what was given.
+    assert_eq!(scenario.title.as_deref(), Some("all of it"));
+    let arch = Arch::new(10.0, 0.15, 157.5)
+        .and_then(|arch| arch.with_depth_m(2.0))
+        .and_then(|arch| arch.with_density_kg_m3(2000.0))
+        .and_then(|arch| arch.with_voussoirs(7))
+        .unwrap();
+    assert_eq!(scenario.structure, Structure::Arch(arch));
     let Some(Ground::Pulse(pulse)) = &scenario.ground else {
         panic!("a pulse")
     };
     assert_eq!(pulse.kind, Pulse::MavroeidisPapageorgiou);
-    assert_eq!(
-        [pulse.amplitude_g, pulse.cycles, pulse.phase_deg],
-        [-1000.0, 3.0, 90.0]
-    );
+    let numbers = [
+        pulse.amplitude_g,
+        pulse.vertical_amplitude_g,
+        pulse.duration_s,
+        pulse.start_s,
+        pulse.cycles,
+        pulse.phase_deg,
+    ];
+    assert_eq!(numbers, [-1000.0, 0.0, 0.5, 1.0, 3.0, 90.0]);
+    let simulation = Simulation {
+        duration_s: 20.0,
+        output_step_s: 20.0,
+        relative_tolerance: 1e-6,
+        rest_energy_ratio: 0.1,
+        gravity_m_s2: 1.62,
+    };
+    assert_eq!(scenario.simulation, simulation);
+    let map = scenario.map.as_ref().unwrap();
+    let axes = [&map.x, &map.y].map(|axis| (axis.quantity, axis.sequence.values()));
+    assert_eq!(axes[0], (Quantity::Duration, vec![0.1, 0.55, 1.0]));
+    assert_eq!(axes[1], (Quantity::Amplitude, vec![1.0, 2.0]));
+    assert!(!map.spread);
+    assert_eq!(scenario.spectrum.as_ref().unwrap().p_t.values(), [1.0]);
     assert_eq!(
         scenario.impact,
         ImpactModel::Prescribed { restitution: 1.0 }
@@ -529,6 +656,38 @@ fn any_column() -> impl Strategy<Value = String> {
     })
 }
 
+/// Columns of drums, and arches, whose hinges are free.
+fn any_row() -> impl Strategy<Value = String> {
+    let size = || magnitude(0.1, 10.0);
+    let step = || proptest::option::of(magnitude(1e-6, 1e-2));
+    let key = |name: &str, value: Option<f64>| {
+        value.map_or(String::new(), |value| format!("{name} = {value:?}\n"))
+    };
+    let steps = (step(), step()).prop_map(move |(one, other)| {
+        // In either order, but the longest is not the shorter one.
+        let (longest, shortest) = match (one, other) {
+            (Some(one), Some(other)) => (Some(one.max(other)), Some(one.min(other))),
+            steps => steps,
+        };
+        let keys = key("longest_step_s", longest) + &key("shortest_step_s", shortest);
+        format!("[free_hinges]\n{keys}")
+    });
+    let heights = proptest::collection::vec(size(), 1..6);
+    let drummed = (heights, any::<bool>(), size(), proptest::option::of(size())).prop_map(
+        move |(heights_m, equal, width_m, top_width_m)| {
+            let height_m: f64 = heights_m.iter().sum();
+            let drums = match equal {
+                true => format!("drums = {}\n", heights_m.len()),
+                false => format!("drum_heights_m = {heights_m:?}\n"),
+            };
+            let top = key("top_width_m", top_width_m);
+            format!("[column]\nheight_m = {height_m:?}\nwidth_m = {width_m:?}\n{drums}{top}")
+        },
+    );
+    let arch = any_arch().prop_filter("has joints", |arch| arch.contains("voussoirs"));
+    (prop_oneof![drummed, arch], steps).prop_map(|(structure, steps)| structure + &steps)
+}
+
 /// Arches that stand and start as four-link mechanisms.
 fn any_arch() -> impl Strategy<Value = String> {
     let size = || magnitude(1e-3, 1e6);
@@ -609,9 +768,11 @@ proptest! {
     #[test]
     fn to_toml_reads_back_the_same(
         title in proptest::option::of(any::<String>()),
-        structure in prop_oneof![any_arch(), any_column()],
+        structure in prop_oneof![
+            (prop_oneof![any_arch(), any_column()], any_impact()).prop_map(|(four, impact)| four + &impact),
+            any_row(),
+        ],
         ground in proptest::option::of(any_ground()),
-        impact in any_impact(),
         initial in proptest::option::of(any_initial()),
         simulation in any_simulation(),
     ) {
@@ -620,7 +781,7 @@ proptest! {
             format!("title = {}\n", serde_json::Value::from(title.replace('\u{7f}', "")))
         });
         let (ground, initial) = (ground.unwrap_or_default(), initial.unwrap_or_default());
-        let scenario = parse(&[title, structure, ground, impact, initial, simulation].concat()).unwrap();
+        let scenario = parse(&[title, structure, ground, initial, simulation].concat()).unwrap();
         let text = scenario.to_toml();
         let json: serde_json::Value = toml::from_str(&text).unwrap();
         prop_assert_eq!(json, scenario.to_json());

@@ -11,7 +11,7 @@ use archrock::output::spectrum::draw;
 use archrock::studies::runner::Study as _;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow, StructureKind};
 use archrock::{GroundMotion, MechanismModel, Outcome, Pulse, Request, Scenario, Sway};
-use program::{archrock, stderr};
+use program::{done, printed, refused};
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
@@ -428,14 +428,6 @@ fn pictures_of_much_and_of_little() {
     assert!(picture(&none).is_empty());
 }
 
-#[track_caller]
-fn succeeds(folder: &Path, arguments: &[&str]) -> String {
-    let output = archrock(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(arguments[0] == "check" || output.stdout.is_empty());
-    stderr(&output)
-}
-
 fn results(folder: &Path) -> [Vec<u8>; 3] {
     let mut names: Vec<_> = fs::read_dir(folder)
         .unwrap()
@@ -453,7 +445,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     let root = tempfile::tempdir().unwrap();
     let folder = root.path();
     fs::write(folder.join("s.toml"), small(ARCH, "one_cosine", "")).unwrap();
-    let said = succeeds(folder, &["spectrum", "s.toml", "--threads", "1"]);
+    let said = done(folder, &["spectrum", "s.toml", "--threads", "1"]);
     assert!(said.starts_with("6 points: "), "{said}");
     assert!(
         said.ends_with("results in results/s: spectrum.svg, spectrum.json, spectrum.csv\n"),
@@ -468,7 +460,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     ));
 
     for part in ["1/4", "3/4", "2/4", "4/4"] {
-        succeeds(
+        done(
             folder,
             &["spectrum", "s.toml", "--out", "parts", "--shard", part],
         );
@@ -479,12 +471,11 @@ fn parts_threads_and_interruptions_change_nothing() {
             .into_iter()
             .chain(parts.iter().map(String::as_str))
     };
-    let said = succeeds(folder, &merge().collect::<Vec<_>>());
+    let said = done(folder, &merge().collect::<Vec<_>>());
     assert!(said.starts_with("6 points: "), "{said}");
     assert_eq!(results(&folder.join("parts")), whole);
-    let refused = archrock(folder, &merge().chain(["--no-impact"]).collect::<Vec<_>>());
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(stderr(&refused).contains("--no-impact is about maps"));
+    let no_impact: Vec<_> = merge().chain(["--no-impact"]).collect();
+    refused(folder, &no_impact, &["--no-impact is about maps"]);
 
     // As if it had been killed within its third row.
     fs::create_dir(folder.join("killed")).unwrap();
@@ -501,14 +492,8 @@ fn parts_threads_and_interruptions_change_nothing() {
     let cut = text.trim_end().len() - 5;
     fs::write(folder.join("killed/spectrum.part"), &text[..cut]).unwrap();
     let again = ["spectrum", "s.toml", "--out", "killed"];
-    let refused = archrock(folder, &again);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(
-        stderr(&refused).contains("3 cases of this study"),
-        "{}",
-        stderr(&refused)
-    );
-    succeeds(folder, &[&again[..], &["--resume"]].concat());
+    refused(folder, &again, &["3 cases of this study"]);
+    done(folder, &[&again[..], &["--resume"]].concat());
     assert_eq!(results(&folder.join("killed")), whole);
 }
 
@@ -517,18 +502,16 @@ fn check_prints_the_table_resolved_where_it_is_given() {
     let root = tempfile::tempdir().unwrap();
     let check = |text: &str| {
         fs::write(root.path().join("s.toml"), text).unwrap();
-        let output = archrock(root.path(), &["check", "s.toml"]);
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        String::from_utf8(output.stdout).unwrap()
+        printed(root.path(), &["check", "s.toml"])
     };
     let text = format!("{ARCH}{}", pulse("ricker"));
     assert!(!check(&text).contains("[spectrum]"));
     let resolved = "[spectrum]\n\
         p_t = { from = 0.2, to = 10.0, count = 50, spacing = \"logarithmic\" }\n\
         acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = \"logarithmic\" }\n";
-    let printed = check(&format!("{text}[spectrum]\n"));
-    assert!(printed.ends_with(resolved), "{printed}");
-    assert_eq!(check(&printed), printed);
+    let first = check(&format!("{text}[spectrum]\n"));
+    assert!(first.ends_with(resolved), "{first}");
+    assert_eq!(check(&first), first);
     let own = check(&format!("{text}[spectrum]\np_t = [1, 2]\n"));
     assert!(
         own.contains("p_t = [1.0, 2.0]\nacceleration_over_incipient = { from = 1.0,"),
@@ -540,9 +523,8 @@ fn check_prints_the_table_resolved_where_it_is_given() {
 fn the_command_refuses_what_has_no_spectrum() {
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("s.toml"), ARCH).unwrap();
-    let output = archrock(root.path(), &["spectrum", "s.toml"]);
-    assert_eq!(output.status.code(), Some(2));
     let words = "error: s.toml: a spectrum needs a pulse: give a table [ground.<kind>]";
-    assert!(stderr(&output).starts_with(words), "{}", stderr(&output));
+    let said = refused(root.path(), &["spectrum", "s.toml"], &[]);
+    assert!(said.starts_with(words), "{said}");
     assert!(!root.path().join("results").exists());
 }

@@ -21,11 +21,11 @@ use archrock::studies::threshold::{
 };
 use archrock::{
     Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
-    SimulationError, Summary, Sway, WaveTrain,
+    Scenario, SimulationError, Summary, Sway, WaveTrain,
 };
-use common::{GRAVITY, request, semicircle, seven_voussoirs};
+use common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use nalgebra::Vector2;
-use program::{archrock, stderr};
+use program::{archrock, printed, refused, stderr};
 use serde_json::Value;
 
 fn found(model: &dyn Model, ground: &GroundMotion, end_s: f64, factors: &Factors) -> Threshold {
@@ -144,7 +144,7 @@ fn factor_times_amplitude_counts() {
     let half = pulse(Pulse::OneCosine, 0.5, 0.9);
     let a = found(&arch, &whole, 10.0, &factors(0.2, 2.0, 0.1));
     let b = found(&arch, &half, 10.0, &factors(0.4, 4.0, 0.1));
-    for (a, b) in a.samples.iter().zip(&b.samples) {
+    for (a, b) in pairs(&a.samples, &b.samples) {
         assert!(2.0 * a.factor == b.factor && a.result == b.result);
     }
     let doubled = |range: &FactorRange| FactorRange {
@@ -152,6 +152,7 @@ fn factor_times_amplitude_counts() {
         to: 2.0 * range.to,
         ..*range
     };
+    assert!(!a.bands.is_empty());
     assert_eq!(a.bands.iter().map(doubled).collect::<Vec<_>>(), b.bands);
     assert_eq!(a.gaps.iter().map(doubled).collect::<Vec<_>>(), b.gaps);
 }
@@ -365,19 +366,12 @@ fn file(folder: &Path, text: &str) {
     fs::write(folder.join("s.toml"), text).unwrap();
 }
 
-#[track_caller]
-fn succeeds(folder: &Path, arguments: &[&str]) -> String {
-    let output = archrock(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    String::from_utf8(output.stdout).unwrap()
-}
-
 #[test]
 fn files_agree_and_threads_change_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     file(folder, SCENARIO);
-    let said = succeeds(folder, &["threshold", "s.toml", "--threads", "1"]);
+    let said = printed(folder, &["threshold", "s.toml", "--threads", "1"]);
     // The semicircle overturns from 0.266 to 0.990 g and from 1.26 g on.
     assert!(
         said.contains("overturns from factor 0.5325 (0.2662 g) to 1.98"),
@@ -394,16 +388,16 @@ fn files_agree_and_threads_change_nothing() {
         "json",
         "--quiet",
     ];
-    let printed = succeeds(folder, &[&["threshold", "s.toml"][..], &json].concat());
+    let result = printed(folder, &[&["threshold", "s.toml"][..], &json].concat());
     let read = |folder_name: &str, name: &str| {
         fs::read_to_string(folder.join(folder_name).join(name)).unwrap()
     };
     for name in ["threshold.json", "threshold.csv", "threshold.svg"] {
         assert!(read("results/s", name) == read("r", name), "{name}");
     }
-    assert_eq!(printed, read("r", "threshold.json"));
+    assert_eq!(result, read("r", "threshold.json"));
 
-    let json: Value = serde_json::from_str(&printed).unwrap();
+    let json: Value = serde_json::from_str(&result).unwrap();
     assert_eq!(
         (&json["program"], &json["models"][0]["model"]),
         (&"archrock".into(), &"four_links".into())
@@ -420,7 +414,7 @@ fn files_agree_and_threads_change_nothing() {
     let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
     let samples = model["samples"].as_array().unwrap();
     assert_eq!((rows.len(), samples.len()), (234, 234));
-    for (row, sample) in rows.iter().zip(samples) {
+    for (row, sample) in pairs(&rows, samples) {
         assert_eq!(&row[0], "four_links");
         assert_eq!(
             row[1].parse::<f64>().unwrap(),
@@ -475,7 +469,7 @@ fn strides_and_ends_can_be_chosen() {
     let folder = folder.path();
     file(folder, SCENARIO);
     let arguments = "threshold s.toml --from 1 --to 2 --stride 0.25 --out r";
-    let said = succeeds(folder, &arguments.split(' ').collect::<Vec<_>>());
+    let said = printed(folder, &arguments.split(' ').collect::<Vec<_>>());
     assert!(
         said.contains("overturns at the smallest factor already"),
         "{said}"
@@ -487,7 +481,7 @@ fn strides_and_ends_can_be_chosen() {
         .map(|row| row.unwrap()[1].to_owned())
         .collect();
     assert_eq!(factors, ["1.0", "1.25", "1.5625", "1.953125", "2.0"]);
-    let said = succeeds(
+    let said = printed(
         folder,
         &["threshold", "s.toml", "--to", "0.4", "--out", "r"],
     );
@@ -516,15 +510,119 @@ fn what_has_no_threshold_is_refused() {
     ] {
         file(folder, text);
         let arguments = format!("threshold s.toml {more}");
-        let output = archrock(folder, &arguments.split_whitespace().collect::<Vec<_>>());
-        assert_eq!(output.status.code(), Some(2), "{more}");
-        assert!(stderr(&output).contains(words), "{}", stderr(&output));
-        assert!(output.stdout.is_empty() && !folder.join("results").exists());
+        refused(
+            folder,
+            &arguments.split_whitespace().collect::<Vec<_>>(),
+            &[words],
+        );
+        assert!(!folder.join("results").exists());
     }
     file(folder, falling);
-    let said = succeeds(folder, &["threshold", "s.toml", "--from", "1"]);
+    let said = printed(folder, &["threshold", "s.toml", "--from", "1"]);
     assert!(
         said.contains("the ground falls as fast as a free body"),
         "{said}"
+    );
+}
+
+/// What `threshold` found of each model, by the names of the models.
+fn models(folder: &Path, arguments: &str) -> Vec<(String, Value)> {
+    let all = format!("threshold s.toml --from 0.5 --to 8 --stride 1 --format json {arguments}");
+    let result = printed(folder, &all.split_whitespace().collect::<Vec<_>>());
+    let json: Value = serde_json::from_str(&result).unwrap();
+    let models = json["models"].as_array().unwrap().iter();
+    models
+        .map(|model| (model["model"].as_str().unwrap().to_owned(), model.clone()))
+        .collect()
+}
+
+fn names(models: &[(String, Value)]) -> Vec<&str> {
+    models.iter().map(|(name, _)| name.as_str()).collect()
+}
+
+/// With both models each has the scenario that it was computed from, and what it says when it is alone.
+#[test]
+fn both_models_have_their_own_scenario() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path();
+    let impact = "[impact]\nmodel = \"same_sections\"\n[simulation]\nduration_s = 4.0\n";
+    file(
+        folder,
+        &SCENARIO.replace("[ground", &format!("voussoirs = 7\n{impact}[ground")),
+    );
+    let both = models(folder, "--hinges both --out both");
+    assert_eq!(names(&both), ["four_links", "free_hinges"]);
+    let [(_, four), (_, free)] = &both[..] else {
+        panic!("two models")
+    };
+    assert_eq!(four["scenario"]["impact"]["model"], "same_sections");
+    assert_eq!(four["scenario"].get("free_hinges"), None);
+    assert!(free["scenario"]["free_hinges"].is_object());
+    assert_eq!(free["scenario"].get("impact"), None);
+    assert_ne!(four["samples"], free["samples"]);
+    assert_eq!(models(folder, "--hinges four --out four"), both[..1]);
+    assert_eq!(models(folder, "--out default"), both[..1]);
+    assert_eq!(models(folder, "--hinges free --out free"), both[1..]);
+    let table = fs::read_to_string(folder.join("both/threshold.csv")).unwrap();
+    let of = |model: &str| table.lines().filter(|line| line.starts_with(model)).count();
+    assert_eq!((of("four_links,"), of("free_hinges,")), (5, 5));
+    // That the impact model of the scenario does not count is said wherever blocks decide it, and only there.
+    for (hinges, ignored) in [("four", false), ("free", true), ("both", true)] {
+        let arguments = ["threshold", "s.toml", "--stride", "1", "--hinges", hinges];
+        let said = stderr(&archrock(folder, &arguments));
+        assert_eq!(
+            said.contains("[impact] is ignored: with free hinges"),
+            ignored,
+            "{said}"
+        );
+    }
+}
+
+/// Drums are blocks with free hinges: Housner's column has none, so neither it nor both are to be had.
+#[test]
+fn a_column_of_drums_has_a_threshold_with_free_hinges() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path();
+    let drums = |free_hinges: &str| {
+        format!(
+            "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 3\n{free_hinges}[ground.one_sine]\n\
+             amplitude_g = 0.3\nduration_s = 0.8\n[simulation]\nduration_s = 4.0\n"
+        )
+    };
+    file(folder, &drums(""));
+    let chosen = models(folder, "--hinges free --out free");
+    assert_eq!(names(&chosen), ["free_hinges"]);
+    let (_, drummed) = &chosen[0];
+    let heights_m = drummed["scenario"]["column"]["drum_heights_m"].as_array();
+    assert_eq!(heights_m.map(Vec::len), Some(3));
+    let words = "`drums = 3` needs a table [free_hinges]";
+    for more in [&[][..], &["--hinges", "four"], &["--hinges", "both"]] {
+        refused(folder, &[&["threshold", "s.toml"], more].concat(), &[words]);
+    }
+    file(folder, &drums("[free_hinges]\n"));
+    assert_eq!(models(folder, "--out default"), chosen);
+    for hinges in ["four", "both"] {
+        refused(
+            folder,
+            &["threshold", "s.toml", "--hinges", hinges],
+            &["`drums = 3`"],
+        );
+    }
+    // Its samples are plain histories.
+    let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
+    let model = scenario.model().unwrap();
+    let samples = drummed["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 5);
+    for sample in samples {
+        let factor = sample["factor"].as_f64().unwrap();
+        let ground = scenario.ground_motion().scaled(factor).unwrap();
+        let summary = model.simulate(&ground, &scenario.request(), None).unwrap();
+        assert_eq!(sample["outcome"], summary.outcome.name());
+        assert_eq!(sample["peak_rotation_rad"], summary.largest_rotation_rad());
+    }
+    let outcomes: Vec<_> = samples.iter().map(|sample| &sample["outcome"]).collect();
+    assert!(
+        outcomes.contains(&&"overturned".into()) && outcomes[0] != "overturned",
+        "{outcomes:?}"
     );
 }

@@ -6,6 +6,7 @@ use archrock::mechanics::geometry::ring::Ring;
 use archrock::{
     Arch, FourLinkArch, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample, Sway,
 };
+use proptest::prelude::*;
 
 pub const GRAVITY: f64 = 9.81;
 
@@ -158,4 +159,40 @@ pub fn assert_hinges(hinges_rad: [f64; 4], printed_deg: [f64; 4], tolerance_deg:
 /// Rotations or rates of the three bodies of an arch.
 pub fn three(of_bodies: &[f64]) -> [f64; 3] {
     of_bodies.try_into().unwrap()
+}
+
+/// Numbers that a caller may get wrong, and ones that are fine.
+pub fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        3 => any::<f64>(),
+        2 => proptest::num::f64::ANY,
+        3 => (-12.0_f64..12.0, any::<bool>()).prop_map(|(exponent, negative)| {
+            10_f64.powf(exponent) * if negative { -1.0 } else { 1.0 }
+        }),
+        2 => proptest::sample::select(vec![
+            f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MIN_POSITIVE, 5e-324,
+            1e-320, f64::MAX, f64::MIN, f64::EPSILON, 1.0, 180.0, 2.0, -1.0,
+        ]),
+    ]
+}
+
+/// Mostly fine, so that one wrong number is found among right ones.
+pub fn number(fine: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    prop_oneof![4 => fine, 1 => any_number()]
+}
+
+/// The elements of both side by side; there must be some, and as many of either.
+#[track_caller]
+pub fn pairs<A, B>(
+    a: impl IntoIterator<Item = A>,
+    b: impl IntoIterator<Item = B>,
+) -> impl Iterator<Item = (A, B)> {
+    let (a, b): (Vec<A>, Vec<B>) = (a.into_iter().collect(), b.into_iter().collect());
+    assert!(
+        !a.is_empty() && a.len() == b.len(),
+        "{} elements beside {}",
+        a.len(),
+        b.len()
+    );
+    a.into_iter().zip(b)
 }

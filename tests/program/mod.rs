@@ -1,6 +1,8 @@
 //! The program as tests run it.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
+use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -22,6 +24,50 @@ pub fn archrock(folder: &Path, arguments: &[&str]) -> Output {
 
 pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// What the program prints; it is to succeed.
+#[track_caller]
+pub fn printed(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What the program says while it works; it is to succeed, and no study prints anything.
+#[track_caller]
+pub fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let prints = !output.stdout.is_empty();
+    assert!(!prints || arguments[0] == "run", "{arguments:?} prints");
+    stderr(&output)
+}
+
+/// What the program says of wrong input, these words among it; it is to print nothing.
+#[track_caller]
+pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(output.stdout.is_empty(), "{arguments:?} prints");
+    for words in words {
+        assert!(said.contains(words), "{words:?} is not in: {said}");
+    }
+    said
+}
+
+/// All results in a folder with their contents: all files but that which names the scenario file.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| {
+            let entry = entry.unwrap();
+            let name = entry.file_name().into_string().unwrap();
+            (name, fs::read(entry.path()).unwrap())
+        })
+        .filter(|(name, _)| name != ".scenario")
+        .collect()
 }
 
 /// The scenarios of the repository.
