@@ -22,7 +22,11 @@ fn halving_the_rest_energy_changes_no_scenario() {
         }
         scenarios += 1;
         let scenario = Scenario::read(&path).unwrap();
-        let model = scenario.structure.model(scenario.impact).unwrap();
+        // What is no four links has a criterion of its own.
+        let Ok(model) = scenario.structure.model(scenario.impact) else {
+            assert!(scenario.free_hinges.is_some());
+            continue;
+        };
         let run = |part: f64| {
             let mut request = scenario.request();
             request.rest_energy_ratio *= part;

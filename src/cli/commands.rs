@@ -6,10 +6,12 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use archrock::dynamics::model::MechanismModel;
+use archrock::mechanics::blocks::Row;
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::equivalent::Block;
 use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::geometry::ring::Edge;
+use archrock::mechanics::stability::onset;
 use archrock::mechanics::sway::Sway;
 use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
@@ -33,12 +35,52 @@ pub fn limit(file: &ScenarioFile, format: Format, plot: Option<&Path>) -> Result
         let arch = arch(&scenario, "--plot is")?;
         write_picture(plot, &pictures::limit(arch.chain()))?;
     }
+    if let Structure::Masonry(masonry) = &scenario.structure {
+        return row_limit(masonry.row(), scenario.simulation.gravity_m_s2, format);
+    }
     let model = model(&scenario)?;
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
     match format {
         Format::Json => print(&pretty(&mechanisms::limit(&*model, gravity_m_s2))),
         Format::Text => print(&limit_text(&*model, gravity_m_s2)),
     }
+}
+
+/// The push that starts a row, by the static programme, and what opens.
+fn row_limit(row: &Row, gravity_m_s2: f64, format: Format) -> Result<(), Failure> {
+    let onset = |sway| onset(row, sway).map_err(|error| Failure::Input(error.to_string()));
+    let onsets = [onset(Sway::Right)?, onset(Sway::Left)?];
+    if let Format::Json = format {
+        return print(&pretty(&mechanisms::row_limit(row, &onsets)));
+    }
+    let mut text = String::new();
+    for (sway, onset) in [Sway::Right, Sway::Left].into_iter().zip(&onsets) {
+        let side = sway.name();
+        let Some(onset) = onset else {
+            let _ = writeln!(text, "no push to the {side} moves it without sliding\n");
+            continue;
+        };
+        let _ = writeln!(
+            text,
+            "incipient rocking acceleration A_L to the {side}: {:.8} g = {:.6} m/s2\n\
+             a push to the {side} opens",
+            onset.acceleration_g,
+            onset.acceleration_g * gravity_m_s2,
+        );
+        for opening in &onset.openings {
+            let edge = opening.hinge.map_or("both edges", Edge::name);
+            let corner_m =
+                row.joints()[opening.joint].corner_m(opening.hinge.unwrap_or(Edge::Intrados));
+            let _ = writeln!(
+                text,
+                "  joint {:>3} at x {:>10.5} m, y {:>10.5} m, {edge}",
+                opening.joint, corner_m.x, corner_m.y
+            );
+        }
+        text.push('\n');
+    }
+    text += "joints are counted from the left, 0 at the left base or springing\n";
+    print(&text)
 }
 
 /// The arch of a scenario; the error for a column begins with `what`, subject and verb.
@@ -48,6 +90,9 @@ pub fn arch(scenario: &Scenario, what: &str) -> Result<FourLinkArch, Failure> {
             .map_err(|error| Failure::Input(error.to_string())),
         Structure::Column(_) => Err(Failure::Input(format!(
             "{what} for arches only; the scenario has a column"
+        ))),
+        Structure::Masonry(_) => Err(Failure::Input(format!(
+            "{what} for circular arches without piers and loads"
         ))),
     }
 }

@@ -600,20 +600,22 @@ fn trust(thrust: &ThrustRecord, structure: &Structure) -> String {
             "  the ground would have to hold the column down (at {time_s:.4} s): it flies off\n"
         ),
         Structure::Column(_) => String::new(),
-        Structure::Arch(_) if value <= close => {
+        Structure::Arch(_) | Structure::Masonry(_) if value <= close => {
             format!(
                 "  four links suffice: the thrust line leaves the arch by {value:.4} t at most\n"
             )
         }
-        Structure::Arch(arch) => {
+        Structure::Arch(_) | Structure::Masonry(_) => {
             let grade = if value <= most {
                 "four links are close"
             } else {
                 "four links are a rough guide, not on the safe side"
             };
-            let compare = match arch.voussoirs() {
-                Some(_) => "compare with --hinges both",
-                None => "give `voussoirs` and compare with --hinges both",
+            let compare = match structure {
+                Structure::Arch(arch) if arch.voussoirs().is_none() => {
+                    "give `voussoirs` and compare with --hinges both"
+                }
+                _ => "compare with --hinges both",
             };
             format!(
                 "  {grade}: {excess},\n    and stays within {most} t for {:.1} % of the rocking time; {compare}\n",

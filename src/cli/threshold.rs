@@ -129,7 +129,7 @@ type NamedModel = (&'static str, Box<dyn Model>);
 fn model(scenario: &Scenario) -> Result<NamedModel, Failure> {
     let name = match (&scenario.free_hinges, &scenario.structure) {
         (Some(_), _) => "free_hinges",
-        (None, Structure::Arch(_)) => "four_links",
+        (None, Structure::Arch(_) | Structure::Masonry(_)) => "four_links",
         (None, Structure::Column(_)) => "column",
     };
     let model = scenario.model();

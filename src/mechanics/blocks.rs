@@ -7,9 +7,12 @@
 //!
 //! Nothing here moves: [`super::joints`] places the blocks, [`super::contact`] finds their velocities.
 
+use std::ops::Add;
+
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use crate::mechanics::geometry::curve::{Curve, polygon};
 use crate::mechanics::geometry::ring::{Edge, MassMoments, Ring};
 
 /// The most blocks that a row may have. The work of a step grows with their number and so does the number of
@@ -83,26 +86,54 @@ pub struct Block {
 }
 
 impl Block {
-    /// A prism whose outline is a simple polygon, given by its corners (m) in order, either way round. Area
-    /// moments are sums over the triangles between its sides and its first corner.
+    /// A prism whose outline is a simple polygon, given by its corners (m) in order, either way round.
     #[must_use]
     pub fn prism(corners_m: &[Vector2<f64>], depth_m: f64, density_kg_m3: f64) -> Self {
         let pole = corners_m.first().copied().unwrap_or_else(Vector2::zeros);
-        let (mut area, mut first, mut polar) = (0.0, Vector2::zeros(), 0.0);
-        let next = corners_m.iter().cycle().skip(1);
-        for (corner, next) in corners_m.iter().zip(next) {
-            let (a, b) = (corner - pole, next - pole);
-            let twice = a.perp(&b);
-            area += twice / 2.0;
-            first += (a + b) * (twice / 6.0);
-            polar += (a.norm_squared() + a.dot(&b) + b.norm_squared()) * (twice / 12.0);
-        }
-        let surface_kg_m2 = depth_m * density_kg_m3 * area.signum();
-        let centre = first / area;
+        Self::bounded(polygon(corners_m), pole, depth_m, density_kg_m3)
+    }
+
+    /// A prism with a closed outline (m), either way round; `pole_m` is a point near it, which keeps rounding small.
+    #[must_use]
+    pub fn bounded(
+        outline_m: impl IntoIterator<Item = Curve>,
+        pole_m: Vector2<f64>,
+        depth_m: f64,
+        density_kg_m3: f64,
+    ) -> Self {
+        let moments = outline_m
+            .into_iter()
+            .map(|curve| curve.swept(pole_m))
+            .fold(MassMoments::NONE, Add::add);
+        let surface_kg_m2 = depth_m * density_kg_m3 * moments.mass.signum();
+        let centre = moments.first / moments.mass;
         Self {
-            mass_kg: area * surface_kg_m2,
-            centre_m: pole + centre,
-            inertia_kg_m2: (polar - area * centre.norm_squared()) * surface_kg_m2,
+            mass_kg: moments.mass * surface_kg_m2,
+            centre_m: pole_m + centre,
+            inertia_kg_m2: (moments.polar - moments.mass * centre.norm_squared()) * surface_kg_m2,
+        }
+    }
+
+    /// The two as one rigid body.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        let mass_kg = self.mass_kg + other.mass_kg;
+        let apart_m = other.centre_m - self.centre_m;
+        Self {
+            mass_kg,
+            centre_m: self.centre_m + apart_m * (other.mass_kg / mass_kg),
+            inertia_kg_m2: self.inertia_kg_m2
+                + other.inertia_kg_m2
+                + self.mass_kg * other.mass_kg / mass_kg * apart_m.norm_squared(),
+        }
+    }
+
+    /// The mirror image about the y axis.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            centre_m: Vector2::new(-self.centre_m.x, self.centre_m.y),
+            ..*self
         }
     }
 
@@ -174,6 +205,20 @@ pub enum Supports {
     Both,
 }
 
+impl Supports {
+    /// All of them.
+    pub const ALL: &[Self] = &[Self::Both, Self::Left];
+
+    /// Its name in scenarios and results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Both => "both",
+            Self::Left => "left",
+        }
+    }
+}
+
 /// A drum of a stack: a symmetric trapezium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drum {
@@ -192,6 +237,8 @@ pub struct Row {
     joints: Vec<Joint>,
     supports: Supports,
     size_m: f64,
+    /// What the blocks look like, from their corners.
+    outlines_m: Vec<Vec<Vector2<f64>>>,
     /// Of a joint with unit vector `e` along the face and normal `n` towards the right block: `e x n`.
     handedness: f64,
 }
@@ -224,6 +271,21 @@ impl Row {
                 joints: joints.len(),
             });
         }
+        for (index, joint) in joints.iter().enumerate() {
+            let thickness_m = joint.thickness_m();
+            if !(thickness_m > 1e-9 * size_m && thickness_m < f64::INFINITY) {
+                return Err(RowError::Value {
+                    name: "thickness in m",
+                    part: "joint",
+                    index,
+                    value: thickness_m,
+                    allowed: "it must be finite, and positive beside the size of the row",
+                });
+            }
+        }
+        if let Some(first) = joints.windows(2).position(|pair| pair[0].meets(&pair[1])) {
+            return Err(RowError::Crossing(first));
+        }
         for (index, block) in blocks.iter().enumerate() {
             let value = |name, value: f64, allowed| RowError::Value {
                 name,
@@ -244,18 +306,6 @@ impl Row {
                 return Err(value("centre in m", *number, "it must be finite"));
             }
         }
-        for (index, joint) in joints.iter().enumerate() {
-            let thickness_m = joint.thickness_m();
-            if !(thickness_m > 1e-9 * size_m && thickness_m < f64::INFINITY) {
-                return Err(RowError::Value {
-                    name: "thickness in m",
-                    part: "joint",
-                    index,
-                    value: thickness_m,
-                    allowed: "it must be finite, and positive beside the size of the row",
-                });
-            }
-        }
         let side = |joint: usize, block: usize| {
             joints[joint]
                 .along()
@@ -272,15 +322,77 @@ impl Row {
                 return Err(RowError::Order { block, joint });
             }
         }
-        if let Some(first) = joints.windows(2).position(|pair| pair[0].meets(&pair[1])) {
-            return Err(RowError::Crossing(first));
-        }
+        let outlines_m = (0..count)
+            .map(|block| {
+                let (before, centre_m) = (&joints[block], blocks[block].centre_m);
+                // The free top of a stack is seen as its bottom turned about the centre.
+                let after = joints.get(block + 1).copied().unwrap_or(Joint {
+                    intrados_m: 2.0 * centre_m - before.extrados_m,
+                    extrados_m: 2.0 * centre_m - before.intrados_m,
+                });
+                vec![
+                    before.intrados_m,
+                    before.extrados_m,
+                    after.extrados_m,
+                    after.intrados_m,
+                ]
+            })
+            .collect();
         Ok(Self {
             blocks,
             joints,
             supports,
             size_m,
+            outlines_m,
             handedness,
+        })
+    }
+
+    /// The same row, drawn with other outlines of its blocks: closed polygons, in metres.
+    #[must_use]
+    pub fn with_outlines_m(self, outlines_m: Vec<Vec<Vector2<f64>>>) -> Self {
+        if outlines_m.len() == self.blocks.len() {
+            Self { outlines_m, ..self }
+        } else {
+            self
+        }
+    }
+
+    /// The same row with a body that moves with a block.
+    #[must_use]
+    pub fn carrying(mut self, block: usize, body: &Block) -> Self {
+        if let Some(block) = self.blocks.get_mut(block) {
+            *block = block.with(body);
+        }
+        self
+    }
+
+    /// The mirror image about the y axis: what was the right support is the left one. `None` for a stack, whose blocks
+    /// would keep their order.
+    #[must_use]
+    pub fn mirrored(&self) -> Option<Self> {
+        if self.supports == Supports::Left {
+            return None;
+        }
+        let mirror = |v: Vector2<f64>| Vector2::new(-v.x, v.y);
+        Some(Self {
+            blocks: self.blocks.iter().rev().map(Block::mirrored).collect(),
+            joints: self
+                .joints
+                .iter()
+                .rev()
+                .map(|joint| Joint {
+                    intrados_m: mirror(joint.intrados_m),
+                    extrados_m: mirror(joint.extrados_m),
+                })
+                .collect(),
+            outlines_m: self
+                .outlines_m
+                .iter()
+                .rev()
+                .map(|outline| outline.iter().rev().copied().map(mirror).collect())
+                .collect(),
+            ..*self
         })
     }
 
@@ -393,6 +505,7 @@ impl Row {
             extrados_m: Vector2::new(0.5 * width_m, y),
         };
         let (mut blocks, mut joints, mut y) = (Vec::new(), Vec::new(), 0.0);
+        let mut outlines_m = Vec::new();
         let mut below_m = f64::INFINITY;
         for drum in drums {
             positive("height of a drum in m", drum.height_m)?;
@@ -410,10 +523,11 @@ impl Row {
                 top.intrados_m,
             ];
             blocks.push(Block::prism(&outline, depth_m, density_kg_m3));
+            outlines_m.push(outline.to_vec());
             (y, below_m) = (y + drum.height_m, drum.top_width_m);
         }
         let size_m = 0.5 * y.hypot(drums[0].base_width_m);
-        Self::new(blocks, joints, Supports::Left, size_m)
+        Ok(Self::new(blocks, joints, Supports::Left, size_m)?.with_outlines_m(outlines_m))
     }
 
     /// A stack of drums of given heights from the bottom up, whose width changes in a straight line from
@@ -468,6 +582,12 @@ impl Row {
     #[must_use]
     pub const fn size_m(&self) -> f64 {
         self.size_m
+    }
+
+    /// Closed polygons that the blocks are drawn as, from left to right, in metres.
+    #[must_use]
+    pub fn outlines_m(&self) -> &[Vec<Vector2<f64>>] {
+        &self.outlines_m
     }
 
     /// `e x n` of its joints: -1 in an arch, 1 in a stack.

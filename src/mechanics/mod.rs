@@ -11,5 +11,6 @@ pub mod four_link;
 pub mod geometry;
 #[doc(hidden)]
 pub mod joints;
+pub mod masonry;
 pub mod stability;
 pub mod sway;

@@ -3,9 +3,11 @@
 use serde_json::{Value, json};
 
 use crate::dynamics::model::MechanismModel;
+use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Block;
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::stability::RowOnset;
 use crate::mechanics::sway::Sway;
 
 /// Hinges from left to right: `{angle_deg, edge}`, the angle from the left springing, for an arch,
@@ -24,6 +26,34 @@ pub fn hinges(hinges: &[Hinge]) -> Value {
             }
         })
         .collect()
+}
+
+/// Result of `limit` for a row of blocks: the push that starts it to each side, by the static programme, and the joints
+/// that open.
+#[must_use]
+pub fn row_limit(row: &Row, onsets: &[Option<RowOnset>; 2]) -> Value {
+    let [right, left] = onsets;
+    let mechanism = |onset: &Option<RowOnset>| -> Value {
+        let openings = onset.iter().flat_map(|onset| &onset.openings);
+        openings
+            .map(|opening| {
+                let joint = &row.joints()[opening.joint];
+                let corner_m = joint.corner_m(opening.hinge.unwrap_or(Edge::Intrados));
+                json!({
+                    "joint": opening.joint,
+                    "edge": opening.hinge.map(Edge::name),
+                    "x_m": corner_m.x,
+                    "y_m": corner_m.y,
+                })
+            })
+            .collect()
+    };
+    let acceleration_g =
+        |onset: &Option<RowOnset>| onset.as_ref().map(|onset| onset.acceleration_g);
+    json!({
+        "incipient_acceleration_g": { "right": acceleration_g(right), "left": acceleration_g(left) },
+        "mechanism": { "right": mechanism(right), "left": mechanism(left) },
+    })
 }
 
 /// Result of `limit`: incipient acceleration and mechanism on both sides, and the equivalent blocks

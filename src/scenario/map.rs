@@ -192,9 +192,12 @@ fn suits(
 ) -> Reading<()> {
     let wrong = match quantity {
         Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace
-            if matches!(structure, Some(Structure::Column(_))) =>
+            if matches!(
+                structure,
+                Some(Structure::Column(_) | Structure::Masonry(_))
+            ) =>
         {
-            "applies to an [arch], not to a column"
+            "applies to a circular [arch] without piers and loads"
         }
         Quantity::Restitution if free_hinges => {
             "goes with four links: with free hinges impacts follow from the blocks"

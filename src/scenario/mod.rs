@@ -32,6 +32,7 @@ mod ground;
 mod impact;
 mod initial;
 mod map;
+mod masonry;
 mod record;
 mod sequence;
 mod simulation;
@@ -175,7 +176,7 @@ impl Scenario {
             Some(hinges) => hinges == Hinges::Free,
             None => table.gives_table("free_hinges"),
         };
-        let structure = Structure::read(table, free);
+        let structure = Structure::read(table, folder, free);
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let gravity_m_s2 = match &simulation {
             Ok(simulation) => Ok(simulation.gravity_m_s2),

@@ -1,11 +1,13 @@
-//! What stands on the ground: `[arch]` or `[column]`.
+//! What stands on the ground: an arch, blocks, or `[column]`.
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Bound::{Excluded, Included, Unbounded};
+use std::path::Path;
 
 use serde::Serialize;
 use thiserror::Error;
 
+use super::masonry::{self, Beside};
 use super::table::{Count, List, Number, Reading, Table};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, Steps};
 use crate::dynamics::model::MechanismModel;
@@ -15,6 +17,7 @@ use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
+use crate::mechanics::masonry::{CircularArch, Masonry, Shape};
 
 /// Lengths and densities.
 pub(super) const MAGNITUDE: Number = Number(
@@ -30,7 +33,8 @@ pub(super) const EMBRACE_DEG: Number = Number(
     Included(*arch::EMBRACE_DEG.start()),
     Included(*arch::EMBRACE_DEG.end()),
 );
-const VOUSSOIRS: Count = Count {
+const JOINT_DEG: Number = Number(Included(0.0), Included(*arch::EMBRACE_DEG.end()));
+pub(super) const VOUSSOIRS: Count = Count {
     range: arch::VOUSSOIRS,
     why: "four hinges need four joints",
 };
@@ -43,6 +47,9 @@ pub enum Structure {
     Arch(Arch),
     /// A free-standing column, from `[column]`.
     Column(Column),
+    /// An arch of another shape, on piers or with a load: a row of blocks.
+    #[serde(untagged)]
+    Masonry(Box<Masonry>),
 }
 
 /// Why a structure has no model of motion.
@@ -57,15 +64,29 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads `[arch]` or `[column]`, to be simulated with free hinges or not.
-    pub(super) fn read(table: &mut Table<'_>, free_hinges: bool) -> Reading<Self> {
-        let arch = table.table("arch", |table| {
-            read_arch(table, free_hinges).map(Self::Arch)
-        });
+    /// Reads what stands, to be simulated with free hinges or not. Files are relative to `folder`.
+    pub(super) fn read(table: &mut Table<'_>, folder: &Path, free_hinges: bool) -> Reading<Self> {
+        let beside = Beside::read(table);
+        let alone = beside.as_ref().is_ok_and(Beside::is_nothing);
+        let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));
         let column = table.table("column", |table| {
-            read_column(table, free_hinges).map(Self::Column)
+            read_column(table, free_hinges).map(Read::Column)
         });
-        table.exactly_one("tables", vec![("arch", arch), ("column", column)])
+        let mut candidates = vec![("arch", arch), ("column", column)];
+        for (key, shape) in masonry::read_shapes(table, folder) {
+            candidates.push((key, shape.map(|shape| shape.map(Read::Shape))));
+        }
+        let read = table.exactly_one("tables", candidates);
+        let beside = beside?;
+        match read? {
+            Read::Arch(arch) => Ok(Self::Arch(arch)),
+            Read::Column(column) if alone => Ok(Self::Column(column)),
+            Read::Column(_) => Err(beside.refused(table, "applies to an arch, not to a column")),
+            Read::Shape(shape) => {
+                let masonry = beside.complete(table, shape)?;
+                Ok(Self::Masonry(Box::new(masonry)))
+            }
+        }
     }
 
     /// The model of its motion by mechanisms of one degree of freedom: four links, or Housner's block.
@@ -76,6 +97,7 @@ impl Structure {
         Ok(match self {
             Self::Arch(arch) => Box::new(FourLinkArch::new(arch.clone(), impact)?),
             Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
+            Self::Masonry(_) => return Err(FourLinkError::Blocks),
         })
     }
 
@@ -100,13 +122,22 @@ impl Structure {
         let model = match self {
             Self::Arch(arch) => FreeHinges::of_arch(arch)?,
             Self::Column(column) => FreeHinges::of_column(column)?,
+            Self::Masonry(masonry) => FreeHinges::new(masonry.row().clone())?,
         };
         Ok(model.with_steps(steps)?)
     }
 }
 
-/// Reads `[arch]`. It must start as four links, unless its hinges are free: then it must have voussoirs and stand.
-fn read_arch(table: &mut Table<'_>, free_hinges: bool) -> Reading<Arch> {
+/// What a table of a structure says.
+enum Read {
+    Arch(Arch),
+    Column(Column),
+    Shape(Shape),
+}
+
+/// Reads `[arch]`. If it is `alone`, without piers or loads, and of equal voussoirs or none, it must start as four links,
+/// unless its hinges are free: then it must have voussoirs and stand.
+fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<Read> {
     let mean_radius_m = table.required("mean_radius_m", &MAGNITUDE);
     let ratio = table.optional("thickness_ratio", &THICKNESS_RATIO);
     let from_m = read_thickness_m(table, mean_radius_m);
@@ -118,7 +149,9 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool) -> Reading<Arch> {
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
+    let joints_deg = table.optional("joints_deg", &List(&JOINT_DEG));
     let (depth_m, density_kg_m3, voussoirs) = (depth_m?, density_kg_m3?, voussoirs?);
+    let joints_deg = joints_deg?;
     let arch = Arch::new(mean_radius_m?, thickness_ratio?, embrace_deg?)
         .and_then(|arch| arch.with_depth_m(depth_m))
         .and_then(|arch| arch.with_density_kg_m3(density_kg_m3))
@@ -127,14 +160,34 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool) -> Reading<Arch> {
             None => Ok(arch),
         })
         .expect("the ranges of the keys are those of an arch");
-    if free_hinges && voussoirs.is_none() {
-        return Err(table.wrong_itself(
-            "lacks `voussoirs`: with [free_hinges] hinges open at joints; give the number of voussoirs",
-        ));
+    if joints_deg.is_some() && voussoirs.is_some() {
+        let wrong = "cannot be combined with `voussoirs`, which are equal; give one of them";
+        return Err(table.wrong("joints_deg", wrong));
+    }
+    if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
+        let why = if free_hinges {
+            "with [free_hinges] hinges open at joints"
+        } else {
+            "piers, fill and loads go with blocks"
+        };
+        return Err(table.wrong_itself(format!(
+            "lacks `voussoirs`: {why}; give the number of voussoirs"
+        )));
+    }
+    if joints_deg.is_some() || !alone {
+        return match CircularArch::new(arch, joints_deg) {
+            Ok(arch) => Ok(Read::Shape(Shape::Circular(arch))),
+            Err(error) => Err(table.wrong(
+                error.argument,
+                format!("does not fit: {:?} must be {}", error.value, error.allowed),
+            )),
+        };
     }
     match arch.incipient() {
-        Ok(_) => Ok(arch),
-        Err(LimitError::OtherMechanism { .. } | LimitError::NoPush) if free_hinges => Ok(arch),
+        Ok(_) => Ok(Read::Arch(arch)),
+        Err(LimitError::OtherMechanism { .. } | LimitError::NoPush) if free_hinges => {
+            Ok(Read::Arch(arch))
+        }
         Err(error) => {
             let key = if table.gives("thickness_m") {
                 "thickness_m"

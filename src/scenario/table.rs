@@ -202,6 +202,35 @@ impl<'a> Table<'a> {
             .map(Some)
     }
 
+    /// The tables of an array `[[key]]`, each read by `read`; none if it is not given.
+    pub(super) fn tables<T>(
+        &mut self,
+        key: &'static str,
+        read: impl Fn(&mut Table<'_>) -> Reading<T>,
+    ) -> Reading<Vec<T>> {
+        let Some(entry) = self.entry(key)? else {
+            return Ok(Vec::new());
+        };
+        let DeValue::Array(elements) = entry.get_ref() else {
+            let wrong = format!(
+                "is {}; must be an array of tables: write [[{key}]]",
+                kind_of(entry.get_ref())
+            );
+            return Err(self.wrong(key, wrong));
+        };
+        let mut tables = Vec::new();
+        for (index, element) in elements.iter().enumerate() {
+            tables.push(match element.get_ref() {
+                DeValue::Table(entries) => self.descend(key, element.span().start, entries, &read),
+                other => {
+                    let wrong = format!("is {}; must be a table", kind_of(other));
+                    Err(self.wrong_element(key, index, wrong))
+                }
+            });
+        }
+        tables.into_iter().collect()
+    }
+
     /// The table of that name, read by `read`, or what `read` makes of an empty one.
     pub(super) fn table_or_defaults<T>(
         &mut self,
@@ -276,6 +305,34 @@ impl<'a> Table<'a> {
         let inner = self.entries.get(table).map(Spanned::get_ref);
         let entry = inner.and_then(|inner| inner.as_table()?.get(key));
         self.wrong_entry(entry, key, message)
+    }
+
+    /// The same of a value in a table within tables of this one; where the innermost does not give it, in the table
+    /// around that.
+    pub(super) fn wrong_within(
+        &mut self,
+        tables: &[&str],
+        key: &'static str,
+        message: impl fmt::Display,
+    ) -> Reported {
+        let mut entries = Some(self.entries);
+        let mut entry = None;
+        for table in tables {
+            let inner = entries.and_then(|entries| entries.get(*table));
+            entries = inner.and_then(|inner| inner.get_ref().as_table());
+            entry = entries.and_then(|entries| entries.get(key)).or(entry);
+        }
+        self.wrong_entry(entry, key, message)
+    }
+
+    /// Whether a table of the file gives the key.
+    pub(super) fn gives_in(&self, table: &str, key: &str) -> bool {
+        let inner = self.entries.get(table).map(Spanned::get_ref);
+        inner.is_some_and(|inner| {
+            inner
+                .as_table()
+                .is_some_and(|inner| inner.contains_key(key))
+        })
     }
 
     fn wrong_entry(

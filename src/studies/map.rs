@@ -260,7 +260,7 @@ impl<'a> OverturningMap<'a> {
     fn structure(&self, index: usize) -> Result<Structure, ArgumentError> {
         let arch = match &self.scenario.structure {
             Structure::Arch(arch) => arch,
-            column @ Structure::Column(_) => return Ok(column.clone()),
+            other @ (Structure::Column(_) | Structure::Masonry(_)) => return Ok(other.clone()),
         };
         let mut arch = arch.clone();
         if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
@@ -289,6 +289,7 @@ impl<'a> OverturningMap<'a> {
         Ok(match self.structure(index)? {
             Structure::Arch(arch) => Standing::Arch(FourLinkArch::new(arch, impact)?),
             Structure::Column(column) => Standing::Column(RockingColumn::new(&column, impact)?),
+            Structure::Masonry(_) => return Err(FourLinkError::Blocks),
         })
     }
 

@@ -141,6 +141,7 @@ impl<'a> OverturningSpectrum<'a> {
             block(&*model, request.gravity_m_s2).ok_or(NoSpectrum::NoBlock)?;
         let structures = match &scenario.structure {
             Structure::Column(_) => vec![(StructureKind::Column, model)],
+            Structure::Masonry(_) => return Err(FourLinkError::Blocks.into()),
             Structure::Arch(arch) => {
                 let (sin, cos) = slenderness_rad.sin_cos();
                 let diagonal_m = 2.0 * block.half_diagonal_m;

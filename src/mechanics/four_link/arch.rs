@@ -29,6 +29,9 @@ pub enum FourLinkError {
     /// It does not start as one.
     #[error(transparent)]
     Limit(#[from] LimitError),
+    /// It is a row of blocks of another shape.
+    #[error("four links are for circular arches without piers and loads: give [free_hinges]")]
+    Blocks,
     /// The restitution coefficient is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),

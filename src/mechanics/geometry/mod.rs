@@ -1,4 +1,5 @@
 //! Shapes, and the rigid motions of their parts.
+pub mod curve;
 pub mod field;
 pub mod pose;
 pub mod ring;

@@ -5,7 +5,7 @@
 //! `rho d R^3` and polar moments `rho d R^4` times those given here.
 
 use std::f64::consts::PI;
-use std::ops::{Add, Sub};
+use std::ops::{Add, Mul, Sub};
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -170,6 +170,13 @@ pub struct MassMoments {
 }
 
 impl MassMoments {
+    /// Of nothing.
+    pub const NONE: Self = Self {
+        mass: 0.0,
+        first: Vector2::new(0.0, 0.0),
+        polar: 0.0,
+    };
+
     /// Centre of gravity.
     #[must_use]
     pub fn centroid(&self) -> Vector2<f64> {
@@ -196,6 +203,17 @@ impl Add for MassMoments {
             mass: self.mass + other.mass,
             first: self.first + other.first,
             polar: self.polar + other.polar,
+        }
+    }
+}
+
+impl Mul<f64> for MassMoments {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            mass: self.mass * factor,
+            first: self.first * factor,
+            polar: self.polar * factor,
         }
     }
 }

@@ -89,6 +89,31 @@ pub(super) fn parse(
     Ok(samples)
 }
 
+/// Rows of exactly so many numbers, each with its line. A first row without any number holds names.
+pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N])>, LineFault> {
+    let mut rows = Rows::new(text);
+    let mut found = Vec::new();
+    while let Some(row) = rows.next()? {
+        if found.is_empty() && row.cells().all(|cell| number(cell).is_err()) {
+            continue;
+        }
+        let cells: Vec<&str> = row.cells().collect();
+        if cells.len() != N {
+            let message = format!("`{}` has {} cells, not {N}", excerpt(row.text), cells.len());
+            return Err(row.fault(message));
+        }
+        let mut values = [0.0; N];
+        for (value, cell) in values.iter_mut().zip(cells) {
+            *value = number(cell).map_err(|message| row.fault(message))?;
+        }
+        if found.len() == MAX_SAMPLES {
+            return Err(row.fault(format!("more than {MAX_SAMPLES} rows")));
+        }
+        found.push((row.line, values));
+    }
+    Ok(found)
+}
+
 /// The rows of a table that are neither blank nor comments.
 struct Rows<'a> {
     text: &'a str,

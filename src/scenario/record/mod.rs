@@ -493,8 +493,28 @@ impl fmt::Display for LineFault {
 
 impl std::error::Error for LineFault {}
 
-/// Reads a file of at most 64 MiB, or says what is wrong with it.
+/// Reads the samples of a file, or says what is wrong with it.
 fn read_samples(path: &Path, layout: &Layout) -> Result<Samples, String> {
+    let bytes = read_bytes(path)?;
+    layout.samples(&bytes).map_err(|fault| faulty(path, &fault))
+}
+
+/// Rows of so many numbers in a file, each with its line, or what is wrong with it. The first may hold names.
+pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f64; N])>, String> {
+    let bytes = read_bytes(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    csv::numbers(text.trim_start_matches('\u{feff}')).map_err(|fault| faulty(path, &fault))
+}
+
+/// That a line of a file is wrong.
+pub(super) fn faulty(path: &Path, fault: &LineFault) -> String {
+    let path = path.display().to_string();
+    let path = path.replace(char::is_control, "\u{fffd}");
+    format!("is faulty: {path}:{fault}")
+}
+
+/// The contents of a file of at most 64 MiB.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let unreadable = |error| format!("cannot be read: {error}");
     if !fs::metadata(path).map_err(unreadable)?.is_file() {
         return Err("is not a file".to_owned());
@@ -506,11 +526,7 @@ fn read_samples(path: &Path, layout: &Layout) -> Result<Samples, String> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err("is larger than 64 MiB, too large for a record".to_owned());
     }
-    layout.samples(&bytes).map_err(|fault| {
-        let path = path.display().to_string();
-        let path = path.replace(char::is_control, "\u{fffd}");
-        format!("is faulty: {path}:{fault}")
-    })
+    Ok(bytes)
 }
 
 fn parse(text: &str, layout: &Layout) -> Result<Samples, LineFault> {

@@ -1,0 +1,132 @@
+//! An arch between its intrados and its extrados, cut into voussoirs.
+
+use nalgebra::Vector2;
+
+use super::Material;
+use crate::mechanics::blocks::{Block, Joint};
+use crate::mechanics::geometry::curve::Curve;
+
+/// Points that the curved side of a voussoir is drawn with.
+const DRAWN_POINTS: u32 = 4;
+
+/// A point of an edge: the piece of it, and the part of the way along that.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub piece: usize,
+    pub part: f64,
+}
+
+/// The edges of an arch from left to right, and where its joints cut them.
+#[derive(Clone, Debug)]
+pub(super) struct CutArch {
+    intrados: Vec<Curve>,
+    extrados: Vec<Curve>,
+    /// On the intrados and on the extrados, springings included.
+    joints: Vec<[Place; 2]>,
+}
+
+impl CutArch {
+    pub fn new(intrados: Vec<Curve>, extrados: Vec<Curve>, joints: Vec<[Place; 2]>) -> Self {
+        Self {
+            intrados,
+            extrados,
+            joints,
+        }
+    }
+
+    /// Number of voussoirs.
+    pub fn voussoirs(&self) -> usize {
+        self.joints.len() - 1
+    }
+
+    /// Its joints, springings included.
+    pub fn joints(&self) -> Vec<Joint> {
+        let point = |edge: &[Curve], place: Place| edge[place.piece].point(place.part);
+        self.joints
+            .iter()
+            .map(|[intrados, extrados]| Joint {
+                intrados_m: point(&self.intrados, *intrados),
+                extrados_m: point(&self.extrados, *extrados),
+            })
+            .collect()
+    }
+
+    /// The extrados of a voussoir from left to right.
+    pub fn extrados_of(&self, voussoir: usize) -> Vec<Curve> {
+        let ends = [self.joints[voussoir][1], self.joints[voussoir + 1][1]];
+        pieces_between(&self.extrados, ends)
+    }
+
+    /// Height of the highest point of the extrados, at or between joints.
+    pub fn crown_m(&self) -> f64 {
+        let pieces = (0..self.voussoirs()).flat_map(|voussoir| self.extrados_of(voussoir));
+        let tops = pieces.map(|piece| piece.point(top(&piece)).y);
+        tops.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn outline(&self, voussoir: usize) -> Vec<Curve> {
+        let ends = [self.joints[voussoir][0], self.joints[voussoir + 1][0]];
+        let intrados = pieces_between(&self.intrados, ends);
+        let extrados = self.extrados_of(voussoir);
+        let line = |from: &Curve, to: &Curve, part: f64| Curve::Line {
+            from: from.point(part),
+            to: to.point(part),
+        };
+        let (inner, outer) = (&intrados, &extrados);
+        let mut outline = vec![line(&inner[0], &outer[0], 0.0)];
+        outline.extend(outer);
+        outline.push(line(&outer[outer.len() - 1], &inner[inner.len() - 1], 1.0));
+        outline.extend(inner.iter().rev().map(Curve::reversed));
+        outline
+    }
+
+    /// Its voussoirs as rigid blocks.
+    pub fn blocks(&self, material: Material) -> Vec<Block> {
+        let joints = self.joints();
+        (0..self.voussoirs())
+            .map(|voussoir| {
+                let pole_m = joints[voussoir].middle_m();
+                let outline = self.outline(voussoir);
+                Block::bounded(outline, pole_m, material.depth_m, material.density_kg_m3)
+            })
+            .collect()
+    }
+
+    /// Corners of polygons that look like the voussoirs.
+    pub fn outlines_for_drawing(&self) -> Vec<Vec<Vector2<f64>>> {
+        let drawn = |curve: &Curve| {
+            let points = match curve {
+                Curve::Line { .. } => 1,
+                Curve::Arc { .. } | Curve::Ellipse { .. } => DRAWN_POINTS,
+            };
+            (0..points)
+                .map(|i| curve.point(f64::from(i) / f64::from(points)))
+                .collect::<Vec<_>>()
+        };
+        (0..self.voussoirs())
+            .map(|voussoir| self.outline(voussoir).iter().flat_map(drawn).collect())
+            .collect()
+    }
+}
+
+/// Where a piece of an extrados is highest: at one of its ends, or where it turns.
+pub(super) fn top(piece: &Curve) -> f64 {
+    let falls = |part: f64| piece.at(part).1.y <= 0.0;
+    match (falls(0.0), falls(1.0)) {
+        (true, _) => 0.0,
+        (false, false) => 1.0,
+        (false, true) => piece.first(falls),
+    }
+}
+
+fn pieces_between(edge: &[Curve], [from, to]: [Place; 2]) -> Vec<Curve> {
+    (from.piece..=to.piece)
+        .map(|piece| {
+            let start = if piece == from.piece { from.part } else { 0.0 };
+            let end = if piece == to.piece { to.part } else { 1.0 };
+            (piece, start, end)
+        })
+        .filter(|(_, start, end)| start < end)
+        .map(|(piece, start, end)| edge[piece].between(start, end))
+        .collect()
+}

@@ -1,0 +1,98 @@
+//! Fill over an arch: dead weight and mass that move with the voussoir beneath.
+//!
+//! What lies vertically above the extrados of a voussoir, up to a level top, is part of its rigid block. That leaves
+//! out what real fill does besides: it presses sideways, spreads loads, resists the haunches that move into it, and
+//! shears between columns that move differently.
+
+use nalgebra::Vector2;
+use serde::Serialize;
+
+use super::Material;
+use super::cut::{CutArch, top};
+use crate::argument::{ArgumentError, within};
+use crate::mechanics::arch::MAGNITUDE;
+use crate::mechanics::blocks::Block;
+use crate::mechanics::geometry::curve::Curve;
+
+/// Fill up to a level top.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Fill {
+    /// How high its top is.
+    #[serde(flatten)]
+    pub level: FillLevel,
+    /// Its density in kg/m3.
+    pub density_kg_m3: f64,
+}
+
+/// The level of the top of the fill.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum FillLevel {
+    /// Height above the extrados at the left springing, in metres: below the crown it fills the haunches.
+    #[serde(rename = "height_m")]
+    AboveSpringing(f64),
+    /// Height above the crown of the extrados, in metres.
+    #[serde(rename = "above_crown_m")]
+    AboveCrown(f64),
+}
+
+impl Fill {
+    pub(super) fn add_to(
+        &self,
+        extra: &mut [Option<Block>],
+        arch: &CutArch,
+        material: Material,
+    ) -> Result<(), ArgumentError> {
+        within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
+        let level_m = match self.level {
+            FillLevel::AboveSpringing(height_m) => {
+                within("height_m", height_m, MAGNITUDE)?;
+                arch.joints()[0].extrados_m.y + height_m
+            }
+            FillLevel::AboveCrown(height_m) => {
+                within("above_crown_m", height_m, 0.0..=1e6)?;
+                arch.crown_m() + height_m
+            }
+        };
+        for (voussoir, extra) in extra.iter_mut().enumerate() {
+            let below = arch
+                .extrados_of(voussoir)
+                .iter()
+                .flat_map(|piece| below(piece, level_m))
+                .map(|piece| {
+                    let (from, to) = (piece.point(0.0), piece.point(1.0));
+                    let line = |from, to| Curve::Line { from, to };
+                    let corners = [Vector2::new(to.x, level_m), Vector2::new(from.x, level_m)];
+                    let outline = [
+                        piece,
+                        line(to, corners[0]),
+                        line(corners[0], corners[1]),
+                        line(corners[1], from),
+                    ];
+                    Block::bounded(outline, from, material.depth_m, self.density_kg_m3)
+                })
+                // Slivers as at a level joint weigh nothing.
+                .filter(|block| block.mass_kg > 0.0 && block.inertia_kg_m2 > 0.0)
+                .reduce(|sum, next| sum.with(&next));
+            if let Some(below) = below {
+                *extra = Some(extra.map_or(below, |known| known.with(&below)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The parts of a piece of the extrados that lie below a level.
+fn below(piece: &Curve, level_m: f64) -> Vec<Curve> {
+    let top = top(piece);
+    let under = |part: f64| piece.point(part).y < level_m;
+    // It rises up to its top and falls from there.
+    let rising = (top > 0.0 && under(0.0)).then(|| {
+        let half = piece.between(0.0, top);
+        half.between(0.0, half.first(|part| half.point(part).y >= level_m))
+    });
+    let falling = (top < 1.0 && under(1.0)).then(|| {
+        let half = piece.between(top, 1.0);
+        half.between(half.first(|part| half.point(part).y < level_m), 1.0)
+    });
+    rising.into_iter().chain(falling).collect()
+}

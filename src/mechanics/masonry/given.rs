@@ -1,0 +1,155 @@
+//! Blocks of any shape by the corners of their joints.
+
+use nalgebra::Vector2;
+use serde::Serialize;
+
+use super::cut::{CutArch, Place};
+use crate::argument::{ArgumentError, within};
+use crate::mechanics::arch::MAGNITUDE;
+use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
+use crate::mechanics::geometry::curve::Curve;
+
+/// Blocks between joints, from left to right (of a stack: from the base up).
+///
+/// A block is the quadrilateral between its joints unless it has an outline. The last joint of a stack is its free top.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GivenBlocks {
+    /// File of the joints, where they were read from one.
+    #[serde(rename = "joints")]
+    pub joints_file: String,
+    /// File of the outlines.
+    #[serde(rename = "outlines", skip_serializing_if = "Option::is_none")]
+    pub outlines_file: Option<String>,
+    /// What carries the row.
+    #[serde(serialize_with = "supports_name")]
+    pub supports: Supports,
+    /// Length out of plane, in metres.
+    pub depth_m: f64,
+    /// Densities in kg/m3: one for all, or one for each block.
+    pub density_kg_m3: Vec<f64>,
+    /// Both corners of every joint.
+    #[serde(skip)]
+    pub joints: Vec<Joint>,
+    /// Outlines of blocks that are more than the quadrilateral between their joints: index, corners in order.
+    #[serde(skip)]
+    pub outlines: Vec<(usize, Vec<Vector2<f64>>)>,
+}
+
+fn supports_name<S: serde::Serializer>(
+    supports: &Supports,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(supports.name())
+}
+
+impl GivenBlocks {
+    /// Checks the numbers that are not in the files, and that there are joints.
+    ///
+    /// # Errors
+    /// When a number is out of range, or there are fewer joints than two.
+    pub fn check(&self) -> Result<(), ArgumentError> {
+        within("depth_m", self.depth_m, MAGNITUDE)?;
+        for density_kg_m3 in &self.density_kg_m3 {
+            within("density_kg_m3", *density_kg_m3, MAGNITUDE)?;
+        }
+        let blocks = self.joints.len().saturating_sub(1);
+        let densities = self.density_kg_m3.len();
+        if blocks > 0 && (densities == 1 || densities == blocks) {
+            return Ok(());
+        }
+        #[expect(clippy::cast_precision_loss, reason = "to be shown only")]
+        Err(ArgumentError {
+            argument: "density_kg_m3",
+            value: densities as f64,
+            allowed: format!("one number, or one for each of the {blocks} blocks"),
+        })
+    }
+
+    /// The outline of every block.
+    pub(super) fn outlines_m(&self) -> Vec<Vec<Vector2<f64>>> {
+        let pairs = self.joints.windows(2);
+        let mut outlines: Vec<_> = pairs
+            .map(|pair| {
+                vec![
+                    pair[0].intrados_m,
+                    pair[0].extrados_m,
+                    pair[1].extrados_m,
+                    pair[1].intrados_m,
+                ]
+            })
+            .collect();
+        for (block, outline) in &self.outlines {
+            if let Some(known) = outlines.get_mut(*block) {
+                known.clone_from(outline);
+            }
+        }
+        outlines
+    }
+
+    pub(super) fn blocks(&self) -> Vec<Block> {
+        let outlines = self.outlines_m();
+        let density = |block: usize| {
+            let own = self.density_kg_m3.get(block);
+            own.or(self.density_kg_m3.first()).copied().unwrap_or(0.0)
+        };
+        outlines
+            .iter()
+            .enumerate()
+            .map(|(block, outline)| Block::prism(outline, self.depth_m, density(block)))
+            .collect()
+    }
+
+    pub(super) fn cut(&self) -> CutArch {
+        let edge = |corner: fn(&Joint) -> Vector2<f64>| {
+            let line = |pair: &[Joint]| Curve::Line {
+                from: corner(&pair[0]),
+                to: corner(&pair[1]),
+            };
+            self.joints.windows(2).map(line).collect::<Vec<_>>()
+        };
+        let last = self.joints.len() - 1;
+        let place = |joint: usize| {
+            let place = if joint < last {
+                Place {
+                    piece: joint,
+                    part: 0.0,
+                }
+            } else {
+                Place {
+                    piece: joint - 1,
+                    part: 1.0,
+                }
+            };
+            [place; 2]
+        };
+        CutArch::new(
+            edge(|joint| joint.intrados_m),
+            edge(|joint| joint.extrados_m),
+            (0..=last).map(place).collect(),
+        )
+    }
+
+    /// Half the diagonal of the rectangle around the joints.
+    pub(super) fn size_m(&self) -> f64 {
+        let corners = || {
+            let joints = self.joints.iter();
+            joints.flat_map(|joint| [joint.intrados_m, joint.extrados_m])
+        };
+        let extent = |of: fn(&Vector2<f64>) -> f64| {
+            let values = || corners().map(|corner| of(&corner));
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        };
+        0.5 * extent(|corner| corner.x).hypot(extent(|corner| corner.y))
+    }
+
+    /// The block or joint that an error is about, as the lines of the joints' file: from 0 on.
+    #[must_use]
+    pub fn joint_of(error: &RowError) -> Option<usize> {
+        match error {
+            RowError::Crossing(joint) => Some(joint + 1),
+            RowError::Order { joint, .. } => Some(*joint),
+            RowError::Value { index, .. } => Some(*index),
+            _ => None,
+        }
+    }
+}

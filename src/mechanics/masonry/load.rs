@@ -1,0 +1,107 @@
+//! Masses on an arch, which move with the voussoirs that they stand on.
+
+use nalgebra::Vector2;
+use serde::Serialize;
+
+use super::cut::CutArch;
+use crate::argument::{ArgumentError, within};
+use crate::mechanics::arch::MAGNITUDE;
+use crate::mechanics::blocks::Block;
+use crate::mechanics::geometry::ring::MassMoments;
+
+/// A mass on the extrados: at a point, or spread evenly over a width.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PlacedLoad {
+    /// The mass in kg.
+    pub mass_kg: f64,
+    /// Where it is, from the middle of the span to the right, in metres; of a patch, its middle.
+    pub x_m: f64,
+    /// Over which width it is spread, in metres; zero: a point.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub width_m: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
+}
+
+impl PlacedLoad {
+    pub(super) fn add_to(
+        &self,
+        extra: &mut [Option<Block>],
+        arch: &CutArch,
+    ) -> Result<(), ArgumentError> {
+        within("mass_kg", self.mass_kg, 1e-6..=1e15)?;
+        within("x_m", self.x_m, -1e6..=1e6)?;
+        if self.width_m != 0.0 {
+            within("width_m", self.width_m, MAGNITUDE)?;
+        }
+        let (from_x, to_x) = (self.x_m - 0.5 * self.width_m, self.x_m + 0.5 * self.width_m);
+        let mut placed_kg = 0.0;
+        for (voussoir, extra) in extra.iter_mut().enumerate() {
+            for piece in arch.extrados_of(voussoir) {
+                let (start, end) = (piece.point(0.0).x, piece.point(1.0).x);
+                let part = |x: f64| match x {
+                    x if x <= start => 0.0,
+                    x if x >= end => 1.0,
+                    x => piece.first(|part| piece.point(part).x >= x),
+                };
+                let own = if self.width_m > 0.0 {
+                    if to_x <= start || from_x >= end {
+                        continue;
+                    }
+                    let loaded = piece.between(part(from_x), part(to_x));
+                    spread(&loaded.integral(|point, derivative| {
+                        let mass = self.mass_kg / self.width_m * derivative.x;
+                        MassMoments {
+                            mass,
+                            first: point * mass,
+                            polar: point.norm_squared() * mass,
+                        }
+                    }))
+                } else {
+                    if !(start..=end).contains(&self.x_m) || placed_kg > 0.0 {
+                        continue;
+                    }
+                    at_point(self.mass_kg, piece.point(part(self.x_m)))
+                };
+                placed_kg += own.mass_kg;
+                *extra = Some(extra.map_or(own, |known| known.with(&own)));
+            }
+        }
+        // A patch that hangs over an end would lose mass.
+        if (placed_kg / self.mass_kg - 1.0).abs() < 1e-9 {
+            return Ok(());
+        }
+        let [first, .., last] = arch.joints()[..] else {
+            unreachable!("an arch has two springings")
+        };
+        let half_m = 0.5 * self.width_m;
+        Err(ArgumentError {
+            argument: "x_m",
+            value: self.x_m,
+            allowed: format!(
+                "from {:.6} to {:.6}, so that it stands on the extrados",
+                first.extrados_m.x + half_m,
+                last.extrados_m.x - half_m
+            ),
+        })
+    }
+}
+
+fn at_point(mass_kg: f64, centre_m: Vector2<f64>) -> Block {
+    Block {
+        mass_kg,
+        centre_m,
+        inertia_kg_m2: 0.0,
+    }
+}
+
+fn spread(moments: &MassMoments) -> Block {
+    Block {
+        mass_kg: moments.mass,
+        centre_m: moments.centroid(),
+        inertia_kg_m2: moments.central_polar().max(0.0),
+    }
+}

@@ -1,0 +1,245 @@
+//! Arches of constant thickness about a smooth middle line: circular, elliptic, and of three centres.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::Vector2;
+use serde::Serialize;
+
+use super::cut::{CutArch, Place};
+use super::{Dimensions, Material};
+use crate::argument::{ArgumentError, above};
+use crate::mechanics::arch::Arch;
+use crate::mechanics::geometry::curve::Curve;
+
+/// Cuts what lies within half a thickness of a middle line, from left to right, at the given lengths of that line.
+fn cut(middle: &[Curve], thickness_m: f64, at_m: &[f64]) -> CutArch {
+    let edge = |offset_m: f64| {
+        let moved = |piece: &Curve| match *piece {
+            Curve::Arc {
+                centre,
+                radius,
+                from_rad,
+                to_rad,
+            } => Curve::Arc {
+                centre,
+                radius: radius + offset_m,
+                from_rad,
+                to_rad,
+            },
+            Curve::Ellipse {
+                semi_axes,
+                offset,
+                from_rad,
+                to_rad,
+            } => Curve::Ellipse {
+                semi_axes,
+                offset: offset + offset_m,
+                from_rad,
+                to_rad,
+            },
+            line @ Curve::Line { .. } => line,
+        };
+        middle.iter().map(moved).collect()
+    };
+    let lengths: Vec<f64> = middle.iter().map(Curve::length).collect();
+    let place = |at_m: &f64| {
+        let (mut left_m, mut piece) = (*at_m, 0);
+        while piece + 1 < middle.len() && left_m > lengths[piece] {
+            left_m -= lengths[piece];
+            piece += 1;
+        }
+        let part = if left_m >= lengths[piece] {
+            1.0
+        } else {
+            middle[piece].part_at(left_m.max(0.0))
+        };
+        [Place { piece, part }; 2]
+    };
+    CutArch::new(
+        edge(-0.5 * thickness_m),
+        edge(0.5 * thickness_m),
+        at_m.iter().map(place).collect(),
+    )
+}
+
+/// Cuts at equal lengths of the middle line.
+fn cut_equally(middle: &[Curve], dimensions: &Dimensions) -> CutArch {
+    let whole_m: f64 = middle.iter().map(Curve::length).sum();
+    let at_m: Vec<f64> = (0..=dimensions.voussoirs)
+        .map(|joint| whole_m * part(joint, dimensions.voussoirs))
+        .collect();
+    cut(middle, dimensions.thickness_m, &at_m)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts are small")]
+pub(super) fn part(index: usize, count: usize) -> f64 {
+    index as f64 / count as f64
+}
+
+/// A circular arch, of equal voussoirs or with joints at given angles.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CircularArch {
+    /// Its ring.
+    #[serde(flatten)]
+    pub arch: Arch,
+    /// Angles of its joints from the left springing, in degrees, both springings included; `None`: those of equal
+    /// voussoirs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joints_deg: Option<Vec<f64>>,
+}
+
+impl CircularArch {
+    /// The arch with its voussoirs, or with joints at these angles.
+    ///
+    /// # Errors
+    /// When it has neither, or both, or the angles do not rise from zero to the embrace angle.
+    pub fn new(arch: Arch, joints_deg: Option<Vec<f64>>) -> Result<Self, ArgumentError> {
+        match (&joints_deg, arch.voussoirs()) {
+            (None, Some(_)) => {}
+            (None, None) | (Some(_), Some(_)) => {
+                return Err(ArgumentError {
+                    argument: "voussoirs",
+                    value: 0.0,
+                    allowed: "given, or else `joints_deg`, for a row of blocks".to_owned(),
+                });
+            }
+            (Some(joints_deg), None) => {
+                let wrong = |value: f64, allowed: String| ArgumentError {
+                    argument: "joints_deg",
+                    value,
+                    allowed,
+                };
+                let embrace_deg = arch.embrace_deg();
+                let [first, .., last] = joints_deg[..] else {
+                    let allowed = "at least the two springings".to_owned();
+                    return Err(wrong(f64::NAN, allowed));
+                };
+                if first != 0.0 {
+                    return Err(wrong(first, "0 first, the left springing".to_owned()));
+                }
+                if last != embrace_deg {
+                    let allowed = format!("{embrace_deg:?} last, the right springing");
+                    return Err(wrong(last, allowed));
+                }
+                let rises = |pair: &&[f64]| pair[0] < pair[1];
+                if let Some(pair) = joints_deg.windows(2).find(|pair| !rises(pair)) {
+                    return Err(wrong(
+                        pair[1],
+                        format!("above the one before, {:?}", pair[0]),
+                    ));
+                }
+            }
+        }
+        Ok(Self { arch, joints_deg })
+    }
+
+    pub(super) fn material(&self) -> Material {
+        Material {
+            depth_m: self.arch.depth_m(),
+            density_kg_m3: self.arch.density_kg_m3(),
+        }
+    }
+
+    pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
+        let (radius, embrace_rad) = (
+            self.arch.mean_radius_m(),
+            self.arch.embrace_deg().to_radians(),
+        );
+        let middle = Curve::Arc {
+            centre: Vector2::zeros(),
+            radius,
+            from_rad: FRAC_PI_2 + 0.5 * embrace_rad,
+            to_rad: FRAC_PI_2 - 0.5 * embrace_rad,
+        };
+        let at_m = match (&self.joints_deg, self.arch.voussoirs()) {
+            (Some(joints_deg), _) => joints_deg
+                .iter()
+                .map(|deg| deg.to_radians() * radius)
+                .collect(),
+            (None, voussoirs) => {
+                let voussoirs = voussoirs.unwrap_or(1);
+                let at = |joint| embrace_rad * radius * part(joint, voussoirs);
+                (0..=voussoirs).map(at).collect::<Vec<_>>()
+            }
+        };
+        Ok(cut(&[middle], self.arch.thickness_ratio() * radius, &at_m))
+    }
+}
+
+/// An arch whose middle line is half an ellipse, with voussoirs of equal length along that.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EllipticArch {
+    /// Its dimensions.
+    #[serde(flatten)]
+    pub dimensions: Dimensions,
+}
+
+impl EllipticArch {
+    pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
+        let dimensions = &self.dimensions;
+        dimensions.check()?;
+        let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
+        let (longer_m, shorter_m) = (half_m.max(rise_m), half_m.min(rise_m));
+        dimensions.check_curvature(shorter_m * shorter_m / longer_m)?;
+        let middle = Curve::Ellipse {
+            semi_axes: Vector2::new(half_m, rise_m),
+            offset: 0.0,
+            from_rad: PI,
+            to_rad: 0.0,
+        };
+        Ok(cut_equally(&[middle], dimensions))
+    }
+}
+
+/// An arch whose middle line consists of three arcs that go over into each other smoothly (a basket handle): the outer
+/// ones rise vertically from the springings. Its voussoirs are of equal length along the middle line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BasketArch {
+    /// Its dimensions.
+    #[serde(flatten)]
+    pub dimensions: Dimensions,
+    /// Angle of the arc at the crown, in degrees; the classical construction has three arcs of 60 degrees.
+    pub crown_deg: f64,
+}
+
+impl BasketArch {
+    /// The crown angle of the classical construction, in degrees.
+    pub const CROWN_DEG: f64 = 60.0;
+
+    /// With `a` half the span, `f` the rise and `c` half the angle at the crown, the centre of an outer arc is `e` from
+    /// the middle and that of the crown `e / tan c` below, where `a - f = e (1 - tan(c/2))`.
+    pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
+        let dimensions = &self.dimensions;
+        dimensions.check()?;
+        above("crown_deg", self.crown_deg, 0.0, 179.0)?;
+        let half_rad = 0.5 * self.crown_deg.to_radians();
+        let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
+        let aside_m = (half_m - rise_m) / (1.0 - (0.5 * half_rad).tan());
+        let outer_m = half_m - aside_m;
+        if !(aside_m >= 0.0 && outer_m > 0.0) {
+            return Err(ArgumentError {
+                argument: "rise_m",
+                value: rise_m,
+                allowed: format!(
+                    "above {:.6} and at most {half_m:?}, half the span, for three arcs with {:?} degrees at the crown",
+                    half_m * (0.5 * half_rad).tan(),
+                    self.crown_deg
+                ),
+            });
+        }
+        dimensions.check_curvature(outer_m)?;
+        let crown = Curve::Arc {
+            centre: Vector2::new(0.0, -aside_m / half_rad.tan()),
+            radius: outer_m + aside_m / half_rad.sin(),
+            from_rad: FRAC_PI_2 + half_rad,
+            to_rad: FRAC_PI_2 - half_rad,
+        };
+        let left = Curve::Arc {
+            centre: Vector2::new(-aside_m, 0.0),
+            radius: outer_m,
+            from_rad: PI,
+            to_rad: FRAC_PI_2 + half_rad,
+        };
+        Ok(cut_equally(&[left, crown, left.mirrored()], dimensions))
+    }
+}

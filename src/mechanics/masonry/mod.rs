@@ -1,0 +1,353 @@
+//! Arches of other shapes than the circular one of equal voussoirs, on piers, with fill and loads: rows of blocks by
+//! their dimensions.
+//!
+//! Coordinates are in metres, x from the middle of the span to the right. An arch is what lies between two edges at
+//! half a thickness from its middle line, cut by joints normal to that ([`cut`]).
+
+mod cut;
+mod fill;
+mod given;
+mod load;
+mod middle_line;
+mod pier;
+mod pointed;
+
+use serde::Serialize;
+use thiserror::Error;
+
+use super::arch::{Arch, DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
+use super::blocks::{MAX_BLOCKS, Row, RowError, Supports};
+use super::stability::falls;
+use crate::argument::{ArgumentError, within};
+use crate::mechanics::contact::ContactError;
+use crate::mechanics::sway::Sway;
+use cut::CutArch;
+pub use fill::{Fill, FillLevel};
+pub use given::GivenBlocks;
+pub use load::PlacedLoad;
+pub use middle_line::{BasketArch, CircularArch, EllipticArch};
+pub use pier::{Pier, Piers};
+pub use pointed::PointedArch;
+
+/// What a structure is made of, out of plane and by weight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Material {
+    /// Length out of plane, in metres.
+    pub depth_m: f64,
+    /// Density, in kg/m3.
+    pub density_kg_m3: f64,
+}
+
+impl Default for Material {
+    /// 1 m deep, of 2000 kg/m3.
+    fn default() -> Self {
+        Self {
+            depth_m: DEPTH_M,
+            density_kg_m3: DENSITY_KG_M3,
+        }
+    }
+}
+
+impl Material {
+    fn check(&self) -> Result<(), ArgumentError> {
+        within("depth_m", self.depth_m, MAGNITUDE)?;
+        within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
+        Ok(())
+    }
+}
+
+/// What arches of different shapes are given by alike.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Dimensions {
+    /// Distance of the springings, from middle to middle, in metres.
+    pub span_m: f64,
+    /// Height of the middle line at the crown above the springings, in metres.
+    pub rise_m: f64,
+    /// Thickness normal to the middle line, in metres.
+    pub thickness_m: f64,
+    /// Number of voussoirs.
+    pub voussoirs: usize,
+    /// Of what it is made.
+    #[serde(flatten)]
+    pub material: Material,
+}
+
+impl Dimensions {
+    fn check(&self) -> Result<(), ArgumentError> {
+        within("span_m", self.span_m, MAGNITUDE)?;
+        within("rise_m", self.rise_m, MAGNITUDE)?;
+        within("thickness_m", self.thickness_m, 1e-6..=1e6)?;
+        self.material.check()?;
+        if VOUSSOIRS.contains(&self.voussoirs) {
+            return Ok(());
+        }
+        #[expect(clippy::cast_precision_loss, reason = "to be shown only")]
+        Err(ArgumentError {
+            argument: "voussoirs",
+            value: self.voussoirs as f64,
+            allowed: format!("from {} to {}", VOUSSOIRS.start(), VOUSSOIRS.end()),
+        })
+    }
+
+    /// The intrados must not turn back on itself where the middle line is curved most.
+    fn check_curvature(&self, least_radius_m: f64) -> Result<(), ArgumentError> {
+        if 0.5 * self.thickness_m < least_radius_m {
+            return Ok(());
+        }
+        Err(ArgumentError {
+            argument: "thickness_m",
+            value: self.thickness_m,
+            allowed: format!(
+                "below {:.6}, twice the least radius of the middle line",
+                2.0 * least_radius_m
+            ),
+        })
+    }
+}
+
+/// The shape of an arch, or blocks of any shape.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// A circular arch.
+    #[serde(rename = "arch")]
+    Circular(CircularArch),
+    /// Two arcs that meet at an angle.
+    PointedArch(PointedArch),
+    /// Half an ellipse.
+    EllipticArch(EllipticArch),
+    /// Three arcs.
+    BasketArch(BasketArch),
+    /// Blocks by their joints.
+    Blocks(GivenBlocks),
+}
+
+impl Shape {
+    /// Its name in scenarios and results.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Circular(_) => "arch",
+            Self::PointedArch(_) => "pointed_arch",
+            Self::EllipticArch(_) => "elliptic_arch",
+            Self::BasketArch(_) => "basket_arch",
+            Self::Blocks(_) => "blocks",
+        }
+    }
+
+    /// Of what it is made; blocks have densities of their own.
+    fn material(&self) -> Option<Material> {
+        match self {
+            Self::Circular(arch) => Some(arch.material()),
+            Self::PointedArch(arch) => Some(arch.dimensions.material),
+            Self::EllipticArch(arch) => Some(arch.dimensions.material),
+            Self::BasketArch(arch) => Some(arch.dimensions.material),
+            Self::Blocks(_) => None,
+        }
+    }
+
+    fn cut(&self) -> Result<CutArch, MasonryError> {
+        Ok(match self {
+            Self::Circular(arch) => arch.cut()?,
+            Self::PointedArch(arch) => arch.cut()?,
+            Self::EllipticArch(arch) => arch.cut()?,
+            Self::BasketArch(arch) => arch.cut()?,
+            Self::Blocks(blocks) => return Ok(blocks.cut()),
+        })
+    }
+
+    /// What energies and steps are measured with: the mean radius of a circle, else half the span; of blocks half the
+    /// diagonal of the rectangle around their joints.
+    fn size_m(&self) -> f64 {
+        match self {
+            Self::Circular(arch) => arch.arch.mean_radius_m(),
+            Self::PointedArch(arch) => 0.5 * arch.dimensions.span_m,
+            Self::EllipticArch(arch) => 0.5 * arch.dimensions.span_m,
+            Self::BasketArch(arch) => 0.5 * arch.dimensions.span_m,
+            Self::Blocks(blocks) => blocks.size_m(),
+        }
+    }
+}
+
+/// An arch of any shape with what it stands on and what it carries.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Masonry {
+    /// Its shape.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// What its springings stand on.
+    #[serde(skip_serializing_if = "Piers::are_none")]
+    pub piers: Piers,
+    /// What lies on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fill: Option<Fill>,
+    /// Masses on it.
+    #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<PlacedLoad>,
+    #[serde(skip)]
+    row: Row,
+}
+
+/// Why there is no such masonry.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MasonryError {
+    /// A number of the shape is out of range.
+    #[error("{0}")]
+    Shape(#[from] ArgumentError),
+    /// A number of a pier is out of range.
+    #[error("{side} pier: {error}", side = .side.name())]
+    Pier {
+        /// On which side.
+        side: Sway,
+        /// What is wrong.
+        error: ArgumentError,
+    },
+    /// The level of the fill is out of range.
+    #[error("fill: {0}")]
+    Fill(ArgumentError),
+    /// A number of a load is out of range.
+    #[error("load {number}: {error}", number = .index + 1)]
+    Load {
+        /// Which load, from 0 on.
+        index: usize,
+        /// What is wrong.
+        error: ArgumentError,
+    },
+    /// The blocks make no row.
+    #[error(transparent)]
+    Row(#[from] RowError),
+    /// Piers and fill go with arches that are given by their dimensions.
+    #[error("blocks have no piers and no fill: give those as blocks")]
+    Blocks,
+    /// More blocks than a row may have.
+    #[error("{0} blocks with the piers: a row has at most {MAX_BLOCKS}")]
+    Count(usize),
+}
+
+impl Masonry {
+    /// The arch on its piers, with what it carries.
+    ///
+    /// # Errors
+    /// When a number is out of range, or the blocks do not make a row. Whether it stands is another question:
+    /// [`Masonry::stands`].
+    pub fn new(
+        shape: Shape,
+        piers: Piers,
+        fill: Option<Fill>,
+        loads: Vec<PlacedLoad>,
+    ) -> Result<Self, MasonryError> {
+        let arch = shape.cut()?;
+        let mut extra = vec![None; arch.voussoirs()];
+        let material = match shape.material() {
+            Some(material) => material,
+            None if piers.are_none() && fill.is_none() => Material::default(),
+            None => return Err(MasonryError::Blocks),
+        };
+        if let Some(fill) = &fill {
+            fill.add_to(&mut extra, &arch, material)
+                .map_err(MasonryError::Fill)?;
+        }
+        for (index, load) in loads.iter().enumerate() {
+            load.add_to(&mut extra, &arch)
+                .map_err(|error| MasonryError::Load { index, error })?;
+        }
+        let (mut blocks, mut joints, mut outlines_m) = match &shape {
+            Shape::Blocks(given) => (given.blocks(), arch.joints(), given.outlines_m()),
+            _ => (
+                arch.blocks(material),
+                arch.joints(),
+                arch.outlines_for_drawing(),
+            ),
+        };
+        let supports = match &shape {
+            Shape::Blocks(given) => given.supports,
+            _ => Supports::Both,
+        };
+        if supports == Supports::Left {
+            joints.pop();
+        }
+        let mut first = 0;
+        for (side, pier) in [(Sway::Left, &piers.left), (Sway::Right, &piers.right)] {
+            let Some(pier) = pier else { continue };
+            let springing = match side {
+                Sway::Left => joints.first(),
+                Sway::Right => joints.last(),
+            };
+            let springing = springing.ok_or(RowError::Count(0))?;
+            let courses = pier
+                .courses(springing, side)
+                .map_err(|error| MasonryError::Pier { side, error })?;
+            let count = blocks.len() + courses.outlines_m.len();
+            if count > MAX_BLOCKS {
+                return Err(MasonryError::Count(count));
+            }
+            let own = courses.blocks(
+                material.depth_m,
+                pier.density_kg_m3.unwrap_or(material.density_kg_m3),
+            );
+            match side {
+                Sway::Left => {
+                    first = own.len();
+                    blocks.splice(0..0, own);
+                    joints.splice(0..0, courses.joints);
+                    outlines_m.splice(0..0, courses.outlines_m);
+                }
+                Sway::Right => {
+                    blocks.extend(own);
+                    joints.extend(courses.joints);
+                    outlines_m.extend(courses.outlines_m);
+                }
+            }
+        }
+        let mut row =
+            Row::new(blocks, joints, supports, shape.size_m())?.with_outlines_m(outlines_m);
+        for (voussoir, extra) in extra.iter().enumerate() {
+            if let Some(extra) = extra {
+                row = row.carrying(first + voussoir, extra);
+            }
+        }
+        Ok(Self {
+            shape,
+            piers,
+            fill,
+            loads,
+            row,
+        })
+    }
+
+    /// Its blocks and joints.
+    #[must_use]
+    pub const fn row(&self) -> &Row {
+        &self.row
+    }
+
+    /// Whether it stands under its own weight.
+    ///
+    /// # Errors
+    /// When the velocities under the weight are not found.
+    pub fn stands(&self) -> Result<bool, ContactError> {
+        Ok(falls(&self.row)?.is_none())
+    }
+
+    /// The same on rigid abutments.
+    ///
+    /// # Errors
+    /// Those of [`Masonry::new`].
+    pub fn without_piers(&self) -> Result<Self, MasonryError> {
+        Self::new(
+            self.shape.clone(),
+            Piers::default(),
+            self.fill,
+            self.loads.clone(),
+        )
+    }
+
+    /// A circular arch with its voussoirs, and nothing else.
+    ///
+    /// # Errors
+    /// When it has no voussoirs.
+    pub fn of_arch(arch: &Arch) -> Result<Self, MasonryError> {
+        let shape = Shape::Circular(CircularArch::new(arch.clone(), None)?);
+        Self::new(shape, Piers::default(), None, Vec::new())
+    }
+}

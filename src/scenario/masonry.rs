@@ -1,0 +1,556 @@
+//! Arches of other shapes, blocks from files, and what stands beside any arch: `[pointed_arch]`, `[elliptic_arch]`,
+//! `[basket_arch]`, `[blocks]`; `[piers]`, `[fill]`, `[[load]]`.
+//!
+//! ```toml
+//! [blocks]
+//! joints = "joints.csv"          # a row a joint: x and y of the intrados corner, then of the extrados corner, in m
+//! outlines = "outlines.csv"      # optional: block (from 1), x, y
+//! supports = "both"              # or "left": a stack, whose last joint is its free top
+//! density_kg_m3 = 2000.0         # or an array, one for each block
+//! ```
+
+use std::ops::Bound::{Excluded, Included};
+use std::path::Path;
+
+use nalgebra::Vector2;
+
+use super::LineFault;
+use super::record::{faulty, read_numbers};
+use super::structure::{MAGNITUDE, VOUSSOIRS};
+use super::table::{Count, Number, OneOf, OneOrMore, Reading, Reported, Table, Text};
+use crate::argument::ArgumentError;
+use crate::bisection::{Width, try_bisect};
+use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
+use crate::mechanics::blocks::{Joint, MAX_BLOCKS, RowError, Supports};
+use crate::mechanics::masonry::{
+    BasketArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry, MasonryError,
+    Material, Pier, Piers, PlacedLoad, PointedArch, Shape,
+};
+use crate::mechanics::stability::falls;
+
+const THICKNESS_M: Number = Number(Included(1e-6), Included(1e6));
+const CROWN_DEG: Number = Number(Excluded(0.0), Included(179.0));
+const LEVEL_M: Number = Number(Included(0.0), Included(1e6));
+const MASS_KG: Number = Number(Included(1e-6), Included(1e15));
+const X_M: Number = Number(Included(-1e6), Included(1e6));
+const PIER_BLOCKS: Count = Count {
+    range: 1..=MAX_BLOCKS,
+    why: "a pier of one piece",
+};
+
+/// The shapes that have tables of their own.
+pub(super) fn read_shapes(
+    table: &mut Table<'_>,
+    folder: &Path,
+) -> Vec<(&'static str, Reading<Option<Shape>>)> {
+    vec![
+        (
+            "pointed_arch",
+            table.table("pointed_arch", |table| {
+                let dimensions = read_dimensions(table)?;
+                Ok(Shape::PointedArch(PointedArch { dimensions }))
+            }),
+        ),
+        (
+            "elliptic_arch",
+            table.table("elliptic_arch", |table| {
+                let dimensions = read_dimensions(table)?;
+                Ok(Shape::EllipticArch(EllipticArch { dimensions }))
+            }),
+        ),
+        (
+            "basket_arch",
+            table.table("basket_arch", |table| {
+                let crown_deg = table.or("crown_deg", &CROWN_DEG, BasketArch::CROWN_DEG);
+                let dimensions = read_dimensions(table)?;
+                Ok(Shape::BasketArch(BasketArch {
+                    dimensions,
+                    crown_deg: crown_deg?,
+                }))
+            }),
+        ),
+        (
+            "blocks",
+            table.table("blocks", |table| {
+                read_blocks(table, folder).map(Shape::Blocks)
+            }),
+        ),
+    ]
+}
+
+fn read_dimensions(table: &mut Table<'_>) -> Reading<Dimensions> {
+    let span_m = table.required("span_m", &MAGNITUDE);
+    let rise_m = table.required("rise_m", &MAGNITUDE);
+    let thickness_m = table.required("thickness_m", &THICKNESS_M);
+    let voussoirs = table.required("voussoirs", &VOUSSOIRS);
+    let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
+    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
+    Ok(Dimensions {
+        span_m: span_m?,
+        rise_m: rise_m?,
+        thickness_m: thickness_m?,
+        voussoirs: voussoirs?,
+        material: Material {
+            depth_m: depth_m?,
+            density_kg_m3: density_kg_m3?,
+        },
+    })
+}
+
+fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
+    let joints_file = table.required("joints", &Text);
+    let outlines_file = table.optional("outlines", &Text);
+    let kinds = OneOf {
+        all: Supports::ALL,
+        name: Supports::name,
+    };
+    let supports = table.or("supports", &kinds, Supports::Both);
+    let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
+    let density_kg_m3 = table.or("density_kg_m3", &OneOrMore(&MAGNITUDE), vec![DENSITY_KG_M3]);
+    let (joints_file, outlines_file) = (joints_file?, outlines_file?);
+    let path = folder.join(&joints_file);
+    let rows = read_numbers::<4>(&path).map_err(|wrong| table.wrong("joints", wrong))?;
+    let wrong_line = |line, message| faulty(&path, &LineFault { line, message });
+    if !(2..=MAX_BLOCKS + 1).contains(&rows.len()) {
+        let wrong = format!(
+            "has {} joints; must be from 2 to {}: blocks lie between joints, and a row has at most {MAX_BLOCKS}",
+            rows.len(),
+            MAX_BLOCKS + 1
+        );
+        return Err(table.wrong("joints", wrong));
+    }
+    if let Some((line, values)) = rows
+        .iter()
+        .find(|(_, values)| values.iter().any(|value| value.abs() > 1e6))
+    {
+        let message = format!("{values:?}: coordinates must be within 1e6 m of the origin");
+        return Err(table.wrong("joints", wrong_line(*line, message)));
+    }
+    let joints: Vec<Joint> = rows
+        .iter()
+        .map(|(_, [xi, yi, xe, ye])| Joint {
+            intrados_m: Vector2::new(*xi, *yi),
+            extrados_m: Vector2::new(*xe, *ye),
+        })
+        .collect();
+    let mut given = GivenBlocks {
+        joints_file,
+        outlines_file,
+        supports: supports?,
+        depth_m: depth_m?,
+        density_kg_m3: density_kg_m3?,
+        joints,
+        outlines: Vec::new(),
+    };
+    if let Err(error) = given.check() {
+        let wrong = format!("has {} elements; must be {}", error.value, error.allowed);
+        return Err(table.wrong("density_kg_m3", wrong));
+    }
+    if let Some(file) = &given.outlines_file {
+        let path = folder.join(file);
+        given.outlines =
+            read_outlines(&path, &given).map_err(|wrong| table.wrong("outlines", wrong))?;
+    }
+    // What makes no row is told by the line of its joint.
+    let shape = Shape::Blocks(given.clone());
+    match Masonry::new(shape, Piers::default(), None, Vec::new()) {
+        Ok(_) => Ok(given),
+        Err(MasonryError::Row(error)) => {
+            let joint = GivenBlocks::joint_of(&error).unwrap_or(0);
+            let line = rows.get(joint).map_or(1, |(line, _)| *line);
+            Err(table.wrong("joints", wrong_line(line, why_no_row(&error))))
+        }
+        Err(error) => Err(table.wrong("joints", error)),
+    }
+}
+
+/// Blocks and joints as people count them in the files.
+fn why_no_row(error: &RowError) -> String {
+    match error {
+        RowError::Crossing(first) => format!(
+            "this joint crosses or touches the one before (joint {first}): a block lies between two joints; move its \
+             corners apart"
+        ),
+        RowError::Order { block, .. } => format!(
+            "block {} is not on its side of this joint: give the joints from left to right and at each the intrados \
+             corner first",
+            block + 1
+        ),
+        RowError::Value {
+            name: "mass in kg" | "inertia in kg m2",
+            index,
+            ..
+        } => format!(
+            "block {} from this joint to the next has no area: check its corners, and that at every joint the intrados corner \
+             comes first",
+            index + 1
+        ),
+        RowError::Value { value, .. } => {
+            format!("this joint is {value:?} m long: its two corners must be apart")
+        }
+        other => other.to_string(),
+    }
+}
+
+fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
+    let rows = read_numbers::<3>(path)?;
+    let blocks = given.joints.len() - 1;
+    let fault = |line: usize, message: String| faulty(path, &LineFault { line, message });
+    let mut outlines = Outlines::new();
+    let mut lines = Vec::new();
+    for (line, [block, x, y]) in rows {
+        let index = (1..=blocks).find(|index| {
+            #[expect(clippy::cast_precision_loss, reason = "counts are small")]
+            let number = *index as f64;
+            number == block
+        });
+        let Some(index) = index else {
+            let message =
+                format!("there is no block {block}: blocks are counted from 1 to {blocks}");
+            return Err(fault(line, message));
+        };
+        if x.abs() > 1e6 || y.abs() > 1e6 {
+            let message = format!("{x:?}, {y:?}: coordinates must be within 1e6 m of the origin");
+            return Err(fault(line, message));
+        }
+        let corner = Vector2::new(x, y);
+        let known = outlines.iter().position(|(known, _)| *known == index - 1);
+        match known {
+            None => {
+                outlines.push((index - 1, vec![corner]));
+                lines.push(line);
+            }
+            Some(known) if known + 1 == outlines.len() => outlines[known].1.push(corner),
+            Some(_) => {
+                let message =
+                    format!("block {block} comes back: give the corners of a block together");
+                return Err(fault(line, message));
+            }
+        }
+    }
+    for ((block, corners), line) in outlines.iter().zip(lines) {
+        let number = block + 1;
+        if corners.len() < 3 {
+            let message = format!(
+                "block {number} has {} corners; give at least three",
+                corners.len()
+            );
+            return Err(fault(line, message));
+        }
+        if let Some((one, two)) = crossing_sides(corners) {
+            let message = format!(
+                "the outline of block {number} crosses itself (sides {} and {}): give its corners in order around it",
+                one + 1,
+                two + 1
+            );
+            return Err(fault(line, message));
+        }
+        let joints = [&given.joints[*block], &given.joints[block + 1]];
+        let needed = joints
+            .iter()
+            .flat_map(|joint| [joint.intrados_m, joint.extrados_m]);
+        for corner in needed {
+            if !is_on(corners, corner) {
+                let message = format!(
+                    "the outline of block {number} does not pass through the corner ({:?}, {:?}) of its joint",
+                    corner.x, corner.y
+                );
+                return Err(fault(line, message));
+            }
+        }
+    }
+    Ok(outlines)
+}
+
+type Line = [Vector2<f64>; 2];
+
+/// Corners of the outlines of blocks, with their indices.
+type Outlines = Vec<(usize, Vec<Vector2<f64>>)>;
+
+fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = Line> {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(from, to)| [*from, *to])
+}
+
+fn is_on(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
+    sides(corners).any(|[from, to]| {
+        let along = to - from;
+        let part = ((point - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (from + along * part - point).norm() <= 1e-6 * along.norm()
+    })
+}
+
+/// Two sides of a polygon that cross, by their indices.
+fn crossing_sides(corners: &[Vector2<f64>]) -> Option<(usize, usize)> {
+    let sides: Vec<Line> = sides(corners).collect();
+    let turns = |[from, to]: Line, point: Vector2<f64>| (to - from).perp(&(point - from));
+    let crosses = |one: Line, two: Line| {
+        turns(one, two[0]) * turns(one, two[1]) < 0.0
+            && turns(two, one[0]) * turns(two, one[1]) < 0.0
+    };
+    (0..sides.len()).find_map(|one| {
+        let two = (one + 1..sides.len()).find(|two| crosses(sides[one], sides[*two]))?;
+        Some((one, two))
+    })
+}
+
+/// What stands beside an arch.
+pub(super) struct Beside {
+    piers: Piers,
+    fill: Option<Fill>,
+    loads: Vec<PlacedLoad>,
+}
+
+impl Beside {
+    pub fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let piers = table.table("piers", read_piers);
+        let fill = table.table("fill", read_fill);
+        let loads = table.tables("load", read_load);
+        Ok(Self {
+            piers: piers?.unwrap_or_default(),
+            fill: fill?,
+            loads: loads?,
+        })
+    }
+
+    pub fn is_nothing(&self) -> bool {
+        self.piers.are_none() && self.fill.is_none() && self.loads.is_empty()
+    }
+
+    /// That what is given goes with no structure of this kind.
+    pub fn refused(&self, table: &mut Table<'_>, wrong: &str) -> Reported {
+        let key = match self {
+            _ if !self.piers.are_none() => "piers",
+            Self { fill: Some(_), .. } => "fill",
+            _ => "load",
+        };
+        table.wrong(key, wrong)
+    }
+
+    /// The arch with what stands beside it, if that stands.
+    pub fn complete(self, table: &mut Table<'_>, shape: Shape) -> Reading<Masonry> {
+        let key = shape.name();
+        let masonry = Masonry::new(shape, self.piers, self.fill, self.loads.clone());
+        let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
+        match falls(masonry.row()) {
+            Ok(None) => Ok(masonry),
+            Ok(Some(openings)) => {
+                let joints: Vec<_> = openings.iter().map(|o| o.joint.to_string()).collect();
+                Err(why_it_falls(table, &masonry, &joints.join(", ")))
+            }
+            Err(error) => Err(table.wrong(key, format!("cannot be checked to stand: {error}"))),
+        }
+    }
+
+    fn wrong(&self, table: &mut Table<'_>, shape: &'static str, error: &MasonryError) -> Reported {
+        let allowed = |error: &ArgumentError| format!("is not allowed; must be {}", error.allowed);
+        match error {
+            MasonryError::Shape(error) => {
+                table.wrong_in(shape, error.argument, allowed(error))
+            }
+            MasonryError::Pier { side, error } => {
+                let side = side.name();
+                let wrong = format!("of the {side} pier {}", allowed(error));
+                table.wrong_within(&["piers", side], error.argument, wrong)
+            }
+            MasonryError::Fill(error) => table.wrong_in("fill", error.argument, allowed(error)),
+            MasonryError::Load { index, error } => {
+                let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
+                table.wrong_element("load", *index, wrong)
+            }
+            MasonryError::Blocks => self.refused(
+                table,
+                "goes with arches that are given by their dimensions: give piers and fill of [blocks] as blocks",
+            ),
+            MasonryError::Count(_) => table.wrong("piers", format!("makes {error}")),
+            MasonryError::Row(error) => table.wrong(
+                shape,
+                format!("makes no row of blocks: {error}; give fewer voussoirs or a smaller thickness"),
+            ),
+        }
+    }
+}
+
+fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
+    // What is said of both; each may say otherwise.
+    let both = [
+        table.optional("height_m", &MAGNITUDE)?,
+        table.optional("width_m", &MAGNITUDE)?,
+        table.optional("density_kg_m3", &MAGNITUDE)?,
+    ];
+    let blocks = table.optional("blocks", &PIER_BLOCKS)?;
+    let read = |table: &mut Table<'_>| {
+        let mut number = |key, both: Option<f64>| match both {
+            Some(both) => table.or(key, &MAGNITUDE, both),
+            None => table.required(key, &MAGNITUDE),
+        };
+        let (height_m, width_m) = (number("height_m", both[0]), number("width_m", both[1]));
+        let density_kg_m3 = table.optional("density_kg_m3", &MAGNITUDE);
+        let blocks = table.or("blocks", &PIER_BLOCKS, blocks.unwrap_or(1));
+        Ok(Pier {
+            height_m: height_m?,
+            width_m: width_m?,
+            blocks: blocks?,
+            density_kg_m3: density_kg_m3?.or(both[2]),
+        })
+    };
+    let said = blocks.is_some() || both.iter().any(Option::is_some);
+    let (left, right) = (table.table("left", read), table.table("right", read));
+    let (mut left, mut right) = (left?, right?);
+    if said || (left.is_none() && right.is_none()) {
+        // Both stand, as `[piers]` says.
+        let lacking = |key: &'static str, value: Option<f64>| match value {
+            Some(value) => Ok(value),
+            None => Err(key),
+        };
+        let common = lacking("height_m", both[0])
+            .and_then(|height_m| Ok((height_m, lacking("width_m", both[1])?)));
+        if left.is_none() || right.is_none() {
+            match common {
+                Ok((height_m, width_m)) => {
+                    let pier = Pier {
+                        height_m,
+                        width_m,
+                        blocks: blocks.unwrap_or(1),
+                        density_kg_m3: both[2],
+                    };
+                    left = left.or(Some(pier));
+                    right = right.or(Some(pier));
+                }
+                Err(key) => {
+                    return Err(table.wrong_itself(format!(
+                        "lacks `{key}`: give it for both piers, or give [piers.left] and [piers.right]"
+                    )));
+                }
+            }
+        }
+    }
+    Ok(Piers { left, right })
+}
+
+fn read_fill(table: &mut Table<'_>) -> Reading<Fill> {
+    let height_m = table.optional("height_m", &MAGNITUDE);
+    let above_crown_m = table.optional("above_crown_m", &LEVEL_M);
+    let density_kg_m3 = table.required("density_kg_m3", &MAGNITUDE);
+    let level = table.exactly_one(
+        "keys",
+        vec![
+            (
+                "height_m",
+                height_m.map(|it| it.map(FillLevel::AboveSpringing)),
+            ),
+            (
+                "above_crown_m",
+                above_crown_m.map(|it| it.map(FillLevel::AboveCrown)),
+            ),
+        ],
+    );
+    Ok(Fill {
+        level: level?,
+        density_kg_m3: density_kg_m3?,
+    })
+}
+
+fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
+    let mass_kg = table.required("mass_kg", &MASS_KG);
+    let x_m = table.required("x_m", &X_M);
+    let width_m = table.optional("width_m", &MAGNITUDE);
+    Ok(PlacedLoad {
+        mass_kg: mass_kg?,
+        x_m: x_m?,
+        width_m: width_m?.unwrap_or(0.0),
+    })
+}
+
+/// Says that the masonry falls under its own weight, and what would hold it.
+fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Reported {
+    let shape = masonry.shape.name();
+    let falls = format!(
+        "cannot carry its own weight: it opens at joints {joints} (0: the left base or springing)"
+    );
+    let arch_stands = masonry
+        .without_piers()
+        .is_ok_and(|arch| arch.stands().unwrap_or(false));
+    if !masonry.piers.are_none() && arch_stands {
+        let wider = |factor: f64| {
+            let wider = |pier: Pier| Pier {
+                width_m: pier.width_m * factor,
+                ..pier
+            };
+            let piers = Piers {
+                left: masonry.piers.left.map(wider),
+                right: masonry.piers.right.map(wider),
+            };
+            stands_as(masonry.shape.clone(), piers, masonry)
+        };
+        let remedy = least_factor(wider).map_or("give wider or lower piers".to_owned(), |factor| {
+            format!("it stands with piers {factor:.4} times as wide")
+        });
+        let wrong = format!(
+            "gives piers that are too slender for this arch, which stands on rigid ground: joints {joints} open under \
+             its weight; {remedy}"
+        );
+        return table.wrong("piers", wrong);
+    }
+    let thicker = |factor: f64| {
+        let shape = thicker(&masonry.shape, factor)?;
+        stands_as(shape, Piers::default(), masonry)
+    };
+    let (key, remedy) = match least_factor(thicker) {
+        Some(factor) => (
+            "thickness",
+            format!("it stands if it is {factor:.4} times as thick"),
+        ),
+        None => ("shape", "give a thicker arch, or less load".to_owned()),
+    };
+    let wrong = format!("{falls}; {remedy}");
+    for candidate in ["thickness_m", "thickness_ratio"] {
+        if key == "thickness" && table.gives_in(shape, candidate) {
+            return table.wrong_in(shape, candidate, format!("makes an arch that {wrong}"));
+        }
+    }
+    table.wrong(shape, wrong)
+}
+
+fn stands_as(shape: Shape, piers: Piers, like: &Masonry) -> Option<bool> {
+    let masonry = Masonry::new(shape, piers, like.fill, like.loads.clone()).ok()?;
+    masonry.stands().ok()
+}
+
+fn thicker(shape: &Shape, factor: f64) -> Option<Shape> {
+    let scaled = |dimensions: Dimensions| Dimensions {
+        thickness_m: dimensions.thickness_m * factor,
+        ..dimensions
+    };
+    Some(match shape {
+        Shape::PointedArch(arch) => Shape::PointedArch(PointedArch {
+            dimensions: scaled(arch.dimensions),
+        }),
+        Shape::EllipticArch(arch) => Shape::EllipticArch(EllipticArch {
+            dimensions: scaled(arch.dimensions),
+        }),
+        Shape::BasketArch(arch) => Shape::BasketArch(BasketArch {
+            dimensions: scaled(arch.dimensions),
+            ..*arch
+        }),
+        Shape::Circular(circular) => {
+            let mut thicker = circular.clone();
+            let ratio = circular.arch.thickness_ratio() * factor;
+            thicker.arch = circular.arch.clone().with_thickness_ratio(ratio).ok()?;
+            Shape::Circular(thicker)
+        }
+        Shape::Blocks(_) => return None,
+    })
+}
+
+/// The least factor, rounded up to four decimals, with which something stands; `None` if that is above four.
+fn least_factor(stands: impl Fn(f64) -> Option<bool>) -> Option<f64> {
+    let high = [1.25, 1.5, 2.0, 3.0, 4.0]
+        .into_iter()
+        .find(|factor| stands(*factor) == Some(true))?;
+    let (_, least) = try_bisect(1.0, high, Width::Absolute(1e-5), |factor| {
+        stands(factor).ok_or(())
+    })
+    .ok()?;
+    Some((least * 1e4).ceil() / 1e4)
+}
