@@ -111,6 +111,7 @@ impl Structure {
                 arch.ok().map(|arch| arch.limit_rad())
             }
             Self::Column(_) => Some(FRAC_PI_2),
+            Self::Masonry(_) => None,
         }
     }
 
