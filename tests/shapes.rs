@@ -468,11 +468,14 @@ fn what_is_wrong_with_blocks_is_told_with_the_line_of_their_file() {
             "{error}"
         );
     }
+    let thin = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        format!("{},{sin},{},{}\n", -cos, -1.02 * cos, 1.02 * sin)
+    };
     let falls = check(
-        &good.replace(
-            "-0.7,0.7,-1.4,1.4\n0.7,0.7,1.4,1.4",
-            "-0.7,0.7,-0.71,0.71\n0.7,0.7,0.71,0.71",
-        ),
+        &[0.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0]
+            .map(thin)
+            .concat(),
         None,
     );
     assert!(falls.unwrap_err().contains("cannot carry its own weight"));
@@ -486,7 +489,7 @@ fn what_is_wrong_with_blocks_is_told_with_the_line_of_their_file() {
             2,
             "does not pass through the corner (1.4, 1.4)",
         ),
-        ("2,0,2", "2,0,0", 2, "crosses itself"),
+        ("2,0,2", "2,0,0.2", 2, "crosses itself"),
         (
             "2,0,2\n2,1.4,1.4\n2,0.7,0.7\n",
             "",
