@@ -137,6 +137,8 @@ pub struct Sample<'a> {
     pub friction_demand: f64,
     /// Least normal force at a joint in the step before, in newtons.
     pub least_normal_n: f64,
+    /// Impulses that press the joints now, at intrados and extrados, all over the same short time.
+    pub corner_impulses_n_s: &'a [[f64; 2]],
     /// Kinetic energy in joules.
     pub kinetic_j: f64,
     /// Potential energy above the undeformed row in joules.

@@ -114,6 +114,10 @@ pub struct Sample {
     pub rotation_over_critical: Option<f64>,
     /// Gaps of the joints at intrados and extrados, in m, of a row of blocks; else none.
     pub gaps_m: Vec<[f64; 2]>,
+    /// Line of thrust: how far it lies towards the extrados from the middle of each joint, or of each section of
+    /// [`Arch::thrust_sections_rad`](crate::mechanics::arch::Arch::thrust_sections_rad), over the thickness; `None`
+    /// where there is no pressure. Only where a [`Recorder`] wants it and the model knows it; else empty.
+    pub eccentricity_ratios: Vec<Option<f64>>,
 }
 
 named! {
@@ -147,6 +151,8 @@ pub struct Event {
     pub rates_rad_s: Vec<f64>,
     /// Kinetic and potential energy just after, in J.
     pub energy_j: f64,
+    /// Hinges of its mechanism from left to right; none at rest, and none of a row of blocks, whose samples have them.
+    pub hinges: Vec<Hinge>,
     /// The impact, where the event is one, also one that leads to rest.
     pub impact: Option<Impact>,
 }
@@ -249,7 +255,7 @@ pub(crate) fn impacts(events: &[Event]) -> impl Iterator<Item = (f64, &Impact)> 
         .filter_map(|event| Some((event.time_s, event.impact.as_ref()?)))
 }
 
-/// The samples of a history as columns, one entry a sample. Columns by body have as many entries a sample as there
+/// The samples of a history as columns, one entry a sample, without lines of thrust. Columns by body have as many entries a sample as there
 /// are bodies, sample by sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
@@ -345,6 +351,7 @@ impl Samples {
             energy_ratio: *self.energy_ratio.get(index)?,
             rotation_over_critical: *self.rotation_over_critical.get(index)?,
             gaps_m: self.gaps_m.get(by_joint)?.to_vec(),
+            eccentricity_ratios: Vec::new(),
         })
     }
 

@@ -208,6 +208,11 @@ pub trait Recorder {
     fn event(&mut self, _event: &Event) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
+
+    /// Whether samples are to come with the line of thrust, which takes time to compute.
+    fn wants_thrust_line(&self) -> bool {
+        false
+    }
 }
 
 /// A function records samples.

@@ -239,6 +239,14 @@ impl Arch {
             .map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }
 
+    /// Sections at which lines of thrust are told, in radians from the left springing: the joints, or 61 sections of an
+    /// arch that hinges anywhere.
+    #[must_use]
+    pub fn thrust_sections_rad(&self) -> Vec<f64> {
+        let parts = self.voussoirs.unwrap_or(60);
+        self.ring().sections(parts)
+    }
+
     /// The shape: the ring of unit mean radius.
     #[must_use]
     pub fn ring(&self) -> Ring {

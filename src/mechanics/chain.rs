@@ -164,6 +164,16 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
     /// The same at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
+    /// The line of thrust of one of its mechanisms in motion, where it is known section by section: how far it lies
+    /// outwards from the axis over the thickness, from left to right in the mechanism's frame; `None` where a section is
+    /// not pressed.
+    fn eccentricity_ratios(&self, _: &Self::Mechanism, _: &Motion) -> Vec<Option<f64>> {
+        Vec::new()
+    }
+    /// The same at rest.
+    fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
+        Vec::new()
+    }
     /// The mechanism after a number of impacts; `None` when an impact before it stops the structure.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>>;
     /// Hinges of that mechanism from left to right, as seen when it sways to the given side; none when

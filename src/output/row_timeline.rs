@@ -358,6 +358,7 @@ mod tests {
             energy_ratio: None,
             rotation_over_critical: None,
             gaps_m: Vec::new(),
+            eccentricity_ratios: Vec::new(),
         }
     }
 

@@ -412,6 +412,7 @@ impl Relay<'_, '_> {
                 rotations_rad: self.sample.rotations_rad.clone(),
                 rates_rad_s: self.sample.rates_rad_s.clone(),
                 energy_j: self.sample.energy_j,
+                hinges: Vec::new(),
                 impact: None,
             });
         }
@@ -462,6 +463,19 @@ impl RowRecorder for Relay<'_, '_> {
         next.energy_ratio = self.barrier_j.map(|barrier_j| next.energy_j / barrier_j);
         next.gaps_m.clear();
         next.gaps_m.extend(sample.gaps_m);
+        next.eccentricity_ratios.clear();
+        if self
+            .recorder
+            .as_ref()
+            .is_some_and(|recorder| recorder.wants_thrust_line())
+        {
+            let corners = sample.corner_impulses_n_s.iter();
+            next.eccentricity_ratios
+                .extend(corners.map(|[intrados, extrados]| {
+                    let normal = intrados + extrados;
+                    (normal > 0.0).then(|| 0.5 * (extrados - intrados) / normal)
+                }));
+        }
         self.thrust
             .note(sample.time_s, state != State::Rest, &demand);
         match &mut self.recorder {
@@ -500,6 +514,7 @@ impl RowRecorder for Relay<'_, '_> {
             rotations_rad: landing.rotations_rad.to_vec(),
             rates_rad_s: landing.rates_after_rad_s.to_vec(),
             energy_j: energy_after_j + landing.potential_j,
+            hinges: Vec::new(),
             impact: Some(Impact {
                 sway_before: sway,
                 restitution,
@@ -532,5 +547,6 @@ fn undeformed(blocks: usize) -> Sample {
         energy_ratio: None,
         rotation_over_critical: None,
         gaps_m: Vec::new(),
+        eccentricity_ratios: Vec::new(),
     }
 }

@@ -42,6 +42,30 @@ impl<'a> GroundVelocity<'a> {
         let index = after.max(1) - 1;
         self.at_starts_m_s[index] + pieces[index].velocity_gained_m_s(time_s)
     }
+
+    /// Where the ground is at these times, which ascend from zero on, in m from where it was at time zero: Simpson's
+    /// rule over the parts between times and corners, which is exact for records and constant accelerations.
+    #[must_use]
+    pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
+        let (mut at_m, mut from_s) = (Vector2::zeros(), 0.0);
+        let mut corners_s = self.ground.pieces().iter().map(|piece| piece.end_s);
+        let mut corner_s = corners_s.next().unwrap_or(f64::INFINITY);
+        let mut displacements_m = Vec::with_capacity(times_s.len());
+        for time_s in times_s {
+            while from_s < *time_s {
+                let to_s = corner_s.min(*time_s);
+                let middle_s = 0.5 * (from_s + to_s);
+                let sum = self.at(from_s) + self.at(middle_s) * 4.0 + self.at(to_s);
+                at_m += sum * ((to_s - from_s) / 6.0);
+                if to_s == corner_s {
+                    corner_s = corners_s.next().unwrap_or(f64::INFINITY);
+                }
+                from_s = to_s;
+            }
+            displacements_m.push(at_m);
+        }
+        displacements_m
+    }
 }
 
 #[cfg(test)]
@@ -72,6 +96,25 @@ mod tests {
                 }
                 assert!((exact.at(100.0) - velocity).norm() < 1e-10);
             }
+        }
+    }
+
+    /// Closed forms: `a t^2 / 2` while a constant acceleration lasts, then a constant velocity; and a sine of
+    /// frequency `w`, `a/w (t - sin(w t)/w)`.
+    #[test]
+    fn the_ground_is_where_its_velocity_brings_it() {
+        let ground = GroundMotion::pulse(Pulse::Rectangular, 2.0, 0.3, 0.1).unwrap();
+        let at_m = GroundVelocity::new(&ground).displacements_m(&[0.0, 0.1, 0.25, 1.0]);
+        for (at_m, due_m) in at_m.iter().zip([0.0, 0.0, 0.0225, 0.09 + 0.6 * 0.6]) {
+            assert!((at_m.x - due_m).abs() < 1e-14, "{at_m} {due_m}");
+        }
+        let ground = GroundMotion::pulse(Pulse::OneSine, 3.0, 0.8, 0.0).unwrap();
+        let times_s: Vec<f64> = (0..=160).map(|i| 0.005 * f64::from(i)).collect();
+        let at_m = GroundVelocity::new(&ground).displacements_m(&times_s);
+        let frequency = std::f64::consts::TAU / 0.8;
+        for (at_m, time_s) in at_m.iter().zip(times_s) {
+            let due_m = 3.0 / frequency * (time_s - (frequency * time_s).sin() / frequency);
+            assert!((at_m.x - due_m).abs() < 1e-9, "{at_m} {due_m}");
         }
     }
 

@@ -210,24 +210,69 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         time_s: f64,
         state: &RockingState,
     ) -> Demand {
-        let ground_m_s2 = |sway: Sway| self.ground_m_s2(sway, piece, time_s);
-        let body_force_g =
-            |sway: Sway| -ground_m_s2(sway) / self.gravity_m_s2 - Vector2::new(0.0, 1.0);
+        match self.in_motion(mode, piece, time_s, state) {
+            None => self
+                .chain
+                .demand_at_rest(self.body_force_g(Sway::Right, piece, time_s)),
+            Some((_, mechanism, motion)) => self.chain.demand(mechanism, &motion),
+        }
+    }
+
+    /// The line of thrust over the sections from left to right: see
+    /// [`MechanismChain::eccentricity_ratios`].
+    #[must_use]
+    pub fn eccentricity_ratios(
+        &self,
+        mode: Mode<'a, C::Mechanism>,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+    ) -> Vec<Option<f64>> {
+        match self.in_motion(mode, piece, time_s, state) {
+            None => {
+                let body_force_g = self.body_force_g(Sway::Right, piece, time_s);
+                self.chain.eccentricity_ratios_at_rest(body_force_g)
+            }
+            Some((sway, mechanism, motion)) => {
+                let mut ratios = self.chain.eccentricity_ratios(mechanism, &motion);
+                if sway == Sway::Left {
+                    ratios.reverse();
+                }
+                ratios
+            }
+        }
+    }
+
+    /// Gravity less the acceleration of the ground in the frame of a mechanism with this sway, in g.
+    fn body_force_g(&self, sway: Sway, piece: usize, time_s: f64) -> Vector2<f64> {
+        let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
+        -ground_m_s2 / self.gravity_m_s2 - Vector2::new(0.0, 1.0)
+    }
+
+    /// The mechanism that moves, its sway and its motion; `None` at rest.
+    fn in_motion(
+        &self,
+        mode: Mode<'a, C::Mechanism>,
+        piece: usize,
+        time_s: f64,
+        state: &RockingState,
+    ) -> Option<(Sway, &'a C::Mechanism, Motion)> {
         let (sway, link) = match mode {
-            Mode::Rest => return self.chain.demand_at_rest(body_force_g(Sway::Right)),
+            Mode::Rest => return None,
             Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } => (sway, link),
         };
         let (q_rad, rate) = (state[0], state[1]);
         let coefficients = link.mechanism.coefficients(q_rad);
-        let acceleration = self.acceleration(&coefficients, rate, ground_m_s2(sway));
+        let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
+        let acceleration = self.acceleration(&coefficients, rate, ground_m_s2);
         let square_s2 = self.chain.length_m() / self.gravity_m_s2;
         let motion = Motion {
             q_rad,
             rate: rate * square_s2.sqrt(),
             acceleration: acceleration * square_s2,
-            body_force_g: body_force_g(sway),
+            body_force_g: self.body_force_g(sway, piece, time_s),
         };
-        self.chain.demand(&link.mechanism, &motion)
+        Some((sway, &link.mechanism, motion))
     }
 
     /// Time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.

@@ -427,6 +427,12 @@ fn event<'a, C: MechanismChain>(
     };
     let (rotations_rad, rates_rad_s) = posture(rocking, transition.to, &transition.after);
     let chain = rocking.chain();
+    let hinges = match transition.to {
+        Mode::Rest => Vec::new(),
+        Mode::Rocking { sway, impacts, .. } | Mode::Overturned { sway, impacts, .. } => {
+            chain.hinges(impacts, sway)
+        }
+    };
     Event {
         time_s: transition.time_s,
         kind,
@@ -435,6 +441,7 @@ fn event<'a, C: MechanismChain>(
         rotations_rad: rotations_rad.as_ref().to_vec(),
         rates_rad_s: rates_rad_s.as_ref().to_vec(),
         energy_j: energy * chain.joules_per_unit(),
+        hinges,
         impact: Closing::of(chain, transition).map(|closing| closing.impact(chain)),
     }
 }
@@ -567,6 +574,11 @@ impl<'r> Sampler<'r> {
                 )
             }
         };
+        let eccentricity_ratios = if self.recorder.wants_thrust_line() {
+            rocking.eccentricity_ratios(mode, piece, time_s, state)
+        } else {
+            Vec::new()
+        };
         Sample {
             time_s,
             ground_acceleration_m_s2: ground.x + 0.0,
@@ -582,6 +594,7 @@ impl<'r> Sampler<'r> {
             energy_ratio: Some(energy / barrier),
             rotation_over_critical: Some(rotation_over_critical),
             gaps_m: Vec::new(),
+            eccentricity_ratios,
         }
     }
 

@@ -108,6 +108,17 @@ impl MechanismChain for FourLinkArch {
             .demand(self.chain.sites())
     }
 
+    fn eccentricity_ratios(&self, mechanism: &Linkage, motion: &Motion) -> Vec<Option<f64>> {
+        let line = mechanism.thrust_line(motion);
+        line.eccentricity_ratios(&self.arch.thrust_sections_rad())
+    }
+
+    fn eccentricity_ratios_at_rest(&self, body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
+        let (incipient, ring) = (self.chain.incipient(), self.chain.ring());
+        let line = ThrustLine::at_rest(incipient, ring, body_force_g);
+        line.eccentricity_ratios(&self.arch.thrust_sections_rad())
+    }
+
     fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {
         self.chain.link(impacts).map(|link| &link.link)
     }

@@ -214,6 +214,18 @@ impl ThrustLine {
         SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
     }
 
+    /// Where the line crosses these sections, outwards from the axis over the thickness: within -0.5 to 0.5 inside the
+    /// ring; `None` where a section is not pressed.
+    #[must_use]
+    pub fn eccentricity_ratios(&self, sections_rad: &[f64]) -> Vec<Option<f64>> {
+        let sections = sections_rad
+            .iter()
+            .map(|angle_rad| self.section(*angle_rad));
+        sections
+            .map(|section| (section.normal > 0.0).then_some(section.eccentricity_ratio))
+            .collect()
+    }
+
     /// The largest demands over the joints, or over all sections of a continuous ring.
     #[must_use]
     pub fn demand(&self, sites: HingeSites) -> Demand {

@@ -31,6 +31,9 @@ impl Edge {
     }
 }
 
+/// Longest line that an arc of an outline is drawn with.
+const OUTLINE_STEP_RAD: f64 = 3.0 * PI / 180.0;
+
 /// Why a ring cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RingError {
@@ -109,6 +112,26 @@ impl Ring {
     #[must_use]
     pub fn point(&self, angle_rad: f64, edge: Edge) -> Vector2<f64> {
         self.radial(angle_rad) * self.radius(edge)
+    }
+
+    /// Corners of the sector between two sections, from the first section outwards; its arcs as straight lines of 3
+    /// degrees at most.
+    #[must_use]
+    pub fn sector_outline(&self, start_rad: f64, end_rad: f64) -> Vec<Vector2<f64>> {
+        let lines = ((end_rad - start_rad) / OUTLINE_STEP_RAD).ceil().max(1.0);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "1 to 60"
+        )]
+        let count = lines as u32;
+        let at = |i: u32, edge: Edge| {
+            let part = f64::from(i) / lines;
+            self.point(start_rad + part * (end_rad - start_rad), edge)
+        };
+        let out = (0..=count).map(|i| at(i, Edge::Extrados));
+        let back = (0..=count).rev().map(|i| at(i, Edge::Intrados));
+        out.chain(back).collect()
     }
 
     /// The sections that cut the ring into `parts` equal parts, springings included, in radians.

@@ -187,6 +187,8 @@ impl Engine<'_> {
             open_joints: gaps_m.iter().filter(|gaps| **gaps != [0.0; 2]).count(),
             friction_demand: self.friction_demand,
             least_normal_n: self.least_normal,
+            // The programs were exchanged: this is the solution of the sample.
+            corner_impulses_n_s: self.auxiliary.corner_impulses(),
             kinetic_j,
             potential_j: self.potential,
         });
