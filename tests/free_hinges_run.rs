@@ -111,6 +111,7 @@ fn tables_of_a_row_fit_together() {
         "history.svg",
         "impacts.csv",
         "joints.csv",
+        "report.html",
         "rotations.csv",
         "summary.json",
     ];

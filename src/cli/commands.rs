@@ -51,7 +51,7 @@ fn row_limit(row: &Row, gravity_m_s2: f64, format: Format) -> Result<(), Failure
     let onset = |sway| onset(row, sway).map_err(|error| Failure::Input(error.to_string()));
     let onsets = [onset(Sway::Right)?, onset(Sway::Left)?];
     if let Format::Json = format {
-        return print(&pretty(&mechanisms::row_limit(row, &onsets)));
+        return print(&pretty(&mechanisms::row_limit(row, &onsets, gravity_m_s2)));
     }
     let mut text = String::new();
     for (sway, onset) in [Sway::Right, Sway::Left].into_iter().zip(&onsets) {

@@ -1,5 +1,6 @@
 //! The command `run`.
 
+mod extras;
 mod free_hinges;
 
 use std::fmt::Write as _;
@@ -15,12 +16,14 @@ use archrock::mechanics::sway::Sway;
 use archrock::output::overlay::{self, Curves};
 use archrock::output::results::{self, EventsWriter};
 use archrock::output::rotations::{RotationsWriter, Scales};
+use archrock::output::scene::Scene;
 use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError};
 use archrock::scenario::{Hinges, Scenario, Structure};
 use clap::ValueEnum;
 use serde_json::{Value, json};
 
+use self::extras::{Extras, File, POSES, PosesTable};
 use super::scenario_file::{Destination, Input, SetOption};
 use super::study::impact_ignored;
 use super::{Failure, Format, commands, print};
@@ -54,6 +57,8 @@ pub struct Arguments {
     /// Do not repeat a run with free hinges with half and with double steps.
     #[arg(long)]
     no_spread: bool,
+    #[command(flatten)]
+    extras: extras::Options,
 }
 
 /// Models of motion.
@@ -255,6 +260,8 @@ struct Place {
     results: Option<Destination>,
     /// Whether the rotations go to standard output.
     to_stdout: bool,
+    /// What is written beside the tables.
+    extras: extras::Options,
 }
 
 impl Place {
@@ -267,7 +274,11 @@ impl Place {
             None if to_stdout || matches!(arguments.format, Format::Json) => None,
             out => Some(input.results(out.as_deref())?),
         };
-        Ok(Self { results, to_stdout })
+        Ok(Self {
+            results,
+            to_stdout,
+            extras: arguments.extras.clone(),
+        })
     }
 
     /// The folder.
@@ -280,22 +291,30 @@ impl Place {
         Self {
             results: self.results.as_ref().map(|results| results.within(name)),
             to_stdout: false,
+            extras: self.extras.clone(),
         }
     }
 
-    /// Opens the folder for these results, the rotations before them unless they go elsewhere. Others that
-    /// earlier runs may have left there go when these are complete.
-    fn open(&self, names: &[&str]) -> Result<Option<Folder>, Failure> {
+    /// The files for these results: before them the rotations unless they go elsewhere, and what else is asked for.
+    fn files(&self, names: &[&'static str]) -> Vec<&'static str> {
+        let rotations = (!self.to_stdout).then_some(ROTATIONS);
+        let first = rotations.into_iter().chain(self.extras.files());
+        first.chain(names.iter().copied()).collect()
+    }
+
+    /// Opens the folder for [`Place::files`]. Others that earlier runs may have left there go when these are complete.
+    fn open(&self, names: &[&'static str]) -> Result<Option<Folder>, Failure> {
         let Some(results) = &self.results else {
+            self.extras.check_folder()?;
             return Ok(None);
         };
-        let mut all = names.to_vec();
-        if !self.to_stdout {
-            all.insert(0, ROTATIONS);
-        }
+        let all = self.files(names);
         let mut folder = results.open(&all)?;
-        for name in [ROTATIONS, JOINTS, OVERLAY] {
-            if !all.contains(&name) {
+        for name in [ROTATIONS, JOINTS, OVERLAY]
+            .iter()
+            .chain(&extras::Options::FILES)
+        {
+            if !all.contains(name) {
                 folder.forget(name);
             }
         }
@@ -338,7 +357,8 @@ fn both(
     let of_free = free_hinges::run(free, &place.within("free"), options, Some(of_free))?;
     let mut text = format!("four links\n{}free hinges\n{}", of_four.text, of_free.text);
     if let Some(mut folder) = folder.take() {
-        for name in [SUMMARY, ROTATIONS, JOINTS, EVENTS, IMPACTS, PICTURE] {
+        let own = [SUMMARY, ROTATIONS, JOINTS, EVENTS, IMPACTS, PICTURE];
+        for name in own.iter().chain(&extras::Options::FILES) {
             folder.forget(name);
         }
         let title = four
@@ -387,27 +407,43 @@ fn four_links(
     let mut folder = place.open(&[EVENTS, IMPACTS, PICTURE, SUMMARY])?;
     let bodies = model.bodies();
     let mut timeline = Timeline::new(&bodies, gravity_m_s2);
+    let scene = Scene::new(&scenario.structure);
+    let mut extras = Extras::new(
+        &place.extras,
+        folder.as_ref(),
+        &scene,
+        &bodies,
+        gravity_m_s2,
+    );
     let mut events = Vec::new();
     let (summary, rows) = {
-        let writer: Box<dyn io::Write + '_> = match &mut folder {
-            Some(folder) if !place.to_stdout => Box::new(folder.file(ROTATIONS)),
-            _ => place.elsewhere(),
-        };
+        let (mut rotations, mut poses): (Option<File<'_>>, Option<File<'_>>) = (None, None);
+        for (name, file) in folder.iter_mut().flat_map(Folder::files) {
+            match name {
+                ROTATIONS => rotations = Some(Box::new(file)),
+                POSES => poses = Some(Box::new(file)),
+                _ => {}
+            }
+        }
+        let rotations = rotations.unwrap_or_else(|| place.elsewhere());
         let mut results = Results {
-            table: RotationsWriter::new(writer, &bodies, ground.has_vertical(), scales)?,
+            table: RotationsWriter::new(rotations, &bodies, ground.has_vertical(), scales)?,
+            poses: PosesTable::new(poses, &bodies)?,
             timeline: &mut timeline,
+            extras: &mut extras,
             events: &mut events,
             curves,
             written: Ok(()),
         };
         let summary = model.simulate(ground, &scenario.request(), Some(&mut results))?;
         results.written?;
+        results.poses.finish()?;
         (summary, results.table.finish()?)
     };
     let mut text = human_summary(scenario, &*model, ground, &summary, &events);
     let json = results::summary(scenario, &*model, ground, &summary)?;
     if let Some(mut folder) = folder {
-        let mut table = EventsWriter::new(folder.file(EVENTS), &bodies)?;
+        let mut table = EventsWriter::of_mechanisms(folder.file(EVENTS), &*model)?;
         for event in &events {
             table.write(event)?;
         }
@@ -418,6 +454,7 @@ fn four_links(
             .file(PICTURE)
             .write_all(timeline.draw(title, &events).as_bytes())
             .map_err(cannot_write("the picture"))?;
+        extras.write(&mut folder, scenario, title, &mut text)?;
         writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
@@ -430,20 +467,21 @@ fn four_links(
 }
 
 /// Says which files there are.
-fn written(path: &Path, place: &Place, rows: u64, names: &[&str]) -> String {
-    let rotations = if place.to_stdout {
-        String::new()
-    } else {
-        format!("{ROTATIONS} ({rows} rows), ")
-    };
-    let (path, names) = (path.display(), names.join(", "));
-    format!("  results in {path}: {rotations}{names}\n")
+fn written(path: &Path, place: &Place, rows: u64, names: &[&'static str]) -> String {
+    let names = place.files(names).into_iter().map(|name| match name {
+        ROTATIONS => format!("{ROTATIONS} ({rows} rows)"),
+        name => name.to_owned(),
+    });
+    let (path, names) = (path.display(), names.collect::<Vec<_>>().join(", "));
+    format!("  results in {path}: {names}\n")
 }
 
 /// Where samples and events go.
 struct Results<'a, W: io::Write> {
     table: RotationsWriter<W>,
     timeline: &'a mut Timeline,
+    poses: PosesTable<'a>,
+    extras: &'a mut Extras,
     events: &'a mut Vec<Event>,
     curves: Option<&'a mut Curves>,
     /// Why the table could not be written, which ends the history.
@@ -453,10 +491,14 @@ struct Results<'a, W: io::Write> {
 impl<W: io::Write> Recorder for Results<'_, W> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self.timeline.push(sample);
+        self.extras.push(sample);
         if let Some(curves) = &mut self.curves {
             curves.push(sample);
         }
-        self.written = self.table.write(sample);
+        self.written = self
+            .table
+            .write(sample)
+            .and_then(|()| self.poses.write(sample));
         match self.written {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
@@ -466,6 +508,10 @@ impl<W: io::Write> Recorder for Results<'_, W> {
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         self.events.push(event.clone());
         ControlFlow::Continue(())
+    }
+
+    fn wants_thrust_line(&self) -> bool {
+        self.extras.want_thrust_line()
     }
 }
 

@@ -419,7 +419,12 @@ impl Row {
             }
         });
         let joints = ring_joints(ring, sections_rad, mean_radius_m);
-        Self::new(blocks.collect(), joints, Supports::Both, mean_radius_m)
+        let outlines_m = sections_rad.windows(2).map(|ends| {
+            let outline = ring.sector_outline(ends[0], ends[1]).into_iter();
+            outline.map(|corner| corner * mean_radius_m).collect()
+        });
+        let row = Self::new(blocks.collect(), joints, Supports::Both, mean_radius_m)?;
+        Ok(row.with_outlines_m(outlines_m.collect()))
     }
 
     /// An arch of `voussoirs` equal annular voussoirs.

@@ -91,21 +91,9 @@ impl Folder {
         &mut found.expect("the names are those given to `open`").1
     }
 
-    /// The files of those names, to write to all of them in turn.
-    ///
-    /// # Panics
-    /// When one is none of those the folder was opened with, or named twice.
-    pub fn files<const N: usize>(&mut self, names: [&str; N]) -> [&mut impl Write; N] {
-        const WHY: &str = "the names are different ones of those given to `open`";
-        let known = &self.files;
-        let at = names.map(|name| {
-            let found = known.iter().position(|(known, _)| known == name);
-            found.expect(WHY)
-        });
-        self.files
-            .get_disjoint_mut(at)
-            .expect(WHY)
-            .map(|(_, file)| file)
+    /// All files with their names, to write to them in turn.
+    pub fn files(&mut self) -> impl Iterator<Item = (&str, &mut impl Write)> {
+        self.files.iter_mut().map(|(name, file)| (&**name, file))
     }
 
     /// Completes the files and gives them their names.

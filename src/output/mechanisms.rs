@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::rotations::columns;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
@@ -31,7 +32,7 @@ pub fn hinges(hinges: &[Hinge]) -> Value {
 /// Result of `limit` for a row of blocks: the push that starts it to each side, by the static programme, and the joints
 /// that open.
 #[must_use]
-pub fn row_limit(row: &Row, onsets: &[Option<RowOnset>; 2]) -> Value {
+pub fn row_limit(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) -> Value {
     let [right, left] = onsets;
     let mechanism = |onset: &Option<RowOnset>| -> Value {
         let openings = onset.iter().flat_map(|onset| &onset.openings);
@@ -52,12 +53,17 @@ pub fn row_limit(row: &Row, onsets: &[Option<RowOnset>; 2]) -> Value {
         |onset: &Option<RowOnset>| onset.as_ref().map(|onset| onset.acceleration_g);
     json!({
         "incipient_acceleration_g": { "right": acceleration_g(right), "left": acceleration_g(left) },
+        "incipient_acceleration_m_s2": {
+            "right": acceleration_g(right).map(|g| g * gravity_m_s2),
+            "left": acceleration_g(left).map(|g| g * gravity_m_s2),
+        },
         "mechanism": { "right": mechanism(right), "left": mechanism(left) },
     })
 }
 
-/// Result of `limit`: incipient acceleration and mechanism on both sides, and the equivalent blocks
-/// (see [`crate::mechanics::equivalent`]), the same on both.
+/// Result of `limit`: incipient acceleration and mechanism on both sides, rotations of the bodies at the unstable
+/// equilibrium of the first mechanism swaying right (those swaying left are its mirror image), and the equivalent blocks
+/// (see [`crate::mechanics::equivalent`]), the same on both sides.
 #[must_use]
 pub fn limit(model: &dyn MechanismModel, gravity_m_s2: f64) -> Value {
     let both =
@@ -70,9 +76,19 @@ pub fn limit(model: &dyn MechanismModel, gravity_m_s2: f64) -> Value {
             "at_critical": blocks.at_critical.map(block),
         })
     });
+    let bodies = model.bodies();
+    let keys = columns(&bodies, "rotation", "rad").into_iter();
+    let unstable: serde_json::Map<_, _> = keys
+        .zip(model.critical_rotations_rad().into_iter().map(Value::from))
+        .collect();
     json!({
         "incipient_acceleration_g": both(&|sway| model.incipient_acceleration_g(sway).into()),
+        "incipient_acceleration_m_s2": both(&|sway| {
+            let incipient_g = model.incipient_acceleration_g(sway);
+            incipient_g.map(|incipient_g| incipient_g * gravity_m_s2).into()
+        }),
         "mechanism": both(&|sway| hinges(&model.hinges_after(0, sway))),
+        "unstable_rotations": unstable,
         "equivalent_block": equivalent,
     })
 }

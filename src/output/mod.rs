@@ -4,6 +4,7 @@
 
 pub mod chart;
 pub mod ending;
+mod film;
 mod folder;
 pub mod free_hinges;
 pub mod impact;
@@ -11,10 +12,15 @@ mod kind;
 pub mod map;
 pub mod mechanisms;
 pub mod overlay;
+mod page;
 pub mod pictures;
+pub mod poses;
+pub mod report;
 pub mod results;
 pub mod rotations;
 pub mod row_timeline;
+pub mod scene;
+pub mod snapshots;
 pub mod spectrum;
 pub mod suite;
 mod svg;

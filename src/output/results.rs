@@ -25,6 +25,10 @@ use crate::scenario::{Ground, Scenario};
 /// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and of free hinges |
 /// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
 /// | `energy_j` | kinetic and potential, just after |
+/// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`write_impacts`]; empty at rest |
+///
+/// A column and a row of blocks have no columns for hinges. A structure that is released starts in the first mechanism
+/// without a row: its hinges are in `impacts.csv`, as those that close first.
 ///
 /// Rows of blocks have thousands of impacts, and bodies by the hundred: without names of bodies their columns are left
 /// out.
@@ -33,16 +37,30 @@ pub struct EventsWriter<W: Write> {
     rows: usize,
     /// Whether there are columns by body.
     by_body: bool,
+    /// Hinges that have columns.
+    sections: usize,
 }
 
 impl<W: Write> EventsWriter<W> {
     const WHAT: &str = "cannot write the events";
 
-    /// Starts with the header for bodies of these names.
+    /// Starts with the header for a model of mechanisms.
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn new(writer: W, bodies: &[String]) -> Result<Self, OutputError> {
+    pub fn of_mechanisms(writer: W, model: &dyn MechanismModel) -> Result<Self, OutputError> {
+        Self::new(writer, &model.bodies(), sections(model))
+    }
+
+    /// Starts with the header for a row of blocks.
+    ///
+    /// # Errors
+    /// When the system refuses.
+    pub fn of_row(writer: W) -> Result<Self, OutputError> {
+        Self::new(writer, &[], 0)
+    }
+
+    fn new(writer: W, bodies: &[String], sections: usize) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
         let mut header: Vec<String> = ["time_s", "phase", "kind", "sway", "mechanism"]
             .map(str::to_owned)
@@ -50,12 +68,14 @@ impl<W: Write> EventsWriter<W> {
         header.extend(columns(bodies, "rotation", "rad"));
         header.extend(columns(bodies, "rate", "rad_s"));
         header.push("energy_j".to_owned());
+        header.extend(hinge_columns("hinge", sections));
         csv.write_record(header)
             .map_err(OutputError::csv(Self::WHAT))?;
         Ok(Self {
             csv,
             rows: 0,
             by_body: !bodies.is_empty(),
+            sections,
         })
     }
 
@@ -83,6 +103,7 @@ impl<W: Write> EventsWriter<W> {
                 rotations,
                 rates,
                 event.energy_j,
+                hinge_cells(&event.hinges, self.sections),
             ))
             .map_err(OutputError::csv(Self::WHAT))
     }
@@ -101,6 +122,10 @@ impl<W: Write> EventsWriter<W> {
 /// The mechanism after is the one that the impact leads to, with the energy that it would keep, also where
 /// that is so little that the structure comes to rest. Where no mechanism can follow the hinges are left
 /// empty. A column has no columns for hinges.
+///
+/// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after from the left, in degrees from the left
+/// springing, and `hinge_a_edge` ... where they are in the section, `intrados` or `extrados`; `closed_a_deg` and
+/// `closed_a_edge` ... the same of the mechanism before, in the first row the first of all.
 ///
 /// The impulses at its hinges act on the part towards the crown, in the frame of the ground; they are empty
 /// where the restitution coefficient is prescribed.
@@ -130,19 +155,22 @@ pub fn write_impacts(
         let unit = format!("{moment}_rad_s");
         header.extend(columns(&model.bodies(), "rate", &unit));
     }
-    let sections = sections_deg(&model.hinges_after(0, Sway::Right)).len();
-    let hinges = ["a", "b", "c", "d"].iter().take(sections);
+    let sections = sections(model);
+    let hinges = HINGES.iter().take(sections);
     header.extend(hinges.clone().map(|hinge| format!("hinge_{hinge}_deg")));
     header.extend(
-        hinges.flat_map(|hinge| {
+        hinges.clone().flat_map(|hinge| {
             ["x", "y"].map(|component| format!("impulse_{hinge}_{component}_n_s"))
         }),
     );
+    header.extend(hinges.map(|hinge| format!("hinge_{hinge}_edge")));
+    header.extend(hinge_columns("closed", sections));
     csv.write_record(header).map_err(OutputError::csv(WHAT))?;
 
     for (index, (time_s, impact)) in impacts(events).enumerate() {
-        let mut hinges_deg = sections_deg(&impact.opened);
-        hinges_deg.resize(sections, None);
+        let opened = hinge_cells(&impact.opened, sections);
+        let hinges_deg: Vec<_> = opened.iter().map(|(angle_deg, _)| *angle_deg).collect();
+        let edges: Vec<_> = opened.iter().map(|(_, edge)| *edge).collect();
         let impulses = impact.impulses_n_s.iter();
         let impulses_n_s: Vec<f64> = impulses.flat_map(|i| [i.x, i.y]).collect();
         finite(ROW, &impulses_n_s)?;
@@ -164,19 +192,40 @@ pub fn write_impacts(
             &impact.rates_after_rad_s,
             hinges_deg,
             impulses_n_s,
+            edges,
+            hinge_cells(&impact.closed, sections),
         ))
         .map_err(OutputError::csv(WHAT))?;
     }
     csv.flush().map_err(OutputError::io(WHAT))
 }
 
-/// Angles of the hinges that are at sections of an arch, in degrees from the left springing.
-fn sections_deg(hinges: &[Hinge]) -> Vec<Option<f64>> {
+/// Hinges of a mechanism in the names of columns, from the left.
+const HINGES: [&str; 4] = ["a", "b", "c", "d"];
+
+/// How many hinges of the mechanisms of a model are at sections.
+fn sections(model: &dyn MechanismModel) -> usize {
+    hinge_cells(&model.hinges_after(0, Sway::Right), 0).len()
+}
+
+/// Columns of so many hinges, place and edge.
+fn hinge_columns(what: &str, sections: usize) -> impl Iterator<Item = String> {
+    let hinges = HINGES.iter().take(sections);
+    hinges.flat_map(move |hinge| ["deg", "edge"].map(|part| format!("{what}_{hinge}_{part}")))
+}
+
+/// Angles, in degrees from the left springing, and edges of the hinges that are at sections of an arch; filled up with
+/// empty cells to so many.
+fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'static str>)> {
     let sections = hinges.iter().filter_map(|hinge| match hinge {
-        Hinge::Section { angle_rad, .. } => Some(Some(angle_rad.to_degrees())),
+        Hinge::Section { angle_rad, edge } => {
+            Some((Some(angle_rad.to_degrees()), Some(edge.name())))
+        }
         Hinge::Toe(_) | Hinge::Joint { .. } => None,
     });
-    sections.collect()
+    let mut cells: Vec<_> = sections.collect();
+    cells.resize(cells.len().max(least), (None, None));
+    cells
 }
 
 /// What a study was of: program, version, scenario as resolved, number of cases; and `failures`, where there are any.

@@ -145,6 +145,23 @@ impl Drawing {
         }
     }
 
+    /// A closed polygon.
+    pub fn polygon(
+        &mut self,
+        name: &str,
+        corners: impl IntoIterator<Item = Vector2<f64>>,
+        fill: &str,
+        stroke: Stroke,
+    ) {
+        let mut path = String::new();
+        for corner in corners {
+            let command = if path.is_empty() { "M" } else { " " };
+            let _ = write!(path, "{command}{:.2} {:.2}", corner.x, corner.y);
+        }
+        path.push('Z');
+        self.path(name, &path, fill, stroke);
+    }
+
     /// A path in SVG's own notation.
     pub fn path(&mut self, name: &str, path: &str, fill: &str, stroke: Stroke) {
         let name = name_attribute(name);
@@ -262,7 +279,7 @@ fn name_attribute(name: &str) -> String {
 }
 
 /// Text with the characters that mean something in XML replaced; control characters are left out.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for character in text.chars() {
         match character {

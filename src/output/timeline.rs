@@ -14,7 +14,7 @@ const NARROWEST_PX: f64 = 1.0;
 
 /// Where the excess of the thrust line is cut off, in parts of the thickness: a structure that falls has
 /// values that would hide all others.
-const LARGEST_EXCESS: f64 = 1.0;
+pub(super) const LARGEST_EXCESS: f64 = 1.0;
 
 /// A long series of values thinned to the least and largest of each of equal groups.
 #[derive(Clone, Debug)]

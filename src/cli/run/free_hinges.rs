@@ -1,7 +1,7 @@
 //! `run` with free hinges.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::thread::{self, JoinHandle};
 
@@ -17,9 +17,11 @@ use archrock::output::overlay::Curves;
 use archrock::output::results::EventsWriter;
 use archrock::output::rotations::RotationsWriter;
 use archrock::output::row_timeline::RowTimeline;
+use archrock::output::scene::Scene;
 use archrock::output::{Folder, OutputError};
 use archrock::scenario::Scenario;
 
+use super::extras::{Extras, File, POSES, PosesTable};
 use super::{
     EVENTS, IMPACTS, JOINTS, PICTURE, Place, ROTATIONS, SUMMARY, Told, cannot_write, cut_short,
     outcome, reaches, written,
@@ -53,6 +55,13 @@ pub fn run(
     let ground = scenario.ground_motion();
     let mut folder = place.open(&[JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY])?;
     let mut timeline = RowTimeline::new(model.row(), scenario.simulation.gravity_m_s2);
+    let mut extras = Extras::new(
+        &place.extras,
+        folder.as_ref(),
+        &Scene::of_row(model.row()),
+        &model.bodies(),
+        scenario.simulation.gravity_m_s2,
+    );
     let mut impacts = Notable::default();
     let repetitions = options
         .spread
@@ -61,6 +70,7 @@ pub fn run(
         let mut results = Results {
             tables: Tables::new(&model, ground, place, folder.as_mut())?,
             timeline: &mut timeline,
+            extras: &mut extras,
             impacts: &mut impacts,
             curves,
             written: Ok(()),
@@ -82,6 +92,7 @@ pub fn run(
             .file(PICTURE)
             .write_all(timeline.draw(title, &summary).as_bytes())
             .map_err(cannot_write("the picture"))?;
+        extras.write(&mut folder, scenario, title, &mut text)?;
         writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
@@ -123,15 +134,12 @@ impl Repetitions {
 
 /// The tables that are written while the motion is computed.
 struct Tables<'a> {
-    rotations: RotationsWriter<Box<dyn io::Write + 'a>>,
-    others: Option<Others<'a>>,
-}
-
-/// Those that only a folder can hold.
-struct Others<'a> {
-    joints: JointsWriter<Box<dyn io::Write + 'a>>,
-    events: EventsWriter<Box<dyn io::Write + 'a>>,
-    landings: LandingsWriter<Box<dyn io::Write + 'a>>,
+    rotations: RotationsWriter<File<'a>>,
+    poses: PosesTable<'a>,
+    /// Those that only a folder can hold.
+    joints: Option<JointsWriter<File<'a>>>,
+    events: Option<EventsWriter<File<'a>>>,
+    landings: Option<LandingsWriter<File<'a>>>,
 }
 
 impl<'a> Tables<'a> {
@@ -142,63 +150,55 @@ impl<'a> Tables<'a> {
         folder: Option<&'a mut Folder>,
     ) -> Result<Self, OutputError> {
         let blocks = model.bodies();
-        let mut rotations: Option<Box<dyn io::Write + 'a>> = None;
-        let mut others = None;
-        if let Some(folder) = folder {
-            let [joints, events, landings] = if place.to_stdout {
-                folder.files([JOINTS, EVENTS, IMPACTS]).map(boxed)
-            } else {
-                let [table, joints, events, landings] = folder
-                    .files([ROTATIONS, JOINTS, EVENTS, IMPACTS])
-                    .map(boxed);
-                rotations = Some(table);
-                [joints, events, landings]
-            };
-            others = Some(Others {
-                joints: JointsWriter::new(joints, model.row().joints().len())?,
-                events: EventsWriter::new(events, &[])?,
-                landings: LandingsWriter::new(landings)?,
-            });
+        let (mut rotations, mut poses): (Option<File<'a>>, Option<File<'a>>) = (None, None);
+        let (mut joints, mut events, mut landings) = (None, None, None);
+        for (name, file) in folder.into_iter().flat_map(Folder::files) {
+            let file: File<'a> = Box::new(file);
+            match name {
+                ROTATIONS => rotations = Some(file),
+                POSES => poses = Some(file),
+                JOINTS => joints = Some(JointsWriter::new(file, model.row().joints().len())?),
+                EVENTS => events = Some(EventsWriter::of_row(file)?),
+                IMPACTS => landings = Some(LandingsWriter::new(file)?),
+                _ => {}
+            }
         }
         let rotations = rotations.unwrap_or_else(|| place.elsewhere());
         Ok(Self {
             rotations: RotationsWriter::of_row(rotations, &blocks, ground.has_vertical())?,
-            others,
+            poses: PosesTable::new(poses, &blocks)?,
+            joints,
+            events,
+            landings,
         })
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<(), OutputError> {
         self.rotations.write(sample)?;
-        match &mut self.others {
-            Some(others) => others.joints.write(sample),
-            None => Ok(()),
-        }
+        self.poses.write(sample)?;
+        self.joints
+            .as_mut()
+            .map_or(Ok(()), |joints| joints.write(sample))
     }
 
     fn event(&mut self, event: &Event) -> Result<(), OutputError> {
-        let Some(others) = &mut self.others else {
-            return Ok(());
-        };
-        others.events.write(event)?;
-        match &event.impact {
-            Some(impact) => others.landings.write(event.time_s, impact),
-            None => Ok(()),
+        if let Some(events) = &mut self.events {
+            events.write(event)?;
+        }
+        match (&mut self.landings, &event.impact) {
+            (Some(landings), Some(impact)) => landings.write(event.time_s, impact),
+            _ => Ok(()),
         }
     }
 
     /// Ends the tables and returns the number of samples.
     fn finish(self) -> Result<u64, OutputError> {
-        if let Some(others) = self.others {
-            others.joints.finish()?;
-            others.events.finish()?;
-            others.landings.finish()?;
-        }
+        self.poses.finish()?;
+        self.joints.map_or(Ok(()), JointsWriter::finish)?;
+        self.events.map_or(Ok(()), EventsWriter::finish)?;
+        self.landings.map_or(Ok(()), LandingsWriter::finish)?;
         self.rotations.finish()
     }
-}
-
-fn boxed<'a>(writer: impl io::Write + 'a) -> Box<dyn io::Write + 'a> {
-    Box::new(writer)
 }
 
 /// Half cycles that the words of a run tell of.
@@ -232,6 +232,7 @@ fn taken_j(impact: &Impact) -> f64 {
 struct Results<'a> {
     tables: Tables<'a>,
     timeline: &'a mut RowTimeline,
+    extras: &'a mut Extras,
     impacts: &'a mut Notable,
     curves: Option<&'a mut Curves>,
     /// Why a table could not be written, which ends the history.
@@ -251,6 +252,7 @@ impl Results<'_> {
 impl Recorder for Results<'_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self.timeline.push(sample);
+        self.extras.push(sample);
         if let Some(curves) = &mut self.curves {
             curves.push(sample);
         }
@@ -268,6 +270,10 @@ impl Recorder for Results<'_> {
         }
         let written = self.tables.event(event);
         self.go_on(written)
+    }
+
+    fn wants_thrust_line(&self) -> bool {
+        self.extras.want_thrust_line()
     }
 }
 

@@ -1,0 +1,131 @@
+//! The frames of a moving picture: a history thinned to what can be seen.
+
+use crate::dynamics::history::{OpenHinge, Sample, State};
+use crate::mechanics::geometry::pose::Pose;
+
+/// What is seen at an instant.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    pub(super) time_s: f64,
+    pub(super) ground_m_s2: f64,
+    pub(super) state: State,
+    pub(super) poses: Vec<Pose>,
+    pub(super) hinges: Vec<OpenHinge>,
+    pub(super) eccentricity_ratios: Vec<Option<f64>>,
+}
+
+impl Frame {
+    fn of(sample: &Sample) -> Self {
+        Self {
+            time_s: sample.time_s,
+            ground_m_s2: sample.ground_acceleration_m_s2,
+            state: sample.state,
+            poses: sample.poses.clone(),
+            hinges: sample.hinges.clone(),
+            eccentricity_ratios: sample.eccentricity_ratios.clone(),
+        }
+    }
+}
+
+/// Every second, fourth, eighth ... sample, so that there are no more than a given number, and the last one.
+#[derive(Clone, Debug)]
+pub(super) struct Film {
+    most: usize,
+    /// One of so many samples is kept.
+    every: usize,
+    samples: usize,
+    frames: Vec<Frame>,
+    last: Option<Frame>,
+}
+
+impl Film {
+    /// An empty one, of so many frames at most, and the last.
+    pub(super) const fn new(most: usize) -> Self {
+        Self {
+            most,
+            every: 1,
+            samples: 0,
+            frames: Vec::new(),
+            last: None,
+        }
+    }
+
+    /// Takes a sample. Samples come in the order of time.
+    pub(super) fn push(&mut self, sample: &Sample) {
+        let frame = Frame::of(sample);
+        if self.samples.is_multiple_of(self.every) {
+            if self.frames.len() == self.most {
+                let mut index = 0;
+                self.frames.retain(|_| {
+                    index += 1;
+                    index % 2 == 1
+                });
+                self.every *= 2;
+            }
+            if self.samples.is_multiple_of(self.every) {
+                self.frames.push(frame.clone());
+            }
+        }
+        self.samples += 1;
+        self.last = Some(frame);
+    }
+
+    /// The frames in the order of time.
+    pub(super) fn frames(&self) -> Vec<&Frame> {
+        let later = |last: &&Frame| {
+            self.frames
+                .last()
+                .is_none_or(|kept| kept.time_s < last.time_s)
+        };
+        self.frames
+            .iter()
+            .chain(self.last.as_ref().filter(later))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::chain::Demand;
+
+    #[test]
+    fn frames_are_evenly_spaced_and_end_with_the_last_sample() {
+        for count in [1, 7, 8, 9, 100, 1023, 1024] {
+            let mut film = Film::new(8);
+            for i in 0..count {
+                film.push(&Sample {
+                    time_s: f64::from(i),
+                    ground_acceleration_m_s2: 0.0,
+                    vertical_acceleration_m_s2: 0.0,
+                    phase: 0,
+                    state: State::Rest,
+                    rotations_rad: Vec::new(),
+                    rates_rad_s: Vec::new(),
+                    poses: Vec::new(),
+                    hinges: Vec::new(),
+                    demand: Demand::NONE,
+                    energy_j: 0.0,
+                    energy_ratio: None,
+                    rotation_over_critical: None,
+                    gaps_m: Vec::new(),
+                    eccentricity_ratios: Vec::new(),
+                });
+            }
+            let times_s: Vec<f64> = film.frames().iter().map(|frame| frame.time_s).collect();
+            assert!(
+                times_s.len() <= 9 && (count < 9 || times_s.len() > 4),
+                "{times_s:?}"
+            );
+            assert_eq!(times_s.last(), Some(&f64::from(count - 1)));
+            let even = times_s.len() - 1;
+            let steps = times_s[..even].windows(2).map(|pair| pair[1] - pair[0]);
+            assert!(
+                steps
+                    .collect::<Vec<_>>()
+                    .windows(2)
+                    .all(|pair| pair[0] == pair[1])
+            );
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! What pages of HTML are made of.
+
+use serde_json::Value;
+
+pub(super) use super::svg::escaped;
+
+/// A template whose places, names between `%`, are filled with these texts. What fills a place is not looked at again.
+pub(super) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
+    let mut page = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once('%') {
+        page += before;
+        let place = after.split_once('%').and_then(|(name, after)| {
+            let (_, text) = texts.iter().find(|(known, _)| *known == name)?;
+            Some((text, after))
+        });
+        rest = match place {
+            Some((text, after)) => {
+                page += text;
+                after
+            }
+            None => {
+                page.push('%');
+                after
+            }
+        };
+    }
+    page + rest
+}
+
+/// JSON that can stand in a script of a page: nothing in it ends the script.
+pub(super) fn script_safe(data: &Value) -> String {
+    data.to_string().replace('<', "\\u003c")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_filled_once() {
+        let page = filled("100 % of %A%, %B% and %C%", &[("A", "%B%"), ("B", "b")]);
+        assert_eq!(page, "100 % of %B%, b and %C%");
+    }
+
+    #[test]
+    fn data_cannot_end_its_script() {
+        let text = script_safe(&serde_json::json!({ "title": "</script><b>" }));
+        assert_eq!(text, r#"{"title":"\u003c/script>\u003cb>"}"#);
+    }
+}

@@ -1,0 +1,333 @@
+//! `report.html`: a history as a page of its own: the structure moving, curves over time, what happened in words.
+//!
+//! One file that needs no network. Numbers of frames are whole multiples of a unit, in 16 bits; what is drawn is thinned
+//! so that the page stays below half a megabyte for rows of a few dozen blocks.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+
+use super::film::{Film, Frame};
+use super::page::{escaped, filled, script_safe};
+use super::scene::{FARTHEST, Mark, Scene};
+use super::timeline::{Envelope, LARGEST_EXCESS};
+use crate::dynamics::ground::{GroundMotion, GroundVelocity};
+use crate::dynamics::history::{OpenHinge, Sample, State};
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
+use crate::scenario::Scenario;
+
+/// Bytes that the frames of a page may take.
+const FRAME_BYTES: usize = 280_000;
+/// The most frames that a page has, enough for a sample every hundredth of a second of ten.
+const MOST_FRAMES: usize = 1001;
+/// The fewest, of however many blocks.
+const FEWEST_FRAMES: usize = 101;
+/// Columns that a curve is thinned to.
+const CURVE_COLUMNS: usize = 700;
+/// Coordinates are rounded to this part of the size of the structure.
+const COORDINATE_RATIO: f64 = 5e-5;
+/// The largest whole number that a rotation or displacement is written as.
+const MOST: f64 = 32767.0;
+/// Written where a section is not pressed.
+const NO_THRUST: i16 = i16::MIN;
+
+/// Collects the samples of a history, thinned, for its page.
+#[derive(Clone, Debug)]
+pub struct Report {
+    scene: Scene,
+    bodies: Vec<String>,
+    gravity_m_s2: f64,
+    film: Film,
+    ground_g: Envelope,
+    energy: Envelope,
+    in_barriers: bool,
+    excess_ratio: Envelope,
+    leaves: bool,
+}
+
+impl Report {
+    /// An empty one, for a structure whose bodies have these names.
+    #[must_use]
+    pub fn new(scene: Scene, bodies: &[String], gravity_m_s2: f64) -> Self {
+        // Rotation and displacement of a body, a section, time, ground and the rest, in base 64.
+        let bytes = 4 * (6 * bodies.len() + 3 * scene.sections().len() + 24) / 3;
+        let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);
+        Self {
+            scene,
+            bodies: bodies.to_vec(),
+            gravity_m_s2,
+            film: Film::new(most),
+            ground_g: Envelope::of_columns(CURVE_COLUMNS),
+            energy: Envelope::of_columns(CURVE_COLUMNS),
+            in_barriers: false,
+            excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
+            leaves: false,
+        }
+    }
+
+    /// Takes a sample. Samples come in the order of time.
+    pub fn push(&mut self, sample: &Sample) {
+        let time_s = sample.time_s;
+        self.film.push(sample);
+        let ground_g = sample.ground_acceleration_m_s2 / self.gravity_m_s2;
+        self.ground_g.push(time_s, ground_g);
+        self.in_barriers = sample.energy_ratio.is_some();
+        let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
+        self.energy.push(time_s, energy);
+        let excess_ratio = sample.demand.excess_ratio;
+        self.leaves |= excess_ratio > 0.0;
+        self.excess_ratio
+            .push(time_s, excess_ratio.min(LARGEST_EXCESS));
+    }
+
+    /// The page of a scenario and what `run` says of it: a first line with the outcome, then others; those that go on from
+    /// the one before begin with four spaces.
+    #[must_use]
+    pub fn page(&self, scenario: &Scenario, ground: &GroundMotion, said: &str) -> String {
+        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let mut lines: Vec<String> = Vec::new();
+        for line in said.lines() {
+            match lines.last_mut() {
+                Some(last) if line.starts_with("    ") => *last += &format!(" {}", line.trim()),
+                _ => lines.push(line.trim().to_owned()),
+            }
+        }
+        let (outcome, others) = lines
+            .split_first()
+            .map_or(("", &[][..]), |(first, rest)| (first, rest));
+        let items = others
+            .iter()
+            .map(|line| format!("<li>{}</li>\n", escaped(line)));
+        let frames = self.film.frames();
+        let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
+        filled(
+            include_str!("report/page.html"),
+            &[
+                ("PROGRAM", &program),
+                ("TITLE", &escaped(title)),
+                ("OUTCOME", &escaped(outcome)),
+                ("WORDS", &items.collect::<String>()),
+                ("SCENARIO", &escaped(&scenario.to_toml())),
+                ("FRAMES", &frames.len().to_string()),
+                ("STYLE", include_str!("report/page.css")),
+                ("SCRIPT", include_str!("report/page.js")),
+                (
+                    "PLOT_STYLE",
+                    include_str!("../../vendor/uplot/uPlot.min.css"),
+                ),
+                (
+                    "PLOT_SCRIPT",
+                    include_str!("../../vendor/uplot/uPlot.iife.min.js"),
+                ),
+                ("PLOT_LICENCE", include_str!("../../vendor/uplot/LICENSE")),
+                ("DATA", &script_safe(&self.data(ground, &frames))),
+            ],
+        )
+    }
+
+    /// Everything that is drawn.
+    fn data(&self, ground: &GroundMotion, frames: &[&Frame]) -> Value {
+        let [low_m, high_m] = self.scene.bounds_m();
+        let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
+        // Frames with the same hinges share a layout; the joints of a row are written frame by frame.
+        let is_row = self.scene.joint(0).is_some();
+        let mut layouts: Vec<Vec<Hinge>> = Vec::new();
+        let mut written = Vec::new();
+        let mut layout_of = Vec::new();
+        for frame in frames {
+            let hinges: Vec<Hinge> = if is_row {
+                Vec::new()
+            } else {
+                frame.hinges.iter().map(|open| open.hinge).collect()
+            };
+            let known = layouts.iter().position(|layout| *layout == hinges);
+            let layout = known.unwrap_or_else(|| {
+                let open = if is_row { &[][..] } else { &frame.hinges };
+                written.push(self.layout(open, unit_m));
+                layouts.push(hinges);
+                layouts.len() - 1
+            });
+            layout_of.push(u16::try_from(layout).expect("there are fewer layouts than frames"));
+        }
+        let joint = |joint: usize| {
+            let [intrados, extrados] = self.scene.joint(joint)?;
+            let Mark { body, at_m } = intrados;
+            let other_m = extrados.at_m;
+            Some(json!([
+                body_number(body),
+                at_m.x,
+                at_m.y,
+                other_m.x,
+                other_m.y
+            ]))
+        };
+        let joints: Vec<Value> = (0..).map_while(joint).collect();
+        let sections = self.scene.sections().iter().map(|section| {
+            let (middle, across) = (section.middle_m, section.across_m);
+            json!([middle.x, middle.y, across.x, across.y])
+        });
+        let supports = self.scene.supports_m();
+        let energy_label = if self.in_barriers {
+            "Energy (1: gravity alone overturns the mechanism that moves)"
+        } else {
+            "Energy (J)"
+        };
+        let excess = self.leaves.then(|| curve(&self.excess_ratio));
+        json!({
+            "bodies": self.bodies,
+            "unit_m": unit_m,
+            "bounds_m": [[low_m.x, low_m.y], [high_m.x, high_m.y]],
+            "supports": supports.iter().map(|[a, b]| json!([a.x, a.y, b.x, b.y])).collect::<Vec<_>>(),
+            "sections": sections.collect::<Vec<_>>(),
+            "joints": joints,
+            "layouts": written,
+            "frames": self.frames(ground, frames, layout_of, joints.len()),
+            "energy_label": energy_label,
+            "curves": {
+                "ground_g": curve(&self.ground_g),
+                "energy": curve(&self.energy),
+                "excess": excess,
+            },
+        })
+    }
+
+    /// Outlines and hinges.
+    fn layout(&self, hinges: &[OpenHinge], unit_m: f64) -> Value {
+        let pieces = self.scene.pieces(hinges).into_iter().map(|piece| {
+            let coordinates = piece
+                .outline_m
+                .iter()
+                .flat_map(|corner| [corner.x, corner.y]);
+            #[expect(clippy::cast_possible_truncation, reason = "a few ten thousand units")]
+            let outline: Vec<i64> = coordinates.map(|x| (x / unit_m).round() as i64).collect();
+            json!({ "body": body_number(piece.body), "outline": outline })
+        });
+        let marks = self
+            .scene
+            .hinges(hinges)
+            .into_iter()
+            .zip(hinges)
+            .map(|(mark, open)| {
+                let code = match open.hinge {
+                    Hinge::Section { edge, .. } => edge_code(Some(edge)),
+                    Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
+                    Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
+                    Hinge::Joint { edge, .. } => edge_code(edge),
+                };
+                json!([body_number(mark.body), mark.at_m.x, mark.at_m.y, code])
+            });
+        let bodies = self.scene.bodies_of_sections(hinges).into_iter();
+        json!({
+            "pieces": pieces.collect::<Vec<_>>(),
+            "hinges": marks.collect::<Vec<_>>(),
+            "section_bodies": bodies.map(body_number).collect::<Vec<_>>(),
+        })
+    }
+
+    /// What changes from frame to frame.
+    fn frames(
+        &self,
+        ground: &GroundMotion,
+        frames: &[&Frame],
+        layout_of: Vec<u16>,
+        joints: usize,
+    ) -> Value {
+        let times_s: Vec<f64> = frames.iter().map(|frame| frame.time_s).collect();
+        let displacements_m = GroundVelocity::new(ground).displacements_m(&times_s);
+        let ground_g = frames
+            .iter()
+            .map(|frame| frame.ground_m_s2 / self.gravity_m_s2);
+        let poses = || frames.iter().flat_map(|frame| &frame.poses);
+        let (rotations, rotation_unit_rad) = whole(poses().map(|pose| pose.rotation_rad));
+        let shifts_m = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
+        let (shifts, shift_unit_m) = whole(shifts_m);
+        let thrust_unit = FARTHEST / MOST;
+        let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
+        #[expect(clippy::cast_possible_truncation, reason = "the ratio is clamped")]
+        let thrust: Vec<i16> = ratios
+            .map(|ratio| {
+                ratio.map_or(NO_THRUST, |ratio| {
+                    (ratio.clamp(-FARTHEST, FARTHEST) / thrust_unit).round() as i16
+                })
+            })
+            .collect();
+        let codes = frames.iter().flat_map(|frame| {
+            let mut codes = vec![0; joints];
+            for open in &frame.hinges {
+                if let Hinge::Joint { joint, edge } = open.hinge {
+                    codes[joint] = edge_code(edge);
+                }
+            }
+            codes
+        });
+        let states = frames.iter().map(|frame| match frame.state {
+            State::Rest => 0,
+            State::Rocking(Sway::Right) => 1,
+            State::Rocking(Sway::Left) => 2,
+            State::Overturned(_) => 3,
+        });
+        json!({
+            "times_s": encoded(times_s.iter().map(|time_s| time_s.to_le_bytes())),
+            "ground_m": floats(displacements_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
+            "ground_g": floats(ground_g),
+            "rotations": encoded(rotations.into_iter().map(i16::to_le_bytes)),
+            "rotation_unit_rad": rotation_unit_rad,
+            "shifts": encoded(shifts.into_iter().map(i16::to_le_bytes)),
+            "shift_unit_m": shift_unit_m,
+            "thrust_unit": (!thrust.is_empty()).then_some(thrust_unit),
+            "thrust": encoded(thrust.into_iter().map(i16::to_le_bytes)),
+            "joints": BASE64_STANDARD.encode(codes.collect::<Vec<u8>>()),
+            "states": BASE64_STANDARD.encode(states.collect::<Vec<u8>>()),
+            "layouts": encoded(layout_of.into_iter().map(u16::to_le_bytes)),
+        })
+    }
+}
+
+/// How a hinge is open; 0 is shut.
+const fn edge_code(edge: Option<Edge>) -> u8 {
+    match edge {
+        Some(Edge::Intrados) => 1,
+        Some(Edge::Extrados) => 2,
+        None => 3,
+    }
+}
+
+/// -1 for what stands still.
+fn body_number(body: Option<usize>) -> i64 {
+    body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
+}
+
+/// Values as whole multiples of a unit, which is such that the largest fits.
+fn whole(values: impl Iterator<Item = f64> + Clone) -> (Vec<i16>, f64) {
+    let most = values
+        .clone()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let unit = if most > 0.0 { most / MOST } else { 1.0 };
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the unit is such that they fit"
+    )]
+    let whole = values.map(|value| (value / unit).round() as i16).collect();
+    (whole, unit)
+}
+
+fn encoded<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> String {
+    BASE64_STANDARD.encode(values.flatten().collect::<Vec<u8>>())
+}
+
+fn floats(values: impl Iterator<Item = f64>) -> String {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a picture needs no more digits"
+    )]
+    encoded(values.map(|value| (value as f32).to_le_bytes()))
+}
+
+/// All times, then all values.
+fn curve(envelope: &Envelope) -> String {
+    let points: Vec<(f64, f64)> = envelope.points().collect();
+    let times_s = points.iter().map(|point| point.0);
+    floats(times_s.chain(points.iter().map(|point| point.1)))
+}

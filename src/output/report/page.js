@@ -1,0 +1,523 @@
+"use strict";
+// Draws the motion on a canvas and its curves with uPlot. Everything is in #data, in metres, seconds and radians.
+(() => {
+  const find = (id) => document.getElementById(id);
+  const data = JSON.parse(find("data").textContent);
+  const buffer = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+  const { frames, layouts, sections, unit_m: unitM } = data;
+  const bodies = data.bodies.length;
+  const times = new Float64Array(buffer(frames.times_s));
+  const rotations = new Int16Array(buffer(frames.rotations));
+  const shifts = new Int16Array(buffer(frames.shifts));
+  const groundM = new Float32Array(buffer(frames.ground_m));
+  const groundG = new Float32Array(buffer(frames.ground_g));
+  const thrust = new Int16Array(buffer(frames.thrust));
+  const joints = new Uint8Array(buffer(frames.joints));
+  const states = new Uint8Array(buffer(frames.states));
+  const layoutOf = new Uint16Array(buffer(frames.layouts));
+  const count = times.length;
+  const end = times[count - 1];
+  const STATES = ["at rest", "sways right", "sways left", "overturned"];
+  const NO_THRUST = -32768;
+
+  // ---- the state of the page ----
+  let time = 0;
+  let playing = false;
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+  /** The frame before a time, and how far the time is on the way to the next: frames of other hinges do not blend. */
+  function moment(t) {
+    let low = 0;
+    let high = count - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle] <= t) low = middle;
+      else high = middle - 1;
+    }
+    const next = Math.min(low + 1, count - 1);
+    const blends = next > low && layoutOf[low] === layoutOf[next];
+    const part = blends ? (t - times[low]) / (times[next] - times[low]) : 0;
+    return { frame: low, next, part: Math.min(Math.max(part, 0), 1) };
+  }
+
+  const blend = (values, width, index, { frame, next, part }) =>
+    values[frame * width + index] * (1 - part) + values[next * width + index] * part;
+
+  /** Rotation and displacement of the origin of a body. */
+  function pose(body, at) {
+    return {
+      rotation: blend(rotations, bodies, body, at) * frames.rotation_unit_rad,
+      x: blend(shifts, 2 * bodies, 2 * body, at) * frames.shift_unit_m,
+      y: blend(shifts, 2 * bodies, 2 * body + 1, at) * frames.shift_unit_m,
+    };
+  }
+
+  /** Where a point of a body is, its displacement times the exaggeration. */
+  function moved(body, x, y, poses, exaggeration) {
+    if (body < 0) return [x, y];
+    const { rotation, x: shiftX, y: shiftY } = poses[body];
+    const cos = Math.cos(rotation);
+    const sin = Math.sin(rotation);
+    const nowX = cos * x - sin * y + shiftX;
+    const nowY = sin * x + cos * y + shiftY;
+    return [x + (nowX - x) * exaggeration, y + (nowY - y) * exaggeration];
+  }
+
+  /** A number with so many decimals, zero without a sign. */
+  function fixed(value, decimals) {
+    const text = value.toFixed(decimals);
+    return Number(text) === 0 ? text.replace("-", "") : text;
+  }
+
+  const posesAt = (at) => Array.from({ length: bodies }, (_, body) => pose(body, at));
+
+  // ---- the stage ----
+  const stage = find("stage");
+  const [low, high] = data.bounds_m;
+  const width = high[0] - low[0];
+  const height = high[1] - low[1];
+
+  /** A round number of metres between the marks of the rule. */
+  function roundStep(rough) {
+    const power = 10 ** Math.floor(Math.log10(rough));
+    return power * [1, 2, 5, 10].find((digit) => digit * power >= rough);
+  }
+
+  const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  const groundX = Array.from({ length: count }, (_, i) => groundM[2 * i]);
+  // A pulse may leave the ground with a velocity: where it goes far, the eye goes with it.
+  find("ride").checked = farthest(groundX) > 0.3 * Math.max(width, height);
+
+  function draw() {
+    const ratio = window.devicePixelRatio || 1;
+    const wide = stage.clientWidth || 800;
+    const tall = stage.clientHeight || 400;
+    if (stage.width !== Math.round(wide * ratio) || stage.height !== Math.round(tall * ratio)) {
+      stage.width = Math.round(wide * ratio);
+      stage.height = Math.round(tall * ratio);
+    }
+    const pen = stage.getContext("2d");
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const ink = css("--ink");
+    const soft = css("--soft");
+    pen.fillStyle = css("--paper");
+    pen.fillRect(0, 0, wide, tall);
+    const below = 64;
+    const scale = Math.min((wide - 40) / (1.5 * width), (tall - below - 24) / (1.2 * height));
+    const at = moment(time);
+    const exaggeration = Number(find("exaggeration").value);
+    const ground = [blend(groundM, 2, 0, at), blend(groundM, 2, 1, at)];
+    const camera = find("ride").checked ? ground : [0, 0];
+    const origin = [wide / 2 - (scale * (low[0] + high[0])) / 2, tall - below + scale * low[1]];
+    const onScreen = ([x, y]) => [
+      origin[0] + scale * (x + ground[0] - camera[0]),
+      origin[1] - scale * (y + ground[1] - camera[1]),
+    ];
+    const path = (points, close) => {
+      pen.beginPath();
+      points.forEach((point, i) => (i ? pen.lineTo(...onScreen(point)) : pen.moveTo(...onScreen(point))));
+      if (close) pen.closePath();
+    };
+    pen.lineWidth = 1;
+    pen.font = "12px system-ui, sans-serif";
+    pen.lineJoin = "round";
+
+    // The rule, fixed in space.
+    const step = roundStep(60 / scale);
+    const left = camera[0] + (0 - origin[0]) / scale;
+    const right = camera[0] + (wide - origin[0]) / scale;
+    pen.fillStyle = soft;
+    pen.textAlign = "center";
+    for (let mark = Math.ceil(left / step); mark * step <= right; mark += 1) {
+      const x = origin[0] + scale * (mark * step - camera[0]);
+      pen.strokeStyle = css("--line");
+      pen.beginPath();
+      pen.moveTo(x, 0);
+      pen.lineTo(x, tall - 22);
+      pen.stroke();
+      pen.fillText(`${Number((mark * step).toPrecision(6))} m`, x, tall - 8);
+    }
+
+    // The ground, which moves, hatched.
+    const floor = onScreen([0, low[1]])[1];
+    pen.fillStyle = css("--earth");
+    pen.fillRect(0, floor, wide, 14);
+    pen.strokeStyle = ink;
+    pen.beginPath();
+    pen.moveTo(0, floor);
+    pen.lineTo(wide, floor);
+    const hatch = 16;
+    const phase = (((scale * (ground[0] - camera[0])) % hatch) + hatch) % hatch;
+    for (let x = phase - hatch; x < wide + hatch; x += hatch) {
+      pen.moveTo(x, floor + 14);
+      pen.lineTo(x + 8, floor);
+    }
+    pen.stroke();
+    for (const [ax, ay, bx, by] of data.supports) {
+      pen.lineWidth = 4;
+      path([[ax - 0.3 * (bx - ax), ay - 0.3 * (by - ay)], [bx + 0.3 * (bx - ax), by + 0.3 * (by - ay)]]);
+      pen.stroke();
+    }
+
+    // The blocks: where they were, and where they are.
+    const layout = layouts[layoutOf[at.frame]];
+    const poses = posesAt(at);
+    const point = ([body, x, y]) => moved(body, x, y, poses, exaggeration);
+    const outline = (piece) => {
+      const corners = [];
+      for (let i = 0; i < piece.outline.length; i += 2) {
+        corners.push([piece.body, piece.outline[i] * unitM, piece.outline[i + 1] * unitM]);
+      }
+      return corners;
+    };
+    const fills = bodies === 3 ? ["--left", "--middle", "--right"] : ["--stone", "--stone"];
+    pen.lineWidth = 1;
+    pen.setLineDash([4, 4]);
+    pen.strokeStyle = soft;
+    for (const piece of layout.pieces) {
+      path(outline(piece).map(([, x, y]) => [x, y]), true);
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    pen.strokeStyle = ink;
+    pen.lineWidth = 1.3;
+    for (const piece of layout.pieces) {
+      pen.fillStyle = css(piece.body < 0 ? "--earth" : fills[piece.body % fills.length]);
+      path(outline(piece).map(point), true);
+      pen.fill();
+      pen.stroke();
+    }
+
+    // The line of thrust, where sections are pressed.
+    if (find("thrust").checked && frames.thrust_unit) {
+      pen.strokeStyle = css("--thrust");
+      pen.lineWidth = 2.5;
+      pen.beginPath();
+      let drawing = false;
+      sections.forEach(([middleX, middleY, acrossX, acrossY], i) => {
+        const value = thrust[at.frame * sections.length + i];
+        if (value === NO_THRUST) {
+          drawing = false;
+          return;
+        }
+        const e = value * frames.thrust_unit;
+        const to = onScreen(point([layout.section_bodies[i], middleX + e * acrossX, middleY + e * acrossY]));
+        if (drawing) pen.lineTo(...to);
+        else pen.moveTo(...to);
+        drawing = true;
+      });
+      pen.stroke();
+    }
+
+    // The hinges.
+    pen.strokeStyle = css("--mark");
+    pen.lineWidth = 2;
+    for (const [body, x, y, edge] of hingesAt(at.frame)) {
+      const [px, py] = onScreen(point([body, x, y]));
+      pen.beginPath();
+      if (edge === PARTED) {
+        pen.moveTo(px - 4, py - 4);
+        pen.lineTo(px + 4, py + 4);
+        pen.moveTo(px - 4, py + 4);
+        pen.lineTo(px + 4, py - 4);
+      } else {
+        pen.arc(px, py, 4, 0, 2 * Math.PI);
+        pen.fillStyle = edge === EXTRADOS ? css("--mark") : css("--paper");
+        pen.fill();
+      }
+      pen.stroke();
+    }
+
+    // How the ground accelerates.
+    const g = blend(groundG, 1, 0, at);
+    const most = farthest(groundG);
+    if (most > 0) {
+      const length = (0.2 * wide * g) / most;
+      const y = floor + 26;
+      pen.strokeStyle = pen.fillStyle = css("--curve-2");
+      pen.lineWidth = 3;
+      pen.beginPath();
+      pen.moveTo(wide / 2, y);
+      pen.lineTo(wide / 2 + length, y);
+      if (Math.abs(length) > 6) {
+        const back = Math.sign(length) * 7;
+        pen.moveTo(wide / 2 + length - back, y - 5);
+        pen.lineTo(wide / 2 + length, y);
+        pen.lineTo(wide / 2 + length - back, y + 5);
+      }
+      pen.stroke();
+      pen.fillStyle = ink;
+      pen.textAlign = g < 0 ? "left" : "right";
+      pen.fillText(`ground ${fixed(g, 3)} g`, wide / 2 + (g < 0 ? 10 : -10), y + 4);
+    }
+    find("now").textContent = inWords(at, poses);
+  }
+
+  const INTRADOS = 1;
+  const EXTRADOS = 2;
+  const PARTED = 3;
+
+  /** The hinges that are open in a frame: body, place, and edge. */
+  function hingesAt(frame) {
+    const open = [];
+    data.joints.forEach(([body, ix, iy, ex, ey], joint) => {
+      const code = joints[frame * data.joints.length + joint];
+      if (code === INTRADOS || code === PARTED) open.push([body, ix, iy, code]);
+      if (code === EXTRADOS || code === PARTED) open.push([body, ex, ey, code]);
+    });
+    return open.concat(layouts[layoutOf[frame]].hinges);
+  }
+
+  function inWords(at, poses) {
+    let most = 0;
+    poses.forEach(({ rotation }, body) => {
+      if (Math.abs(rotation) > Math.abs(poses[most].rotation)) most = body;
+    });
+    const name = data.bodies[most];
+    const of = name === "" ? "" : /^\d+$/.test(name) ? ` (block ${name})` : ` (${name})`;
+    const open = data.joints.length
+      ? data.joints.filter((_, joint) => joints[at.frame * data.joints.length + joint]).length
+      : layouts[layoutOf[at.frame]].hinges.length;
+    const turned = `largest rotation ${fixed(poses[most].rotation, 5)} rad${of}`;
+    return `${time.toFixed(3)} s: ${STATES[states[at.frame]]}, ${turned}, ${open} open ${open === 1 ? "hinge" : "hinges"}`;
+  }
+
+  // ---- the plots ----
+  const plots = [];
+  let following = false;
+
+  function follow(source) {
+    if (following) return;
+    following = true;
+    const { min, max } = source.scales.x;
+    for (const plot of plots) if (plot !== source) plot.setScale("x", { min, max });
+    following = false;
+  }
+
+  function addPlot(label, tall, xs, curves, legend) {
+    const holder = document.createElement("div");
+    holder.className = "plot";
+    find("plots").append(holder);
+    const axis = () => css("--ink");
+    const look = { stroke: axis, grid: { stroke: () => css("--line"), width: 1 }, ticks: { stroke: axis, width: 1 } };
+    const plot = new uPlot(
+      {
+        width: holder.clientWidth || 800,
+        height: tall,
+        title: label,
+        legend: { show: legend },
+        scales: { x: { time: false } },
+        cursor: { sync: { key: "archrock" }, drag: { x: true, y: false } },
+        axes: [
+          { ...look, size: 30, values: (_, splits) => splits.map((s) => `${Number(s.toPrecision(6))} s`) },
+          { ...look, size: 64 },
+        ],
+        series: [{ label: "time", value: (_, v) => (v == null ? "" : `${v.toFixed(3)} s`) }].concat(
+          curves.map(({ name, color, dash, width: thick }) => ({
+            label: name,
+            stroke: () => css(color),
+            dash,
+            width: thick ?? 1.6,
+            points: { show: false },
+            value: (_, v) => (v == null ? "" : Number(v.toPrecision(5)).toString()),
+          })),
+        ),
+        hooks: { setScale: [(u, key) => key === "x" && follow(u)], draw: [showInstant] },
+      },
+      [xs, ...curves.map((curve) => curve.values)],
+      holder,
+    );
+    const instant = document.createElement("div");
+    instant.className = "instant";
+    plot.over.style.overflow = "hidden";
+    plot.over.append(instant);
+    let pressed = 0;
+    plot.over.addEventListener("mousedown", (event) => (pressed = event.clientX));
+    plot.over.addEventListener("mouseup", (event) => {
+      if (Math.abs(event.clientX - pressed) < 4) {
+        seek(plot.posToVal(event.clientX - plot.over.getBoundingClientRect().left, "x"));
+      }
+    });
+    plots.push(plot);
+  }
+
+  function showInstant(plot) {
+    const instant = plot.over.querySelector(".instant");
+    if (instant) instant.style.left = `${plot.valToPos(time, "x")}px`;
+  }
+
+  function zoom(factor) {
+    const { min, max } = plots[0].scales.x;
+    const half = (0.5 * (max - min)) / factor;
+    const from = Math.max(0, Math.min(time - half, end - 2 * half));
+    plots[0].setScale("x", { min: from, max: Math.min(end, from + 2 * half) });
+  }
+
+  const showAll = () => plots[0].setScale("x", { min: 0, max: end });
+
+  function curve(encoded) {
+    const values = new Float32Array(buffer(encoded));
+    const half = values.length / 2;
+    return [Array.from(values.subarray(0, half)), Array.from(values.subarray(half))];
+  }
+
+  const [groundT, groundY] = curve(data.curves.ground_g);
+  addPlot("Ground acceleration (g)", 150, groundT, [{ name: "ground", color: "--ink", values: groundY }], true);
+  const turns = data.bodies.map((_, body) =>
+    Array.from(times, (_t, i) => rotations[i * bodies + body] * frames.rotation_unit_rad),
+  );
+  const most = turns.reduce((best, values, body) => (farthest(values) > farthest(turns[best]) ? body : best), 0);
+  const few = bodies <= 3;
+  const dashes = [[], [8, 4], [3, 3]];
+  const look = (body) =>
+    few
+      ? { name: data.bodies[body] || "rotation", color: `--curve-${body + 1}`, dash: dashes[body] }
+      : body === most
+        ? { name: `block ${data.bodies[body]}, which turns most`, color: "--curve-1", width: 2.5 }
+        : { name: `block ${data.bodies[body]}`, color: "--soft", width: 0.6 };
+  // The one that turns most is drawn above the others.
+  const order = data.bodies.map((_, body) => body);
+  if (!few) order.push(...order.splice(most, 1));
+  addPlot(
+    "Rotation (rad, anticlockwise)",
+    230,
+    Array.from(times),
+    order.map((body) => ({ ...look(body), values: turns[body] })),
+    few,
+  );
+  const [energyT, energyY] = curve(data.curves.energy);
+  addPlot(data.energy_label, 150, energyT, [{ name: "energy", color: "--ink", values: energyY }], true);
+  if (data.curves.excess) {
+    const [excessT, excessY] = curve(data.curves.excess);
+    const label = "Thrust line outside the arch (parts of the thickness, cut off at 1)";
+    addPlot(label, 150, excessT, [{ name: "excess", color: "--ink", values: excessY }], true);
+  }
+  showAll();
+
+  // ---- time ----
+  const slider = find("time");
+  slider.max = end;
+  slider.step = "any";
+
+  function seek(to) {
+    time = Math.min(Math.max(to, 0), end);
+    slider.value = time;
+    slider.setAttribute("aria-valuetext", `${time.toFixed(3)} s`);
+    draw();
+    plots.forEach(showInstant);
+  }
+
+  const still = window.matchMedia("(prefers-reduced-motion: reduce)");
+  let last = null;
+
+  function tick(now) {
+    if (!playing) return;
+    // With reduced motion: four still pictures a second.
+    const elapsed = last === null ? 0 : (now - last) / 1000;
+    if (last === null || !still.matches || elapsed >= 0.25) {
+      last = now;
+      seek(time + elapsed * Number(find("speed").value));
+      if (time >= end) play(false);
+    }
+    requestAnimationFrame(tick);
+  }
+
+  function play(on) {
+    if (on && time >= end) seek(0);
+    const starts = on && !playing;
+    playing = on;
+    last = null;
+    find("play").textContent = on ? "Pause" : "Play";
+    find("play").setAttribute("aria-pressed", String(on));
+    if (starts) requestAnimationFrame(tick);
+  }
+
+  /** So many frames on or back. */
+  function stepBy(steps) {
+    play(false);
+    const { frame } = moment(time + 1e-9);
+    seek(times[Math.min(Math.max(frame + steps, 0), count - 1)]);
+  }
+
+  function exaggerate(to) {
+    find("exaggeration").value = to;
+    find("times").textContent = find("exaggeration").value;
+    draw();
+  }
+
+  find("play").addEventListener("click", () => play(!playing));
+  slider.addEventListener("input", () => {
+    play(false);
+    seek(Number(slider.value));
+  });
+  find("exaggeration").addEventListener("input", () => exaggerate(find("exaggeration").value));
+  find("thrust").addEventListener("change", draw);
+  find("ride").addEventListener("change", draw);
+  find("thrust-choice").hidden = !frames.thrust_unit;
+
+  const exaggeration = () => Number(find("exaggeration").value);
+  const keys = {
+    " ": () => play(!playing),
+    ArrowLeft: (event) => stepBy(event.shiftKey ? -10 : -1),
+    ArrowRight: (event) => stepBy(event.shiftKey ? 10 : 1),
+    Home: () => seek(0),
+    End: () => seek(end),
+    ArrowUp: () => exaggerate(exaggeration() + 1),
+    ArrowDown: () => exaggerate(exaggeration() - 1),
+    "+": () => zoom(1.5),
+    "-": () => zoom(1 / 1.5),
+    0: showAll,
+    t: () => find("thrust").click(),
+  };
+  document.addEventListener("keydown", (event) => {
+    const own = event.target.matches("button, select, summary, input:not(#time)");
+    if (own || event.ctrlKey || event.metaKey || event.altKey) return;
+    const act = keys[event.key] ?? keys[event.key.toLowerCase()];
+    if (act) {
+      event.preventDefault();
+      act(event);
+    }
+  });
+  window.addEventListener("resize", () => {
+    for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height });
+    seek(time);
+  });
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    for (const plot of plots) plot.redraw();
+    draw();
+  });
+
+  /** Displacements that can be seen: a twentieth of the width, unless the structure falls. */
+  function visible() {
+    let farthestM = 0;
+    for (let frame = 0; frame < count; frame += 1) {
+      const poses = posesAt({ frame, next: frame, part: 0 });
+      for (const { body, outline } of layouts[layoutOf[frame]].pieces) {
+        const [x, y] = [outline[0] * unitM, outline[1] * unitM];
+        const [nowX, nowY] = moved(body, x, y, poses, 1);
+        farthestM = Math.max(farthestM, Math.hypot(nowX - x, nowY - y));
+      }
+    }
+    return farthestM > 0 ? Math.round(Math.min(Math.max((0.05 * width) / farthestM, 1), 50)) : 1;
+  }
+
+  exaggerate(visible());
+  // It opens where the structure is farthest from rest.
+  const farthestFrame = turns[most].reduce(
+    (best, value, i) => (Math.abs(value) > Math.abs(turns[most][best]) ? i : best),
+    0,
+  );
+  seek(STATES[states[count - 1]] === "overturned" ? 0 : times[farthestFrame]);
+
+  // For scripts: what the page shows, and ways to change it.
+  window.archrock = {
+    data,
+    seek,
+    play,
+    times,
+    hingesAt,
+    zoom,
+    range: () => plots.map(({ scales }) => [scales.x.min, scales.x.max]),
+    shown: () => ({ time, playing, poses: posesAt(moment(time)), state: STATES[states[moment(time).frame]] }),
+  };
+})();

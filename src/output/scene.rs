@@ -1,0 +1,352 @@
+//! What of a structure is drawn at an instant: outlines of its bodies, hinges and the line of thrust, all as points of
+//! bodies, so that poses move them.
+
+use nalgebra::Vector2;
+
+use crate::dynamics::history::{OpenHinge, Sample};
+use crate::mechanics::arch::Arch;
+use crate::mechanics::blocks::Row;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::column::Column;
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::sway::Sway;
+use crate::scenario::Structure;
+
+/// A structure as it is drawn, undeformed.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    shape: Shape,
+    sections: Vec<Section>,
+}
+
+#[derive(Clone, Debug)]
+enum Shape {
+    /// A ring that is cut at its hinges, and drawn with these joints.
+    Ring {
+        ring: Ring,
+        mean_radius_m: f64,
+        joints_rad: Vec<f64>,
+    },
+    /// One body.
+    Block { outline_m: Vec<Vector2<f64>> },
+    /// A body for each block.
+    Row { outlines_m: Vec<Vec<Vector2<f64>>> },
+}
+
+/// A section where the line of thrust is told, in metres, undeformed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// Its middle.
+    pub middle_m: Vector2<f64>,
+    /// From its end at the intrados to that at the extrados.
+    pub across_m: Vector2<f64>,
+    /// In an arch that is cut at its hinges: where it is, in radians from the left springing.
+    angle_rad: Option<f64>,
+}
+
+/// A part of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Index of the body; `None`: it stands still.
+    pub body: Option<usize>,
+    /// Its corners in metres, undeformed, along the outline.
+    pub outline_m: Vec<Vector2<f64>>,
+}
+
+/// A point that moves with a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// Index of the body; `None`: it stands still.
+    pub body: Option<usize>,
+    /// Where it is in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+}
+
+impl Mark {
+    /// Where the point is now, its displacement times `exaggeration`.
+    #[must_use]
+    pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
+        moved(self.body, self.at_m, poses, exaggeration)
+    }
+}
+
+impl Piece {
+    /// Its corners now, their displacements times `exaggeration`.
+    #[must_use]
+    pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vec<Vector2<f64>> {
+        let corners = self.outline_m.iter();
+        corners
+            .map(|corner| moved(self.body, *corner, poses, exaggeration))
+            .collect()
+    }
+}
+
+/// Points that coincide go on coincide, and shut joints stay shut, however much displacements are exaggerated; bodies
+/// grow with the square of their rotation.
+fn moved(
+    body: Option<usize>,
+    at_m: Vector2<f64>,
+    poses: &[Pose],
+    exaggeration: f64,
+) -> Vector2<f64> {
+    let pose = body.and_then(|body| poses.get(body));
+    pose.map_or(at_m, |pose| at_m + (pose.of(at_m) - at_m) * exaggeration)
+}
+
+impl Scene {
+    /// A structure that rocks as mechanisms; a row of blocks where it cannot.
+    #[must_use]
+    pub fn new(structure: &Structure) -> Self {
+        match structure {
+            Structure::Arch(arch) => Self::of_arch(arch),
+            Structure::Column(column) => Self::of_column(column),
+            Structure::Masonry(masonry) => Self::of_row(masonry.row()),
+        }
+    }
+
+    /// An arch that rocks as mechanisms.
+    fn of_arch(arch: &Arch) -> Self {
+        let (ring, mean_radius_m) = (arch.ring(), arch.mean_radius_m());
+        let sections = arch.thrust_sections_rad().into_iter();
+        Self {
+            sections: sections
+                .map(|angle_rad| Section {
+                    middle_m: ring.radial(angle_rad) * mean_radius_m,
+                    across_m: ring.radial(angle_rad) * (ring.thickness_ratio() * mean_radius_m),
+                    angle_rad: Some(angle_rad),
+                })
+                .collect(),
+            shape: Shape::Ring {
+                joints_rad: arch.voussoirs().map_or_else(Vec::new, |n| ring.sections(n)),
+                ring,
+                mean_radius_m,
+            },
+        }
+    }
+
+    /// A column that rocks as one block.
+    fn of_column(column: &Column) -> Self {
+        let (half_m, height_m) = (0.5 * column.width_m(), column.height_m());
+        let corners = [
+            (-half_m, 0.0),
+            (-half_m, height_m),
+            (half_m, height_m),
+            (half_m, 0.0),
+        ];
+        Self {
+            shape: Shape::Block {
+                outline_m: corners.map(|(x, y)| Vector2::new(x, y)).to_vec(),
+            },
+            sections: Vec::new(),
+        }
+    }
+
+    /// A row of blocks.
+    #[must_use]
+    pub fn of_row(row: &Row) -> Self {
+        let joints = row.joints().iter();
+        Self {
+            sections: joints
+                .map(|joint| Section {
+                    middle_m: joint.middle_m(),
+                    across_m: joint.extrados_m - joint.intrados_m,
+                    angle_rad: None,
+                })
+                .collect(),
+            shape: Shape::Row {
+                outlines_m: row.outlines_m().to_vec(),
+            },
+        }
+    }
+
+    /// The sections where the line of thrust is told; none where it is not known.
+    #[must_use]
+    pub fn sections(&self) -> &[Section] {
+        &self.sections
+    }
+
+    /// The faces of the supports of an arch, in metres, from the intrados to the extrados; none of a column, which stands
+    /// on the ground.
+    #[must_use]
+    pub fn supports_m(&self) -> Vec<[Vector2<f64>; 2]> {
+        let is_arch = match &self.shape {
+            Shape::Ring { .. } => true,
+            Shape::Block { .. } => false,
+            Shape::Row { outlines_m } => self.sections.len() > outlines_m.len(),
+        };
+        let ends = [self.sections.first(), self.sections.last()];
+        let faces = ends.into_iter().flatten().filter(|_| is_arch);
+        faces
+            .map(|section| [-0.5, 0.5].map(|part| section.middle_m + section.across_m * part))
+            .collect()
+    }
+
+    /// Lower left and upper right corner of the undeformed structure, in metres.
+    #[must_use]
+    pub fn bounds_m(&self) -> [Vector2<f64>; 2] {
+        let pieces = self.pieces(&[]);
+        let corners = pieces.iter().flat_map(|piece| &piece.outline_m);
+        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
+        corners.fold(empty, |[low, high], corner| {
+            [low.inf(corner), high.sup(corner)]
+        })
+    }
+
+    /// The bodies in pieces when these hinges are open. A ring is cut at its hinges and its joints.
+    #[must_use]
+    pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
+        match &self.shape {
+            Shape::Block { outline_m } => vec![Piece {
+                body: Some(0),
+                outline_m: outline_m.clone(),
+            }],
+            Shape::Row { outlines_m } => {
+                let outlines = outlines_m.iter().enumerate();
+                outlines
+                    .map(|(block, outline_m)| Piece {
+                        body: Some(block),
+                        outline_m: outline_m.clone(),
+                    })
+                    .collect()
+            }
+            Shape::Ring {
+                ring,
+                mean_radius_m,
+                joints_rad,
+            } => {
+                let hinges_rad = sections_rad(hinges);
+                let mut cuts_rad =
+                    [&[0.0, ring.embrace_rad()], &joints_rad[..], &hinges_rad].concat();
+                cuts_rad.sort_by(f64::total_cmp);
+                cuts_rad.dedup_by(|a, b| (*a - *b).abs() < SAME_SECTION_RAD);
+                let pairs = cuts_rad.windows(2);
+                pairs
+                    .map(|ends| {
+                        let outline = ring.sector_outline(ends[0], ends[1]).into_iter();
+                        Piece {
+                            body: link(&hinges_rad, 0.5 * (ends[0] + ends[1])),
+                            outline_m: outline.map(|corner| corner * *mean_radius_m).collect(),
+                        }
+                    })
+                    .collect()
+            }
+        }
+    }
+
+    /// Where hinges that are open are, as points of the body to their right, or above.
+    #[must_use]
+    pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<Mark> {
+        let hinges = hinges.iter().enumerate();
+        let marks = hinges.filter_map(|(index, open)| match (open.hinge, &self.shape) {
+            (
+                Hinge::Section { angle_rad, edge },
+                Shape::Ring {
+                    ring,
+                    mean_radius_m,
+                    ..
+                },
+            ) => Some(Mark {
+                // The last hinge is on the part that stands still.
+                body: (index < LINKS).then_some(index),
+                at_m: ring.point(angle_rad, edge) * *mean_radius_m,
+            }),
+            (Hinge::Toe(side), Shape::Block { outline_m }) => Some(Mark {
+                body: Some(0),
+                at_m: match side {
+                    Sway::Left => outline_m[0],
+                    Sway::Right => outline_m[outline_m.len() - 1],
+                },
+            }),
+            (
+                Hinge::Joint {
+                    joint,
+                    edge: Some(edge),
+                },
+                Shape::Row { .. },
+            ) => self.joint(joint).map(|[intrados, extrados]| match edge {
+                Edge::Intrados => intrados,
+                Edge::Extrados => extrados,
+            }),
+            _ => None,
+        });
+        marks.collect()
+    }
+
+    /// The corners of a joint of a row at intrados and extrados, as points of the block after it.
+    #[must_use]
+    pub fn joint(&self, joint: usize) -> Option<[Mark; 2]> {
+        let Shape::Row { outlines_m } = &self.shape else {
+            return None;
+        };
+        let Section {
+            middle_m, across_m, ..
+        } = self.sections.get(joint)?;
+        Some([-0.5, 0.5].map(|part| Mark {
+            // After the last block of an arch is its support.
+            body: (joint < outlines_m.len()).then_some(joint),
+            at_m: middle_m + across_m * part,
+        }))
+    }
+
+    /// The body that each of [`Scene::sections`] moves with when these hinges are open.
+    #[must_use]
+    pub fn bodies_of_sections(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
+        let hinges_rad = sections_rad(hinges);
+        let sections = self.sections.iter().enumerate();
+        sections
+            .map(|(index, section)| match section.angle_rad {
+                Some(angle_rad) => link(&hinges_rad, angle_rad),
+                None => self.joint(index).and_then(|[corner, _]| corner.body),
+            })
+            .collect()
+    }
+
+    /// The line of thrust of a sample, in stretches over sections that are pressed.
+    #[must_use]
+    pub fn thrust_line(&self, sample: &Sample) -> Vec<Vec<Mark>> {
+        let bodies = self.bodies_of_sections(&sample.hinges);
+        let sections = self.sections.iter().zip(bodies);
+        let mut stretches = vec![Vec::new()];
+        for ((section, body), ratio) in sections.zip(&sample.eccentricity_ratios) {
+            match ratio {
+                Some(ratio) => {
+                    let ratio = ratio.clamp(-FARTHEST, FARTHEST);
+                    let at_m = section.middle_m + section.across_m * ratio;
+                    let last = stretches.len() - 1;
+                    stretches[last].push(Mark { body, at_m });
+                }
+                None => stretches.push(Vec::new()),
+            }
+        }
+        stretches.retain(|stretch| stretch.len() > 1);
+        stretches
+    }
+}
+
+/// Bodies of a four-link mechanism.
+const LINKS: usize = 3;
+
+/// Sections closer together than this are one.
+const SAME_SECTION_RAD: f64 = 1e-9;
+
+/// Eccentricity, in parts of the thickness, beyond which a line of thrust is cut off.
+pub const FARTHEST: f64 = 1.5;
+
+/// Hinges at sections of a ring, in radians from the left springing.
+fn sections_rad(hinges: &[OpenHinge]) -> Vec<f64> {
+    let angles = hinges.iter().filter_map(|open| match open.hinge {
+        Hinge::Section { angle_rad, .. } => Some(angle_rad),
+        Hinge::Toe(_) | Hinge::Joint { .. } => None,
+    });
+    angles.collect()
+}
+
+/// The body that a section belongs to, of those that hinges cut out of a ring.
+fn link(hinges_rad: &[f64], angle_rad: f64) -> Option<usize> {
+    let before = hinges_rad
+        .iter()
+        .filter(|hinge| **hinge < angle_rad)
+        .count();
+    (before < hinges_rad.len()).then(|| before.checked_sub(1))?
+}

@@ -1,0 +1,161 @@
+//! `snapshots.svg`: the deformed structure at chosen times, side by side.
+
+use nalgebra::Vector2;
+
+use super::scene::{Mark, Scene};
+use super::svg::{Anchor, Drawing, Stroke, color};
+use crate::dynamics::history::{Sample, State};
+
+/// Collects the samples nearest to chosen times, and draws them.
+#[derive(Clone, Debug)]
+pub struct Snapshots {
+    scene: Scene,
+    exaggeration: f64,
+    /// The times that are asked for, in seconds, with the nearest sample so far.
+    taken: Vec<(f64, Option<Sample>)>,
+    end_s: f64,
+}
+
+/// Pictures in a row, at most.
+const COLUMNS: usize = 3;
+const WIDTH_PX: f64 = 900.0;
+
+impl Snapshots {
+    /// Of a structure at these times in seconds, displacements drawn times `exaggeration`.
+    #[must_use]
+    pub fn new(scene: Scene, times_s: &[f64], exaggeration: f64) -> Self {
+        Self {
+            scene,
+            exaggeration,
+            taken: times_s.iter().map(|time_s| (*time_s, None)).collect(),
+            end_s: 0.0,
+        }
+    }
+
+    /// Takes a sample. Samples come in the order of time.
+    pub fn push(&mut self, sample: &Sample) {
+        self.end_s = sample.time_s;
+        for (time_s, nearest) in &mut self.taken {
+            let miss_s = |sample: &Sample| (sample.time_s - *time_s).abs();
+            if nearest
+                .as_ref()
+                .is_none_or(|nearest| miss_s(sample) < miss_s(nearest))
+            {
+                *nearest = Some(sample.clone());
+            }
+        }
+    }
+
+    /// Chosen times after the end of the history, in seconds: they show its last instant.
+    #[must_use]
+    pub fn beyond_s(&self) -> Vec<f64> {
+        let times = self.taken.iter().map(|(time_s, _)| *time_s);
+        times.filter(|time_s| *time_s > self.end_s).collect()
+    }
+
+    /// The picture.
+    #[must_use]
+    pub fn draw(&self, title: &str) -> String {
+        let shown: Vec<&Sample> = self
+            .taken
+            .iter()
+            .filter_map(|(_, sample)| sample.as_ref())
+            .collect();
+        let columns = shown.len().clamp(1, COLUMNS);
+        #[expect(clippy::cast_precision_loss, reason = "few pictures")]
+        let (cell_px, rows) = (
+            WIDTH_PX / columns as f64,
+            shown.len().div_ceil(columns) as f64,
+        );
+        let [low_m, high_m] = self.scene.bounds_m();
+        let (width_m, height_m) = (high_m.x - low_m.x, high_m.y - low_m.y);
+        // Room for the sway, and not higher than wide.
+        let scale = ((cell_px - 30.0) / (1.25 * width_m)).min(cell_px / (1.1 * height_m));
+        let tall_px = 1.1 * scale * height_m + 52.0;
+        let top = 48.0;
+        let mut drawing = Drawing::new(WIDTH_PX, top + rows * tall_px + 34.0);
+        drawing.title(title);
+        for (index, sample) in shown.iter().enumerate() {
+            #[expect(clippy::cast_precision_loss, reason = "few pictures")]
+            let (column, row) = ((index % columns) as f64, (index / columns) as f64);
+            let place = Place {
+                middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
+                at: Vector2::new((column + 0.5) * cell_px, top + (row + 1.0) * tall_px - 40.0),
+                scale,
+            };
+            self.draw_one(&mut drawing, &place, sample, 0.5 * cell_px - 8.0);
+        }
+        let exaggeration = if self.exaggeration == 1.0 {
+            "to scale".to_owned()
+        } else {
+            format!("displacements times {}", self.exaggeration)
+        };
+        let thrust = if self.scene.sections().is_empty() {
+            ""
+        } else {
+            "; blue: thrust line"
+        };
+        let caption = format!("{exaggeration}; dashed: at rest; circles: open hinges{thrust}");
+        let at = Vector2::new(0.5 * WIDTH_PX, top + rows * tall_px + 18.0);
+        drawing.label(at, Anchor::Middle, 0.0, &caption);
+        drawing.finish()
+    }
+
+    fn draw_one(&self, drawing: &mut Drawing, place: &Place, sample: &Sample, half_px: f64) {
+        let black = Stroke::new(color::BLACK, 1.1, "");
+        let left = place.at - Vector2::new(half_px, 0.0);
+        let right = place.at + Vector2::new(half_px, 0.0);
+        drawing.line(left, right, Stroke::new(color::GREY, 1.4, ""));
+        let poses = &sample.poses[..];
+        let still = self.scene.pieces(&[]);
+        for piece in &still {
+            let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
+            drawing.polygon("", outline, "none", Stroke::new(color::GREY, 0.7, "3 3"));
+        }
+        for piece in self.scene.pieces(&sample.hinges) {
+            let fill = match piece.body {
+                None => "#e4e4e4",
+                Some(body) if body % 2 == 0 => "#dceaf4",
+                Some(_) => "#f6e6d6",
+            };
+            let outline = piece.moved(poses, self.exaggeration).into_iter();
+            let name = match piece.body {
+                None => "still".to_owned(),
+                Some(body) => format!("body {body}"),
+            };
+            drawing.polygon(&name, outline.map(|corner| place.px(corner)), fill, black);
+        }
+        let moved = |mark: &Mark| place.px(mark.moved(poses, self.exaggeration));
+        for stretch in self.scene.thrust_line(sample) {
+            let points = stretch.iter().map(moved);
+            drawing.curve("thrust line", points, Stroke::new(color::BLUE, 1.6, ""));
+        }
+        for mark in self.scene.hinges(&sample.hinges) {
+            let stroke = Stroke::new(color::VERMILION, 1.6, "");
+            drawing.circle("hinge", moved(&mark), 3.2, stroke);
+        }
+        let doing = match sample.state {
+            State::Rest => "at rest".to_owned(),
+            State::Rocking(sway) => format!("sways {}", sway.name()),
+            State::Overturned(sway) => format!("overturned to the {}", sway.name()),
+        };
+        let below = place.at + Vector2::new(0.0, 22.0);
+        let text = format!("{:.3} s, {doing}", sample.time_s);
+        drawing.label(below, Anchor::Middle, 0.0, &text);
+    }
+}
+
+/// Places metres on the sheet.
+struct Place {
+    middle_m: Vector2<f64>,
+    at: Vector2<f64>,
+    /// Pixels per metre.
+    scale: f64,
+}
+
+impl Place {
+    fn px(&self, point_m: Vector2<f64>) -> Vector2<f64> {
+        let away_m = point_m - self.middle_m;
+        self.at + Vector2::new(away_m.x, -away_m.y) * self.scale
+    }
+}

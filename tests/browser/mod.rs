@@ -1,0 +1,80 @@
+//! Pages in a real browser, where there is one.
+#![allow(dead_code, missing_docs, clippy::unwrap_used, clippy::print_stderr)]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const BROWSERS: [&str; 4] = [
+    "chromium-headless-shell",
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+];
+
+/// What a page says of itself after its script `check`, which has `data` and calls `verify(true or false, "what")`;
+/// `None`, with a message, where there is no browser. Errors on the console count as failed checks.
+///
+/// `settings` are arguments of the browser. Its time is virtual and no frames are drawn in it, so a timer stands in for
+/// them.
+pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Option<String> {
+    let browser = BROWSERS.iter().find(|name| {
+        let version = Command::new(name).arg("--version").output();
+        version.is_ok_and(|output| output.status.success())
+    });
+    let Some(browser) = browser else {
+        eprintln!("no browser here ({BROWSERS:?}): the page is not checked in one");
+        return None;
+    };
+    let html = fs::read_to_string(page).unwrap();
+    let before = "<script>window.failures = []; window.passed = 0;\
+        window.verify = (holds, what) => { if (holds) passed += 1; else failures.push(what); };\
+        window.addEventListener('error', (event) => verify(false, `error: ${event.message}`));\
+        window.addEventListener('unhandledrejection', (event) => verify(false, `error: ${event.reason}`));\
+        window.requestAnimationFrame = (tick) => setTimeout(() => tick(performance.now()), 16);\
+        const error = console.error; console.error = (...words) => { verify(false, `console: ${words}`); };\
+        </script>";
+    let after = format!(
+        "<script>const check = async () => {{ const data = {data};\n{check}\n}};\
+         check().catch((error) => verify(false, `${{error}} ${{error.stack}}`)).then(() => {{\
+         const verdict = document.createElement('pre'); verdict.id = 'verdict';\
+         verdict.textContent = `${{passed}} passed\\n` + failures.join('\\n'); document.body.append(verdict); }});\
+         </script>"
+    );
+    let html = html.replacen("<head>", &format!("<head>{before}"), 1);
+    let html = html.replacen("</body>", &format!("{after}</body>"), 1);
+    let copy = page.with_extension("checked.html");
+    fs::write(&copy, html).unwrap();
+    let output = Command::new(browser)
+        .args([
+            "--no-sandbox",
+            "--disable-gpu",
+            "--window-size=1100,1400",
+            "--virtual-time-budget=20000",
+            "--dump-dom",
+        ])
+        .args(settings)
+        .arg(format!("file://{}", copy.display()))
+        .output()
+        .unwrap();
+    let dom = String::from_utf8_lossy(&output.stdout);
+    let verdict = dom
+        .split_once("<pre id=\"verdict\">")
+        .and_then(|(_, after)| after.split_once("</pre>"));
+    let (verdict, _) = verdict.unwrap_or_else(|| {
+        panic!(
+            "no verdict; the browser says {}",
+            String::from_utf8_lossy(&output.stderr)
+        )
+    });
+    Some(verdict.to_owned())
+}
+
+/// Asserts that a page's checks all pass, at least so many of them.
+pub fn assert_checked(page: &Path, check: &str, data: &str, settings: &[&str], least: usize) {
+    if let Some(verdict) = checked(page, check, data, settings) {
+        let (passed, failures) = verdict.split_once(" passed\n").unwrap();
+        assert!(failures.is_empty(), "{failures}");
+        assert!(passed.parse::<usize>().unwrap() >= least, "{verdict}");
+    }
+}

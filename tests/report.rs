@@ -1,0 +1,181 @@
+//! `report.html`: what it shows against the tables, as text and in a real browser.
+#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
+mod browser;
+mod program;
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+/// A table by columns.
+struct Table {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    fn read(path: &Path) -> Self {
+        let mut reader = csv::Reader::from_path(path).unwrap();
+        let words = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
+        Self {
+            header: words(reader.headers().unwrap()),
+            rows: reader.records().map(|row| words(&row.unwrap())).collect(),
+        }
+    }
+
+    fn column(&self, name: &str) -> usize {
+        let found = self.header.iter().position(|known| known == name);
+        found.unwrap_or_else(|| panic!("no {name} in {:?}", self.header))
+    }
+
+    fn number(&self, row: usize, name: &str) -> f64 {
+        self.rows[row][self.column(name)].parse().unwrap()
+    }
+}
+
+/// A run with its page and poses, in a folder.
+fn run(folder: &Path, scenario: &str) -> String {
+    let path = program::scenarios().join(scenario);
+    let arguments = ["run", path.to_str().unwrap(), "--out", ".", "--poses"];
+    let output = program::archrock(folder, &arguments);
+    assert!(output.status.success(), "{}", program::stderr(&output));
+    fs::read_to_string(folder.join("report.html")).unwrap()
+}
+
+fn data(page: &str) -> Value {
+    let (_, after) = page.split_once("id=\"data\">").unwrap();
+    serde_json::from_str(after.split_once("</script>").unwrap().0).unwrap()
+}
+
+/// The page of a scenario in a browser: every frame that is compared is one of its frames, so that nothing is blended.
+fn check(scenario: &str, names: &[&str], least_hinges: usize, has_thrust: bool, settings: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let page = run(folder.path(), scenario);
+    assert!(page.len() < 500_000, "{} bytes", page.len());
+    for foreign in ["src=", "@import", "<link", "url("] {
+        assert!(!page.contains(foreign), "{foreign}");
+    }
+    let (rotations, poses) = (
+        Table::read(&folder.path().join("rotations.csv")),
+        Table::read(&folder.path().join("poses.csv")),
+    );
+    assert_eq!(rotations.rows.len(), poses.rows.len());
+    let last = rotations.rows.len() - 1;
+    let peak = (0..=last)
+        .step_by(16)
+        .max_by(|a, b| {
+            let of = |row: usize| {
+                rotations
+                    .number(row, &key("rotation", names[0], "rad"))
+                    .abs()
+            };
+            of(*a).total_cmp(&of(*b))
+        })
+        .unwrap();
+    let row = |row: usize| {
+        let time_s = rotations.number(row, "time_s");
+        assert_eq!(time_s, poses.number(row, "time_s"));
+        let bodies = names.iter().map(|name| {
+            let rotation_rad = rotations.number(row, &key("rotation", name, "rad"));
+            let [x, y] = ["x", "y"].map(|axis| poses.number(row, &key(axis, name, "m")));
+            assert_eq!(
+                rotation_rad,
+                poses.number(row, &key("rotation", name, "rad"))
+            );
+            [rotation_rad, x, y]
+        });
+        json!({
+            "time_s": time_s,
+            "state": rotations.rows[row][rotations.column("state")],
+            "bodies": bodies.collect::<Vec<_>>(),
+        })
+    };
+    // Frames are every first, second, fourth or eighth row.
+    let rows: Vec<Value> = (0..last).step_by(16).chain([last]).map(row).collect();
+    let facts = json!({
+        "rows": rows,
+        "peak_s": rotations.number(peak, "time_s"),
+        "end_s": rotations.number(last, "time_s"),
+        "least_hinges": least_hinges,
+        "has_thrust": has_thrust,
+    });
+    let script = include_str!("browser/report.js");
+    let page = folder.path().join("report.html");
+    browser::assert_checked(&page, script, &facts.to_string(), settings, 100);
+}
+
+fn key(quantity: &str, body: &str, unit: &str) -> String {
+    format!("{quantity}_{body}_{unit}").replace("__", "_")
+}
+
+#[test]
+fn four_links_in_a_browser() {
+    let bodies = ["left", "middle", "right"];
+    check("semicircle-pulse.toml", &bodies, 4, true, &[]);
+}
+
+#[test]
+fn a_column_in_a_browser_with_reduced_motion() {
+    let settings = ["--force-prefers-reduced-motion"];
+    check("column-pulse.toml", &[""], 1, false, &settings);
+}
+
+#[test]
+fn free_hinges_in_a_dark_browser() {
+    let blocks: Vec<String> = (1..=36).map(|block| block.to_string()).collect();
+    let names: Vec<&str> = blocks.iter().map(String::as_str).collect();
+    check("free-hinges.toml", &names, 4, true, &["--force-dark-mode"]);
+}
+
+#[test]
+fn ten_seconds_of_thirty_six_blocks_are_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = program::scenarios().join("synthetic.at2");
+    fs::copy(record, folder.path().join("synthetic.at2")).unwrap();
+    let scenario = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\
+                    [free_hinges]\n[ground.record]\nfile = \"synthetic.at2\"\npeak_g = 0.2\n\
+                    [simulation]\nduration_s = 10.0\n";
+    fs::write(folder.path().join("long.toml"), scenario).unwrap();
+    let arguments = ["run", "long.toml", "--out", ".", "--no-spread"];
+    let output = program::archrock(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", program::stderr(&output));
+    let table = Table::read(&folder.path().join("rotations.csv"));
+    assert_eq!(table.rows.len(), 2001);
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.len() < 500_000, "{} bytes", page.len());
+}
+
+#[test]
+fn what_the_scenario_says_cannot_break_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = "title = \"</title></script><script>alert(1)</script> %DATA% & more\"\n\
+                    [column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = 0.5\nduration_s = 0.1\n";
+    fs::write(folder.path().join("odd.toml"), scenario).unwrap();
+    let output = program::archrock(folder.path(), &["run", "odd.toml", "--out", "."]);
+    assert!(output.status.success(), "{}", program::stderr(&output));
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(!page.contains("<script>alert"), "a title stays text");
+    assert!(page.contains("&lt;script&gt;alert(1)&lt;/script&gt; %DATA% &amp; more"));
+    assert_eq!(data(&page)["bodies"], json!([""]));
+}
+
+#[test]
+fn a_report_is_left_out_and_an_old_one_goes() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), "never-moved.toml");
+    let path = program::scenarios().join("never-moved.toml");
+    let arguments = ["run", path.to_str().unwrap(), "--out", ".", "--no-report"];
+    let output = program::archrock(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", program::stderr(&output));
+    assert!(
+        !String::from_utf8(output.stdout)
+            .unwrap()
+            .contains("report.html")
+    );
+    for gone in ["report.html", "poses.csv"] {
+        assert!(!folder.path().join(gone).exists(), "{gone}");
+    }
+    assert!(folder.path().join("rotations.csv").exists());
+}
