@@ -6,7 +6,7 @@ use archrock::dynamics::free_hinges::{FreeHinges, FreeHingesError, Steps};
 use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::stability::StabilityError;
-use archrock::{Column, GroundMotion, Model as _, Pulse, Request};
+use archrock::{Column, GroundMotion, Model as _, Pulse, Request, SimulationError};
 use common::number;
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -24,27 +24,24 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
     prop_assert!(row.mass_kg() > 0.0 && row.blocks().iter().all(|b| b.mass_kg.is_finite()));
     // A hundred steps of whatever length suits the size.
     let time_s = (row.size_m() / 9.81).sqrt();
-    let usual = fine
-        || (1e-3..1e6).contains(&row.size_m())
-            && row.blocks().iter().all(|block| {
-                let size_m = (block.inertia_kg_m2 / block.mass_kg).sqrt() / row.size_m();
-                (1e-6..1e12).contains(&block.mass_kg) && (1e-3..1e3).contains(&size_m)
-            });
+    let sized = fine || (1e-3..1e6).contains(&row.size_m());
     let model = match FreeHinges::new(row) {
         Ok(model) => model,
         Err(FreeHingesError::Stability(StabilityError::CannotStand(opening))) => {
             prop_assert!(!opening.is_empty());
             return Ok(());
         }
-        Err(error) => {
-            prop_assert!(!usual, "{error}");
+        // Of numbers of all magnitudes at once the velocities are not always found.
+        Err(FreeHingesError::Stability(StabilityError::Contact(error))) => {
+            prop_assert!(!fine, "{error}");
             return Ok(());
         }
+        Err(error) => return Err(TestCaseError::fail(error.to_string())),
     };
     let ground = match GroundMotion::pulse(Pulse::Rectangular, -5.0, 0.01 * time_s, 0.0) {
         Ok(ground) => ground,
         Err(error) => {
-            prop_assert!(!usual, "{error}");
+            prop_assert!(!sized, "{error}");
             return Ok(());
         }
     };
@@ -62,7 +59,9 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
             prop_assert!(numbers.iter().all(|x| x.is_finite()), "{summary:?}");
             prop_assert!(summary.peak_rotations_rad.iter().all(|x| x.is_finite()));
         }
-        Err(error) => prop_assert!(!usual, "{error}"),
+        Err(SimulationError::FreeHinges(error)) => prop_assert!(!fine, "{error}"),
+        Err(SimulationError::Argument(error)) => prop_assert!(!sized, "{error}"),
+        Err(error) => return Err(TestCaseError::fail(error.to_string())),
     }
     Ok(())
 }
