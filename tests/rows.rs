@@ -28,7 +28,7 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
     let model = match FreeHinges::new(row) {
         Ok(model) => model,
         Err(FreeHingesError::Stability(StabilityError::CannotStand(opening))) => {
-            prop_assert!(!opening.is_empty());
+            prop_assert!(!fine || !opening.is_empty());
             return Ok(());
         }
         // Of numbers of all magnitudes at once the velocities are not always found.
