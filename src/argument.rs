@@ -53,6 +53,29 @@ pub(crate) fn above(
     })
 }
 
+/// A number as people write it, with six digits at most: 0.12, not 0.12000000000000002.
+pub(crate) fn plain(x: f64) -> String {
+    // Six digits in the form that has any number of them, and as few of them as are not zero.
+    short(format!("{x:.5e}").parse().unwrap_or(x))
+}
+
+/// Rounded up to four significant digits, so that a bound in a message is itself allowed.
+pub(crate) fn rounded_up(x: f64) -> f64 {
+    let unit = whole(x, 4.0);
+    (x * unit).ceil() / unit
+}
+
+/// Rounded down to six significant digits, for the same reason.
+pub(crate) fn rounded_down(x: f64) -> f64 {
+    let unit = whole(x, 6.0);
+    (x * unit).floor() / unit
+}
+
+/// What makes a whole number of so many digits of a positive one.
+fn whole(x: f64, digits: f64) -> f64 {
+    10.0_f64.powf(digits - 1.0 - x.log10().floor())
+}
+
 /// A bound as people write it: 1e6, not 1000000.0.
 pub(crate) fn short(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {

@@ -364,6 +364,12 @@ fn run_draws_the_history() {
         let expected = sign * scale * key(&format!("peak_rotation_{name}_rad"));
         assert!((peak(name) - expected).abs() < 0.1, "{name}");
     }
+    // The first half cycle alone goes far: its line is at the unstable equilibrium that `limit` prints, of the left body.
+    let unstable = curve("unstable");
+    for end in &unstable {
+        let from_zero = end.y - curve_of(&document, "left")[0].y;
+        assert!((from_zero - scale * 0.031_048).abs() < 0.1);
+    }
     // One time axis: the curves begin and end together, at the frame.
     let (left, right) = (85.0, 875.0);
     for name in ["ground", "middle", "energy", "excess"] {
@@ -371,6 +377,7 @@ fn run_draws_the_history() {
         assert!((points[0].x - left).abs() < PIXEL);
         assert!((points[points.len() - 1].x - right).abs() < PIXEL);
     }
+    assert!((unstable[0].x - left).abs() < PIXEL);
     // The first impact, published at 1.0279 s, has its mark at that part of the time.
     let end_s = key("outcome_time_s");
     let marks = named(&document, "impact");

@@ -249,7 +249,7 @@ fn faulty_records_are_input_errors() {
             "is not a file",
         ),
         (
-            "file = 'x.txt'",
+            "file = 'x.rec'",
             "6:8",
             "does not tell the format: give `format`",
         ),
@@ -276,12 +276,12 @@ fn faulty_records_are_input_errors() {
         (
             "file = 'early.csv'\nunit = 'g'",
             "6:8",
-            "`start_s` of at least 2.0",
+            "`start_s` of at least 2,",
         ),
         (
             "file = 'good.csv'\nunit = 'g'\nscale = 2000",
             "6:8",
-            "reaches 2000.0 g",
+            "reaches 2000 g",
         ),
         (
             "file = 'good.csv'\nunit = 'g'\nacceleration_column = 0",
@@ -294,8 +294,8 @@ fn faulty_records_are_input_errors() {
             "good.csv:1: there is no column named `tt`",
         ),
         (
-            "file = 'short.at2'\nunit = 'g'",
-            "7:8",
+            "file = 'short.at2'\ntime_column = 1",
+            "7:15",
             "applies to `format = \"csv\"` only",
         ),
         (

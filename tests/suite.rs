@@ -21,7 +21,13 @@ use serde_json::Value;
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n";
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
                     [simulation]\nduration_s = 30.0\n";
-const FILES: [&str; 4] = ["suite.svg", "fragility.csv", "fragility.json", "suite.csv"];
+const FILES: [&str; 5] = [
+    "suite.svg",
+    "ida.svg",
+    "fragility.csv",
+    "fragility.json",
+    "suite.csv",
+];
 
 /// A folder with the first records of the repository, one of them as a table in cm/s2 as well.
 fn folder() -> tempfile::TempDir {
@@ -41,7 +47,8 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn samples(path: &Path) -> Vec<(f64, f64)> {
-    Layout::At2.samples(&fs::read(path).unwrap()).unwrap()
+    let layout = Layout::At2 { unit: None };
+    layout.parse(&fs::read(path).unwrap()).unwrap().samples
 }
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -486,11 +493,11 @@ fn without_a_curve_the_reason_is_said() {
         assert_eq!(fragility["records_that_never_overturn"], list(never));
         assert_eq!(fragility["records_that_always_overturn"], list(always));
         assert_eq!(
-            said.contains("never overturn: records/wave-1.at2"),
+            said.contains("records/wave-1.at2: does not overturn up to 0.2000\n"),
             never.is_some()
         );
         assert_eq!(
-            said.contains("always overturn: records/wave-1.at2"),
+            said.contains("records/wave-1.at2: overturns at 4.000 already, the least tried\n"),
             always.is_some()
         );
         let picture = read(&folder.join("o/suite.svg"));
@@ -710,8 +717,8 @@ fn faults_of_the_table_have_places() {
     // Keys of tables go with tables, and with them only.
     assert_faults(
         folder,
-        &format!("{all}\nscales = [1]\nunit = 'g'"),
-        &[(3, 8, &["applies to `format = \"csv\"` only"])],
+        &format!("{all}\nscales = [1]\ntime_column = 1"),
+        &[(3, 15, &["applies to `format = \"csv\"` only"])],
     );
     assert_faults(
         folder,
@@ -777,7 +784,7 @@ fn faults_of_records_name_the_file() {
             (
                 1,
                 29,
-                &["names long.at2, which lasts 40.0 s", "`duration_s`", "30.0"],
+                &["names long.at2, which lasts 40 s", "`duration_s`", "30 s"],
             ),
             (
                 1,
@@ -812,7 +819,7 @@ fn faults_of_records_name_the_file() {
         &[(
             1,
             11,
-            &["names records/wave-1.at2, which reaches 1500.0 g as scaled"],
+            &["names records/wave-1.at2, which reaches 1500 g as scaled"],
         )],
     );
     assert_faults(

@@ -1,12 +1,12 @@
 //! What holds for the readers of all record files.
 
-use archrock::scenario::Layout;
+use archrock::scenario::{Contents, Layout};
 
 /// Reads the contents of a file: samples that a motion can be made of, or a fault on one of the lines, in
 /// words that a terminal can show.
 pub fn check(layout: &Layout, contents: &[u8]) {
-    match layout.samples(contents) {
-        Ok(samples) => {
+    match layout.parse(contents) {
+        Ok(Contents { samples, .. }) => {
             assert!((2..=1_800_000).contains(&samples.len()));
             assert!(samples.iter().all(|s| s.0.abs() <= 1e6 && s.1.is_finite()));
             // Times that are computed as multiples of a step round.

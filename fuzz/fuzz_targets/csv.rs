@@ -1,9 +1,9 @@
-//! The reader of tables. The bits of the first byte choose the columns; the contents follow.
+//! The reader of tables. The bits of the first byte choose how it is read; the contents follow.
 #![no_main]
 
 mod common;
 
-use archrock::scenario::{Layout, TableColumn, Unit};
+use archrock::scenario::{Decimal, Layout, TableColumn, TableLayout, Times, Unit};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|input: &[u8]| {
@@ -15,10 +15,19 @@ fuzz_target!(|input: &[u8]| {
         3 => TableColumn::Name(name.to_owned()),
         number => TableColumn::Number(numbers[usize::from(number)]),
     };
-    let layout = Layout::Csv {
-        time_column: column(settings >> 2, [1, 2, 10_000], "t"),
-        acceleration_column: column(*settings, [2, 1, 3], "a"),
-        unit: Unit::Gravity,
+    let times = if settings & 64 == 0 {
+        Times::Column(column(settings >> 2, [1, 2, 10_000], "t"))
+    } else {
+        Times::Step(0.01)
     };
+    let layout = Layout::Csv(TableLayout {
+        skip_rows: usize::from(settings >> 4 & 3),
+        decimal: if settings & 128 == 0 {
+            Decimal::Point
+        } else {
+            Decimal::Comma
+        },
+        ..TableLayout::new(times, column(*settings, [2, 1, 3], "a"), Unit::Gravity)
+    });
     common::check(&layout, contents);
 });

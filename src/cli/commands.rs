@@ -1,4 +1,4 @@
-//! The commands `limit` and `check`, and what commands share.
+//! The command `limit`, and what commands share.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -23,10 +23,6 @@ use super::{Failure, Format, print};
 pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
     let model = scenario.structure.model(scenario.impact);
     model.map_err(|error| Failure::Input(error.to_string()))
-}
-
-pub fn check(file: &ScenarioFile) -> Result<(), Failure> {
-    print(&file.open()?.read(None)?.to_toml())
 }
 
 pub fn limit(file: &ScenarioFile, format: Format, plot: Option<&Path>) -> Result<(), Failure> {

@@ -4,6 +4,7 @@
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
 mod chart;
+mod check;
 mod commands;
 mod impact;
 mod init;
@@ -22,7 +23,7 @@ use std::process::ExitCode;
 
 use archrock::dynamics::model::SimulationError;
 use archrock::output::OutputError;
-use archrock::scenario::ScenarioErrors;
+use archrock::scenario::{Scenario, ScenarioErrors};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use scenario_file::ScenarioFile;
@@ -70,11 +71,8 @@ enum Command {
     Threshold(threshold::Arguments),
     /// Merge the parts of a study computed with --shard.
     Merge(merge::Arguments),
-    /// Check a scenario and print it with every default written out.
-    Check {
-        #[command(flatten)]
-        scenario: ScenarioFile,
-    },
+    /// Check a scenario and print it with every default written out, or tell what is in a record file.
+    Check(check::Arguments),
     /// Print a script that completes commands and options in a shell.
     Completions {
         /// The shell.
@@ -150,7 +148,7 @@ pub fn main() -> ExitCode {
         Command::Suite(suite) => suite::suite(&suite, arguments.quiet),
         Command::Threshold(threshold) => threshold::threshold(&threshold, arguments.quiet),
         Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
-        Command::Check { scenario } => commands::check(&scenario),
+        Command::Check(check) => check::check(&check, arguments.quiet),
         Command::Completions { shell } => completions(shell),
     };
     let (code, message) = match result {
@@ -161,6 +159,13 @@ pub fn main() -> ExitCode {
     // When standard error fails there is nowhere to report it.
     let _ = writeln!(io::stderr(), "error: {message}");
     ExitCode::from(code)
+}
+
+/// Warns of what is unlikely in a scenario.
+fn warn(scenario: &Scenario) {
+    for unlikely in scenario.unlikely() {
+        study::say(&format!("warning: {unlikely}"));
+    }
 }
 
 /// Prints the completions of a shell.

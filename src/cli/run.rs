@@ -19,12 +19,13 @@ use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::scene::Scene;
 use archrock::output::timeline::Timeline;
 use archrock::output::{Folder, OutputError};
-use archrock::scenario::{Hinges, Scenario, Structure};
+use archrock::scenario::{Ground, Hinges, Scenario, Series, Structure};
 use clap::ValueEnum;
 use serde_json::{Value, json};
 
 use self::extras::{Extras, File, POSES, PosesTable};
-use super::scenario_file::{Destination, Input, SetOption};
+use super::check::sampling_in_words;
+use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::study::impact_ignored;
 use super::{Failure, Format, commands, print};
 
@@ -35,6 +36,8 @@ pub struct Arguments {
     scenarios: Vec<PathBuf>,
     #[command(flatten)]
     set: SetOption,
+    #[command(flatten)]
+    suite: SuiteOption,
     /// Folder for the results, or for the folders of several scenarios [default: results/<name of the scenario
     /// file>].
     #[arg(long, value_name = "DIR")]
@@ -87,6 +90,9 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut summaries = Vec::new();
     let mut failures = Vec::new();
     for job in &jobs {
+        if !quiet {
+            super::warn(&job.scenario);
+        }
         let told = match job.run(arguments) {
             Ok(told) => told,
             // The others are run all the same.
@@ -131,23 +137,18 @@ struct Job {
 impl Job {
     /// All that are asked for, or all that is wrong with them.
     fn all(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
-        let several = arguments.scenarios.len() > 1;
-        if several && arguments.rotations.is_some() {
-            let message = "--rotations - is for one scenario: run them one by one";
-            return Err(Failure::Input(message.to_owned()));
-        }
-        let read = arguments
-            .scenarios
-            .iter()
-            .map(|path| Self::read(path, arguments));
         let mut jobs: Vec<Self> = Vec::new();
         let mut wrong = Vec::new();
-        for job in read {
-            match job {
-                Ok(job) => jobs.push(job),
+        for path in &arguments.scenarios {
+            match Self::read(path, arguments) {
+                Ok(read) => jobs.extend(read),
                 Err(Failure::Input(message)) => wrong.push(message),
                 Err(failure) => return Err(failure),
             }
+        }
+        if jobs.len() > 1 && arguments.rotations.is_some() {
+            let message = "--rotations - is for one scenario: run them one by one";
+            return Err(Failure::Input(message.to_owned()));
         }
         for (index, job) in jobs.iter().enumerate() {
             let Some(path) = job.place.path() else {
@@ -170,18 +171,28 @@ impl Job {
         }
     }
 
-    fn read(path: &Path, arguments: &Arguments) -> Result<Self, Failure> {
+    /// The scenario of a file, or what its records make of it.
+    fn read(path: &Path, arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let input = arguments.set.open(path)?;
-        let (scenario, other) = Models::read(arguments.hinges, &input)?;
-        scenario
-            .check_for_run()
-            .map_err(|reason| input.about(Failure::Input(reason)))?;
-        Ok(Self {
-            name: path.display().to_string(),
-            scenario,
-            other,
-            place: Place::of(arguments, &input)?,
-        })
+        let both = Models::read(arguments.hinges, &input)?;
+        let about = |failure| input.about(failure);
+        let chosen = arguments.suite.choose(both).map_err(about)?;
+        let jobs = chosen.into_iter().map(|(record, (scenario, other))| {
+            scenario
+                .check_for_run()
+                .map_err(|reason| about(Failure::Input(reason)))?;
+            let file = path.display();
+            Ok(Self {
+                name: match &record {
+                    Some(record) => format!("{file}, {record}"),
+                    None => file.to_string(),
+                },
+                place: Place::of(arguments, &input, record.as_deref())?,
+                scenario,
+                other,
+            })
+        });
+        jobs.collect()
     }
 
     /// Runs it, and says what happened.
@@ -194,6 +205,7 @@ impl Job {
         } = self;
         let title = scenario.title.as_ref();
         let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
+        text += &records(scenario);
         if let Some(ignored) = impact_ignored(other.as_ref().unwrap_or(scenario)) {
             let _ = writeln!(text, "  {ignored}");
         }
@@ -213,6 +225,19 @@ impl Job {
             summary: told.summary,
         })
     }
+}
+
+/// The records that shake a scenario, a line each.
+fn records(scenario: &Scenario) -> String {
+    let Some(Ground::Record(record)) = &scenario.ground else {
+        return String::new();
+    };
+    let line = |series: &Series| {
+        let (file, sampling) = (&series.file, sampling_in_words(&series.sampling()));
+        let peak_g = series.peak_g(scenario.simulation.gravity_m_s2);
+        format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
+    };
+    record.series().map(line).collect()
 }
 
 /// What a run says.
@@ -265,7 +290,7 @@ struct Place {
 }
 
 impl Place {
-    fn of(arguments: &Arguments, input: &Input<'_>) -> Result<Self, Failure> {
+    fn of(arguments: &Arguments, input: &Input<'_>, record: Option<&str>) -> Result<Self, Failure> {
         let to_stdout = arguments.rotations.is_some();
         let results = match &arguments.out {
             Some(out) if arguments.scenarios.len() > 1 => {
@@ -273,6 +298,10 @@ impl Place {
             }
             None if to_stdout || matches!(arguments.format, Format::Json) => None,
             out => Some(input.results(out.as_deref())?),
+        };
+        let results = match (results, record) {
+            (Some(results), Some(record)) => Some(results.of_record(record)?),
+            (results, _) => results,
         };
         Ok(Self {
             results,
@@ -540,15 +569,14 @@ fn human_summary(
             "  peak rotation in rad: {}",
             commands::by_body(&model.bodies(), &history.peak_rotations_rad),
         );
-        let equilibrium = "the unstable equilibrium of the mechanism that moved";
+        let unstable = "the unstable rotation of the mechanism that moved";
         let _ = match (history.outcome, history.peak_over_critical) {
             // How far it fell on until the run ended says nothing.
-            (Outcome::Overturned(_), Some(_)) => writeln!(text, "  passed {equilibrium}"),
+            (Outcome::Overturned(_), Some(_)) => writeln!(text, "  passed {unstable}"),
             (_, Some(peak)) => {
-                writeln!(
-                    text,
-                    "  largest rotation {peak:.4} of that at {equilibrium}"
-                )
+                // Rounded down, so that what was not reached is not said to be.
+                let percent = (1e3 * peak).floor() / 10.0;
+                writeln!(text, "  reached {percent:.1} % of {unstable}")
             }
             (_, None) => Ok(()),
         };

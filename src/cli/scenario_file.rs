@@ -35,6 +35,11 @@ impl ScenarioFile {
 }
 
 impl SetOption {
+    /// What was given.
+    pub fn assignments(&self) -> &[Assignment] {
+        &self.set
+    }
+
     /// Takes the text of a scenario file.
     pub fn open<'a>(&'a self, path: &'a Path) -> Result<Input<'a>, Failure> {
         let source = if is_stdin(path) {
@@ -47,6 +52,44 @@ impl SetOption {
             source,
             set: &self.set,
         })
+    }
+}
+
+/// Whether the records of a suite are meant.
+#[derive(clap::Args, Clone, Copy)]
+pub struct SuiteOption {
+    /// For each record of [suite] as it is in its file, instead of [ground]; results in a folder each.
+    #[arg(long)]
+    suite: bool,
+}
+
+/// A scenario for one model of motion, or for both.
+pub type Both = (Scenario, Option<Scenario>);
+
+impl SuiteOption {
+    /// The scenario, or the scenario once for each record of its suite, if that is asked for.
+    pub fn choose(self, (scenario, other): Both) -> Result<Vec<(Option<String>, Both)>, Failure> {
+        if !self.suite {
+            return Ok(vec![(None, (scenario, other))]);
+        }
+        let chosen: Vec<_> = match other {
+            Some(other) => scenario
+                .by_record()
+                .into_iter()
+                .zip(other.by_record())
+                .map(|((file, scenario), (_, other))| (Some(file), (scenario, Some(other))))
+                .collect(),
+            None => scenario
+                .by_record()
+                .into_iter()
+                .map(|(file, scenario)| (Some(file), (scenario, None)))
+                .collect(),
+        };
+        if chosen.is_empty() {
+            let message = "--suite is for a scenario with a table [suite], which names records";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        Ok(chosen)
     }
 }
 
@@ -93,16 +136,7 @@ impl Input<'_> {
         }
         let path = Path::new("results").join(self.stem());
         let origin = (!is_stdin(self.path)).then(|| origin(self.path));
-        if let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(path.join(ORIGIN)))
-            && ours != theirs.trim_end()
-        {
-            return Err(Failure::Input(format!(
-                "{} holds the results of {}: choose another folder with --out, or remove that one",
-                path.display(),
-                theirs.trim_end().replace(char::is_control, "\u{fffd}")
-            )));
-        }
-        Ok(Destination { path, origin })
+        Destination::checked(path, origin)
     }
 }
 
@@ -142,6 +176,26 @@ impl Destination {
     /// A folder in that one.
     pub fn within(&self, name: impl AsRef<Path>) -> Self {
         Self::of(&self.path.join(name))
+    }
+
+    /// The folder in that one for what a record of the scenario's suite does.
+    pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
+        let name = Path::new(record).file_name().unwrap_or_default();
+        Self::checked(self.path.join(name), self.origin.clone())
+    }
+
+    /// The folder, unless it holds the results of another scenario file.
+    fn checked(path: PathBuf, origin: Option<String>) -> Result<Self, Failure> {
+        if let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(path.join(ORIGIN)))
+            && ours != theirs.trim_end()
+        {
+            return Err(Failure::Input(format!(
+                "{} holds the results of {}: choose another folder with --out, or remove that one",
+                path.display(),
+                theirs.trim_end().replace(char::is_control, "\u{fffd}")
+            )));
+        }
+        Ok(Self { path, origin })
     }
 
     /// Opens the folder for files of these names, the seal last; a failure suggests `--out`.

@@ -3,8 +3,10 @@
 use std::io::Write as _;
 
 use archrock::dynamics::history::Outcome;
+use archrock::output::ida;
 use archrock::output::suite::{self as output, Heading};
-use archrock::scenario::{Scenario, Suite};
+use archrock::output::survival;
+use archrock::scenario::{Measure, Scenario, Suite};
 use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 
 use super::Failure;
@@ -21,6 +23,8 @@ pub struct Arguments {
 }
 
 const PICTURE: &str = "suite.svg";
+/// How far each record drives the structure.
+const IDA: &str = "ida.svg";
 const LEVELS: &str = "fragility.csv";
 const FRAGILITY: &str = "fragility.json";
 /// Written last: a folder that has it is complete.
@@ -78,11 +82,12 @@ fn finish(
     quiet: bool,
 ) -> Result<(), Failure> {
     let results = SuiteFragility::new(heading.measure, rows);
-    let files = [PICTURE, LEVELS, FRAGILITY, TABLE];
+    let files = [PICTURE, IDA, LEVELS, FRAGILITY, TABLE];
     let mut folder = place.open(&files)?;
     output::write_fragility(folder.file(LEVELS), &results)?;
     for (name, text) in [
         (PICTURE, output::draw(heading, &results)),
+        (IDA, ida::draw(heading, &results)),
         (FRAGILITY, pretty(&output::to_json(heading, &results)?)),
     ] {
         folder
@@ -113,11 +118,14 @@ fn summary(results: &SuiteFragility) -> String {
             output::no_fit(results).unwrap_or_default()
         ),
     });
-    for (overturned, how) in [(false, "never"), (true, "always")] {
-        let records = results.always(overturned);
-        if !records.is_empty() {
-            lines.push(format!("{how} overturn: {}", records.join(", ")));
-        }
+    let unit = match results.measure {
+        Measure::Scale => "",
+        Measure::PeakG => " g",
+    };
+    for record in results.survivals() {
+        let mirrored = if record.mirrored { " mirrored" } else { "" };
+        let words = survival::in_words(&record.survival, unit);
+        lines.push(format!("{}{mirrored}: {words}", record.record));
     }
     let still_rocking = |case: &CaseRow| case.outcome() == Some(Outcome::StillRocking);
     if results.cases.iter().any(still_rocking) {

@@ -9,14 +9,17 @@ use std::path::PathBuf;
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
+use archrock::output::survival;
 use archrock::output::threshold::{self as output, rounded};
-use archrock::scenario::{Scenario, Structure};
+use archrock::scenario::{Ground, Scenario, Structure};
+use archrock::studies::survival::Survival;
 use archrock::studies::threshold::{
     FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
 };
+use serde_json::Value;
 
 use super::run::Models;
-use super::scenario_file::ScenarioFile;
+use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
 use super::study::{Display, Threads, impact_ignored, say};
 use super::{Failure, Format, commands, print};
 
@@ -24,6 +27,8 @@ use super::{Failure, Format, commands, print};
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioFile,
+    #[command(flatten)]
+    suite: SuiteOption,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -55,27 +60,68 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
     let input = arguments.scenario.open()?;
-    let (scenario, other) = Models::read(arguments.hinges, &input)?;
-    check(&scenario).map_err(|message| input.about(Failure::Input(message.to_owned())))?;
-    let scenarios: Vec<&Scenario> = iter::once(&scenario).chain(&other).collect();
+    let both = Models::read(arguments.hinges, &input)?;
+    let about = |failure| input.about(failure);
+    let place = input.results(arguments.out.as_deref())?;
+    let mut tasks = Vec::new();
+    for (record, (scenario, other)) in arguments.suite.choose(both).map_err(about)? {
+        check(&scenario).map_err(|message| about(Failure::Input(message.to_owned())))?;
+        let place = match record {
+            Some(record) => place.of_record(&record)?,
+            None => place.clone(),
+        };
+        let scenarios: Vec<Scenario> = iter::once(scenario).chain(other).collect();
+        tasks.push((scenarios, place));
+    }
     if !quiet
-        && let Some(ignored) = scenarios
+        && let Some(ignored) = tasks
             .iter()
-            .find_map(|scenario| impact_ignored(scenario))
+            .flat_map(|(scenarios, _)| scenarios)
+            .find_map(impact_ignored)
     {
         say(ignored);
     }
-    let models = scenarios
-        .iter()
-        .map(|scenario| model(scenario))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut texts = Vec::new();
+    let mut results = Vec::new();
+    for (scenarios, place) in &tasks {
+        if !quiet {
+            super::warn(&scenarios[0]);
+        }
+        let (text, json) = find(scenarios, place, &factors, arguments, quiet)?;
+        texts.push(text);
+        results.push(json);
+    }
+    match arguments.format {
+        Format::Json => {
+            let only = (results.len() == 1).then(|| results.pop()).flatten();
+            print(&commands::pretty(&only.unwrap_or(Value::Array(results))))
+        }
+        Format::Text => {
+            let title = tasks[0].0[0].title.as_ref();
+            let title = title.map_or(String::new(), |title| format!("{title}\n"));
+            let sampled = sampled(&factors);
+            print(&format!("{title}{}{sampled}", texts.concat()))
+        }
+    }
+}
+
+/// Finds the thresholds of a scenario, for one model of motion or for both, and writes them. Returns what was found in
+/// words and as JSON.
+fn find(
+    scenarios: &[Scenario],
+    place: &Destination,
+    factors: &Factors,
+    arguments: &Arguments,
+    quiet: bool,
+) -> Result<(String, Value), Failure> {
+    let scenario = &scenarios[0];
+    let models = scenarios.iter().map(model).collect::<Result<Vec<_>, _>>()?;
     let models: Vec<(&str, &dyn Model)> = models
         .iter()
         .map(|(name, model)| (*name, &**model))
         .collect();
     let ground = scenario.ground_motion();
     // Opened before the work starts, so that a folder that cannot be written costs no time.
-    let place = input.results(arguments.out.as_deref())?;
     let mut folder = place.open(&[PICTURE, TABLE, SUMMARY])?;
 
     let runner = arguments.threads.runner();
@@ -86,7 +132,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         ControlFlow::Continue(())
     };
     let request = scenario.request();
-    let found = thresholds(&models, ground, &request, &factors, &runner, watch)?;
+    let found = thresholds(&models, ground, &request, factors, &runner, watch)?;
     if let Some(display) = display {
         display.finish();
     }
@@ -98,11 +144,12 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .title
         .as_deref()
         .unwrap_or("Threshold of overturning");
-    let peak_g = output::peak_g(&scenario, ground);
-    let json = output::to_json(&scenarios, ground, &factors, &found)?;
-    let json = commands::pretty(&json);
-    let picture = output::draw(title, peak_g, &factors, &found);
-    for (name, text) in [(PICTURE, &picture), (SUMMARY, &json)] {
+    let peak_g = output::peak_g(scenario, ground);
+    let of_models: Vec<&Scenario> = scenarios.iter().collect();
+    let json = output::to_json(&of_models, ground, factors, &found)?;
+    let picture = output::draw(title, peak_g, factors, &found);
+    let summary = commands::pretty(&json);
+    for (name, text) in [(PICTURE, &picture), (SUMMARY, &summary)] {
         folder
             .file(name)
             .write_all(text.as_bytes())
@@ -116,10 +163,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             place.path().display()
         ));
     }
-    match arguments.format {
-        Format::Json => print(&json),
-        Format::Text => print(&words(&scenario, ground, &factors, &found)),
-    }
+    Ok((words(scenario, ground, &found), json))
 }
 
 /// A model of motion, and its name in the results.
@@ -180,32 +224,30 @@ fn refuse_if_nothing_is_known(threshold: &Threshold) -> Result<(), Failure> {
     }
 }
 
-/// What was found, a line per band.
-fn words(
-    scenario: &Scenario,
-    ground: &GroundMotion,
-    factors: &Factors,
-    thresholds: &[Threshold],
-) -> String {
+/// What was found: of a record in a line, of a pulse a line per band.
+fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -> String {
     let mut text = String::new();
-    if let Some(title) = &scenario.title {
-        let _ = writeln!(text, "{title}");
-    }
     let peak_g = output::peak_g(scenario, ground);
     for threshold in thresholds {
-        if thresholds.len() > 1 {
-            let _ = writeln!(text, "{}", threshold.model.replace('_', " "));
+        let model = threshold.model.replace('_', " ");
+        let several = thresholds.len() > 1;
+        if let Some(Ground::Record(record)) = &scenario.ground {
+            let model = if several {
+                format!(", {model}")
+            } else {
+                String::new()
+            };
+            let line = survival::in_words(&Survival::of_threshold(threshold), "");
+            let file = &record.main.file;
+            let _ = writeln!(text, "  {file}{model}: {line} (1 is {} g)", rounded(peak_g));
+        } else {
+            if several {
+                let _ = writeln!(text, "{model}");
+            }
+            bands(&mut text, peak_g, threshold);
         }
-        bands(&mut text, peak_g, threshold);
         doubts(&mut text, threshold);
     }
-    let _ = writeln!(
-        text,
-        "  sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed",
-        factors.first(),
-        factors.last(),
-        (1e6 * factors.stride()).round() / 1e4,
-    );
     let end_s = scenario.simulation.duration_s;
     if ground.end_s() > end_s {
         let _ = writeln!(
@@ -216,6 +258,16 @@ fn words(
         );
     }
     text
+}
+
+/// Which factors were tried.
+fn sampled(factors: &Factors) -> String {
+    format!(
+        "  sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed\n",
+        factors.first(),
+        factors.last(),
+        (1e6 * factors.stride()).round() / 1e4,
+    )
 }
 
 fn bands(text: &mut String, peak_g: f64, threshold: &Threshold) {

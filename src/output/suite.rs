@@ -90,7 +90,7 @@ impl Heading {
         self.scenario.get("free_hinges").is_some()
     }
 
-    fn title(&self) -> &str {
+    pub(super) fn title(&self) -> &str {
         let title = self.scenario.get("title").and_then(Value::as_str);
         title.unwrap_or("Fragility under a suite of records")
     }
@@ -260,16 +260,13 @@ pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
     drawing.title(heading.title());
     let axes = Axes {
         frame: FRAME,
-        x: scale(heading.spacing, &results.levels),
+        x: intensity_scale(heading, &results.levels),
         y: Scale::exactly(0.0, 1.0, 5),
     };
     if let Ok(fit) = &results.fit {
         draw_band(&mut drawing, &axes, fit);
     }
-    let label = match results.measure {
-        Measure::Scale => "scale factor",
-        Measure::PeakG => "peak ground acceleration (g)",
-    };
+    let label = intensity_label(results.measure);
     axes.draw(&mut drawing, Some(label), "fraction that overturns");
     if let Ok(fit) = &results.fit {
         let curve = along(&axes.x).map(|x| axes.place(x, fit.probability(x)));
@@ -285,11 +282,19 @@ pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
     drawing.finish()
 }
 
+/// What the intensities are, in words.
+pub(super) const fn intensity_label(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Scale => "scale factor",
+        Measure::PeakG => "peak ground acceleration (g)",
+    }
+}
+
 /// From below the lowest level to above the highest.
-fn scale(spacing: Spacing, levels: &[FragilityRow]) -> Scale {
+pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow]) -> Scale {
     let ends = [levels.first(), levels.last()];
     let [low, high] = ends.map(|level| level.map_or(1.0, |level| level.intensity));
-    match spacing {
+    match heading.spacing {
         Spacing::Logarithmic => {
             let margin = (high / low).powf(0.05);
             Scale::logarithmic(low / margin, high * margin)

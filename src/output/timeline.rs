@@ -96,6 +96,29 @@ fn joined(a: [(f64, f64); 2], b: [(f64, f64); 2]) -> [(f64, f64); 2] {
     [low, high]
 }
 
+/// A half cycle that comes near the unstable equilibrium, or passes it.
+#[derive(Clone, Copy, Debug)]
+struct FarCycle {
+    phase: usize,
+    /// The body that carries the coordinate.
+    body: usize,
+    from_s: f64,
+    to_s: f64,
+    /// Its rotation at the unstable equilibrium, with its sign.
+    unstable_rad: f64,
+}
+
+/// Part of the unstable rotation from which on a half cycle is far.
+const FAR: f64 = 0.25;
+
+/// Index of the panel of rotations.
+const ROTATIONS: usize = 1;
+
+/// The look of the unstable rotation of a body: in the colour of its curve.
+const fn unstable(body: usize) -> Stroke {
+    Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
+}
+
 /// Collects the samples of a history, thinned, and draws them.
 #[derive(Clone, Debug)]
 pub struct Timeline {
@@ -105,6 +128,11 @@ pub struct Timeline {
     rotations_rad: Vec<Envelope>,
     excess_ratio: Envelope,
     energy_ratio: Envelope,
+    /// The last phase, and when it began.
+    phase: usize,
+    phase_from_s: f64,
+    /// Half cycles that went far.
+    far: Vec<FarCycle>,
     /// What the structure does at first.
     start: State,
     end_s: f64,
@@ -121,6 +149,9 @@ impl Timeline {
             rotations_rad: vec![Envelope::new(); bodies.len()],
             excess_ratio: Envelope::new(),
             energy_ratio: Envelope::new(),
+            phase: 0,
+            phase_from_s: 0.0,
+            far: Vec::new(),
             start: State::Rest,
             end_s: 0.0,
         }
@@ -141,15 +172,44 @@ impl Timeline {
         }
         let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
         self.excess_ratio.push(time_s, excess_ratio);
+        self.note_if_far(sample);
         self.energy_ratio
             .push(time_s, sample.energy_ratio.unwrap_or(0.0));
+    }
+
+    /// Notes how far a half cycle goes, when it goes far.
+    fn note_if_far(&mut self, sample: &Sample) {
+        if sample.phase != self.phase {
+            (self.phase, self.phase_from_s) = (sample.phase, sample.time_s);
+        }
+        let (State::Rocking(sway), Some(ratio)) = (sample.state, sample.rotation_over_critical)
+        else {
+            return;
+        };
+        // The body that carries the coordinate is that at the end the structure leans away from.
+        let body = match sway {
+            Sway::Right => 0,
+            Sway::Left => sample.rotations_rad.len() - 1,
+        };
+        let last = self.far.last_mut();
+        match last.filter(|cycle| cycle.phase == sample.phase) {
+            Some(cycle) => cycle.to_s = sample.time_s,
+            None if ratio.abs() >= FAR => self.far.push(FarCycle {
+                phase: sample.phase,
+                body,
+                from_s: self.phase_from_s,
+                to_s: sample.time_s,
+                unstable_rad: sample.rotations_rad[body] / ratio.abs(),
+            }),
+            None => {}
+        }
     }
 
     /// The picture, with all events of the history.
     #[must_use]
     pub fn draw(&self, title: &str, events: &[Event]) -> String {
         let (left, width) = (85.0, 790.0);
-        let mut drawing = Drawing::new(900.0, 860.0);
+        let mut drawing = Drawing::new(900.0, 884.0);
         drawing.title(title);
         let time = Scale::exactly(0.0, self.end_s.max(f64::MIN_POSITIVE), 10);
         let bodies = self.bodies.iter().map(|body| match body.as_str() {
@@ -187,10 +247,17 @@ impl Timeline {
                 width,
                 height,
             };
+            let unstable = (index == ROTATIONS)
+                .then_some(&self.far)
+                .into_iter()
+                .flatten();
+            let unstable = unstable.map(|cycle| cycle.unstable_rad);
             // A little room, so that no curve runs along the frame.
             let values = curves
                 .iter()
-                .flat_map(|(_, envelope, _)| envelope.values().map(|value| 1.03 * value));
+                .flat_map(|(_, envelope, _)| envelope.values())
+                .chain(unstable)
+                .map(|value| 1.03 * value);
             let axes = Axes {
                 frame,
                 x: time,
@@ -204,7 +271,8 @@ impl Timeline {
                 let points = envelope.points().map(|(t, value)| axes.place(t, value));
                 drawing.curve(name, points, stroke);
             }
-            if index == 1 {
+            if index == ROTATIONS {
+                self.draw_unstable(&mut drawing, &axes);
                 rocking_panel = Some(axes);
             }
             top += height + 22.0;
@@ -220,8 +288,24 @@ impl Timeline {
         drawing.finish()
     }
 
+    /// The unstable rotation of the mechanism of each half cycle that went far.
+    fn draw_unstable(&self, drawing: &mut Drawing, axes: &Axes) {
+        for cycle in &self.far {
+            let ends = [cycle.from_s, cycle.to_s].map(|t| axes.place(t, cycle.unstable_rad));
+            drawing.curve("unstable", ends, unstable(cycle.body));
+        }
+    }
+
     /// The legend.
     fn explain(&self, drawing: &mut Drawing, y: f64, hops: bool) {
+        if let Some(cycle) = self.far.first() {
+            let at = Vector2::new(85.0, y + 24.0);
+            let words = match self.bodies.len() {
+                1 => "unstable rotation",
+                _ => "unstable rotation of the body of that colour, of the mechanism that moves",
+            };
+            drawing.legend(at, 0.0, [(words, unstable(cycle.body))]);
+        }
         let bodies = self.bodies.iter().zip(CURVES);
         let named = bodies.filter(|(body, _)| !body.is_empty());
         let at = Vector2::new(85.0, y);

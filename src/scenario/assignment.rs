@@ -23,6 +23,14 @@ pub struct Assignment {
     depth: usize,
 }
 
+impl Assignment {
+    /// Its key, as it was given.
+    #[must_use]
+    pub fn key(&self) -> &str {
+        self.given.split('=').next().unwrap_or_default().trim()
+    }
+}
+
 impl FromStr for Assignment {
     type Err = String;
 

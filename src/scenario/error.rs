@@ -60,6 +60,14 @@ impl ScenarioErrors {
         }])
     }
 
+    /// The same errors without their places, of a text that nobody has written.
+    pub(super) fn without_places(mut self) -> Self {
+        for error in &mut self.0 {
+            error.place = None;
+        }
+        self
+    }
+
     /// Gives the faults found in `text` their lines and columns.
     ///
     /// A fault in an assignment has the assignment for its file, and no place.

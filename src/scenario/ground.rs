@@ -8,6 +8,7 @@ use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
 use super::Record;
 use super::table::{Number, Reading, Table};
+use crate::argument::plain;
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 
 /// Largest acceleration of the ground: beyond it the unit must be wrong.
@@ -33,7 +34,7 @@ pub enum Ground {
     /// As a single pulse.
     Pulse(PulseGround),
     /// As recorded, from `[ground.record]`.
-    Record(Record),
+    Record(Box<Record>),
 }
 
 impl Ground {
@@ -56,7 +57,7 @@ impl Ground {
             .collect();
         let record = table.table(RECORD, |table| {
             let (record, motion) = Record::read(table, folder, gravity_m_s2)?;
-            Ok((Self::Record(record), motion))
+            Ok((Self::Record(Box::new(record)), motion))
         });
         kinds.push((RECORD, record));
         table.exactly_one("tables", kinds)
@@ -184,7 +185,8 @@ impl Serialize for PulseGround {
 /// Says that a vertical acceleration is impossible for a structure that rests on the ground.
 pub(super) fn free_fall(time_s: f64) -> String {
     format!(
-        "makes the ground fall as fast as a free body at {time_s:?} s, where it no longer carries the \
-         structure; vertical accelerations must stay above -1 g"
+        "makes the ground fall as fast as a free body at {} s, where it no longer carries the \
+         structure; vertical accelerations must stay above -1 g",
+        plain(time_s)
     )
 }

@@ -5,6 +5,7 @@ use std::ops::Bound::{Excluded, Included};
 
 use super::Structure;
 use super::table::{Number, OneOf, Reading, Table};
+use crate::argument::{rounded_down, short};
 use crate::dynamics::model::{Initial, MIN_RELEASE_RAD};
 use crate::mechanics::sway::Sway;
 
@@ -28,7 +29,8 @@ impl Initial {
             if *rotation_rad >= limit_rad {
                 let wrong = format!(
                     "is beyond the limit position of the mechanism; must be \
-                     below {limit_rad:?}"
+                     below {}",
+                    short(rounded_down(limit_rad))
                 );
                 return Err(table.wrong("rotation_rad", wrong));
             }

@@ -17,6 +17,7 @@ use super::sequence::Sequence;
 use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::table::{Number, Reading, Switch, Table};
 use super::{Ground, PulseGround, Simulation, Structure};
+use crate::argument::plain;
 use crate::mechanics::four_link::impact::ImpactModel;
 
 named! {
@@ -149,9 +150,9 @@ impl Map {
             return Ok(());
         }
         Err(table.wrong_itself(format!(
-            "has pulses that last until {end_s:?} s and would be cut off at {:?} s; give a longer `duration_s` in \
-             [simulation]",
-            simulation.duration_s
+            "has pulses that last until {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
+            plain(end_s),
+            plain(simulation.duration_s)
         )))
     }
 }

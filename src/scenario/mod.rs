@@ -37,11 +37,13 @@ mod record;
 mod sequence;
 mod simulation;
 mod source;
+mod span;
 mod spectrum;
 mod structure;
 mod suite;
 mod table;
 mod toml_text;
+mod unlikely;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -59,7 +61,8 @@ pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
 pub use map::{Axis, Map, Quantity};
 pub use record::{
-    Component, Format, Layout, LineFault, Record, Scaling, Series, TableColumn, Unit,
+    Component, Contents, Decimal, Format, Layout, LineFault, Record, Sampling, Scaling, Series,
+    TableColumn, TableLayout, Times, Unit,
 };
 pub use sequence::{Sequence, Spacing};
 pub use simulation::Simulation;

@@ -4,6 +4,7 @@ use serde::Serialize;
 use toml::de::DeValue;
 
 use super::table::{Count, List, Number, OneOf, Reading, Rule, Table};
+use crate::argument::short;
 
 named! {
     /// How the numbers of a range are spaced.
@@ -118,7 +119,7 @@ impl Sequence {
         let spacing = table.or("spacing", &spacings, Spacing::Linear);
         let (from, to, count, spacing) = (from?, to?, count?, spacing?);
         if to <= from {
-            let wrong = format!("is not above `from`; must be above {from:?}");
+            let wrong = format!("is not above `from`; must be above {}", short(from));
             return Err(table.wrong("to", wrong));
         }
         if spacing == Spacing::Logarithmic && from <= 0.0 && to >= 0.0 {
@@ -144,14 +145,36 @@ impl Sequence {
     }
 }
 
-/// The ends are exact.
+/// The number as people would write it, 0.12 and not 0.12000000000000002: with twelve digits of the largest, or so many
+/// that a millionth of a step is kept.
+fn round(value: f64, largest: f64, step: f64) -> f64 {
+    let digits = (12.0 - largest.log10().floor()).max(6.0 - step.log10().floor());
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number"
+    )]
+    let digits = digits.clamp(0.0, 340.0) as usize;
+    let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
+    // No negative zero.
+    rounded + 0.0
+}
+
+/// The ends are exact, and so is every number that has few digits.
+#[expect(clippy::cast_precision_loss, reason = "at most ten thousand")]
 fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "at most ten thousand")]
     let part = index as f64 / last as f64;
     match spacing {
         _ if index == 0 => from,
         _ if index == last => to,
-        Spacing::Linear => from * (1.0 - part) + to * part,
+        Spacing::Linear => {
+            let step = (to - from) / last as f64;
+            round(
+                from * (1.0 - part) + to * part,
+                from.abs().max(to.abs()),
+                step,
+            )
+        }
         Spacing::Logarithmic => from * (to / from).powf(part),
     }
 }

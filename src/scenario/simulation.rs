@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::ground::DURATION_S;
 use super::table::{Number, Reading, Table};
+use crate::argument::plain;
 
 const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
 const RELATIVE_TOLERANCE: Number = Number(Included(1e-13), Included(1e-3));
@@ -58,13 +59,15 @@ impl Simulation {
         let rows = duration_s / step_s;
         let wrong = if rows < 1.0 {
             format!(
-                "makes the output step of {step_s:?} s longer than the run of {duration_s:?} s; \
-                 the step must not exceed the run"
+                "makes the output step of {} s longer than the run of {} s; the step must not exceed the run",
+                plain(step_s),
+                plain(duration_s)
             )
         } else if rows > MAX_ROWS {
             format!(
-                "makes {rows:.0} rows of output, every {step_s:?} s for {duration_s:?} s; at \
-                 most {MAX_ROWS:.0} are allowed"
+                "makes {rows:.0} rows of output, every {} s for {} s; at most {MAX_ROWS:.0} are allowed",
+                plain(step_s),
+                plain(duration_s)
             )
         } else {
             return Ok(());

@@ -20,6 +20,7 @@ use super::ground::DURATION_S;
 use super::sequence::{Sequence, Spacing};
 use super::table::{Number, Reading, Rule as _, Table};
 use super::{Ground, Structure};
+use crate::argument::plain;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::equivalent::{Block, Equivalent};
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -83,8 +84,9 @@ impl Spectrum {
             let longest_s = largest / block.frequency_rad_s;
             if !DURATION_S.contains(longest_s) {
                 let wrong = format!(
-                    "makes a pulse of {longest_s:?} s, since p is {:?} rad/s; the duration must be {}",
-                    block.frequency_rad_s,
+                    "makes a pulse of {} s, since p is {} rad/s; the duration must be {}",
+                    plain(longest_s),
+                    plain(block.frequency_rad_s),
                     DURATION_S.allowed()
                 );
                 return Err(table.wrong("p_t", wrong));

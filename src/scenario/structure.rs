@@ -1,14 +1,16 @@
 //! What stands on the ground: an arch, blocks, or `[column]`.
 
 use std::f64::consts::FRAC_PI_2;
-use std::ops::Bound::{Excluded, Included, Unbounded};
+use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
 
 use serde::Serialize;
 use thiserror::Error;
 
 use super::masonry::{self, Beside};
+use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Table};
+use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, Steps};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::arch::{self, Arch};
@@ -28,7 +30,6 @@ pub(super) const THICKNESS_RATIO: Number = Number(
     Included(arch::MIN_THICKNESS_RATIO),
     Excluded(arch::THICKNESS_RATIO_BOUND),
 );
-const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
 pub(super) const EMBRACE_DEG: Number = Number(
     Included(*arch::EMBRACE_DEG.start()),
     Included(*arch::EMBRACE_DEG.end()),
@@ -139,21 +140,19 @@ enum Read {
 /// Reads `[arch]`. If it is `alone`, without piers or loads, and of equal voussoirs or none, it must start as four links,
 /// unless its hinges are free: then it must have voussoirs and stand.
 fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<Read> {
-    let mean_radius_m = table.required("mean_radius_m", &MAGNITUDE);
-    let ratio = table.optional("thickness_ratio", &THICKNESS_RATIO);
-    let from_m = read_thickness_m(table, mean_radius_m);
-    let thickness_ratio = table.exactly_one(
-        "keys",
-        vec![("thickness_ratio", ratio), ("thickness_m", from_m)],
-    );
-    let embrace_deg = table.required("embrace_deg", &EMBRACE_DEG);
+    let circular = Circular::read(table);
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
     let joints_deg = table.optional("joints_deg", &List(&JOINT_DEG));
     let (depth_m, density_kg_m3, voussoirs) = (depth_m?, density_kg_m3?, voussoirs?);
     let joints_deg = joints_deg?;
-    let arch = Arch::new(mean_radius_m?, thickness_ratio?, embrace_deg?)
+    let Circular {
+        mean_radius_m,
+        thickness_ratio,
+        embrace_deg,
+    } = circular?;
+    let arch = Arch::new(mean_radius_m, thickness_ratio, embrace_deg)
         .and_then(|arch| arch.with_depth_m(depth_m))
         .and_then(|arch| arch.with_density_kg_m3(density_kg_m3))
         .and_then(|arch| match voussoirs {
@@ -208,41 +207,18 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
             let least = least_thickness_ratio(embrace_deg.to_radians(), arch.sites(), 1e-12)
                 .expect("the ranges of the keys are those of a ring");
             format!(
-                "makes an arch that cannot carry its own weight at an embrace angle of {embrace_deg:?} degrees; \
-                 the thickness must be at least {:?} mean radii",
-                rounded_up(least)
+                "makes an arch that cannot carry its own weight at an embrace angle of {} degrees; \
+                 the thickness must be at least {} mean radii",
+                plain(embrace_deg),
+                short(rounded_up(least))
             )
         }
         LimitError::OtherMechanism { .. } | LimitError::NoPush => format!(
-            "makes an arch too thick for its embrace angle of {embrace_deg:?} degrees: {error}; give a \
-             thinner arch or a larger angle"
+            "makes an arch too thick for its embrace angle of {} degrees: {error}; give a \
+             thinner arch or a larger angle",
+            plain(embrace_deg)
         ),
     }
-}
-
-/// The thickness ratio, when the thickness is given in metres.
-fn read_thickness_m(table: &mut Table<'_>, mean_radius_m: Reading<f64>) -> Reading<Option<f64>> {
-    let Some(thickness_m) = table.optional("thickness_m", &POSITIVE)? else {
-        return Ok(None);
-    };
-    let mean_radius_m = mean_radius_m?;
-    let ratio = thickness_m / mean_radius_m;
-    if THICKNESS_RATIO.contains(ratio) {
-        Ok(Some(ratio))
-    } else {
-        let wrong = format!(
-            "is out of range: {ratio:?} mean radii; must be at least a millionth of the mean radius and below {:?}, \
-             twice the mean radius",
-            2.0 * mean_radius_m
-        );
-        Err(table.wrong("thickness_m", wrong))
-    }
-}
-
-/// Rounded up to four significant digits, so that the bound in the message is itself allowed.
-fn rounded_up(x: f64) -> f64 {
-    let unit = 10.0_f64.powf(3.0 - x.log10().floor());
-    (x * unit).ceil() / unit
 }
 
 const DRUMS: Count = Count {

@@ -16,14 +16,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Bound::{Excluded, Included};
 use std::path::{Component as PathPart, Path, PathBuf};
+use std::sync::Arc;
 
 use glob::MatchOptions;
-use serde::ser::{Serialize, SerializeMap as _, Serializer};
+use serde::ser::{Error as _, Serialize, SerializeMap as _, Serializer};
 
 use super::record::{self, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::table::{Number, OneOrMore, Reading, Switch, Table, Text};
-use super::{Component, Simulation};
+use super::{Component, Ground, Scenario, Simulation};
+use crate::argument::{plain, short};
 
 named! {
     /// What the levels of a suite are, named by their key in `[suite]`.
@@ -110,16 +112,15 @@ impl Suite {
             (Ok(patterns), Ok(format)) => list(table, folder, &patterns, format),
             (Err(reported), _) | (_, Err(reported)) => Err(reported),
         };
-        // The keys of CSV files are needed if and only if one of the files is CSV.
+        // The keys of tables are needed if and only if one of the files is a table.
         let layout = Layout::read(
             table,
             listed.as_ref().map_err(|reported| *reported).map(|listed| {
-                let is_table = |listed: &Listed| listed.format == Format::Csv;
-                if listed.iter().any(is_table) {
-                    Format::Csv
-                } else {
-                    Format::At2
-                }
+                let formats = || listed.iter().map(|listed| listed.format);
+                let first = formats().next().unwrap_or(Format::At2);
+                formats()
+                    .find(|format| *format == Format::Csv)
+                    .unwrap_or(first)
             }),
         );
         let (listed, layout, (measure, levels), both_signs) =
@@ -143,8 +144,9 @@ impl Suite {
                      format,
                  }| {
                     let layout = match format {
-                        Format::At2 => Layout::At2,
-                        Format::Csv => layout.clone(),
+                        Format::At2 if layout.format() != Format::At2 => Layout::At2 { unit: None },
+                        Format::Asc => Layout::Asc,
+                        Format::At2 | Format::Csv => layout.clone(),
                     };
                     Series::of_file(folder, file.clone(), layout)
                         .and_then(|series| suits(&series, strongest, simulation).map(|()| series))
@@ -165,14 +167,8 @@ impl Suite {
 
     /// A record as it shakes at a level, perhaps mirrored.
     pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
-        let series = &self.records[record];
         let signed = if mirrored { -level } else { level };
-        Record {
-            component: Component::Horizontal,
-            main: series.scaled(self.measure.scaling(signed)),
-            vertical: None,
-            start_s: start_s(series),
-        }
+        shaking(&self.records[record], self.measure.scaling(signed))
     }
 }
 
@@ -188,11 +184,15 @@ impl Serialize for Suite {
         {
             map.serialize_entry("format", &first.format())?;
         }
-        if let Some((time_column, acceleration_column, unit)) = layouts().find_map(Layout::columns)
-        {
-            map.serialize_entry("time_column", time_column)?;
-            map.serialize_entry("acceleration_column", acceleration_column)?;
-            map.serialize_entry("unit", &unit)?;
+        // What tables have in common is that of all, or else AT2 files may have a unit in common.
+        let telling = layouts()
+            .find(|layout| layout.format() == Format::Csv)
+            .or_else(|| layouts().next());
+        let keys = serde_json::to_value(telling).map_err(S::Error::custom)?;
+        for (key, value) in keys.as_object().into_iter().flatten() {
+            if key != "format" {
+                map.serialize_entry(key, value)?;
+            }
         }
         map.serialize_entry(self.measure.name(), &self.levels)?;
         map.serialize_entry("both_signs", &self.both_signs)?;
@@ -224,17 +224,55 @@ fn suits(
         && peak_g / own_g > MAX_SCALE
     {
         return Err(format!(
-            "has a peak of {own_g:?} g, which cannot be scaled to {peak_g:?} g: factors are at most {MAX_SCALE:?}"
+            "has a peak of {} g, which cannot be scaled to {} g: factors are at most {}",
+            plain(own_g),
+            plain(peak_g),
+            short(MAX_SCALE)
         ));
     }
     series.scaled(strongest).check_strength(gravity_m_s2)?;
     let lasts_s = start_s(series) + series.last_s();
     if lasts_s > duration_s {
         return Err(format!(
-            "lasts {lasts_s:?} s and would be cut off at {duration_s:?} s; give a longer `duration_s` in [simulation]"
+            "lasts {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
+            plain(lasts_s),
+            plain(duration_s)
         ));
     }
     Ok(())
+}
+
+/// The horizontal ground motion of a record.
+fn shaking(series: &Series, scaling: Scaling) -> Record {
+    Record {
+        component: Component::Horizontal,
+        main: series.scaled(scaling),
+        vertical: None,
+        start_s: start_s(series),
+    }
+}
+
+impl Scenario {
+    /// The scenario once for each record of its suite, which shakes it as it is in its file; none without a suite.
+    /// What other studies there are is left out.
+    #[must_use]
+    pub fn by_record(&self) -> Vec<(String, Self)> {
+        let records = self.suite.iter().flat_map(|suite| &suite.records);
+        records
+            .map(|series| {
+                let record = shaking(series, Scaling::Factor(1.0));
+                let scenario = Self {
+                    motion: Arc::new(record.motion(self.simulation.gravity_m_s2)),
+                    ground: Some(Ground::Record(Box::new(record))),
+                    map: None,
+                    spectrum: None,
+                    suite: None,
+                    ..self.clone()
+                };
+                (series.file.clone(), scenario)
+            })
+            .collect()
+    }
 }
 
 /// Time of the simulation at the file's time zero: no record begins before the simulation does.

@@ -29,6 +29,9 @@ pub(super) fn read_text<T>(
     read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
 ) -> Result<T, Vec<Fault>> {
     let mut legible = Legible::of(text);
+    if let Some(fault) = legible.is_another_file() {
+        return Err(vec![fault]);
+    }
     if !legible.is_toml {
         return Err(legible.faults);
     }
@@ -109,6 +112,25 @@ impl Legible {
         }
         legible
     }
+
+    /// The one fault of a text that is no scenario at all, such as a record: several lines are not legible, and none
+    /// begins a table.
+    fn is_another_file(&self) -> Option<Fault> {
+        const FEW: usize = 2;
+        let first = self.faults.first()?;
+        let mut lines = self.text.lines();
+        if self.faults.len() <= FEW || lines.any(|line| line.trim_start().starts_with('[')) {
+            return None;
+        }
+        Some(Fault {
+            offset: first.offset,
+            message: format!(
+                "this is no scenario: {}. If it is a record, name it as `file` in [ground.record] of a scenario; \
+                 `archrock check` tells what is in it",
+                first.message
+            ),
+        })
+    }
 }
 
 /// The line around `offset`; when it is the header of a table, with all of the table, whose keys
@@ -149,6 +171,11 @@ pub(super) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
+    /// Gives it another name in messages.
+    pub(super) fn rename(&mut self, name: &str) {
+        name.clone_into(&mut self.name);
+    }
+
     /// The value of a key that must be given.
     pub(super) fn required<R: Rule>(&mut self, key: &'static str, rule: &R) -> Reading<R::Value> {
         match self.optional(key, rule)? {

@@ -10,6 +10,7 @@
 //! - [`spectrum`]: how strong a pulse must be, over the size of a structure;
 //! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them;
 //! - [`suite`]: what records overturn, at several levels, and the [`fragility`] curve of that;
+//! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`survey`]: arches of many shapes compared, without a history.
 
 pub mod boundary;
@@ -22,4 +23,5 @@ pub mod runner;
 pub mod spectrum;
 pub mod suite;
 pub mod survey;
+pub mod survival;
 pub mod threshold;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::ending::{Ending, check_finite};
 use super::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 use super::runner::Study;
+use super::survival::Survival;
 use crate::dynamics::history::Outcome;
 use crate::dynamics::model::Model;
 use crate::scenario::{Measure, ModelError, Scenario, Suite};
@@ -42,7 +43,9 @@ impl CaseRow {
         self.result.as_ref().ok().map(|ending| ending.outcome)
     }
 
-    fn overturned(&self) -> bool {
+    /// Whether it overturned.
+    #[must_use]
+    pub fn overturned(&self) -> bool {
         matches!(self.outcome(), Some(Outcome::Overturned(_)))
     }
 }
@@ -157,6 +160,17 @@ impl FragilityRow {
     }
 }
 
+/// What a record does as it gets stronger.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordSurvival<'a> {
+    /// The file.
+    pub record: &'a str,
+    /// Whether it is mirrored.
+    pub mirrored: bool,
+    /// What it does.
+    pub survival: Survival,
+}
+
 /// What all cases say together. Those that are still rocking have not overturned; those that failed do not
 /// count. Nor do mirrored records: the structures are symmetric, so that they do the same to the other side, and
 /// are no further evidence.
@@ -214,6 +228,36 @@ impl SuiteFragility {
             fit,
             cases,
         }
+    }
+
+    /// Where each record first overturns and is survived again, by intensity; mirrored ones only where these differ.
+    #[must_use]
+    pub fn survivals(&self) -> Vec<RecordSurvival<'_>> {
+        let shakes = self
+            .cases
+            .chunk_by(|a, b| a.record == b.record && a.mirrored == b.mirrored);
+        let mut survivals: Vec<RecordSurvival<'_>> = Vec::new();
+        for cases in shakes {
+            let levels: Vec<_> = cases
+                .iter()
+                .map(|case| {
+                    let overturned = case.outcome().map(|_| case.overturned());
+                    (case.level(self.measure), overturned)
+                })
+                .collect();
+            let survival = Survival::of_levels(&levels);
+            let (record, mirrored) = (cases[0].record.as_str(), cases[0].mirrored);
+            let same =
+                |other: &RecordSurvival<'_>| other.record == record && other.survival == survival;
+            if !(mirrored && survivals.last().is_some_and(same)) {
+                survivals.push(RecordSurvival {
+                    record,
+                    mirrored,
+                    survival,
+                });
+            }
+        }
+        survivals
     }
 
     /// Number of records.

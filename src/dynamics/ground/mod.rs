@@ -9,6 +9,7 @@
 //! distance from the onset of rocking.
 
 mod error;
+pub mod intensity;
 mod piece;
 mod pulse;
 mod record;

@@ -1,10 +1,12 @@
 //! The AT2 files of the PEER ground motion databases.
 //!
 //! A header of a few lines, the last of which gives the number of samples and their spacing in one of
-//! many wordings, and then the accelerations in units of gravity, as Fortran wrote them: several to a
-//! line, of fixed width, so that a minus sign may be all that parts two of them.
+//! many wordings, and then the accelerations, in units of gravity unless a line says otherwise, as Fortran wrote
+//! them: several to a line, of fixed width, so that a minus sign may be all that parts two of them.
 
-use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, number};
+use super::layout::{Contents, too_long};
+use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Unit, number};
+use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
 /// The header is searched up to this line.
@@ -12,9 +14,9 @@ const MAX_HEADER_LINES: usize = 64;
 /// Only so many characters of each line are searched.
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
-/// Reads the samples, in units of gravity; the first is at time zero.
-pub(super) fn parse(text: &str) -> Result<Samples, LineFault> {
-    let header = Header::parse(text)?;
+/// Reads the samples; the first is at time zero. `unit` is that of the accelerations whatever the header says.
+pub(super) fn parse(text: &str, unit: Option<Unit>) -> Result<Contents, LineFault> {
+    let header = Header::parse(text, unit)?;
     let mut samples = Vec::new();
     let mut last_line = header.line;
     for (index, line) in text.lines().enumerate().skip(header.line) {
@@ -50,7 +52,10 @@ pub(super) fn parse(text: &str) -> Result<Samples, LineFault> {
             ),
         });
     }
-    Ok(samples)
+    Ok(Contents {
+        samples,
+        unit: unit.or(header.unit).unwrap_or(Unit::Gravity),
+    })
 }
 
 /// The numbers of a line as they are written, also where only a sign parts them.
@@ -83,6 +88,8 @@ struct Header {
     /// Number of samples.
     count: usize,
     step_s: f64,
+    /// Unit of the accelerations, where it is named.
+    unit: Option<Unit>,
 }
 
 /// What matters on the line with the numbers.
@@ -94,8 +101,9 @@ enum Item {
 }
 
 impl Header {
-    fn parse(text: &str) -> Result<Self, LineFault> {
+    fn parse(text: &str, known: Option<Unit>) -> Result<Self, LineFault> {
         let mut items = Vec::new();
+        let mut unit = None;
         for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
             let line_number = index + 1;
             let end = line.char_indices().nth(MAX_HEADER_LINE_CHARS);
@@ -109,6 +117,15 @@ impl Header {
             if let Some(what) = wrong_quantity(line) {
                 return fault(what);
             }
+            if let Some(named) = unit_named(line) {
+                unit = Unit::written(named).or(known);
+                if unit.is_none() {
+                    return fault(format!(
+                        "the unit is {}; give `unit`: what the accelerations are in",
+                        excerpt(named)
+                    ));
+                }
+            }
             let here = Item::all(line);
             // The two may be on two consecutive lines.
             if here.contains(&Item::Count) || !items.is_empty() {
@@ -120,7 +137,7 @@ impl Header {
                     let Some((count, step_s)) = values(&items) else {
                         return fault("gives no numbers for NPTS and DT".to_owned());
                     };
-                    return Self::checked(line_number, count, step_s).or_else(fault);
+                    return Self::checked(line_number, count, step_s, unit).or_else(fault);
                 }
                 (true, false) if here.contains(&Item::Count) => {}
                 (true, false) => {
@@ -140,24 +157,23 @@ impl Header {
         })
     }
 
-    fn checked(line: usize, count: f64, step_s: f64) -> Result<Self, String> {
+    fn checked(line: usize, count: f64, step_s: f64, unit: Option<Unit>) -> Result<Self, String> {
         if !(step_s.is_finite() && step_s >= MIN_STEP_S) {
             return Err(format!(
-                "DT is {step_s:?} s; must be at least {MIN_STEP_S:?} s"
+                "DT is {} s; must be at least {} s",
+                plain(step_s),
+                short(MIN_STEP_S)
             ));
         }
         #[expect(clippy::cast_precision_loss, reason = "the bound is below 2^53")]
         let max_count = MAX_SAMPLES as f64;
         if !(count.fract() == 0.0 && (2.0..=max_count).contains(&count)) {
             return Err(format!(
-                "NPTS is {count:?}; must be a whole number from 2 to {MAX_SAMPLES}"
+                "NPTS is {count}; must be a whole number from 2 to {MAX_SAMPLES}"
             ));
         }
         if (count - 1.0) * step_s > MAX_TIME_S {
-            return Err(format!(
-                "NPTS and DT make a record of {:?} s; at most {MAX_TIME_S:?} s are allowed",
-                (count - 1.0) * step_s
-            ));
+            return Err(format!("NPTS and DT {}", too_long((count - 1.0) * step_s)));
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -169,6 +185,7 @@ impl Header {
             line,
             count,
             step_s,
+            unit,
         })
     }
 }
@@ -225,7 +242,7 @@ fn leading_number(word: &str) -> Option<f64> {
         .find_map(|end| number(&word[..end]).ok())
 }
 
-/// Why a line of the header says that the file holds something else than accelerations in g.
+/// Why a line of the header says that the file holds something else than accelerations.
 fn wrong_quantity(line: &str) -> Option<String> {
     let line = line.to_ascii_uppercase();
     for quantity in ["VELOCITY", "DISPLACEMENT"] {
@@ -236,21 +253,24 @@ fn wrong_quantity(line: &str) -> Option<String> {
             ));
         }
     }
-    let (_, unit) = line.split_once("UNITS OF ")?;
-    let unit = unit.split_whitespace().next()?;
-    let unit = unit.trim_end_matches(|c: char| !c.is_alphanumeric());
-    (unit != "G").then(|| {
-        format!(
-            "the unit is {}; in an AT2 file it must be G (a CSV file may have other units)",
-            excerpt(unit)
-        )
-    })
+    None
+}
+
+/// The unit that a line of the header names.
+fn unit_named(line: &str) -> Option<&str> {
+    const WORDS: &str = "UNITS OF ";
+    // In ASCII the places stay.
+    let at = line.to_ascii_uppercase().find(WORDS)? + WORDS.len();
+    let unit = line[at..].split_whitespace().next()?;
+    Some(unit.trim_end_matches(|c: char| !c.is_alphanumeric()))
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::record::tests::assert_fault;
-    use crate::scenario::record::{Layout, parse};
+    use crate::scenario::record::tests::{assert_fault, parse};
+    use crate::scenario::record::{Layout, Unit};
+
+    const AT2: Layout = Layout::At2 { unit: None };
 
     #[test]
     fn headers_of_all_wordings_are_read() {
@@ -274,7 +294,7 @@ mod tests {
                     "\u{feff}PEER STRONG MOTION DATABASE RECORD\nSYNTHETIC 1, 0\n\
                      ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz\n{header}\n 0.1 -.2E-01\n 3.D-1\n"
                 );
-                let samples = parse(&text.replace('\n', end), &Layout::At2).expect(header);
+                let samples = parse(&text.replace('\n', end), &AT2).expect(header);
                 assert_eq!(
                     samples,
                     [(0.0, 0.1), (0.005, -0.02), (0.01, 0.3)],
@@ -289,8 +309,7 @@ mod tests {
         let values = |line: &str| {
             let count = 4;
             let text = format!("NPTS= {count}, DT= .01\n{line}\n");
-            parse(&text, &Layout::At2)
-                .map(|samples| samples.into_iter().map(|s| s.1).collect::<Vec<_>>())
+            parse(&text, &AT2).map(|samples| samples.into_iter().map(|s| s.1).collect::<Vec<_>>())
         };
         assert_eq!(
             values("-.1234E-03-.5678E-03+.1E+01-0.2").unwrap(),
@@ -313,7 +332,7 @@ mod tests {
 
     #[test]
     fn faults_of_at2_files_have_lines() {
-        let fault = |text: &str, line, words| assert_fault(text, &Layout::At2, line, words);
+        let fault = |text: &str, line, words| assert_fault(text, &AT2, line, words);
         let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
         fault(&format!("{head}1 2\n3 4\n"), 6, "`4` is one value too many");
         fault(&format!("{head}1 2\n3\n\n.5\n"), 8, "line 4 announces 3");
@@ -333,21 +352,40 @@ mod tests {
         fault("A\nNPTS= 3", 2, "no DT");
         fault("NPTS, DT\n1 2", 1, "no numbers");
         fault("NPTS= 3.5, DT= .1", 1, "NPTS is 3.5");
-        fault("NPTS= 1, DT= .1", 1, "NPTS is 1.0");
+        fault("NPTS= 1, DT= .1", 1, "NPTS is 1;");
         fault("NPTS= 99999999999, DT= .1", 1, "from 2 to 1800000");
-        fault("NPTS= -5, DT= .1", 1, "NPTS is -5.0");
-        fault("NPTS= 5, DT= 0", 1, "DT is 0.0 s");
+        fault("NPTS= -5, DT= .1", 1, "NPTS is -5;");
+        fault("NPTS= 5, DT= 0", 1, "DT is 0 s");
         fault("NPTS= 5, DT= -.1", 1, "DT is -0.1 s");
-        fault("NPTS= 5, DT= 1e6", 1, "record of 4000000.0 s");
+        fault("NPTS= 5, DT= 1e6", 1, "record of 4e6 s; at most 1e6 s");
         fault(
             "A\nVELOCITY TIME HISTORY IN UNITS OF CM/S",
             2,
             "a velocity history",
         );
-        fault(
-            "A\nUNITS OF CM/SEC/SEC\nNPTS 2 DT 1",
-            2,
-            "unit is CM/SEC/SEC",
+        fault("A\nUNITS OF MG\nNPTS 2 DT 1\n1 2", 2, "the unit is MG;");
+    }
+
+    #[test]
+    fn accelerations_may_be_in_other_units() {
+        let unit = |header: &str, key: Option<Unit>| {
+            let text = format!("A\n{header}\nNPTS= 2, DT= .01\n1 2\n");
+            let layout = Layout::At2 { unit: key };
+            layout.parse(text.as_bytes()).unwrap().unit
+        };
+        for (header, named) in [
+            ("ACCELERATION TIME SERIES IN UNITS OF G", Unit::Gravity),
+            ("Units of g. Filter points", Unit::Gravity),
+            ("UNITS OF CM/SEC/SEC", Unit::CentimetrePerS2),
+            ("units of m/s^2,", Unit::MetrePerS2),
+            ("no unit", Unit::Gravity),
+        ] {
+            assert_eq!(unit(header, None), named, "{header}");
+            assert_eq!(unit(header, Some(Unit::MetrePerS2)), Unit::MetrePerS2);
+        }
+        assert_eq!(
+            unit("UNITS OF MG", Some(Unit::CentimetrePerS2)),
+            Unit::CentimetrePerS2
         );
     }
 }

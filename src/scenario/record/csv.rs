@@ -1,97 +1,225 @@
-//! Tables of times and accelerations: comma-separated values, or parted by semicolons or tabs.
+//! Tables of accelerations, with times or at even steps: columns parted by commas, semicolons, tabs or blanks.
 
+use std::borrow::Cow;
 use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
-use super::{
-    COLUMN_NUMBER, LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, TableColumn, number,
-};
+use super::layout::{COLUMN_NUMBER, Decimal, TableColumn, TableLayout, Times, evenly};
+use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, number};
+use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
-/// Reads the samples of two columns, in the unit of the file.
+/// Reads the samples, in the unit of the file.
 ///
 /// Blank lines and lines that begin with `#` are skipped. The first of the others may hold the names of
 /// the columns, and must where a column is chosen by name.
-pub(super) fn parse(
-    text: &str,
-    time: &TableColumn,
-    acceleration: &TableColumn,
-) -> Result<Samples, LineFault> {
-    let mut rows = Rows::new(text);
+pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Samples, LineFault> {
+    let text = without_first(text, layout.skip_rows);
+    let mut rows = Rows::new(&text, layout.decimal);
     let Some(first) = rows.next()? else {
         return Err(LineFault {
-            line: 1,
+            line: text.lines().count().min(layout.skip_rows).max(1),
             message: "there are no samples".to_owned(),
         });
     };
-    let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.range.end()).collect();
-    let column =
-        |column: &TableColumn| column.index(&names).map_err(|message| first.fault(message));
-    let columns = [column(time)?, column(acceleration)?];
-    let by_name = [time, acceleration]
-        .iter()
-        .any(|column| matches!(column, TableColumn::Name(_)));
-    let no_numbers = || {
-        let mut cells = columns.iter().filter_map(|index| names.get(*index));
-        cells.all(|cell| number(cell).is_err())
-    };
-    let is_header = by_name || no_numbers();
-
+    let columns = Columns::find(layout, &first)?;
+    let mut step_s = None;
     let mut samples: Samples = Vec::new();
     let mut last_line = first.line;
-    let mut next = if is_header { rows.next()? } else { Some(first) };
+    let (header, mut next) = if columns.has_names {
+        (Some(first), rows.next()?)
+    } else {
+        (None, Some(first))
+    };
     while let Some(row) = next {
         last_line = row.line;
         let fault = |message| row.fault(message);
-        let mut values = [0.0; 2];
-        for (value, index) in values.iter_mut().zip(columns) {
-            let cell = row.cells().nth(index).ok_or_else(|| {
-                let place = index + 1;
-                fault(format!(
-                    "there is no column {place} in `{}`",
-                    excerpt(row.text)
-                ))
-            })?;
-            *value = number(cell).map_err(fault)?;
-        }
-        let [time_s, acceleration] = values;
-        if time_s.abs() > MAX_TIME_S {
-            return Err(fault(format!(
-                "the time {time_s:?} s is out of range; its magnitude must be at most {MAX_TIME_S:?} s"
-            )));
-        }
-        if let Some((before_s, _)) = samples.last()
-            && time_s - before_s < MIN_STEP_S
+        if let Some(header) = &header
+            && samples.is_empty()
         {
-            return Err(fault(format!(
-                "the time does not increase: {time_s:?} s follows {before_s:?} s; allowed are steps of at \
-                 least {MIN_STEP_S:?} s"
-            )));
+            rows.check_names(header, &row, columns.by_name)?;
         }
+        let values = columns.values(&row);
+        let [time_s, acceleration] = values.map_err(|message| {
+            let hint = if samples.is_empty() {
+                columns.where_numbers_begin(&mut rows)
+            } else {
+                String::new()
+            };
+            fault(format!("{message}{hint}"))
+        })?;
         if samples.len() == MAX_SAMPLES {
             return Err(fault(format!(
                 "more than {MAX_SAMPLES} samples, too many for a record"
             )));
         }
+        let time_s = match &layout.times {
+            Times::Step(step) => {
+                step_s = Some(*step);
+                0.0
+            }
+            Times::Column(_) => {
+                check_time(time_s, samples.last().map(|sample| sample.0)).map_err(fault)?;
+                time_s
+            }
+        };
         samples.push((time_s, acceleration));
         next = rows.next()?;
     }
+    let fault = |message| LineFault {
+        line: last_line,
+        message,
+    };
     if samples.len() < 2 {
-        return Err(LineFault {
-            line: last_line,
-            message: format!(
-                "the number of samples is {}; must be at least 2",
-                samples.len()
-            ),
-        });
+        return Err(fault(format!(
+            "the number of samples is {}; must be at least 2",
+            samples.len()
+        )));
     }
-    Ok(samples)
+    match step_s {
+        None => Ok(samples),
+        Some(step_s) => {
+            let accelerations = samples.into_iter().map(|sample| sample.1).collect();
+            evenly(step_s, accelerations)
+                .map_err(|wrong| fault(format!("`dt_s` and the number of samples {wrong}")))
+        }
+    }
+}
+
+/// The text with its first lines blank, so that the others keep their numbers.
+fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
+    if lines == 0 {
+        return Cow::Borrowed(text);
+    }
+    let mut ends = text.match_indices('\n').map(|(at, _)| at + 1);
+    match ends.nth(lines - 1) {
+        Some(end) => Cow::Owned("\n".repeat(lines) + &text[end..]),
+        None => Cow::Owned("\n".repeat(text.lines().count())),
+    }
+}
+
+/// Refuses a time out of range, or one that does not follow that before.
+fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
+    if time_s.abs() > MAX_TIME_S {
+        return Err(format!(
+            "the time {} s is out of range; its magnitude must be at most {} s",
+            plain(time_s),
+            short(MAX_TIME_S)
+        ));
+    }
+    match before_s {
+        Some(before_s) if time_s - before_s < MIN_STEP_S => Err(format!(
+            "the time does not increase: {} s follows {} s; allowed are steps of at least {} s",
+            short(time_s),
+            short(before_s),
+            short(MIN_STEP_S)
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Where in a row times and accelerations are, from 0.
+struct Columns {
+    /// `None` for times at even steps.
+    time: Option<usize>,
+    acceleration: usize,
+    decimal: Decimal,
+    /// Whether one is chosen by its name.
+    by_name: bool,
+    /// Whether the first row has names instead of numbers.
+    has_names: bool,
+}
+
+impl Columns {
+    fn find(layout: &TableLayout, first: &Row<'_>) -> Result<Self, LineFault> {
+        let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.range.end()).collect();
+        let index =
+            |column: &TableColumn| column.index(&names).map_err(|message| first.fault(message));
+        let time = match &layout.times {
+            Times::Column(column) => Some(column),
+            Times::Step(_) => None,
+        };
+        let is_name = |column: &&TableColumn| matches!(column, TableColumn::Name(_));
+        let by_name = time.iter().any(is_name) || is_name(&&layout.acceleration_column);
+        let columns = Self {
+            time: time.map(index).transpose()?,
+            acceleration: index(&layout.acceleration_column)?,
+            decimal: layout.decimal,
+            by_name,
+            has_names: by_name,
+        };
+        let mut cells = columns.all().filter_map(|index| names.get(index));
+        let has_names = by_name || cells.all(|cell| columns.number(cell).is_err());
+        drop(cells);
+        Ok(Self {
+            has_names,
+            ..columns
+        })
+    }
+
+    /// The columns that are read.
+    fn all(&self) -> impl Iterator<Item = usize> {
+        self.time.into_iter().chain([self.acceleration])
+    }
+
+    /// Time, zero where the table has none, and acceleration.
+    fn values(&self, row: &Row<'_>) -> Result<[f64; 2], String> {
+        let value = |index: usize| match row.cells().nth(index) {
+            Some(cell) => self.number(cell),
+            None => Err(self.no_column(index, row)),
+        };
+        let time_s = self.time.map_or(Ok(0.0), value)?;
+        Ok([time_s, value(self.acceleration)?])
+    }
+
+    fn no_column(&self, index: usize, row: &Row<'_>) -> String {
+        let single = self.time.is_some() && row.cells().count() == 1;
+        let hint = if single {
+            "; if the file has accelerations only, give `dt_s`"
+        } else {
+            ""
+        };
+        let place = index + 1;
+        format!(
+            "there is no column {place} in `{}`{hint}",
+            excerpt(row.text)
+        )
+    }
+
+    fn number(&self, cell: &str) -> Result<f64, String> {
+        let commas = cell.matches(',').count();
+        match self.decimal {
+            Decimal::Comma if commas == 1 && !cell.contains('.') => number(&cell.replace(',', "."))
+                .map_err(|_| format!("`{}` is not a finite number", excerpt(cell))),
+            Decimal::Point if commas == 1 && number(&cell.replace(',', ".")).is_ok() => {
+                Err(format!(
+                    "`{}` is not a finite number; if the comma is its decimal mark, give `decimal = \"comma\"`",
+                    excerpt(cell)
+                ))
+            }
+            _ => number(cell),
+        }
+    }
+
+    /// Says which row begins the numbers, where one does, to follow what is wrong with the first row.
+    fn where_numbers_begin(&self, rows: &mut Rows<'_>) -> String {
+        while let Ok(Some(row)) = rows.next() {
+            if self.values(&row).is_ok() {
+                return format!(
+                    "; numbers begin on line {}: give `skip_rows = {}` if the table does",
+                    row.line,
+                    row.line - 1
+                );
+            }
+        }
+        String::new()
+    }
 }
 
 /// Rows of exactly so many numbers, each with its line. A first row without any number holds names.
 pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N])>, LineFault> {
-    let mut rows = Rows::new(text);
+    let mut rows = Rows::new(text, Decimal::Point);
     let mut found = Vec::new();
     while let Some(row) = rows.next()? {
         if found.is_empty() && row.cells().all(|cell| number(cell).is_err()) {
@@ -117,6 +245,7 @@ pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N]
 /// The rows of a table that are neither blank nor comments.
 struct Rows<'a> {
     text: &'a str,
+    by_blanks: bool,
     reader: ::csv::Reader<std::io::Chain<&'a [u8], &'static [u8]>>,
 }
 
@@ -125,19 +254,30 @@ struct Row<'a> {
     line: usize,
     /// That line.
     text: &'a str,
+    by_blanks: bool,
     record: StringRecord,
 }
 
 impl<'a> Rows<'a> {
-    fn new(text: &'a str) -> Self {
+    fn new(text: &'a str, decimal: Decimal) -> Self {
         let is_row = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
-        let first = text.lines().find(is_row).unwrap_or_default();
+        // The first may be names, which may have blanks and commas in them.
+        let mut rows = text.lines().filter(is_row);
+        let first = rows.next().unwrap_or_default();
+        let second = rows.next().unwrap_or(first);
         // What stands in quotation marks does not part cells.
-        let parted_by = |c: char| first.split('"').step_by(2).any(|part| part.contains(c));
-        let delimiter = match (parted_by(';'), parted_by('\t')) {
-            (true, _) => b';',
-            (false, true) => b'\t',
-            (false, false) => b',',
+        let parts = |row: &str, c: char| row.split('"').step_by(2).any(|part| part.contains(c));
+        let either = |c: char| parts(first, c) || parts(second, c);
+        let delimiter = if either(';') {
+            b';'
+        } else if either('\t') {
+            b'\t'
+        } else if decimal == Decimal::Point
+            && (parts(second, ',') || parts(first, ',') && !second.trim().contains(' '))
+        {
+            b','
+        } else {
+            b' '
         };
         // Where the last line has an end, the line number after a row is that of the next line.
         let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
@@ -148,7 +288,11 @@ impl<'a> Rows<'a> {
             .terminator(Terminator::Any(b'\n'))
             .comment(Some(b'#'))
             .from_reader(text.as_bytes().chain(end));
-        Self { text, reader }
+        Self {
+            text,
+            by_blanks: delimiter == b' ',
+            reader,
+        }
     }
 
     fn next(&mut self) -> Result<Option<Row<'a>>, LineFault> {
@@ -168,9 +312,25 @@ impl<'a> Rows<'a> {
             let read = &self.text[..end.min(self.text.len())];
             let text = read.lines().next_back().unwrap_or_default().trim();
             if !text.is_empty() && !text.starts_with('#') {
-                return Ok(Some(Row { line, text, record }));
+                return Ok(Some(Row {
+                    line,
+                    text,
+                    by_blanks: self.by_blanks,
+                    record,
+                }));
             }
         }
+    }
+
+    /// Refuses names between blanks that are not as many as the columns, because one of them has a blank.
+    fn check_names(&self, header: &Row<'_>, row: &Row<'_>, by_name: bool) -> Result<(), LineFault> {
+        let [names, columns] = [header, row].map(|row| row.cells().count());
+        if by_name && self.by_blanks && names != columns {
+            return Err(header.fault(format!(
+                "there are {names} names between blanks for {columns} columns: choose columns by their numbers"
+            )));
+        }
+        Ok(())
     }
 }
 
@@ -179,6 +339,8 @@ impl Row<'_> {
     /// meant to.
     fn cells(&self) -> impl Iterator<Item = &str> {
         let cells = self.record.iter();
+        // Several blanks part no more than one does.
+        let cells = cells.filter(|cell| !(self.by_blanks && cell.trim().is_empty()));
         cells.map(|cell| cell.trim().trim_matches('"').trim())
     }
 
@@ -215,15 +377,18 @@ impl TableColumn {
 
 #[cfg(test)]
 mod tests {
+    use crate::scenario::record::tests::parse;
     use crate::scenario::record::tests::{assert_fault, csv_layout};
-    use crate::scenario::record::{Layout, TableColumn, Unit, parse};
+    use crate::scenario::record::{Decimal, Layout, TableColumn, TableLayout, Times, Unit};
 
     #[test]
     fn tables_of_all_kinds_are_read() {
-        let columns = |time, acceleration| Layout::Csv {
-            time_column: time,
-            acceleration_column: acceleration,
-            unit: Unit::Gravity,
+        let columns = |time, acceleration| {
+            Layout::Csv(TableLayout::new(
+                Times::Column(time),
+                acceleration,
+                Unit::Gravity,
+            ))
         };
         let name = |name: &str| TableColumn::Name(name.to_owned());
         let number = TableColumn::Number;
@@ -277,17 +442,130 @@ mod tests {
         fault(
             "t,a\n0,1\n1,2\n1,3\n",
             4,
-            "does not increase: 1.0 s follows 1.0 s",
+            "does not increase: 1 s follows 1 s",
         );
         fault("t,a\n0,1\n-1,2\n", 3, "does not increase");
         fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
         fault("t,a\n0,1\n", 2, "number of samples is 1");
         // A first row that is half a number is not a header.
-        let numbered = Layout::Csv {
-            time_column: TableColumn::Number(1),
-            acceleration_column: TableColumn::Number(2),
-            unit: Unit::Gravity,
+        assert_fault("0,1x\n1,2\n", &Layout::Csv(numbered()), 1, "`1x`");
+    }
+
+    /// Times in the first column and accelerations in the second.
+    fn numbered() -> TableLayout {
+        let [time, acceleration] = [1, 2].map(TableColumn::Number);
+        TableLayout::new(Times::Column(time), acceleration, Unit::Gravity)
+    }
+
+    #[test]
+    fn columns_may_be_parted_by_blanks() {
+        let layout = Layout::Csv(numbered());
+        for text in [
+            "0 1\n0.5 -2\n",
+            "  0.0     1.0E+00\n  0.5    -2.0E+00  \n",
+            "time  acc\n0 1\n0.5 -2\n",
+            "time (s)   acc (g)\n\n# x\n0 1\r\n0.5 -2",
+            "time, acceleration\n0 1\n0.5 -2",
+            "time acceleration\n0,1\n0.5, -2",
+        ] {
+            assert_eq!(
+                parse(text, &layout),
+                Ok(vec![(0.0, 1.0), (0.5, -2.0)]),
+                "{text}"
+            );
+        }
+        let named = Layout::Csv(TableLayout {
+            acceleration_column: TableColumn::Name("acc".to_owned()),
+            ..numbered()
+        });
+        let text = "time  acc\n0 1\n0.5 -2\n";
+        assert_eq!(parse(text, &named), Ok(vec![(0.0, 1.0), (0.5, -2.0)]));
+        // A name with a blank in it would be taken for two.
+        let text = "time (s) acc (g)\n0 1\n0.5 -2\n";
+        assert_fault(text, &named, 1, "4 names between blanks for 2 columns");
+    }
+
+    #[test]
+    fn a_single_column_has_even_steps() {
+        let layout = |step_s| {
+            let first = TableColumn::Number(1);
+            Layout::Csv(TableLayout::new(Times::Step(step_s), first, Unit::Gravity))
         };
-        assert_fault("0,1x\n1,2\n", &numbered, 1, "`1x`");
+        for text in [
+            "1\n-2\n3\n",
+            "acc in g\n1\n-2\n3",
+            " 1\r\n\r\n -2\r\n 3\r\n",
+        ] {
+            assert_eq!(
+                parse(text, &layout(0.25)),
+                Ok(vec![(0.0, 1.0), (0.25, -2.0), (0.5, 3.0)]),
+                "{text}"
+            );
+        }
+        let fault = |text: &str, line, words| assert_fault(text, &layout(1e6), line, words);
+        fault(
+            "1\n2\n3\n",
+            3,
+            "`dt_s` and the number of samples make a record of 2e6 s",
+        );
+        fault("1\n", 1, "number of samples is 1");
+        let message =
+            "there is no column 2 in `1`; if the file has accelerations only, give `dt_s`";
+        assert_fault("1\n2\n", &Layout::Csv(numbered()), 1, message);
+    }
+
+    #[test]
+    fn lines_before_the_table_are_skipped_and_hinted_at() {
+        let text = "Station X; 12.5 E\nDate; 2009\n\nt; a\n0; 1\n0.5; -2\n";
+        let skipping = |skip_rows| {
+            Layout::Csv(TableLayout {
+                skip_rows,
+                ..numbered()
+            })
+        };
+        let expected = Ok(vec![(0.0, 1.0), (0.5, -2.0)]);
+        assert_eq!(parse(text, &skipping(3)), expected);
+        assert_eq!(parse(text, &skipping(4)), expected);
+        let named = Layout::Csv(TableLayout {
+            acceleration_column: TableColumn::Name("a".to_owned()),
+            skip_rows: 3,
+            ..numbered()
+        });
+        assert_eq!(parse(text, &named), expected);
+        assert_fault(
+            text,
+            &skipping(0),
+            2,
+            "`Date` is not a finite number; numbers begin on line 5: give `skip_rows = 4` if the table does",
+        );
+        // Lines keep their numbers.
+        let text = text.replace("-2", "x");
+        assert_fault(&text, &skipping(3), 6, "`x` is not a finite number");
+        assert_fault("a\nb\n", &skipping(5), 2, "there are no samples");
+        assert_fault("a\nb\n0;1\n1;2", &skipping(3), 4, "number of samples is 1");
+    }
+
+    #[test]
+    fn decimal_commas_are_read_where_they_are_announced() {
+        let comma = Layout::Csv(TableLayout {
+            decimal: Decimal::Comma,
+            ..numbered()
+        });
+        for text in [
+            "0,0;1,0\n0,5;-2,0\n",
+            "t\ta\n0\t1,0\n,5\t-2E0\n",
+            "0,0  1,0\n0,5 -2,0\n",
+            "0;1\n0.5;-2\n",
+        ] {
+            assert_eq!(
+                parse(text, &comma),
+                Ok(vec![(0.0, 1.0), (0.5, -2.0)]),
+                "{text}"
+            );
+        }
+        assert_fault("0;1\n1;1,2,3", &comma, 2, "`1,2,3` is not a finite number");
+        assert_fault("0;1\n1;1.2,3", &comma, 2, "`1.2,3` is not a finite number");
+        let point = Layout::Csv(numbered());
+        assert_fault("0;1\n1;1,2", &point, 2, "give `decimal = \"comma\"`");
     }
 }

@@ -3,7 +3,7 @@
 //! ```toml
 //! [ground.record]
 //! file = "north.at2"            # relative to the scenario file
-//! format = "at2"                # or "csv"; from the file extension when left out
+//! format = "at2"                # or "asc" or "csv"; from the file extension when left out
 //! component = "horizontal"      # or "vertical": where the file's accelerations point, positive to the
 //!                               # right or upwards
 //! scale = 1.0                   # or peak_g = 0.5, the peak to scale to
@@ -11,18 +11,20 @@
 //!
 //! [ground.record.vertical]      # optional second record, scaled on its own, on the same clock
 //! file = "up.csv"
-//! time_column = 1               # CSV only: number or name of the column
+//! time_column = 1               # of tables: number or name of the column
 //! acceleration_column = "up"
-//! unit = "cm/s2"                # CSV only, and required there: "g", "m/s2" or "cm/s2"
+//! unit = "cm/s2"                # of tables, and required there: "g", "m/s2" or "cm/s2"
 //! ```
 //!
-//! Samples are joined by straight lines; outside them the acceleration is zero. Units of gravity are those
-//! of the simulation, `gravity_m_s2`.
+//! How files are read is in [`Layout`]. Samples are joined by straight lines; outside them the acceleration is
+//! zero. Units of gravity are those of the simulation, `gravity_m_s2`.
 
+mod asc;
 mod at2;
 mod csv;
+mod layout;
+mod unit;
 
-use std::ffi::OsStr;
 use std::fmt;
 use std::fs;
 use std::io::Read as _;
@@ -30,12 +32,16 @@ use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
 use std::sync::Arc;
 
+pub use layout::{Contents, Decimal, Format, Layout, TableColumn, TableLayout, Times};
 use serde::Serialize;
-use toml::de::DeValue;
+pub use unit::Unit;
 
-use super::error::excerpt;
+use super::assignment::Assignment;
+use super::error::{ScenarioErrors, excerpt};
 use super::ground::{MAX_ACCELERATION_G, free_fall};
-use super::table::{Count, Number, OneOf, Reading, Rule, Table, Text};
+use super::source::Source;
+use super::table::{self, Number, OneOf, Reading, Table, Text};
+use crate::argument::{plain, short};
 use crate::dynamics::ground::GroundMotion;
 
 /// Times in s and accelerations.
@@ -53,42 +59,6 @@ const MIN_STEP_S: f64 = 1e-6;
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
 pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(MAX_ACCELERATION_G));
 const START_S: Number = Number(Included(0.0), Included(MAX_TIME_S));
-const COLUMN_NUMBER: Count = Count {
-    range: 1..=10_000,
-    why: "the first column",
-};
-
-named! {
-    /// Format of a record's file.
-    pub enum Format {
-        /// PEER strong motion database; accelerations in units of gravity.
-        At2 = "at2",
-        /// A table with a column of times and one of accelerations.
-        Csv = "csv",
-    }
-}
-
-named! {
-    /// Unit of the accelerations in a table.
-    pub enum Unit {
-        /// Gravity of the simulation.
-        Gravity = "g",
-        /// Metres per second squared.
-        MetrePerS2 = "m/s2",
-        /// Centimetres per second squared, gal.
-        CentimetrePerS2 = "cm/s2",
-    }
-}
-
-impl Unit {
-    const fn in_m_s2(self, gravity_m_s2: f64) -> f64 {
-        match self {
-            Self::Gravity => gravity_m_s2,
-            Self::MetrePerS2 => 1.0,
-            Self::CentimetrePerS2 => 0.01,
-        }
-    }
-}
 
 named! {
     /// Where the accelerations of a record point.
@@ -98,33 +68,6 @@ named! {
         /// Upwards.
         Vertical = "vertical",
     }
-}
-
-/// A column of a table.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[serde(untagged)]
-pub enum TableColumn {
-    /// By its number, from 1.
-    Number(usize),
-    /// By its name in the first row.
-    Name(String),
-}
-
-/// How a file is read.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "format", rename_all = "snake_case")]
-pub enum Layout {
-    /// As an AT2 file.
-    At2,
-    /// As a table.
-    Csv {
-        /// Times in s.
-        time_column: TableColumn,
-        /// Accelerations.
-        acceleration_column: TableColumn,
-        /// Their unit.
-        unit: Unit,
-    },
 }
 
 /// What the accelerations of a file are multiplied by.
@@ -149,9 +92,25 @@ pub struct Series {
     /// How strong it is.
     #[serde(flatten)]
     pub scaling: Scaling,
+    /// Unit of the accelerations in the file.
+    #[serde(skip)]
+    pub unit: Unit,
     /// Times in s, increasing, and accelerations as in the file.
     #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
+}
+
+/// How the samples of a record follow one another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Number of samples.
+    pub count: usize,
+    /// Time from one to the next, where that is always the same.
+    pub step_s: Option<f64>,
+    /// Shortest time from one to the next.
+    pub least_step_s: f64,
+    /// Time from the first to the last.
+    pub duration_s: f64,
 }
 
 /// Ground motion from one or two files.
@@ -173,6 +132,11 @@ pub struct Record {
 const READ: &str = "what was read and checked is a ground motion";
 
 impl Record {
+    /// The records, the horizontal one first.
+    pub fn series(&self) -> impl Iterator<Item = &Series> {
+        [&self.main].into_iter().chain(&self.vertical)
+    }
+
     /// The ground motion under the given gravity.
     pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let main = self.main.accelerations_m_s2(gravity_m_s2);
@@ -233,13 +197,50 @@ impl Record {
 impl Series {
     /// The accelerations of a file as they are there; the error follows its name.
     pub(super) fn of_file(folder: &Path, file: String, layout: Layout) -> Result<Self, String> {
-        let samples = read_samples(&folder.join(&file), &layout)?;
-        Ok(Self {
+        let path = folder.join(&file);
+        match read_contents(&path, &layout) {
+            Ok(contents) => Ok(Self::new(file, layout, contents)),
+            Err(FileFault::Unreadable(wrong)) => Err(wrong),
+            Err(FileFault::Line(fault)) => Err(faulty(&path, &fault)),
+        }
+    }
+
+    fn new(file: String, layout: Layout, contents: Contents) -> Self {
+        let Contents { samples, unit } = contents;
+        Self {
             file,
             layout,
             scaling: Scaling::Factor(1.0),
+            unit,
             samples: samples.into(),
+        }
+    }
+
+    /// Reads a file by itself, with the keys of `[ground.record]` that say how.
+    ///
+    /// # Errors
+    /// All that is wrong with the keys, or what is wrong with the file. Neither has a place but the assignment or the
+    /// file.
+    pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Self, ScenarioErrors> {
+        let name = path.display().to_string();
+        let layout = table::read_text("", keys, |table| {
+            table.rename("the record");
+            let format = Format::read(table)?;
+            let format = format.map_or_else(|| Format::of_ending(&name), Ok);
+            let format = format.map_err(|wrong| table.wrong_itself(wrong));
+            Layout::read(table, format)
         })
+        .map_err(|faults| {
+            ScenarioErrors::placed(&Source::of_text("", &name), keys, faults).without_places()
+        })?;
+        match read_contents(path, &layout) {
+            Ok(contents) => Ok(Self::new(name, layout, contents)),
+            Err(FileFault::Unreadable(wrong)) => Err(ScenarioErrors::unreadable(&name, wrong)),
+            Err(FileFault::Line(LineFault { line, message })) => {
+                let place = format!("{name}:{line}");
+                Err(ScenarioErrors::unreadable(&place, message))
+            }
+        }
     }
 
     /// The same record, differently scaled.
@@ -262,8 +263,28 @@ impl Series {
         hasher.finalize()
     }
 
+    /// How its samples follow one another.
+    #[must_use]
+    pub fn sampling(&self) -> Sampling {
+        /// Steps are taken as even that differ by no more than rounded times do.
+        const EVEN: f64 = 1e-3;
+        let steps = || self.samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
+        let duration_s = self.last_s() - self.first_s();
+        #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
+        let mean_s = duration_s / (self.samples.len() - 1) as f64;
+        Sampling {
+            count: self.samples.len(),
+            step_s: steps()
+                .all(|step_s| (step_s - mean_s).abs() <= EVEN * mean_s)
+                .then_some(mean_s),
+            least_step_s: steps().fold(f64::INFINITY, f64::min),
+            duration_s,
+        }
+    }
+
     /// Largest magnitude as scaled, in units of gravity.
-    pub(crate) fn peak_g(&self, gravity_m_s2: f64) -> f64 {
+    #[must_use]
+    pub fn peak_g(&self, gravity_m_s2: f64) -> f64 {
         (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs()
     }
 
@@ -274,7 +295,9 @@ impl Series {
             Ok(())
         } else {
             Err(format!(
-                "reaches {peak_g:?} g as scaled; must be at most {MAX_ACCELERATION_G:?} g"
+                "reaches {} g as scaled; must be at most {} g",
+                plain(peak_g),
+                short(MAX_ACCELERATION_G)
             ))
         }
     }
@@ -289,8 +312,9 @@ impl Series {
         self.samples.last().map_or(0.0, |sample| sample.0)
     }
 
-    /// Times in s and accelerations in m/s2.
-    fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Samples {
+    /// Times in s, on the clock of the file, and accelerations in m/s2 as scaled.
+    #[must_use]
+    pub fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Vec<(f64, f64)> {
         let factor = self.factor(gravity_m_s2);
         let scaled = |&(time_s, acceleration): &(f64, f64)| (time_s, acceleration * factor);
         self.samples.iter().map(scaled).collect()
@@ -298,12 +322,8 @@ impl Series {
 
     /// What a number of the file is multiplied by to be in m/s2.
     fn factor(&self, gravity_m_s2: f64) -> f64 {
-        let unit = match self.layout {
-            Layout::At2 => Unit::Gravity,
-            Layout::Csv { unit, .. } => unit,
-        };
         match self.scaling {
-            Scaling::Factor(factor) => factor * unit.in_m_s2(gravity_m_s2),
+            Scaling::Factor(factor) => factor * self.unit.in_m_s2(gravity_m_s2),
             Scaling::PeakG(peak_g) => peak_g * gravity_m_s2 / self.peak(),
         }
     }
@@ -348,9 +368,9 @@ impl Series {
         let first_s = self.first_s();
         if start_s + first_s < 0.0 {
             let wrong = format!(
-                "begins at {first_s:?} s; allowed is a `start_s` of at least {:?}, so that it does not \
-                 begin before time zero",
-                -first_s
+                "begins at {} s; allowed is a `start_s` of at least {}, so that it does not begin before time zero",
+                short(first_s),
+                short(-first_s)
             );
             return Err(table.wrong("file", wrong));
         }
@@ -373,108 +393,6 @@ impl Scaling {
     }
 }
 
-impl Format {
-    /// The format of a file; the error follows its name.
-    pub(super) fn of_ending(file: &str) -> Result<Self, &'static str> {
-        let ending = Path::new(file)
-            .extension()
-            .and_then(OsStr::to_str)
-            .unwrap_or_default();
-        let mut formats = Self::ALL.iter().copied();
-        formats
-            .find(|format| ending.eq_ignore_ascii_case(format.name()))
-            .ok_or("has an extension that does not tell the format: give `format` as well, \"at2\" or \"csv\"")
-    }
-
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Option<Self>> {
-        let formats = OneOf {
-            all: Self::ALL,
-            name: Self::name,
-        };
-        table.optional("format", &formats)
-    }
-}
-
-impl Layout {
-    /// The samples in the contents of a file: times in s, increasing by at least a microsecond, and
-    /// accelerations in the unit of the file. There are from 2 to 1 800 000, all finite.
-    ///
-    /// # Errors
-    ///
-    /// The first thing that is wrong with the contents.
-    pub fn samples(&self, contents: &[u8]) -> Result<Vec<(f64, f64)>, LineFault> {
-        // Headers may be in any encoding; the numbers are the same in all of them.
-        parse(&String::from_utf8_lossy(contents), self)
-    }
-
-    pub(super) fn read(table: &mut Table<'_>, format: Reading<Format>) -> Reading<Self> {
-        let units = OneOf {
-            all: Unit::ALL,
-            name: Unit::name,
-        };
-        let time_column = table.or("time_column", &AnyColumn, TableColumn::Number(1));
-        let acceleration_column =
-            table.or("acceleration_column", &AnyColumn, TableColumn::Number(2));
-        let unit = table.optional("unit", &units);
-        match format? {
-            Format::At2 => {
-                for key in ["time_column", "acceleration_column", "unit"] {
-                    if table.gives(key) {
-                        return Err(table.wrong(key, "applies to `format = \"csv\"` only"));
-                    }
-                }
-                Ok(Self::At2)
-            }
-            Format::Csv => Ok(Self::Csv {
-                time_column: time_column?,
-                acceleration_column: acceleration_column?,
-                unit: match unit? {
-                    Some(unit) => unit,
-                    None => table.required("unit", &units)?,
-                },
-            }),
-        }
-    }
-
-    /// The format of the file.
-    pub(super) const fn format(&self) -> Format {
-        match self {
-            Self::At2 => Format::At2,
-            Self::Csv { .. } => Format::Csv,
-        }
-    }
-
-    /// The columns of a table, times first, and the unit.
-    pub(super) const fn columns(&self) -> Option<(&TableColumn, &TableColumn, Unit)> {
-        match self {
-            Self::At2 => None,
-            Self::Csv {
-                time_column,
-                acceleration_column,
-                unit,
-            } => Some((time_column, acceleration_column, *unit)),
-        }
-    }
-}
-
-/// Name or number of a column.
-struct AnyColumn;
-
-impl Rule for AnyColumn {
-    type Value = TableColumn;
-
-    fn allowed(&self) -> String {
-        format!("the name of a column, or {}", COLUMN_NUMBER.allowed())
-    }
-
-    fn read(&self, value: &DeValue<'_>) -> Result<TableColumn, String> {
-        match value {
-            DeValue::String(name) => Ok(TableColumn::Name(name.to_string())),
-            _ => COLUMN_NUMBER.read(value).map(TableColumn::Number),
-        }
-    }
-}
-
 /// What is wrong with a record's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineFault {
@@ -493,10 +411,18 @@ impl fmt::Display for LineFault {
 
 impl std::error::Error for LineFault {}
 
+/// Why a file gives no samples.
+enum FileFault {
+    /// It is not there, or too large: to follow its name.
+    Unreadable(String),
+    /// Its contents are wrong.
+    Line(LineFault),
+}
+
 /// Reads the samples of a file, or says what is wrong with it.
-fn read_samples(path: &Path, layout: &Layout) -> Result<Samples, String> {
-    let bytes = read_bytes(path)?;
-    layout.samples(&bytes).map_err(|fault| faulty(path, &fault))
+fn read_contents(path: &Path, layout: &Layout) -> Result<Contents, FileFault> {
+    let bytes = read_bytes(path).map_err(FileFault::Unreadable)?;
+    layout.parse(&bytes).map_err(FileFault::Line)
 }
 
 /// Rows of so many numbers in a file, each with its line, or what is wrong with it. The first may hold names.
@@ -529,18 +455,6 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-fn parse(text: &str, layout: &Layout) -> Result<Samples, LineFault> {
-    let text = text.trim_start_matches('\u{feff}');
-    match layout {
-        Layout::At2 => at2::parse(text),
-        Layout::Csv {
-            time_column,
-            acceleration_column,
-            ..
-        } => csv::parse(text, time_column, acceleration_column),
-    }
-}
-
 /// A finite number as programs write them, also with Fortran's `D` for the exponent.
 fn number(word: &str) -> Result<f64, String> {
     // The library would also take "inf" and "nan".
@@ -561,11 +475,18 @@ mod tests {
     use proptest::prelude::*;
 
     pub(super) fn csv_layout() -> Layout {
-        Layout::Csv {
-            time_column: TableColumn::Number(1),
-            acceleration_column: TableColumn::Name("a".to_owned()),
-            unit: Unit::Gravity,
-        }
+        let number = TableColumn::Number(1);
+        Layout::Csv(TableLayout::new(
+            Times::Column(number),
+            TableColumn::Name("a".to_owned()),
+            Unit::Gravity,
+        ))
+    }
+
+    pub(super) fn parse(text: &str, layout: &Layout) -> Result<Samples, LineFault> {
+        layout
+            .parse(text.as_bytes())
+            .map(|contents| contents.samples)
     }
 
     #[track_caller]
@@ -585,7 +506,19 @@ mod tests {
             let damaged: String = words.concat();
             let text = format!("t,a\n{damaged}");
             for text in [&noise, &damaged, &text] {
-                for layout in [Layout::At2, csv_layout()] {
+                let blanks = TableLayout {
+                    times: Times::Step(0.01),
+                    skip_rows: 1,
+                    decimal: Decimal::Comma,
+                    ..TableLayout::new(Times::Step(0.01), TableColumn::Number(1), Unit::Gravity)
+                };
+                let layouts = [
+                    Layout::At2 { unit: None },
+                    Layout::Asc,
+                    csv_layout(),
+                    Layout::Csv(blanks),
+                ];
+                for layout in layouts {
                     match parse(text, &layout) {
                         Ok(samples) => {
                             prop_assert!(samples.len() >= 2);
@@ -626,6 +559,8 @@ mod tests {
         "\"",
         "#",
         "UNITS OF ",
+        "SAMPLING_INTERVAL_S: .01\n",
+        "UNITS: cm/s^2\n",
         "G",
         "nan",
         "VELOCITY TIME",

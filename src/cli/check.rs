@@ -1,0 +1,166 @@
+//! The command `check`: what a file is, a scenario or a record.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
+use archrock::output::record as output;
+use archrock::scenario::{Format, Layout, Sampling, Series, Unit};
+
+use super::scenario_file::SetOption;
+use super::{Failure, commands, print};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, or tables in CSV and TXT).
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    set: SetOption,
+    /// Draw the record to this SVG file.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+/// Gravity where no scenario tells it.
+const GRAVITY_M_S2: f64 = 9.81;
+
+pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+    if arguments.plot.is_some() && arguments.files.len() > 1 {
+        let message = "--plot is of one record: check them one by one";
+        return Err(Failure::Input(message.to_owned()));
+    }
+    let mut texts = Vec::new();
+    let mut wrong = Vec::new();
+    for file in &arguments.files {
+        match check_file(file, arguments, quiet) {
+            Ok(text) => texts.push(text),
+            Err(Failure::Input(message)) => wrong.push(message),
+            Err(failure) => return Err(failure),
+        }
+    }
+    print(&texts.join("\n"))?;
+    if wrong.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Input(wrong.join("\n")))
+    }
+}
+
+fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String, Failure> {
+    if Format::is_of_record(file) || is_format_given(arguments) {
+        return check_record(file, arguments);
+    }
+    if arguments.plot.is_some() {
+        let message = format!("--plot is of records; {} is a scenario", file.display());
+        return Err(Failure::Input(message));
+    }
+    let scenario = arguments.set.open(file)?.read(None)?;
+    if !quiet {
+        super::warn(&scenario);
+    }
+    Ok(scenario.to_toml())
+}
+
+/// Whether the keys say that the file is a record.
+fn is_format_given(arguments: &Arguments) -> bool {
+    let mut keys = arguments.set.assignments().iter();
+    keys.any(|assignment| assignment.key() == "format")
+}
+
+/// What is in a record file.
+fn check_record(file: &Path, arguments: &Arguments) -> Result<String, Failure> {
+    // Of several files, tables may need keys that others do not have.
+    let several = arguments.files.len() > 1;
+    let is_table = file.extension().is_none_or(|ending| {
+        !["at2", "asc"]
+            .iter()
+            .any(|other| ending.eq_ignore_ascii_case(other))
+    });
+    let keys = arguments.set.assignments().iter();
+    let keys: Vec<_> = keys
+        .filter(|assignment| is_table || !several || !Layout::is_of_tables(assignment.key()))
+        .cloned()
+        .collect();
+    let series = Series::read_file(file, &keys).map_err(|errors| {
+        let hint = "keys of [ground.record] are given with --set, as in --set unit=cm/s2 --set skip_rows=3";
+        Failure::Input(format!("{errors}\n{hint}"))
+    })?;
+    let samples = series.accelerations_m_s2(GRAVITY_M_S2);
+    let intensity = Intensity::of(&samples, GRAVITY_M_S2);
+    if let Some(plot) = &arguments.plot {
+        let title = file.file_name().unwrap_or_default().to_string_lossy();
+        let picture = output::draw(&title, &samples, &intensity, GRAVITY_M_S2);
+        commands::write_picture(plot, &picture)?;
+    }
+    Ok(record_text(file, &series, &intensity))
+}
+
+fn record_text(file: &Path, series: &Series, intensity: &Intensity) -> String {
+    let mut text = format!("{}: {}\n", file.display(), kind(series));
+    let _ = writeln!(text, "  {}", sampling_in_words(&series.sampling()));
+    let PeakMotion { value, time_s } = intensity.acceleration_m_s2;
+    let _ = writeln!(
+        text,
+        "  peak acceleration {:.4} g = {value:.4} m/s2 at {time_s:.3} s",
+        value / GRAVITY_M_S2
+    );
+    for (what, peak, unit) in [
+        ("velocity", intensity.velocity_m_s, "m/s"),
+        ("displacement", intensity.displacement_m, "m"),
+    ] {
+        let _ = writeln!(
+            text,
+            "  peak {what} {:.4} {unit} at {:.3} s",
+            peak.value, peak.time_s
+        );
+    }
+    let [from_s, to_s] = intensity.significant_s;
+    let _ = writeln!(text, "  Arias intensity {:.4} m/s", intensity.arias_m_s);
+    let _ = writeln!(
+        text,
+        "  significant duration (5 to 95 %) {:.3} s, from {from_s:.3} to {to_s:.3} s",
+        intensity.significant_duration_s()
+    );
+    let _ = writeln!(
+        text,
+        "  velocity and displacement are integrated from zero, without baseline correction; g = {GRAVITY_M_S2} m/s2"
+    );
+    text
+}
+
+/// Format and unit.
+fn kind(series: &Series) -> String {
+    let format = match series.layout {
+        Layout::At2 { .. } => "AT2 file (PEER)",
+        Layout::Asc => "ASC file (ESM)",
+        Layout::Csv(_) => "table",
+    };
+    let unit = match series.unit {
+        Unit::Gravity => "g",
+        Unit::MetrePerS2 => "m/s2",
+        Unit::CentimetrePerS2 => "cm/s2",
+    };
+    format!("{format}, accelerations in {unit}")
+}
+
+/// Number, steps and length of the samples.
+pub fn sampling_in_words(sampling: &Sampling) -> String {
+    let step = match sampling.step_s {
+        Some(step_s) => format!("every {} s", rounded(step_s)),
+        None => format!(
+            "at uneven steps, the least of {} s",
+            rounded(sampling.least_step_s)
+        ),
+    };
+    format!(
+        "{} samples {step}, {} s long",
+        sampling.count,
+        rounded(sampling.duration_s)
+    )
+}
+
+/// Six digits at most, and no zeros behind them.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}

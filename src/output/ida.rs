@@ -1,0 +1,109 @@
+//! Incremental dynamic analysis: how far each record drives the structure as it gets stronger.
+
+use nalgebra::Vector2;
+
+use super::suite::{Heading, intensity_label, intensity_scale};
+use super::svg::{Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
+use crate::studies::suite::{CaseRow, SuiteFragility};
+
+/// Records that get curves of their own looks and names.
+const NAMED: usize = CURVES.len();
+/// Where what overturns is drawn, in parts of the width.
+const OVERTURNED: f64 = 1.0;
+/// How far what survives may be drawn.
+const SURVIVED: f64 = 0.94;
+
+const FRAME: Frame = Frame {
+    left: 85.0,
+    top: 110.0,
+    width: 790.0,
+    height: 480.0,
+};
+
+/// Draws the intensity against the peak rotation, over the critical one where that is known: a curve for every record as
+/// it is, and at the right end what overturns.
+#[must_use]
+pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
+    let mut drawing = Drawing::new(900.0, 650.0);
+    drawing.title(heading.title());
+    let records = records(results);
+    let over_critical = results
+        .cases
+        .iter()
+        .filter_map(|case| case.result.as_ref().ok())
+        .all(|ending| ending.peak.over_critical().is_some());
+    let peak = |case: &CaseRow| {
+        let peak = case.result.as_ref().ok()?.peak;
+        peak.over_critical().or(peak.rad())
+    };
+    let survived = results.cases.iter().filter(|case| !case.overturned());
+    let largest = survived.filter_map(peak).fold(0.0, f64::max);
+    let largest = if over_critical {
+        largest.max(1.0)
+    } else {
+        largest.max(1e-3)
+    };
+    let axes = Axes {
+        frame: FRAME,
+        x: Scale::exactly(0.0, largest / SURVIVED, 8),
+        y: intensity_scale(heading, &results.levels),
+    };
+    let label = if over_critical {
+        "peak rotation / critical rotation; at the right end: overturned"
+    } else {
+        "peak rotation (rad); at the right end: overturned"
+    };
+    axes.draw(&mut drawing, Some(label), intensity_label(results.measure));
+    if over_critical {
+        let [low, high] = [axes.y.low, axes.y.high].map(|y| axes.place(1.0, y));
+        drawing.line(low, high, CRITICAL);
+    }
+    let overturned = axes.x.at(OVERTURNED);
+    let looks = (0..).map(|index: usize| {
+        if records.len() > NAMED {
+            MANY
+        } else {
+            CURVES[index % NAMED]
+        }
+    });
+    for (cases, stroke) in records.iter().zip(looks) {
+        let place = |case: &&&CaseRow| {
+            let x = if case.overturned() {
+                overturned
+            } else {
+                peak(case)?
+            };
+            Some((
+                axes.place(x, case.level(results.measure)),
+                case.overturned(),
+            ))
+        };
+        let places: Vec<_> = cases.iter().filter_map(|case| place(&case)).collect();
+        let name = &cases[0].record;
+        drawing.curve(name, places.iter().map(|(at, _)| *at), stroke);
+        for (at, fell) in places {
+            let mark = if fell { "overturned" } else { "survived" };
+            drawing.circle(mark, at, 2.2, Stroke::new(stroke.color, 1.0, ""));
+        }
+    }
+    if records.len() <= NAMED {
+        for (index, (cases, stroke)) in (0_u32..).zip(records.iter().zip(CURVES)) {
+            let (column, row) = (f64::from(index % 3), f64::from(index / 3));
+            let at = Vector2::new(FRAME.left + 265.0 * column, 54.0 + 22.0 * row);
+            drawing.legend(at, 0.0, [(cases[0].record.as_str(), stroke)]);
+        }
+    }
+    drawing.finish()
+}
+
+const MANY: Stroke = Stroke::new(color::BLUE, 0.9, "");
+const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
+
+/// The cases of each record as it is, weakest first.
+fn records(results: &SuiteFragility) -> Vec<Vec<&CaseRow>> {
+    let cases: Vec<&CaseRow> = results.cases.iter().filter(|case| !case.mirrored).collect();
+    cases
+        .chunk_by(|a, b| a.record == b.record)
+        .map(<[_]>::to_vec)
+        .collect()
+}

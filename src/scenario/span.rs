@@ -1,0 +1,184 @@
+//! The shape of a circular arch: by its mean radius, or by its span, as masons and surveyors have it.
+//!
+//! ```toml
+//! [arch]
+//! span_m = 6.0
+//! rise_m = 2.2                # or embrace_deg = 150.0
+//! thickness_m = 0.5           # or thickness_ratio, over the mean radius
+//! measured_at = "intrados"    # the line whose span and rise these are: "intrados", "mean" or "extrados"
+//! ```
+
+use std::ops::Bound::{Excluded, Included, Unbounded};
+
+use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
+use super::table::{Number, OneOf, Reading, Table};
+use crate::argument::plain;
+
+const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
+/// Spans and rises may be less than any radius.
+const LENGTH: Number = Number(Included(1e-6), Included(1e6));
+
+named! {
+    /// A line of an arch along which lengths are measured.
+    pub enum MeasuredAt {
+        /// The lower side: the clear span.
+        Intrados = "intrados",
+        /// Halfway.
+        Mean = "mean",
+        /// The upper side.
+        Extrados = "extrados",
+    }
+}
+
+impl MeasuredAt {
+    /// From this line to that halfway, in thicknesses, outwards.
+    const fn to_mean(self) -> f64 {
+        match self {
+            Self::Intrados => 0.5,
+            Self::Mean => 0.0,
+            Self::Extrados => -0.5,
+        }
+    }
+}
+
+/// The shape of a circular arch.
+pub(super) struct Circular {
+    pub(super) mean_radius_m: f64,
+    pub(super) thickness_ratio: f64,
+    pub(super) embrace_deg: f64,
+}
+
+/// How thick it is.
+#[derive(Clone, Copy)]
+enum Thickness {
+    Ratio(f64),
+    Metres(f64),
+}
+
+impl Circular {
+    /// Reads the keys of `[arch]` that give the shape.
+    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let span_m = table.optional("span_m", &LENGTH);
+        let rise_m = table.optional("rise_m", &LENGTH);
+        let lines = OneOf {
+            all: MeasuredAt::ALL,
+            name: MeasuredAt::name,
+        };
+        let measured_at = table.optional("measured_at", &lines);
+        let ratio = table.optional("thickness_ratio", &THICKNESS_RATIO);
+        let metres = table.optional("thickness_m", &POSITIVE);
+        let thickness = |table: &mut Table<'_>| {
+            table.exactly_one(
+                "keys",
+                vec![
+                    ("thickness_ratio", ratio.map(|x| x.map(Thickness::Ratio))),
+                    ("thickness_m", metres.map(|x| x.map(Thickness::Metres))),
+                ],
+            )
+        };
+        if !table.gives("span_m") {
+            for key in ["rise_m", "measured_at"] {
+                if table.gives(key) {
+                    table.wrong(
+                        key,
+                        "goes with `span_m`; give that too, or `mean_radius_m` without it",
+                    );
+                }
+            }
+            let mean_radius_m = table.required("mean_radius_m", &MAGNITUDE);
+            let thickness = thickness(table);
+            let embrace_deg = table.required("embrace_deg", &EMBRACE_DEG);
+            // A key at a time says what is missing beside it; all are needed.
+            span_m?;
+            rise_m?;
+            measured_at?;
+            return Self::around(
+                table,
+                mean_radius_m?,
+                MeasuredAt::Mean,
+                thickness?,
+                embrace_deg?,
+            );
+        }
+        let mean_radius_m = table.optional("mean_radius_m", &MAGNITUDE);
+        let embrace_deg = table.optional("embrace_deg", &EMBRACE_DEG);
+        let thickness = thickness(table);
+        let measured_at = match measured_at {
+            Ok(None) => table.required("measured_at", &lines),
+            Ok(Some(line)) => Ok(line),
+            Err(reported) => Err(reported),
+        };
+        let span_m = table.exactly_one(
+            "keys",
+            vec![("mean_radius_m", mean_radius_m), ("span_m", span_m)],
+        );
+        let rises = matches!(rise_m, Ok(Some(_)));
+        let height = table.exactly_one(
+            "keys",
+            vec![("rise_m", rise_m), ("embrace_deg", embrace_deg)],
+        );
+        let (span_m, height, measured_at, thickness) = (span_m?, height?, measured_at?, thickness?);
+        let embrace_deg = if rises {
+            embrace_deg_of(table, span_m, height)?
+        } else {
+            height
+        };
+        let radius_m = 0.5 * span_m / (0.5 * embrace_deg.to_radians()).sin();
+        Self::around(table, radius_m, measured_at, thickness, embrace_deg)
+    }
+
+    /// The ring whose line has this radius.
+    fn around(
+        table: &mut Table<'_>,
+        radius_m: f64,
+        line: MeasuredAt,
+        thickness: Thickness,
+        embrace_deg: f64,
+    ) -> Reading<Self> {
+        let (mean_radius_m, thickness_ratio) = match thickness {
+            Thickness::Ratio(ratio) => (radius_m / (1.0 - line.to_mean() * ratio), ratio),
+            Thickness::Metres(thickness_m) => {
+                let mean_radius_m = radius_m + line.to_mean() * thickness_m;
+                (mean_radius_m, thickness_m / mean_radius_m)
+            }
+        };
+        // The radius of an extrados thicker than twice itself has the wrong sign.
+        if !THICKNESS_RATIO.contains(thickness_ratio) {
+            let wrong = format!(
+                "is out of range: {} mean radii of {} m; must be at least a millionth of the mean radius and below \
+                 twice that",
+                plain(thickness_ratio),
+                plain(mean_radius_m)
+            );
+            return Err(table.wrong("thickness_m", wrong));
+        }
+        if !MAGNITUDE.contains(mean_radius_m) {
+            let wrong = format!(
+                "makes a mean radius of {} m; that must be {}",
+                plain(mean_radius_m),
+                super::table::Rule::allowed(&MAGNITUDE)
+            );
+            return Err(table.wrong("span_m", wrong));
+        }
+        Ok(Self {
+            mean_radius_m,
+            thickness_ratio,
+            embrace_deg,
+        })
+    }
+}
+
+/// The angle of a circle of that span and rise.
+fn embrace_deg_of(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
+    let half_m = 0.5 * span_m;
+    // The angle between chord and tangent is a quarter of it.
+    let embrace_deg = 4.0 * (rise_m / half_m).atan().to_degrees();
+    if EMBRACE_DEG.contains(embrace_deg) {
+        return Ok(embrace_deg);
+    }
+    let wrong = format!(
+        "makes an embrace angle of {} degrees; must be from 1 to 180, which is a rise of at most half the span",
+        plain(embrace_deg)
+    );
+    Err(table.wrong("rise_m", wrong))
+}

@@ -1,0 +1,328 @@
+//! Records as people have them: what `check` and `run` tell of them, formats, and input that is unlikely.
+
+#![allow(clippy::unwrap_used)]
+
+mod program;
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use program::{archrock, stderr};
+
+const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+
+fn stdout(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn refused(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(2));
+    stderr(output)
+}
+
+/// A full sine of 0.4 g and 1 s from 0.5 s on, 200 samples a second, in g.
+fn sine() -> Vec<f64> {
+    (0..=400)
+        .map(|i| f64::from(i) / 200.0 - 0.5)
+        .map(|t| {
+            if (0.0..=1.0).contains(&t) {
+                0.4 * (2.0 * PI * t).sin()
+            } else {
+                0.0
+            }
+        })
+        .collect()
+}
+
+/// The same motion in each format, with the keys to read it.
+fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
+    let sine = sine();
+    let mut at2 =
+        "PEER\nX\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 401, DT= .0050 SEC\n".to_owned();
+    let mut gal = at2.replace("UNITS OF G", "UNITS OF CM/SEC/SEC");
+    let mut asc = "EVENT_ID: X\nSAMPLING_INTERVAL_S: 0.005\nNDATA: 401\nUNITS: cm/s^2\nDATA_TYPE: ACCELERATION\nUSER:\n"
+        .to_owned();
+    let mut comma = "Station X\nEpicentre; 12.5 E\ntime; acceleration\n".to_owned();
+    let mut blanks = String::new();
+    let mut single = "corrected acceleration, m/s2\n".to_owned();
+    for (i, a) in sine.iter().enumerate() {
+        let t = i as f64 * 0.005;
+        let cm = 981.0 * a;
+        let _ = writeln!(at2, " {a:.12E}");
+        let _ = writeln!(gal, " {cm:.12E}");
+        let _ = writeln!(asc, "{cm:.12}");
+        let _ = writeln!(comma, "{t:.3}; {cm:.12}");
+        let _ = writeln!(blanks, "  {t:10.4}   {a:18.14}");
+        let _ = writeln!(single, "{:.12}", 9.81 * a);
+    }
+    for (name, text) in [
+        ("g.AT2", &at2),
+        ("gal.at2", &gal),
+        ("esm.ASC", &asc),
+        ("comma.csv", &comma.replace('.', ",")),
+        ("blanks.txt", &blanks),
+        ("tabs.dat", &blanks.replace("   ", "\t")),
+        ("single.csv", &single),
+        ("nameless.xyz", &blanks),
+    ] {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    vec![
+        ("g.AT2", ""),
+        ("gal.at2", ""),
+        ("esm.ASC", ""),
+        (
+            "comma.csv",
+            "unit = 'gal'\nskip_rows = 2\ndecimal = 'comma'\n",
+        ),
+        ("blanks.txt", "unit = 'g'\n"),
+        ("single.csv", "unit = 'm/s^2'\ndt_s = 0.005\n"),
+        ("nameless.xyz", "format = 'csv'\nunit = 'g'\n"),
+    ]
+}
+
+/// The `--set` of keys as they are in a scenario.
+fn set(keys: &str) -> Vec<String> {
+    let lines = keys.lines().map(|line| line.replace(['\'', ' '], ""));
+    lines.flat_map(|line| ["--set".to_owned(), line]).collect()
+}
+
+/// A sine of amplitude A and period T = 1 s has the velocity A / pi at its half and the displacement A / (2 pi) at its
+/// end and ever after. The squares add up to A^2 / 2, of which a part p is reached where t - sin(4 pi t) / (4 pi) = p:
+/// 5 % at 0.12945 s, and 95 % as long before the end.
+#[test]
+fn a_record_is_told_alike_in_all_formats() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, keys) in files(folder.path()) {
+        let set = set(keys);
+        let mut arguments = vec!["check", file];
+        arguments.extend(set.iter().map(String::as_str));
+        let said = stdout(&archrock(folder.path(), &arguments));
+        let velocity = 0.4 * 9.81 / PI;
+        let displacement = 0.4 * 9.81 / (2.0 * PI);
+        let arias = PI / (2.0 * 9.81) * (0.4 * 9.81_f64).powi(2) / 2.0;
+        for words in [
+            "401 samples every 0.005 s, 2 s long",
+            "peak acceleration 0.4000 g = 3.9240 m/s2 at 0.750 s",
+            "significant duration (5 to 95 %) 0.741 s, from 0.629 to 1.371 s",
+        ] {
+            assert!(said.contains(words), "{file}: {words} is not in {said}");
+        }
+        // Lines between 200 samples a second err by some 1e-4.
+        for (what, exact) in [
+            ("peak velocity ", velocity),
+            ("peak displacement ", displacement),
+            ("Arias intensity ", arias),
+        ] {
+            let (_, number) = said.split_once(what).unwrap();
+            let number: f64 = number.split(' ').next().unwrap().parse().unwrap();
+            assert!(
+                (number / exact - 1.0).abs() < 3e-4,
+                "{file}: {what}{number} {exact}"
+            );
+        }
+        let unit = match file {
+            "g.AT2" => "AT2 file (PEER), accelerations in g",
+            "gal.at2" => "AT2 file (PEER), accelerations in cm/s2",
+            "esm.ASC" => "ASC file (ESM), accelerations in cm/s2",
+            "single.csv" => "table, accelerations in m/s2",
+            _ => "table, accelerations in ",
+        };
+        assert!(said.starts_with(&format!("{file}: {unit}")), "{said}");
+    }
+}
+
+#[test]
+fn a_record_shakes_alike_in_all_formats() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut outcomes = Vec::new();
+    for (file, keys) in files(folder.path()) {
+        let text = format!("{ARCH}[ground.record]\nfile = '{file}'\n{keys}");
+        fs::write(folder.path().join("s.toml"), text).unwrap();
+        let said = stdout(&archrock(folder.path(), &["run", "s.toml"]));
+        let (first, rest) = said.split_once('\n').unwrap();
+        assert_eq!(
+            first,
+            format!("  {file}: 401 samples every 0.005 s, 2 s long, peak 0.4000 g as scaled")
+        );
+        // What is resolved reads back.
+        let resolved = stdout(&archrock(folder.path(), &["check", "s.toml"]));
+        fs::write(folder.path().join("t.toml"), &resolved).unwrap();
+        assert_eq!(
+            stdout(&archrock(folder.path(), &["check", "t.toml"])),
+            resolved
+        );
+        outcomes.push(rest.lines().next().unwrap().to_owned());
+    }
+    assert!(outcomes[0].contains("came to rest") || outcomes[0].contains("overturned"));
+    assert!(
+        outcomes.iter().all(|outcome| *outcome == outcomes[0]),
+        "{outcomes:?}"
+    );
+}
+
+#[test]
+fn several_files_are_checked_at_once_and_one_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    files(folder.path());
+    fs::write(folder.path().join("s.toml"), ARCH).unwrap();
+    let check = |arguments: &[&str]| archrock(folder.path(), &[&["check"], arguments].concat());
+    let two = [
+        "g.AT2",
+        "comma.csv",
+        "--set",
+        "unit=cm/s2",
+        "--set",
+        "decimal=comma",
+        "--set",
+        "skip_rows=3",
+    ];
+    let said = stdout(&check(&two));
+    assert!(
+        said.starts_with("g.AT2: ") && said.contains("\ncomma.csv: table"),
+        "{said}"
+    );
+    // Alone, a key of tables is refused on an AT2 file.
+    let said = refused(&check(&["g.AT2", "--set", "skip_rows=3"]));
+    assert!(
+        said.contains("--set skip_rows=3: `skip_rows = 3` applies to `format = \"csv\"` only"),
+        "{said}"
+    );
+    let said = refused(&check(&["single.csv"]));
+    assert!(
+        said.contains("single.csv: the record lacks `unit`: give one of \"g\""),
+        "{said}"
+    );
+    assert!(said.contains("--set unit=cm/s2"), "{said}");
+    let said = refused(&check(&["single.csv", "--set", "unit=g"]));
+    assert!(
+        said.contains("single.csv:2: there is no column 2"),
+        "{said}"
+    );
+    // What is right is told, what is wrong as well.
+    let output = check(&["g.AT2", "none.at2", "s.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("none.at2: cannot be read"));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains("g.AT2: AT2") && said.contains("[arch]"),
+        "{said}"
+    );
+
+    stdout(&check(&["g.AT2", "--plot", "r.svg"]));
+    let picture = fs::read_to_string(folder.path().join("r.svg")).unwrap();
+    let picture = roxmltree::Document::parse(&picture).unwrap();
+    for name in ["acceleration", "velocity", "displacement", "arias"] {
+        let mut named = picture.descendants();
+        assert!(
+            named.any(|node| node.attribute("data-name") == Some(name)),
+            "{name}"
+        );
+    }
+    assert!(refused(&check(&["s.toml", "--plot", "r.svg"])).contains("--plot is of records"));
+    let both = refused(&check(&["g.AT2", "gal.at2", "--plot", "r.svg"]));
+    assert!(both.contains("--plot is of one record"));
+}
+
+#[test]
+fn a_record_in_the_place_of_a_scenario_is_one_error() {
+    let folder = tempfile::tempdir().unwrap();
+    files(folder.path());
+    for file in ["g.AT2", "esm.ASC", "comma.csv", "blanks.txt"] {
+        let said = refused(&archrock(folder.path(), &["run", file]));
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(said.contains("this is no scenario: "), "{said}");
+        assert!(said.contains("[ground.record]"), "{said}");
+    }
+}
+
+#[test]
+fn unlikely_input_is_pointed_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let pulse = "[ground.rectangular]\namplitude_g = 0.05\nduration_s = 0.2\n";
+    let record = "[ground.record]\nfile = 'r.csv'\nunit = 'g'\n";
+    fs::write(folder.path().join("r.csv"), "0,0\n0.01,35\n0.02,0\n").unwrap();
+    let usual = format!("{ARCH}{pulse}");
+    for (text, warning) in [
+        (
+            usual.replace("= 5.0", "= 500"),
+            Some("the mean radius is 500 m: is it in metres?"),
+        ),
+        (
+            usual.replace("= 5.0", "= 50"),
+            Some("the arch is 7.5 m thick: is its thickness in metres?"),
+        ),
+        (
+            usual.replace("180.0", "3.14159"),
+            Some("the embrace angle is 3.14159 degrees: is it in radians?"),
+        ),
+        (
+            format!("{usual}[simulation]\ngravity_m_s2 = 981"),
+            Some("gravity is 981 m/s2, not that of the Earth"),
+        ),
+        (
+            format!("{ARCH}{record}"),
+            Some("r.csv peaks at 35 g: is its unit \"g\"?"),
+        ),
+        (
+            usual.replace("0.05", "-4"),
+            Some("the pulse peaks at 4 g: is its amplitude in units of gravity?"),
+        ),
+        (usual, None),
+    ] {
+        fs::write(folder.path().join("s.toml"), &text).unwrap();
+        for command in ["run", "check"] {
+            let output = archrock(folder.path(), &[command, "s.toml"]);
+            let said = stderr(&output);
+            match warning {
+                // A thin arch of three degrees is refused besides.
+                Some(_) if output.status.code() == Some(2) => {
+                    assert!(text.contains("3.14159"), "{said}");
+                }
+                Some(warning) => {
+                    assert!(said.contains(&format!("warning: {warning}")), "{said}");
+                    let quiet = archrock(folder.path(), &[command, "s.toml", "--quiet"]);
+                    assert!(quiet.stderr.is_empty());
+                }
+                None => assert!(said.is_empty(), "{said}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn linear_ranges_have_round_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "{ARCH}[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.3\n\
+         [map]\nthickness_ratio = {{ from = 0.11, to = 0.2, count = 10 }}\n\
+         amplitude_g = {{ from = -0.3, to = 0.3, count = 7 }}\n"
+    );
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let output = archrock(folder.path(), &["map", "s.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let table = fs::read_to_string(folder.path().join("results/s/map.csv")).unwrap();
+    let column = |index: usize| {
+        let mut values: Vec<&str> = table
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').nth(index).unwrap())
+            .collect();
+        values.dedup();
+        values
+    };
+    assert_eq!(
+        column(0),
+        [
+            "0.11", "0.12", "0.13", "0.14", "0.15", "0.16", "0.17", "0.18", "0.19", "0.2"
+        ]
+    );
+    assert_eq!(
+        column(1)[..7],
+        ["-0.3", "-0.2", "-0.1", "0.0", "0.1", "0.2", "0.3"]
+    );
+}

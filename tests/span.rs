@@ -1,0 +1,99 @@
+//! Arches given by their span.
+
+#![allow(clippy::unwrap_used)]
+
+use archrock::Scenario;
+use archrock::scenario::Structure;
+
+fn arch(keys: &str) -> Result<archrock::Arch, String> {
+    let text = format!("[arch]\n{keys}\n");
+    match Scenario::parse(&text, "s.toml") {
+        Ok(scenario) => match scenario.structure {
+            Structure::Arch(arch) => Ok(arch),
+            other => panic!("{other:?}"),
+        },
+        Err(errors) => Err(errors.to_string()),
+    }
+}
+
+/// Distance from springing to springing and height of the crown above them, along the line that is so many thicknesses
+/// outside the middle one.
+fn span_and_rise_m(arch: &archrock::Arch, outwards: f64) -> (f64, f64) {
+    let radius_m = arch.mean_radius_m() * (1.0 + outwards * arch.thickness_ratio());
+    let half = 0.5 * arch.embrace_deg().to_radians();
+    (2.0 * radius_m * half.sin(), radius_m * (1.0 - half.cos()))
+}
+
+#[test]
+fn the_arch_has_the_span_and_the_rise_that_were_given() {
+    for (line, outwards) in [("intrados", -0.5), ("mean", 0.0), ("extrados", 0.5)] {
+        for thickness in ["thickness_m = 0.9", "thickness_ratio = 0.2"] {
+            for (height, rise_m) in [("rise_m = 2.2", Some(2.2)), ("embrace_deg = 150", None)] {
+                let keys = format!("span_m = 6\nmeasured_at = '{line}'\n{height}\n{thickness}");
+                let arch = arch(&keys).unwrap();
+                let (span_m, rise) = span_and_rise_m(&arch, outwards);
+                assert!((span_m - 6.0).abs() < 1e-12, "{keys}");
+                match rise_m {
+                    Some(rise_m) => assert!((rise - rise_m).abs() < 1e-12, "{keys}"),
+                    None => assert_eq!(arch.embrace_deg(), 150.0),
+                }
+                let thickness_m = arch.thickness_ratio() * arch.mean_radius_m();
+                if thickness.contains("_m") {
+                    assert!((thickness_m - 0.9).abs() < 1e-12);
+                } else {
+                    assert!((arch.thickness_ratio() - 0.2).abs() < 1e-15);
+                }
+            }
+        }
+    }
+    // Half a circle, to the last bit.
+    let semicircle = arch("span_m = 6\nmeasured_at = 'mean'\nrise_m = 3\nthickness_ratio = 0.2");
+    let by_radius = arch("mean_radius_m = 3\nembrace_deg = 180\nthickness_ratio = 0.2");
+    assert_eq!(semicircle, by_radius);
+}
+
+#[test]
+fn what_does_not_go_together_is_said() {
+    const SPAN: &str = "span_m = 6\nmeasured_at = 'intrados'\n";
+    for (keys, message) in [
+        (
+            "span_m = 6\nrise_m = 2\nthickness_m = 0.9".to_owned(),
+            "s.toml:1:1: [arch] lacks `measured_at`: give one of \"intrados\", \"mean\", \"extrados\"",
+        ),
+        (
+            format!("{SPAN}thickness_m = 0.9"),
+            "s.toml:1:1: [arch] needs exactly one of the keys rise_m, embrace_deg",
+        ),
+        (
+            format!("{SPAN}rise_m = 2\nembrace_deg = 150\nthickness_m = 0.9"),
+            "s.toml:5:15: `embrace_deg` cannot be combined with `rise_m`",
+        ),
+        (
+            format!("{SPAN}rise_m = 2\nmean_radius_m = 3\nthickness_m = 0.9"),
+            "s.toml:5:17: `mean_radius_m` cannot be combined with `span_m`",
+        ),
+        (
+            format!("{SPAN}rise_m = 3.1\nthickness_m = 0.9"),
+            "s.toml:4:10: `rise_m = 3.1` makes an embrace angle of 183.757 degrees; must be from 1 to 180, which is a \
+             rise of at most half the span",
+        ),
+        (
+            "mean_radius_m = 3\nrise_m = 2\nembrace_deg = 150\nthickness_m = 0.9".to_owned(),
+            "s.toml:3:10: `rise_m = 2` goes with `span_m`",
+        ),
+        (
+            "span_m = 6\nmeasured_at = 'extrados'\nembrace_deg = 150\nthickness_m = 8".to_owned(),
+            "s.toml:5:15: `thickness_m = 8` is out of range: -8.94683 mean radii of -0.894171 m",
+        ),
+        (
+            format!("{SPAN}embrace_deg = 150\nthickness_m = 0.01"),
+            "s.toml:5:15: `thickness_m = 0.01` makes an arch that cannot carry its own weight",
+        ),
+    ] {
+        assert!(
+            arch(&keys).unwrap_err().starts_with(message),
+            "{}",
+            arch(&keys).unwrap_err()
+        );
+    }
+}
