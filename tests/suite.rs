@@ -772,7 +772,7 @@ fn faults_of_records_name_the_file() {
         ("word.at2", format!("{head}1 2 x\n")),
         ("tiny.at2", format!("{head}0 1e-9 0\n")),
         ("long.at2", "A\nNPTS= 3, DT= 20 SEC\n1 2 3\n".to_owned()),
-        ("fine.dat", format!("{head}1 2 3\n")),
+        ("fine.rec", format!("{head}1 2 3\n")),
     ] {
         write(folder, name, &text);
     }
@@ -828,7 +828,7 @@ fn faults_of_records_name_the_file() {
         &[(
             1,
             11,
-            &["names fine.dat, which has an extension that does not tell the format"],
+            &["names fine.rec, which has an extension that does not tell the format"],
         )],
     );
     write(

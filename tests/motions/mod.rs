@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
+#[allow(unused_imports)]
 pub use crate::common::{Random, semicircle};
 use archrock::{FourLinkArch, GroundMotion, History, Initial, Model as _, Request, Sample};
 

@@ -1,0 +1,115 @@
+//! The tour of the documentation: its commands, run as they stand there, say what is shown there.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+mod motions;
+mod program;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use archrock::Scenario;
+use motions::{NGA_WEST2, at2, scaled, synthetic};
+use program::{archrock, scenarios, stderr};
+
+/// The two records of the tour, made as their titles say: the first as a PEER file of 0.45 g, the second as a table of
+/// 380 cm/s2 after three lines of its own.
+fn records() -> [(&'static str, String); 2] {
+    let first = scaled(&synthetic(11, 16.0, 0.01), 0.45);
+    let title = "Synthetic: tests/motions/mod.rs, synthetic(11, 16 s, 0.01 s), peak 0.45 g";
+    let mut second =
+        "Synthetic: tests/motions/mod.rs; synthetic(12, 12 s, 0.005 s), peak 380 cm/s2\n\
+                      Not of an earthquake; for the tour\ntime (s);acceleration (cm/s2)\n"
+            .to_owned();
+    for (time_s, acceleration) in scaled(&synthetic(12, 12.0, 0.005), 380.0) {
+        let _ = writeln!(second, "{time_s:.3};{:.4}", acceleration + 0.0);
+    }
+    [
+        ("nga1.at2", at2(&first, title, &NGA_WEST2)),
+        ("station.csv", second),
+    ]
+}
+
+#[test]
+fn the_records_of_the_tour_are_the_generated_ones() {
+    let folder = scenarios().join("tour");
+    for (name, text) in records() {
+        let file = folder.join(name);
+        if std::env::var_os("ARCHROCK_REGENERATE").is_some() {
+            fs::write(&file, &text).unwrap();
+        }
+        // Sines differ between platforms in the last place, and so may last digits.
+        let own = fs::read_to_string(&file).unwrap();
+        assert_eq!(own.lines().count(), text.lines().count());
+        let differ = own.lines().zip(text.lines()).filter(|(a, b)| a != b);
+        assert!(differ.count() < 10, "{name}");
+    }
+    let scenario = Scenario::read(&folder.join("tour.toml")).unwrap();
+    assert_eq!(scenario.by_record().len(), 2);
+}
+
+/// The commands of the tour, each with the lines that are shown of what it says.
+fn commands(text: &str) -> Vec<(Vec<String>, Vec<String>)> {
+    let mut commands: Vec<(Vec<String>, Vec<String>)> = Vec::new();
+    let mut indented = text.lines().filter_map(|line| line.strip_prefix("    "));
+    for line in &mut indented {
+        match line.strip_prefix("$ archrock ") {
+            Some(command) => {
+                // None of the words has a blank, so that a shell would only drop the marks around them.
+                let words = command
+                    .split_whitespace()
+                    .map(|word| word.trim_matches('\'').to_owned());
+                commands.push((words.collect(), Vec::new()));
+            }
+            None => commands.last_mut().unwrap().1.push(line.to_owned()),
+        }
+    }
+    commands
+}
+
+#[test]
+fn the_tour_says_what_it_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    for entry in fs::read_dir(scenarios().join("tour")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_file() {
+            fs::copy(&path, folder.path().join(path.file_name().unwrap())).unwrap();
+        }
+    }
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/tour.md");
+    let page = fs::read_to_string(page).unwrap();
+    // The scenario that the page shows is the one that is run.
+    let scenario = fs::read_to_string(scenarios().join("tour/tour.toml")).unwrap();
+    let (_, scenario) = scenario.split_once("\n\n").unwrap();
+    assert!(page.contains(&format!("```toml\n{scenario}```")));
+    let commands = commands(&page);
+    assert!((2..=4).contains(&commands.len()));
+    for (command, shown) in commands {
+        let arguments: Vec<&str> = command.iter().map(String::as_str).collect();
+        let output = archrock(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = String::from_utf8(output.stdout).unwrap();
+        let mut lines = said.lines();
+        assert!(!shown.is_empty());
+        for line in shown {
+            assert!(
+                line == "..." || lines.any(|said| said == line),
+                "{arguments:?} does not say {line:?}, or not after the line before:\n{said}"
+            );
+        }
+    }
+    // What there is to look at.
+    for record in ["nga1.at2", "station.csv"] {
+        let results = folder.path().join("results/tour").join(record);
+        for file in [
+            "report.html",
+            "history.svg",
+            "threshold.svg",
+            "summary.json",
+        ] {
+            assert!(results.join(file).exists(), "{record} {file}");
+        }
+    }
+}
