@@ -390,8 +390,8 @@ proptest! {
                 }
             }
             Err(FourLinkError::Argument(error)) => check_named(&error, &[("restitution", restitution(model))])?,
-            Err(FourLinkError::Blocks) => prop_assert!(false, "a ring is a ring"),
             Err(FourLinkError::Limit(error)) => prop_assert!(error.to_string().contains("the arch")),
+            Err(error) => prop_assert!(false, "a ring is no row: {}", error),
         }
     }
 

@@ -62,7 +62,7 @@ fn defaults() {
             gravity_m_s2: 9.81,
         }
     );
-    assert_eq!(scenario.impact, ImpactModel::MaxRestitution);
+    assert_eq!(scenario.impact, ImpactModel::MaxRestitution.into());
     assert!(scenario.title.is_none() && scenario.ground.is_none() && scenario.initial.is_none());
     assert!(
         scenario.free_hinges.is_none()
@@ -279,7 +279,7 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
     assert_eq!(scenario.spectrum.as_ref().unwrap().p_t.values(), [1.0]);
     assert_eq!(
         scenario.impact,
-        ImpactModel::Prescribed { restitution: 1.0 }
+        ImpactModel::Prescribed { restitution: 1.0 }.into()
     );
     let initial = scenario.initial.as_ref().unwrap();
     assert_eq!((initial.sway, initial.rotation_rad), (Sway::Left, 0.02));

@@ -52,13 +52,18 @@ fn motions(linkage: &Linkage) -> Vec<Motion> {
 fn at_the_onset_it_is_the_line_of_limit_analysis() {
     for arch in arches() {
         let incipient = arch.chain().incipient();
-        let linkage = arch.link(0).unwrap().mechanism;
+        let linkage = &arch.link(0).unwrap().mechanism;
         let push = incipient.acceleration_g;
-        let onset = motion(&linkage, 0.0, 0.0, push);
+        let onset = motion(linkage, 0.0, 0.0, push);
         // A_L is exact to rounding where joints are given, and flat in hinges placed to 1e-8 elsewhere.
         assert!(onset.acceleration.abs() < 1e-12, "{}", onset.acceleration);
         let line = linkage.thrust_line(&onset);
-        let at_rest = ThrustLine::at_rest(incipient, arch.chain().ring(), onset.body_force_g);
+        let at_rest = ThrustLine::at_rest(
+            incipient,
+            incipient,
+            arch.chain().ring(),
+            onset.body_force_g,
+        );
         for i in 0..=50 {
             let angle = arch.chain().ring().embrace_rad() * f64::from(i) / 50.0;
             let expected = incipient.thrust_line.at(angle);
@@ -79,7 +84,7 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
     for arch in arches() {
         let ring = *arch.chain().ring();
         let mechanism = arch.chain().link(0).unwrap().mechanism;
-        let linkage = arch.link(0).unwrap().mechanism;
+        let linkage = &arch.link(0).unwrap().mechanism;
         let [a, b, c, d] = mechanism.hinges_rad();
         let [point_a, point_b, _, point_d] = mechanism.points();
         let bodies = [ring.sector(a, b), ring.sector(b, c), ring.sector(c, d)];
@@ -95,7 +100,7 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
             ];
             (turns, centroids, [point_a, moved_b, moved_c, point_d])
         };
-        for motion in motions(&linkage).into_iter().skip(1).take(3) {
+        for motion in motions(linkage).into_iter().skip(1).take(3) {
             let h = 1e-4;
             let (before, now, after) = (
                 place(motion.q_rad - h),
@@ -155,8 +160,8 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
         let embrace = ring.embrace_rad();
         // The thick arch stops at its first impact and has one mechanism only.
         for link in (0..3).map_while(|index| arch.chain().link(index)) {
-            let (mechanism, linkage) = (link.mechanism, link.link.mechanism);
-            for motion in motions(&linkage) {
+            let (mechanism, linkage) = (link.mechanism, &link.link.mechanism);
+            for motion in motions(linkage) {
                 let line = linkage.thrust_line(&motion);
                 let parts = line.parts();
                 assert!((parts[4].end_rad - embrace).abs() < 1e-15);
@@ -181,9 +186,9 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
 fn the_parts_that_stand_carry_their_weight_to_the_springings() {
     let arch = semicircle();
     let ring = arch.chain().ring();
-    let linkage = arch.link(0).unwrap().mechanism;
+    let linkage = &arch.link(0).unwrap().mechanism;
     let a = arch.chain().link(0).unwrap().mechanism.hinges_rad()[0];
-    let line = linkage.thrust_line(&motion(&linkage, 0.02, 0.1, 0.0));
+    let line = linkage.thrust_line(&motion(linkage, 0.02, 0.1, 0.0));
     // Nothing is accelerated before A: between springing and hinge the force grows by the weight.
     let weight = line.at(a).linear - line.at(0.0).linear;
     let expected = Vector2::new(0.0, -ring.sector(0.0, a).mass);
@@ -199,7 +204,12 @@ fn at_rest_the_line_stays_inside_up_to_the_onset() {
             let body_force = Vector2::new(part * limit_g, -1.0);
             assert_eq!(arch.demand_at_rest(body_force).excess_ratio, 0.0, "{part}");
             // Equilibrium of the whole ring: what comes in and the load go out.
-            let line = ThrustLine::at_rest(arch.chain().incipient(), ring, body_force);
+            let line = ThrustLine::at_rest(
+                arch.chain().incipient(),
+                arch.chain().incipient(),
+                ring,
+                body_force,
+            );
             let load = line.at(ring.embrace_rad()).linear - line.at(0.0).linear;
             let mass = ring.moments_to(ring.embrace_rad()).mass;
             assert!((load - body_force * mass).norm() < 1e-14);
@@ -228,8 +238,9 @@ fn a_section_in_tension_has_a_finite_excess_that_grows_with_it() {
             tangential: 0.3,
             moment,
             eccentricity_ratio: moment / (normal * 0.2),
+            thickness: 0.2,
         };
-        Demand::of_sections([section].into_iter(), 0.2, 10.0)
+        Demand::of_sections([section].into_iter(), 10.0)
     };
     // Moment 0.05 on N = 1 and t = 0.2: |e|/t = 0.25, inside; 0.12: 0.6, out by 0.1.
     assert_eq!(of(1.0, 0.05).excess_ratio, 0.0);
@@ -265,9 +276,9 @@ fn pulse_history(
 /// Eccentricities of the line at a sample of the first half cycle, swaying right.
 fn eccentricity(arch: &FourLinkArch, sample: &Sample, angle_deg: f64) -> f64 {
     assert_eq!(sample.state, State::Rocking(Sway::Right));
-    let linkage = arch.link(0).unwrap().mechanism;
+    let linkage = &arch.link(0).unwrap().mechanism;
     let motion = motion(
-        &linkage,
+        linkage,
         -sample.rotations_rad[0],
         -sample.rates_rad_s[0] * (arch.length_m() / GRAVITY).sqrt(),
         -sample.ground_acceleration_m_s2 / GRAVITY,
@@ -331,17 +342,22 @@ fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
         }
         let ring = *arch.chain().ring();
         let weight = ring.moments_to(ring.embrace_rad()).mass;
-        let linkage = arch.link(0).unwrap().mechanism;
-        let lines = motions(&linkage)
+        let linkage = &arch.link(0).unwrap().mechanism;
+        let lines = motions(linkage)
             .into_iter()
             .map(|motion| linkage.thrust_line(&motion));
         let push = Vector2::new(1.3 * arch.incipient_g(), -1.0);
-        let at_rest = ThrustLine::at_rest(arch.chain().incipient(), &ring, push);
+        let at_rest = ThrustLine::at_rest(
+            arch.chain().incipient(),
+            arch.chain().incipient(),
+            &ring,
+            push,
+        );
         for line in lines.chain([at_rest]) {
             let demand = line.demand(HingeSites::Anywhere);
             let of = |angle: f64| {
                 let section = line.section(angle);
-                Demand::of_sections([section].into_iter(), ring.thickness_ratio(), weight)
+                Demand::of_sections([section].into_iter(), weight)
             };
             // Samples 2e-8 rad apart miss less than rounding. Far outside the top is the kink where the
             // normal force becomes too small to count, which is found to 1e-6 rad; and the friction jumps at

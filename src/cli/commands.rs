@@ -8,7 +8,7 @@ use std::path::Path;
 use archrock::dynamics::model::MechanismModel;
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::equivalent::Block;
+use archrock::mechanics::equivalent::{Block, Equivalent};
 use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::stability::onset;
@@ -17,6 +17,8 @@ use archrock::output::{mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
 
 use super::scenario_file::ScenarioFile;
+use serde_json::json;
+
 use super::{Failure, Format, print};
 
 /// The model of a scenario.
@@ -32,7 +34,7 @@ pub fn limit(file: &ScenarioFile, format: Format, plot: Option<&Path>) -> Result
         write_picture(plot, &pictures::limit(arch.chain()))?;
     }
     if let Structure::Masonry(masonry) = &scenario.structure {
-        return row_limit(masonry.row(), scenario.simulation.gravity_m_s2, format);
+        return row_limit(&scenario, masonry.row(), format);
     }
     let model = model(&scenario)?;
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
@@ -43,11 +45,18 @@ pub fn limit(file: &ScenarioFile, format: Format, plot: Option<&Path>) -> Result
 }
 
 /// The push that starts a row, by the static programme, and what opens.
-fn row_limit(row: &Row, gravity_m_s2: f64, format: Format) -> Result<(), Failure> {
+fn row_limit(scenario: &Scenario, row: &Row, format: Format) -> Result<(), Failure> {
+    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
     let onset = |sway| onset(row, sway).map_err(|error| Failure::Input(error.to_string()));
     let onsets = [onset(Sway::Right)?, onset(Sway::Left)?];
+    let four_links = scenario.structure.model(scenario.impact);
     if let Format::Json = format {
-        return print(&pretty(&mechanisms::row_limit(row, &onsets, gravity_m_s2)));
+        let mut json = mechanisms::row_limit(row, &onsets, gravity_m_s2);
+        json["four_links"] = match &four_links {
+            Ok(model) => mechanisms::of_both_sides(&**model, gravity_m_s2),
+            Err(error) => json!({ "none_because": error.to_string() }),
+        };
+        return print(&pretty(&json));
     }
     let mut text = String::new();
     for (sway, onset) in [Sway::Right, Sway::Left].into_iter().zip(&onsets) {
@@ -75,7 +84,27 @@ fn row_limit(row: &Row, gravity_m_s2: f64, format: Format) -> Result<(), Failure
         }
         text.push('\n');
     }
-    text += "joints are counted from the left, 0 at the left base or springing\n";
+    text += "joints are counted from the left, 0 at the left base or springing\n\n";
+    match four_links {
+        Err(error) => {
+            let _ = writeln!(text, "{error}");
+        }
+        Ok(model) => {
+            text += "as four links, which the static programme confirms, unstable equilibrium under gravity alone at \
+                     rotations (rad,\nanticlockwise) and equivalent free-standing block\n";
+            for sway in [Sway::Right, Sway::Left] {
+                let _ = writeln!(
+                    text,
+                    "  swaying {}: {}",
+                    sway.name(),
+                    by_body(&model.bodies(), &model.critical_rotations_towards_rad(sway))
+                );
+                if let Some(blocks) = model.equivalent_towards(sway, gravity_m_s2) {
+                    text += &equivalent_text(&blocks);
+                }
+            }
+        }
+    }
     print(&text)
 }
 
@@ -154,20 +183,26 @@ fn limit_text(model: &dyn MechanismModel, gravity_m_s2: f64) -> String {
             "\nequivalent free-standing block of the same A_L, slenderness alpha {:.6} rad",
             blocks.slenderness_rad,
         );
-        for (where_to, block) in [
-            ("from rest", blocks.at_rest),
-            ("at the unstable equilibrium", blocks.at_critical),
-        ] {
-            if let Some(Block {
-                frequency_rad_s,
-                half_diagonal_m,
-            }) = block
-            {
-                let _ = writeln!(
-                    text,
-                    "  {where_to:27}  p {frequency_rad_s:.6} rad/s, half diagonal {half_diagonal_m:.6} m",
-                );
-            }
+        text += &equivalent_text(&blocks);
+    }
+    text
+}
+
+fn equivalent_text(blocks: &Equivalent) -> String {
+    let mut text = String::new();
+    for (where_to, block) in [
+        ("from rest", blocks.at_rest),
+        ("at the unstable equilibrium", blocks.at_critical),
+    ] {
+        if let Some(Block {
+            frequency_rad_s,
+            half_diagonal_m,
+        }) = block
+        {
+            let _ = writeln!(
+                text,
+                "  {where_to:27}  p {frequency_rad_s:.6} rad/s, half diagonal {half_diagonal_m:.6} m",
+            );
         }
     }
     text

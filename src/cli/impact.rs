@@ -74,14 +74,27 @@ struct Chosen<'a> {
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.open()?.read(None)?;
     let arch = match &scenario.structure {
-        Structure::Column(_) if !arguments.of_arches_only() => {
+        Structure::Column(_) | Structure::Masonry(_) if !arguments.of_arches_only() => {
             let model = commands::model(&scenario)?;
             let count = arguments.count.into();
+            let (right, left) = (Sway::Right, Sway::Left);
+            let both = matches!(scenario.structure, Structure::Masonry(_));
             return match arguments.format {
+                Format::Json if both => print(&pretty(&json!({
+                    "impacts": output::chain(&*model, right, count),
+                    "impacts_after_left": output::chain(&*model, left, count),
+                }))),
                 Format::Json => print(&pretty(
-                    &json!({ "impacts": output::chain(&*model, count) }),
+                    &json!({ "impacts": output::chain(&*model, right, count) }),
                 )),
-                Format::Text => print(&chain_text(&scenario, &*model, count)),
+                Format::Text => {
+                    let mut text = chain_text(&scenario, &*model, right, count);
+                    if both {
+                        text.push('\n');
+                        text += &chain_text(&scenario, &*model, left, count);
+                    }
+                    print(&text)
+                }
             };
         }
         _ => commands::arch(&scenario, "--models, --certificate, --line and --plot are")?,
@@ -132,7 +145,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
             print(&pretty(&result))
         }
         Format::Text => {
-            let mut text = chain_text(&scenario, &arch, count);
+            let mut text = chain_text(&scenario, &arch, Sway::Right, count);
             text += &impulses_text(&arch, count);
             if let Some(models) = &models {
                 text += &models_text(&arch, link, models);
@@ -206,8 +219,8 @@ fn models(
         ImpactModel::SameSections,
         ImpactModel::Mirrored,
     ];
-    if !models.contains(&scenario.impact) {
-        models.push(scenario.impact);
+    if !models.contains(&scenario.impact.model) {
+        models.push(scenario.impact.model);
     }
     let (mechanism, chain) = (&chosen.before.mechanism, arch.chain());
     models
@@ -240,18 +253,32 @@ fn certify(
 }
 
 /// The chain of mechanisms of any structure.
-fn chain_text(scenario: &Scenario, model: &dyn MechanismModel, count: usize) -> String {
+fn chain_text(
+    scenario: &Scenario,
+    model: &dyn MechanismModel,
+    first: Sway,
+    count: usize,
+) -> String {
     let mut text = format!(
-        "impacts after a first sway to the right, model {} (r = kinetic energy after / before",
-        scenario.impact.name(),
+        "impacts after a first sway to the {}, model {}{} (r = kinetic energy after / before",
+        first.name(),
+        scenario.impact.model.name(),
+        match scenario.impact.restitution_factor {
+            1.0 => String::new(),
+            factor => format!(" times {factor:?}"),
+        },
     );
-    let of_arch = matches!(
-        model.hinges_after(0, Sway::Right).first(),
-        Some(Hinge::Section { .. })
-    );
-    if of_arch {
-        text += ";\nangles in degrees from the left springing; I intrados, E extrados";
-    }
+    let hinges = model.hinges_after(0, first);
+    let of_arch = hinges.len() == 4;
+    text += match hinges.first() {
+        Some(Hinge::Section { .. }) => {
+            ";\nangles in degrees from the left springing; I intrados, E extrados"
+        }
+        Some(Hinge::Joint { .. }) => {
+            ";\njoints from the left, 0 at the left base or springing; I intrados, E extrados"
+        }
+        _ => "",
+    };
     text += ")\n\nimpact         r  sway   ";
     let names: &[&str] = if of_arch {
         &commands::HINGES
@@ -263,7 +290,7 @@ fn chain_text(scenario: &Scenario, model: &dyn MechanismModel, count: usize) -> 
     }
     text.push('\n');
     for index in 0..=count {
-        let Some(restitution) = model.restitution_after(index) else {
+        let Some(restitution) = model.restitution_from(first, index) else {
             let _ = writeln!(
                 text,
                 "{index:>6}  no mechanism can follow: the structure stops"
@@ -274,7 +301,7 @@ fn chain_text(scenario: &Scenario, model: &dyn MechanismModel, count: usize) -> 
             0 => String::new(),
             _ => format!("{restitution:.6}"),
         };
-        let sway = output::sway(index);
+        let sway = first.before(index);
         let _ = write!(text, "{index:>6}  {restitution:>8}  {:5}  ", sway.name());
         for hinge in model.hinges_after(index, sway) {
             let _ = match hinge {
@@ -282,7 +309,10 @@ fn chain_text(scenario: &Scenario, model: &dyn MechanismModel, count: usize) -> 
                     write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge))
                 }
                 Hinge::Toe(side) => write!(text, "{:>12}", format!("{} toe", side.name())),
-                Hinge::Joint { joint, .. } => write!(text, "{:>12}", format!("joint {joint}")),
+                Hinge::Joint { joint, edge } => {
+                    let edge = edge.map_or("", initial);
+                    write!(text, "{:>12}", format!("joint {joint} {edge}"))
+                }
             };
         }
         text.push('\n');
@@ -420,7 +450,7 @@ fn certificate_text(
          gap                                    {gap:>12.8}\n\n",
         chosen.index,
         projection.joints.len(),
-        scenario.impact.name(),
+        scenario.impact.model.name(),
         projection.restitution,
     );
     if let Some(line) = chosen.after.and_then(|link| link.impulse_line.as_ref()) {
@@ -457,7 +487,7 @@ fn certificate_text(
         let _ = writeln!(
             text,
             "Model {} keeps more energy than any admissible motion can.",
-            scenario.impact.name()
+            scenario.impact.model.name()
         );
     }
     if projection.opened().next().is_none() {
@@ -497,7 +527,7 @@ fn zones(arch: &FourLinkArch, sway: Sway, projection: &Projection) -> Vec<Zone> 
     let mut zones: Vec<Zone> = Vec::new();
     for (joint, edge, rate) in projection.opened() {
         let angle_rad = projection.joints[joint].angle_rad;
-        let angle_deg = degrees(sway.from_left_rad(arch.chain().ring(), angle_rad));
+        let angle_deg = degrees(sway.from_left(arch.chain().ring(), angle_rad));
         let continues = |zone: &&mut Zone| {
             arch.chain().sites() == HingeSites::Anywhere
                 && zone.edge == edge

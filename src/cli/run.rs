@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Outcome, Sample, Summary};
-use archrock::dynamics::model::{MechanismModel, Recorder};
+use archrock::dynamics::model::{MechanismModel, Model, Recorder};
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::sway::Sway;
 use archrock::output::overlay::{self, Curves};
@@ -586,14 +586,7 @@ fn human_summary(
             history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
         );
     }
-    let incipient_g = model
-        .incipient_acceleration_g(Sway::Right)
-        .unwrap_or(f64::INFINITY);
-    let reaches = reaches(scenario, ground, history, incipient_g);
-    let _ = writeln!(
-        text,
-        "  incipient acceleration A_L {incipient_g:.4} g; the ground {reaches}"
-    );
+    text += &incipient(scenario, model, ground, history);
     text += &cut_short(scenario, ground, history);
     if let Some(thrust) = &history.thrust {
         text += &trust(thrust, &scenario.structure);
@@ -617,6 +610,35 @@ fn outcome(history: &Summary) -> String {
             format!("  overturned to the {sway} at {time_s:.4} s {impacts}\n")
         }
         Outcome::StillRocking => format!("  still rocking at {time_s:.4} s {impacts}\n"),
+    }
+}
+
+/// What starts the structure to either side, beside what the ground reaches.
+fn incipient<M: Model + ?Sized>(
+    scenario: &Scenario,
+    model: &M,
+    ground: &GroundMotion,
+    history: &Summary,
+) -> String {
+    let sides = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
+    let least_g = sides
+        .iter()
+        .flatten()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    let (reaches, uneven) = (
+        reaches(scenario, ground, history, least_g),
+        "the smaller one",
+    );
+    match sides {
+        [Some(right), Some(left)] if (right - left).abs() > 1e-9 * right => format!(
+            "  incipient acceleration A_L {right:.4} g to the right, {left:.4} g to the left; the ground {}\n",
+            reaches.replacen("times as much", &format!("times {uneven}"), 1)
+        ),
+        [None, None] => {
+            format!("  incipient acceleration A_L none, no push starts it; the ground {reaches}\n")
+        }
+        _ => format!("  incipient acceleration A_L {least_g:.4} g; the ground {reaches}\n"),
     }
 }
 

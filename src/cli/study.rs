@@ -91,7 +91,8 @@ impl HingesOption {
 
 /// Says that the impact model of a scenario does not count, where that is so.
 pub fn impact_ignored(scenario: &Scenario) -> Option<&'static str> {
-    let ignored = scenario.free_hinges.is_some() && scenario.impact != ImpactModel::MaxRestitution;
+    let ignored =
+        scenario.free_hinges.is_some() && scenario.impact != ImpactModel::MaxRestitution.into();
     ignored.then_some("[impact] is ignored: with free hinges impacts follow from the blocks")
 }
 

@@ -62,22 +62,42 @@ pub trait Model: Debug + Send + Sync {
 
 /// A model that moves as one mechanism with one degree of freedom at a time, and what only such a model has.
 pub trait MechanismModel: Model {
-    /// Restitution coefficient of the impact that leads to the mechanism after so many impacts, 1 for the first;
-    /// `None` when an impact before it stops the structure.
-    fn restitution_after(&self, impacts: usize) -> Option<f64>;
+    /// Restitution coefficient of the impact that leads to the mechanism after so many impacts and a first sway to
+    /// this side, 1 for the first; `None` when an impact before it stops the structure.
+    fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64>;
+
+    /// The same after a first sway to the right; of a structure that is its own mirror image, to either side.
+    fn restitution_after(&self, impacts: usize) -> Option<f64> {
+        self.restitution_from(Sway::Right, impacts)
+    }
 
     /// Hinges of that mechanism from left to right when it sways to that side; none if there is no such
     /// mechanism.
     fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
 
-    /// Rotations of the bodies at the unstable equilibrium of the first mechanism, swaying right, in radians.
-    fn critical_rotations_rad(&self) -> Vec<f64>;
+    /// Rotations of the bodies at the unstable equilibrium of the first mechanism, swaying to this side, in radians.
+    fn critical_rotations_towards_rad(&self, sway: Sway) -> Vec<f64>;
 
-    /// Coordinate at the limit position of the first mechanism: no release can start from there or beyond.
-    fn limit_rad(&self) -> f64;
+    /// The same swaying right.
+    fn critical_rotations_rad(&self) -> Vec<f64> {
+        self.critical_rotations_towards_rad(Sway::Right)
+    }
 
-    /// The free-standing blocks that rock like the first mechanism.
-    fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent>;
+    /// Coordinate at the limit position of the first mechanism to this side: no release can start from there or beyond.
+    fn limit_towards_rad(&self, sway: Sway) -> f64;
+
+    /// The same to the right.
+    fn limit_rad(&self) -> f64 {
+        self.limit_towards_rad(Sway::Right)
+    }
+
+    /// The free-standing blocks that rock like the first mechanism to this side.
+    fn equivalent_towards(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent>;
+
+    /// The same to the right.
+    fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent> {
+        self.equivalent_towards(Sway::Right, gravity_m_s2)
+    }
 
     /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
     ///

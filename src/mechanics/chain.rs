@@ -158,8 +158,12 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
         self.mass_unit_kg() * self.length_m() * self.length_m()
     }
 
-    /// Horizontal acceleration at which it starts to rock from rest, on either side, in units of gravity.
-    fn incipient_g(&self) -> f64;
+    /// Horizontal acceleration at which it starts to rock from rest to a side, in units of gravity.
+    fn incipient_towards_g(&self, sway: Sway) -> f64;
+    /// The same to the right; of a structure that is its own mirror image, to either side.
+    fn incipient_g(&self) -> f64 {
+        self.incipient_towards_g(Sway::Right)
+    }
     /// Thrust excess and friction demand of one of its mechanisms in motion.
     fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
     /// The same at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
@@ -174,8 +178,13 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// The mechanism after a number of impacts; `None` when an impact before it stops the structure.
-    fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>>;
+    /// The mechanism after a number of impacts and a first sway to this side; `None` when an impact before it stops
+    /// the structure.
+    fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Self::Mechanism>>;
+    /// The same after a first sway to the right; of a structure that is its own mirror image, to either side.
+    fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>> {
+        self.link_from(Sway::Right, impacts)
+    }
     /// Hinges of that mechanism from left to right, as seen when it sways to the given side; none when
     /// there is no such mechanism.
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;

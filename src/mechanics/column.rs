@@ -24,7 +24,7 @@ use super::arch::{DENSITY_KG_M3, DEPTH_M};
 use super::blocks::MAX_BLOCKS;
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use crate::argument::{ArgumentError, within};
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
@@ -265,8 +265,10 @@ impl RockingColumn {
     ///
     /// # Errors
     /// When a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block.
-    pub fn new(column: &Column, model: ImpactModel) -> Result<Self, ArgumentError> {
-        model.check()?;
+    pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, ArgumentError> {
+        let law = law.into();
+        law.check()?;
+        let model = law.model;
         let drums = column.drum_heights_m().len();
         if drums > 1 {
             #[expect(clippy::cast_precision_loss, reason = "counts of drums are small")]
@@ -305,6 +307,7 @@ impl RockingColumn {
             ImpactModel::Prescribed { restitution } => restitution,
             _ => rate_ratio * rate_ratio,
         };
+        let (rate_ratio, restitution) = law.measured(rate_ratio, restitution);
         Ok(Self {
             half_diagonal_m,
             mass_unit_kg: column.density_kg_m3 * column.depth_m * half_diagonal_m * half_diagonal_m,
@@ -342,8 +345,9 @@ fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Dema
         tangential: reaction.x,
         moment,
         eccentricity_ratio: moment / (reaction.y * width),
+        thickness: width,
     };
-    Demand::of_sections(std::iter::once(base), width, 1.0)
+    Demand::of_sections(std::iter::once(base), 1.0)
 }
 
 impl MechanismChain for RockingColumn {
@@ -357,7 +361,7 @@ impl MechanismChain for RockingColumn {
         self.mass_unit_kg
     }
 
-    fn incipient_g(&self) -> f64 {
+    fn incipient_towards_g(&self, _: Sway) -> f64 {
         self.incipient_g
     }
 
@@ -378,7 +382,7 @@ impl MechanismChain for RockingColumn {
         base_demand(mechanism, -body_force_g, moment)
     }
 
-    fn link(&self, impacts: usize) -> Option<&Link<Tilting>> {
+    fn link_from(&self, _: Sway, impacts: usize) -> Option<&Link<Tilting>> {
         if impacts == 0 {
             Some(&self.first)
         } else {

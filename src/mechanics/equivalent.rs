@@ -18,6 +18,7 @@
 //! small rocking.
 
 use super::chain::{Link, Mechanism, MechanismChain};
+use super::sway::Sway;
 
 /// A free-standing block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,11 +40,21 @@ pub struct Equivalent {
     pub at_critical: Option<Block>,
 }
 
-/// The blocks equivalent to the mechanism that starts `structure` under gravity.
+/// The blocks equivalent to the mechanism that starts `structure` to the right under gravity.
 #[must_use]
 pub fn equivalent<C: MechanismChain>(structure: &C, gravity_m_s2: f64) -> Option<Equivalent> {
-    let link = structure.link(0)?;
-    let slenderness_rad = structure.incipient_g().atan();
+    equivalent_towards(structure, Sway::Right, gravity_m_s2)
+}
+
+/// The blocks equivalent to the mechanism that starts `structure` to a side under gravity.
+#[must_use]
+pub fn equivalent_towards<C: MechanismChain>(
+    structure: &C,
+    sway: Sway,
+    gravity_m_s2: f64,
+) -> Option<Equivalent> {
+    let link = structure.link_from(sway, 0)?;
+    let slenderness_rad = structure.incipient_towards_g(sway).atan();
     let block = |squared: f64| {
         let per_s2 = squared * gravity_m_s2 / structure.length_m();
         (per_s2 > 0.0).then(|| Block {

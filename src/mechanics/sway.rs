@@ -1,7 +1,7 @@
 //! The two directions in which a structure sways. Everything is computed in a frame in which the sway goes right;
 //! a sway to the left is the same seen in a mirror.
 
-use crate::mechanics::geometry::ring::Ring;
+use crate::mechanics::geometry::profile::Profile;
 
 named! {
     /// Direction in which a mechanism carries the structure.
@@ -20,6 +20,16 @@ impl Sway {
         match self {
             Self::Right => Self::Left,
             Self::Left => Self::Right,
+        }
+    }
+
+    /// The side to which it swayed so many impacts before: every impact changes it.
+    #[must_use]
+    pub const fn before(self, impacts: usize) -> Self {
+        if impacts.is_multiple_of(2) {
+            self
+        } else {
+            self.opposite()
         }
     }
 
@@ -42,13 +52,13 @@ impl Sway {
         }
     }
 
-    /// Angle of a section from the left springing, from its angle in the frame in which this sway goes
-    /// right, or the other way round.
+    /// A section counted from the left springing, from that in the frame in which this sway goes right, or the
+    /// other way round: an angle in radians, or a joint.
     #[must_use]
-    pub fn from_left_rad(self, ring: &Ring, angle_rad: f64) -> f64 {
+    pub fn from_left(self, profile: &dyn Profile, section: f64) -> f64 {
         match self {
-            Self::Right => angle_rad,
-            Self::Left => ring.embrace_rad() - angle_rad,
+            Self::Right => section,
+            Self::Left => profile.end() - section,
         }
     }
 }

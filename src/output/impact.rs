@@ -29,15 +29,15 @@ pub const fn sway(link: usize) -> Sway {
 }
 
 /// Result of `impact` for any structure: the first `count` links of the chain that begins with a sway to
-/// the right; fewer when an impact stops the structure.
+/// this side; fewer when an impact stops the structure.
 #[must_use]
-pub fn chain(model: &dyn MechanismModel, count: usize) -> Vec<Value> {
+pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Value> {
     let side = |index: usize| {
-        let sway = sway(index);
+        let sway = first.before(index);
         json!({ "sway": sway.name(), "hinges": hinges(&model.hinges_after(index, sway)) })
     };
     (1..=count)
-        .map_while(|index| Some((index, model.restitution_after(index)?)))
+        .map_while(|index| Some((index, model.restitution_from(first, index)?)))
         .map(|(index, restitution)| {
             json!({
                 "index": index,
@@ -52,7 +52,7 @@ pub fn chain(model: &dyn MechanismModel, count: usize) -> Vec<Value> {
 /// The same for an arch, with the impulses and the extremes of the impulse line.
 #[must_use]
 pub fn impacts(arch: &FourLinkArch, count: usize) -> Value {
-    let mut impacts = chain(arch, count);
+    let mut impacts = chain(arch, Sway::Right, count);
     for (index, impact) in (1..).zip(&mut impacts) {
         let line = arch
             .chain()
@@ -135,7 +135,7 @@ pub fn certificate(
         .opened()
         .map(|(joint, edge, rate)| {
             json!({
-                "angle_deg": sway.from_left_rad(ring, projection.joints[joint].angle_rad).to_degrees(),
+                "angle_deg": sway.from_left(ring, projection.joints[joint].angle_rad).to_degrees(),
                 "edge": edge.name(),
                 "opening_rate_ratio": rate,
             })

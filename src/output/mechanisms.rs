@@ -61,6 +61,30 @@ pub fn row_limit(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) -
     })
 }
 
+/// What four links know of each side: unstable equilibrium and equivalent blocks.
+#[must_use]
+pub fn of_both_sides(model: &dyn MechanismModel, gravity_m_s2: f64) -> Value {
+    let side = |sway| {
+        json!({
+            "hinges": hinges(&model.hinges_after(0, sway)),
+            "unstable_equilibrium_rad": model.critical_rotations_towards_rad(sway),
+            "equivalent_block": equivalent_json(model, sway, gravity_m_s2),
+        })
+    };
+    json!({ "right": side(Sway::Right), "left": side(Sway::Left) })
+}
+
+fn equivalent_json(model: &dyn MechanismModel, sway: Sway, gravity_m_s2: f64) -> Option<Value> {
+    let block = |block: Block| json!({ "p_rad_s": block.frequency_rad_s, "half_diagonal_m": block.half_diagonal_m });
+    model.equivalent_towards(sway, gravity_m_s2).map(|blocks| {
+        json!({
+            "slenderness_rad": blocks.slenderness_rad,
+            "at_rest": blocks.at_rest.map(block),
+            "at_critical": blocks.at_critical.map(block),
+        })
+    })
+}
+
 /// Result of `limit`: incipient acceleration and mechanism on both sides, rotations of the bodies at the unstable
 /// equilibrium of the first mechanism swaying right (those swaying left are its mirror image), and the equivalent blocks
 /// (see [`crate::mechanics::equivalent`]), the same on both sides.
@@ -68,14 +92,7 @@ pub fn row_limit(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) -
 pub fn limit(model: &dyn MechanismModel, gravity_m_s2: f64) -> Value {
     let both =
         |of: &dyn Fn(Sway) -> Value| json!({ "right": of(Sway::Right), "left": of(Sway::Left) });
-    let block = |block: Block| json!({ "p_rad_s": block.frequency_rad_s, "half_diagonal_m": block.half_diagonal_m });
-    let equivalent = model.equivalent(gravity_m_s2).map(|blocks| {
-        json!({
-            "slenderness_rad": blocks.slenderness_rad,
-            "at_rest": blocks.at_rest.map(block),
-            "at_critical": blocks.at_critical.map(block),
-        })
-    });
+    let equivalent = equivalent_json(model, Sway::Right, gravity_m_s2);
     let bodies = model.bodies();
     let keys = columns(&bodies, "rotation", "rad").into_iter();
     let unstable: serde_json::Map<_, _> = keys

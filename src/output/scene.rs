@@ -30,8 +30,11 @@ enum Shape {
     },
     /// One body.
     Block { outline_m: Vec<Vector2<f64>> },
-    /// A body for each block.
-    Row { outlines_m: Vec<Vec<Vector2<f64>>> },
+    /// A body for each block; or, if linked, the blocks between two hinges are one, and those outside stand still.
+    Row {
+        outlines_m: Vec<Vec<Vector2<f64>>>,
+        linked: bool,
+    },
 }
 
 /// A section where the line of thrust is told, in metres, undeformed.
@@ -101,7 +104,7 @@ impl Scene {
         match structure {
             Structure::Arch(arch) => Self::of_arch(arch),
             Structure::Column(column) => Self::of_column(column),
-            Structure::Masonry(masonry) => Self::of_row(masonry.row()),
+            Structure::Masonry(masonry) => Self::of_blocks(masonry.row(), true),
         }
     }
 
@@ -145,6 +148,10 @@ impl Scene {
     /// A row of blocks.
     #[must_use]
     pub fn of_row(row: &Row) -> Self {
+        Self::of_blocks(row, false)
+    }
+
+    fn of_blocks(row: &Row, linked: bool) -> Self {
         let joints = row.joints().iter();
         Self {
             sections: joints
@@ -156,6 +163,7 @@ impl Scene {
                 .collect(),
             shape: Shape::Row {
                 outlines_m: row.outlines_m().to_vec(),
+                linked,
             },
         }
     }
@@ -173,7 +181,7 @@ impl Scene {
         let is_arch = match &self.shape {
             Shape::Ring { .. } => true,
             Shape::Block { .. } => false,
-            Shape::Row { outlines_m } => self.sections.len() > outlines_m.len(),
+            Shape::Row { outlines_m, .. } => self.sections.len() > outlines_m.len(),
         };
         let ends = [self.sections.first(), self.sections.last()];
         let faces = ends.into_iter().flatten().filter(|_| is_arch);
@@ -201,11 +209,15 @@ impl Scene {
                 body: Some(0),
                 outline_m: outline_m.clone(),
             }],
-            Shape::Row { outlines_m } => {
+            Shape::Row { outlines_m, linked } => {
                 let outlines = outlines_m.iter().enumerate();
                 outlines
                     .map(|(block, outline_m)| Piece {
-                        body: Some(block),
+                        body: if *linked {
+                            linked_body(hinges, block)
+                        } else {
+                            Some(block)
+                        },
                         outline_m: outline_m.clone(),
                     })
                     .collect()
@@ -263,20 +275,38 @@ impl Scene {
                     joint,
                     edge: Some(edge),
                 },
-                Shape::Row { .. },
-            ) => self.joint(joint).map(|[intrados, extrados]| match edge {
-                Edge::Intrados => intrados,
-                Edge::Extrados => extrados,
+                Shape::Row { linked, .. },
+            ) => self.corners(joint).map(|[intrados, extrados]| {
+                let mark = match edge {
+                    Edge::Intrados => intrados,
+                    Edge::Extrados => extrados,
+                };
+                if *linked {
+                    Mark {
+                        body: (index < LINKS).then_some(index),
+                        ..mark
+                    }
+                } else {
+                    mark
+                }
             }),
             _ => None,
         });
         marks.collect()
     }
 
-    /// The corners of a joint of a row at intrados and extrados, as points of the block after it.
+    /// The corners of a joint of a row at intrados and extrados, as points of the block after it; `None` where several
+    /// blocks move as one body.
     #[must_use]
     pub fn joint(&self, joint: usize) -> Option<[Mark; 2]> {
-        let Shape::Row { outlines_m } = &self.shape else {
+        match &self.shape {
+            Shape::Row { linked: false, .. } => self.corners(joint),
+            _ => None,
+        }
+    }
+
+    fn corners(&self, joint: usize) -> Option<[Mark; 2]> {
+        let Shape::Row { outlines_m, .. } = &self.shape else {
             return None;
         };
         let Section {
@@ -297,6 +327,9 @@ impl Scene {
         sections
             .map(|(index, section)| match section.angle_rad {
                 Some(angle_rad) => link(&hinges_rad, angle_rad),
+                None if matches!(self.shape, Shape::Row { linked: true, .. }) => {
+                    linked_body(hinges, index)
+                }
                 None => self.joint(index).and_then(|[corner, _]| corner.body),
             })
             .collect()
@@ -322,6 +355,15 @@ impl Scene {
         stretches.retain(|stretch| stretch.len() > 1);
         stretches
     }
+}
+
+/// The link that a block of a row belongs to when hinges are open at these joints.
+fn linked_body(hinges: &[OpenHinge], block: usize) -> Option<usize> {
+    let before = hinges
+        .iter()
+        .filter(|open| matches!(open.hinge, Hinge::Joint { joint, .. } if joint <= block));
+    let link = before.count().checked_sub(1)?;
+    (link < LINKS).then_some(link)
 }
 
 /// Bodies of a four-link mechanism.

@@ -5,12 +5,23 @@ use std::ops::Bound::Included;
 use serde::ser::{SerializeMap as _, Serializer};
 
 use super::table::{Number, OneOf, Reading, Table};
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 
+/// From no rebound to far above what was measured: 0.67 to 0.97 times the theory.
+const RESTITUTION_FACTOR: Number = Number(Included(0.0), Included(100.0));
 pub(super) const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
 
 /// Reads `[impact]`.
-pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactModel> {
+pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactLaw> {
+    let factor = table.or("restitution_factor", &RESTITUTION_FACTOR, 1.0);
+    let model = read_model(table);
+    Ok(ImpactLaw {
+        model: model?,
+        restitution_factor: factor?,
+    })
+}
+
+fn read_model(table: &mut Table<'_>) -> Reading<ImpactModel> {
     // Only the names matter here; the restitution is filled in below.
     let all = [
         ImpactModel::MaxRestitution,
@@ -43,14 +54,14 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactModel> {
 }
 
 /// Writes `[impact]`.
-pub(super) fn serialize<S: Serializer>(
-    model: &ImpactModel,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
+pub(super) fn serialize<S: Serializer>(law: &ImpactLaw, serializer: S) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(None)?;
-    map.serialize_entry("model", model.name())?;
-    if let ImpactModel::Prescribed { restitution } = model {
+    map.serialize_entry("model", law.model.name())?;
+    if let ImpactModel::Prescribed { restitution } = &law.model {
         map.serialize_entry("restitution", restitution)?;
+    }
+    if !law.is_theory() {
+        map.serialize_entry("restitution_factor", &law.restitution_factor)?;
     }
     map.end()
 }

@@ -54,7 +54,7 @@ use serde_json::Value;
 use crate::dynamics::free_hinges::Steps;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, Model, Request};
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::impact::ImpactLaw;
 pub use assignment::Assignment;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub(crate) use ground::MAX_ACCELERATION_G;
@@ -116,7 +116,7 @@ pub struct Scenario {
     pub ground: Option<Ground>,
     /// What happens when the hinges of four links close; nothing that is asked of free hinges.
     #[serde(serialize_with = "impact::serialize")]
-    pub impact: ImpactModel,
+    pub impact: ImpactLaw,
     /// Where the motion starts from; `None`: from rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<Initial>,
@@ -201,7 +201,8 @@ impl Scenario {
         });
         let map = table.table("map", |table| {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
-            let (impact, simulation) = (impact.as_ref().ok(), simulation.as_ref().ok());
+            let impact = impact.as_ref().ok().map(|law| &law.model);
+            let simulation = simulation.as_ref().ok();
             Map::read(table, structure, free, ground, impact, simulation)
         });
         let spectrum = table.table("spectrum", |table| {

@@ -17,9 +17,11 @@ use crate::mechanics::arch::{self, Arch};
 use crate::mechanics::blocks::MAX_BLOCKS;
 use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
+use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::masonry::{CircularArch, Masonry, Shape};
+use crate::mechanics::sway::Sway;
 
 /// Lengths and densities.
 pub(super) const MAGNITUDE: Number = Number(
@@ -94,12 +96,27 @@ impl Structure {
     ///
     /// # Errors
     /// When it does not rock as four links.
-    pub fn model(&self, impact: ImpactModel) -> Result<Box<dyn MechanismModel>, FourLinkError> {
+    pub fn model(
+        &self,
+        impact: impl Into<ImpactLaw>,
+    ) -> Result<Box<dyn MechanismModel>, FourLinkError> {
         Ok(match self {
             Self::Arch(arch) => Box::new(FourLinkArch::new(arch.clone(), impact)?),
             Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
-            Self::Masonry(_) => return Err(FourLinkError::Blocks),
+            Self::Masonry(masonry) => Box::new(FourLinkRow::new(masonry.row(), impact)?),
         })
+    }
+
+    /// Length out of plane in m and density in kg/m3, of several the first.
+    pub(crate) fn depth_and_density(&self) -> (f64, f64) {
+        match self {
+            Self::Arch(arch) => (arch.depth_m(), arch.density_kg_m3()),
+            Self::Column(column) => (column.depth_m(), column.density_kg_m3()),
+            Self::Masonry(masonry) => {
+                let material = masonry.shape.material();
+                (material.depth_m, material.density_kg_m3)
+            }
+        }
     }
 
     /// The rotation below which it can be released: the limit position of its first mechanism. `None` where that is
@@ -112,7 +129,11 @@ impl Structure {
                 arch.ok().map(|arch| arch.limit_rad())
             }
             Self::Column(_) => Some(FRAC_PI_2),
-            Self::Masonry(_) => None,
+            Self::Masonry(masonry) => {
+                let row = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution).ok()?;
+                let sides = Sway::ALL.iter().map(|sway| row.limit_towards_rad(*sway));
+                Some(sides.fold(f64::INFINITY, f64::min))
+            }
         }
     }
 

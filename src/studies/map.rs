@@ -15,8 +15,9 @@ use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::limit::LimitError;
+use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::stability::StabilityError;
 use crate::scenario::{Axis, Ground, ModelError, PulseGround, Quantity, Scenario, Structure};
 
@@ -90,6 +91,7 @@ pub struct OverturningMap<'a> {
 enum Standing {
     Arch(FourLinkArch),
     Column(RockingColumn),
+    FourLinkRow(Arc<FourLinkRow>),
     Row(Arc<FreeHinges>),
 }
 
@@ -98,6 +100,7 @@ impl Standing {
         match self {
             Self::Arch(arch) => arch,
             Self::Column(column) => column,
+            Self::FourLinkRow(row) => &**row,
             Self::Row(row) => &**row,
         }
     }
@@ -252,6 +255,7 @@ impl<'a> OverturningMap<'a> {
         Ok(match self.standing(index)? {
             Standing::Arch(arch) => Some(Box::new(arch)),
             Standing::Column(column) => Some(Box::new(column)),
+            Standing::FourLinkRow(row) => Some(Box::new((*row).clone())),
             Standing::Row(_) => None,
         })
     }
@@ -278,18 +282,24 @@ impl<'a> OverturningMap<'a> {
 
     /// The mechanisms of the structure of a cell.
     fn mechanisms(&self, index: usize) -> Result<Standing, FourLinkError> {
-        let impact = match self.scenario.impact {
+        let model = match self.scenario.impact.model {
             ImpactModel::Prescribed { restitution } => ImpactModel::Prescribed {
                 restitution: self
                     .value(index, Quantity::Restitution)
                     .unwrap_or(restitution),
             },
-            impact => impact,
+            model => model,
+        };
+        let impact = ImpactLaw {
+            model,
+            ..self.scenario.impact
         };
         Ok(match self.structure(index)? {
             Structure::Arch(arch) => Standing::Arch(FourLinkArch::new(arch, impact)?),
             Structure::Column(column) => Standing::Column(RockingColumn::new(&column, impact)?),
-            Structure::Masonry(_) => return Err(FourLinkError::Blocks),
+            Structure::Masonry(masonry) => {
+                Standing::FourLinkRow(Arc::new(FourLinkRow::new(masonry.row(), impact)?))
+            }
         })
     }
 

@@ -141,13 +141,13 @@ impl<'a> OverturningSpectrum<'a> {
             block(&*model, request.gravity_m_s2).ok_or(NoSpectrum::NoBlock)?;
         let structures = match &scenario.structure {
             Structure::Column(_) => vec![(StructureKind::Column, model)],
-            Structure::Masonry(_) => return Err(FourLinkError::Blocks.into()),
-            Structure::Arch(arch) => {
+            Structure::Arch(_) | Structure::Masonry(_) => {
+                let (depth_m, density_kg_m3) = scenario.structure.depth_and_density();
                 let (sin, cos) = slenderness_rad.sin_cos();
                 let diagonal_m = 2.0 * block.half_diagonal_m;
                 let column = Column::new(diagonal_m * cos, diagonal_m * sin)
-                    .and_then(|column| column.with_depth_m(arch.depth_m()))
-                    .and_then(|column| column.with_density_kg_m3(arch.density_kg_m3()))
+                    .and_then(|column| column.with_depth_m(depth_m))
+                    .and_then(|column| column.with_density_kg_m3(density_kg_m3))
                     .and_then(|column| RockingColumn::new(&column, scenario.impact))
                     .map_err(FourLinkError::from)?;
                 vec![

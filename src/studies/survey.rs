@@ -4,7 +4,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::arch::FourLinkArch;
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::impact::ImpactLaw;
 use crate::mechanics::four_link::mechanism::HingeSites;
 
 /// Incipient acceleration and restitution of a shape.
@@ -36,13 +36,13 @@ pub fn shape_result(
     embrace_deg: f64,
     thickness_ratio: f64,
     sites: HingeSites,
-    model: ImpactModel,
+    law: impl Into<ImpactLaw>,
 ) -> Option<ShapeResult> {
     let mut arch = Arch::new(1.0, thickness_ratio, embrace_deg).ok()?;
     if let HingeSites::Voussoirs(voussoirs) = sites {
         arch = arch.with_voussoirs(voussoirs).ok()?;
     }
-    let arch = FourLinkArch::new(arch, model).ok()?;
+    let arch = FourLinkArch::new(arch, law).ok()?;
     let chain = arch.chain();
     let restitution = |index: usize| chain.link(index).map(|link| link.link.restitution);
     let mut last = restitution(1);
@@ -69,15 +69,11 @@ pub fn shape_result(
 /// The results of shapes, given by embrace angle in degrees and thickness over mean radius, in their order and
 /// on all processors; those of which no four-link mechanism starts are left out.
 #[must_use]
-pub fn shape_results(
-    shapes: &[(f64, f64)],
-    sites: HingeSites,
-    model: ImpactModel,
-) -> Vec<ShapeResult> {
+pub fn shape_results(shapes: &[(f64, f64)], sites: HingeSites, law: ImpactLaw) -> Vec<ShapeResult> {
     shapes
         .par_iter()
         .filter_map(|(embrace_deg, thickness_ratio)| {
-            shape_result(*embrace_deg, *thickness_ratio, sites, model)
+            shape_result(*embrace_deg, *thickness_ratio, sites, law)
         })
         .collect()
 }

@@ -11,7 +11,6 @@ use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::{Model as _, Recorder, Request, SimulationError};
 use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::sway::Sway;
 use archrock::output::free_hinges::{JointsWriter, LandingsWriter, summary};
 use archrock::output::overlay::Curves;
 use archrock::output::results::EventsWriter;
@@ -24,7 +23,7 @@ use archrock::scenario::Scenario;
 use super::extras::{Extras, File, POSES, PosesTable};
 use super::{
     EVENTS, IMPACTS, JOINTS, PICTURE, Place, ROTATIONS, SUMMARY, Told, cannot_write, cut_short,
-    outcome, reaches, written,
+    incipient, outcome, written,
 };
 use crate::cli::Failure;
 
@@ -323,24 +322,7 @@ fn words(
             run.energy_defect_ratio, run.cost.steps, run.cost.iterations
         );
     }
-    let sides = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
-    let least_g = sides
-        .iter()
-        .flatten()
-        .copied()
-        .fold(f64::INFINITY, f64::min);
-    let reaches = reaches(scenario, ground, history, least_g);
-    let incipient = match sides {
-        [Some(right), Some(left)] if (right - left).abs() > 1e-9 * right => {
-            format!("{right:.4} g to the right, {left:.4} g to the left")
-        }
-        [None, None] => "none, no push starts it".to_owned(),
-        _ => format!("{least_g:.4} g"),
-    };
-    let _ = writeln!(
-        text,
-        "  incipient acceleration A_L {incipient}; the ground {reaches}"
-    );
+    text += &incipient(scenario, model, ground, history);
     text += &cut_short(scenario, ground, history);
     if let Some(thrust) = &history.thrust {
         let friction = thrust.largest_friction;

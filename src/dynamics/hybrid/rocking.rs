@@ -95,8 +95,8 @@ pub struct Rocking<'a, C: MechanismChain> {
     gravity_m_s2: f64,
     rest_energy_ratio: f64,
     barrier: f64,
-    /// Horizontal acceleration that lifts the structure off, in units of gravity.
-    uplift_g: f64,
+    /// Horizontal acceleration that lifts the structure off to the right and to the left, in units of gravity.
+    uplift_g: [f64; 2],
 }
 
 impl<'a, C: MechanismChain> Rocking<'a, C> {
@@ -111,18 +111,22 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         gravity_m_s2: f64,
         rest_energy_ratio: f64,
     ) -> Self {
+        let sides = [Sway::Right, Sway::Left];
         let mut rocking = Self {
             chain,
             ground,
             gravity_m_s2,
             rest_energy_ratio,
-            barrier: 0.0,
-            uplift_g: UPLIFT_FACTOR * chain.incipient_g(),
+            barrier: f64::INFINITY,
+            uplift_g: sides.map(|side| UPLIFT_FACTOR * chain.incipient_towards_g(side)),
         };
-        if let Some(first) = chain.link(0) {
-            rocking.barrier = rocking.barrier_of(first);
-            let opening_g = first.at_zero.s_y / first.at_zero.s_x;
-            rocking.uplift_g = rocking.uplift_g.max(OPENING_FACTOR * opening_g);
+        for (side, uplift_g) in sides.into_iter().zip(0..) {
+            if let Some(first) = chain.link_from(side, 0) {
+                rocking.barrier = rocking.barrier.min(rocking.barrier_of(first));
+                let opening_g = first.at_zero.s_y / first.at_zero.s_x;
+                let uplift_g = &mut rocking.uplift_g[uplift_g];
+                *uplift_g = uplift_g.max(OPENING_FACTOR * opening_g);
+            }
         }
         rocking
     }
@@ -139,7 +143,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.ground
     }
 
-    /// Energy that the first mechanism has to gain to overturn under gravity alone. Energies are in the
+    /// Energy that the first mechanism has to gain to overturn under gravity alone, on the weaker side. Energies are in the
     /// structure's unit of mass times the square of its unit of length, per s2.
     #[must_use]
     pub const fn barrier(&self) -> f64 {
@@ -168,11 +172,13 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     /// The mode of a structure released on one side.
     #[must_use]
     pub fn released(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
-        self.chain.link(0).map_or(Mode::Rest, |link| Mode::Rocking {
-            sway,
-            impacts: 0,
-            link,
-        })
+        self.chain
+            .link_from(sway, 0)
+            .map_or(Mode::Rest, |link| Mode::Rocking {
+                sway,
+                impacts: 0,
+                link,
+            })
     }
 
     fn piece(&self, piece: usize) -> &'a Piece {
@@ -438,7 +444,11 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         match (guard, mode) {
             (Guard::Uplift(sway), _) => {
                 let (acceleration, jerk) = piece.at(time_s);
-                let tilt = Vector2::new(sway.sign(), self.uplift_g);
+                let uplift_g = match sway {
+                    Sway::Right => self.uplift_g[0],
+                    Sway::Left => self.uplift_g[1],
+                };
+                let tilt = Vector2::new(sway.sign(), uplift_g);
                 GuardValue {
                     value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
                     rate: tilt.dot(&jerk),
@@ -515,7 +525,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
             (Guard::Closing, Mode::Rocking { sway, impacts, .. }) => {
                 // The closing rate is negative, but for rounding at the end of a vanishing hop.
                 let closing_rate = (-state[1]).max(0.0);
-                let Some(link) = self.chain.link(impacts + 1) else {
+                let Some(link) = self.chain.link_from(sway.before(impacts), impacts + 1) else {
                     return (Mode::Rest, still);
                 };
                 let rate = link.rate_ratio * closing_rate;

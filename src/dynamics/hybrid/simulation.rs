@@ -17,7 +17,7 @@ use crate::dynamics::history::{
 use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
-use crate::mechanics::equivalent::{Equivalent, equivalent};
+use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 
@@ -30,8 +30,8 @@ impl<C: MechanismChain> Model for C {
         bodies.map(|body| (*body).to_owned()).collect()
     }
 
-    fn incipient_acceleration_g(&self, _: Sway) -> Option<f64> {
-        Some(self.incipient_g())
+    fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
+        Some(self.incipient_towards_g(sway))
     }
 
     fn simulate(
@@ -104,27 +104,29 @@ impl<C: MechanismChain> Model for C {
 }
 
 impl<C: MechanismChain> MechanismModel for C {
-    fn restitution_after(&self, impacts: usize) -> Option<f64> {
-        self.link(impacts).map(|link| link.restitution)
+    fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64> {
+        self.link_from(first, impacts).map(|link| link.restitution)
     }
 
     fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
         self.hinges(impacts, sway)
     }
 
-    fn critical_rotations_rad(&self) -> Vec<f64> {
-        self.link(0).map_or(Vec::new(), |first| {
+    fn critical_rotations_towards_rad(&self, sway: Sway) -> Vec<f64> {
+        self.link_from(sway, 0).map_or(Vec::new(), |first| {
             let rotations = first.mechanism.rotations(first.critical_rad);
-            rotations.as_ref().to_vec()
+            seen_from_ground::<C>(sway, rotations, 1.0)
+                .as_ref()
+                .to_vec()
         })
     }
 
-    fn limit_rad(&self) -> f64 {
-        self.link(0).map_or(0.0, |first| first.limit_rad)
+    fn limit_towards_rad(&self, sway: Sway) -> f64 {
+        self.link_from(sway, 0).map_or(0.0, |first| first.limit_rad)
     }
 
-    fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent> {
-        equivalent(self, gravity_m_s2)
+    fn equivalent_towards(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent> {
+        equivalent_towards(self, sway, gravity_m_s2)
     }
 
     fn overturns_without_impact(
@@ -148,7 +150,7 @@ fn checked<'a, C: MechanismChain>(
 ) -> Result<Rocking<'a, C>, SimulationError> {
     request.check()?;
     if let Some(initial) = request.initial {
-        let limit_rad = chain.limit_rad();
+        let limit_rad = chain.limit_towards_rad(initial.sway);
         if initial.rotation_rad >= limit_rad {
             return Err(SimulationError::Argument(ArgumentError {
                 argument: "rotation_rad",
@@ -242,7 +244,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
         if transition.guard != Guard::Closing {
             return None;
         }
-        let after = chain.link(impacts + 1);
+        let after = chain.link_from(sway.before(impacts), impacts + 1);
         let rate_before_rad_s = transition.before[1].min(0.0);
         Some(Self {
             sway,

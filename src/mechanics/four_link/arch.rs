@@ -1,18 +1,17 @@
 //! An arch that rocks as four-link mechanisms.
 
-use std::sync::Arc;
-
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::chain::Chain;
-use super::impact::ImpactModel;
+use super::chain::{Chain, Chains};
+use super::impact::ImpactLaw;
 use super::limit::LimitError;
 use super::linkage::Linkage;
-use super::thrust::ThrustLine;
 use crate::argument::ArgumentError;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::chain::{Demand, Hinge, Link, MechanismChain, Motion};
+use crate::mechanics::contact::ContactError;
+use crate::mechanics::geometry::ring::Ring;
 use crate::mechanics::sway::Sway;
 
 /// An arch with its chain of four-link mechanisms under an impact model. The chain depends on neither size nor
@@ -20,7 +19,7 @@ use crate::mechanics::sway::Sway;
 #[derive(Clone, Debug)]
 pub struct FourLinkArch {
     arch: Arch,
-    chain: Arc<Chain>,
+    chains: Chains<Ring>,
 }
 
 /// Why an arch does not rock as four-link mechanisms.
@@ -29,9 +28,23 @@ pub enum FourLinkError {
     /// It does not start as one.
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// It is a row of blocks of another shape.
-    #[error("four links are for circular arches without piers and loads: give [free_hinges]")]
-    Blocks,
+    /// It is a free-standing stack.
+    #[error("a stack on one support has no four links: give [free_hinges]")]
+    Stack,
+    /// A row of blocks does not start as four links to this side.
+    #[error(
+        "to the {side} four links do not describe this row of blocks ({error}); give [free_hinges], which take \
+         any mechanism", side = .sway.name()
+    )]
+    Row {
+        /// To which side.
+        sway: Sway,
+        /// Why.
+        error: LimitError,
+    },
+    /// It could not be told whether a row stands.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
     /// The restitution coefficient is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
@@ -43,13 +56,14 @@ impl FourLinkArch {
     /// # Errors
     /// When the arch cannot stand or does not start as a four-link mechanism, or when a prescribed restitution
     /// coefficient is not in 0 to 1.
-    pub fn new(arch: Arch, model: ImpactModel) -> Result<Self, FourLinkError> {
-        model.check()?;
+    pub fn new(arch: Arch, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
+        let law = law.into();
+        law.check()?;
         let incipient = arch.incipient()?.clone();
-        let chain = Chain::new(arch.ring(), arch.sites(), incipient, model);
+        let chain = Chain::new([arch.ring(); 2], arch.sites(), incipient, law);
         Ok(Self {
             arch,
-            chain: Arc::new(chain),
+            chains: Chains::symmetric(chain),
         })
     }
 
@@ -62,7 +76,7 @@ impl FourLinkArch {
     /// Its chain of mechanisms.
     #[must_use]
     pub fn chain(&self) -> &Chain {
-        &self.chain
+        self.chains.from(Sway::Right)
     }
 
     /// An arch of the same shape with another mean radius, in metres, and the same chain.
@@ -72,7 +86,7 @@ impl FourLinkArch {
     pub fn with_mean_radius_m(&self, mean_radius_m: f64) -> Result<Self, ArgumentError> {
         Ok(Self {
             arch: self.arch.clone().with_mean_radius_m(mean_radius_m)?,
-            chain: self.chain.clone(),
+            chains: self.chains.clone(),
         })
     }
 
@@ -95,17 +109,16 @@ impl MechanismChain for FourLinkArch {
         self.arch.density_kg_m3() * self.arch.depth_m() * radius_m * radius_m
     }
 
-    fn incipient_g(&self) -> f64 {
-        self.chain.incipient().acceleration_g
+    fn incipient_towards_g(&self, sway: Sway) -> f64 {
+        self.chains.from(sway).incipient().acceleration_g
     }
 
     fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
-        mechanism.thrust_line(motion).demand(self.chain.sites())
+        mechanism.thrust_line(motion).demand(self.chain().sites())
     }
 
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
-        ThrustLine::at_rest(self.chain.incipient(), self.chain.ring(), body_force_g)
-            .demand(self.chain.sites())
+        self.chains.demand_at_rest(body_force_g)
     }
 
     fn eccentricity_ratios(&self, mechanism: &Linkage, motion: &Motion) -> Vec<Option<f64>> {
@@ -114,18 +127,17 @@ impl MechanismChain for FourLinkArch {
     }
 
     fn eccentricity_ratios_at_rest(&self, body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
-        let (incipient, ring) = (self.chain.incipient(), self.chain.ring());
-        let line = ThrustLine::at_rest(incipient, ring, body_force_g);
+        let line = self.chains.thrust_at_rest(body_force_g);
         line.eccentricity_ratios(&self.arch.thrust_sections_rad())
     }
 
-    fn link(&self, impacts: usize) -> Option<&Link<Linkage>> {
-        self.chain.link(impacts).map(|link| &link.link)
+    fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Linkage>> {
+        self.chains.link(first, impacts)
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        self.chain.link(impacts).map_or(Vec::new(), |link| {
-            let hinges = link.mechanism.hinges_from_left(self.chain.ring(), sway);
+        let hinges = self.chains.hinges(impacts, sway);
+        hinges.map_or(Vec::new(), |hinges| {
             hinges
                 .map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
                 .to_vec()
@@ -133,12 +145,6 @@ impl MechanismChain for FourLinkArch {
     }
 
     fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
-        let line = self
-            .chain
-            .link(impacts)
-            .and_then(|link| link.impulse_line.as_ref());
-        line.map_or(Vec::new(), |line| {
-            line.hinge_impulses_from_left(sway).to_vec()
-        })
+        self.chains.hinge_impulses(impacts, sway)
     }
 }

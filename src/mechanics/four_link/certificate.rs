@@ -22,7 +22,8 @@ use thiserror::Error;
 use super::mechanism::{FourLink, HingeSites};
 use super::resultant::SectionResultant;
 use crate::mechanics::geometry::field::{Field, Twist};
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::Edge;
 
 /// Number of equal parts from which the projection of a continuous ring is computed by default. The error of
 /// `r` falls with the square of the number; here it is about 1e-6, by test.
@@ -91,16 +92,16 @@ pub struct ProjectionError {
 /// joints.
 #[must_use]
 pub fn joints_rad(
-    ring: &Ring,
+    profile: &dyn Profile,
     sites: HingeSites,
     count: usize,
     mechanism: Option<&FourLink>,
 ) -> Vec<f64> {
     match sites {
-        HingeSites::Voussoirs(voussoirs) => ring.sections(voussoirs),
+        HingeSites::Voussoirs(voussoirs) => profile.sections(voussoirs),
         HingeSites::Anywhere => {
-            let mut joints = ring.sections(count);
-            let (spacing, end) = (joints[1], ring.embrace_rad());
+            let mut joints = profile.sections(count);
+            let (spacing, end) = (joints[1], profile.end());
             let mut hinges: Vec<f64> = mechanism.map_or(Vec::new(), |m| m.hinges_rad().to_vec());
             // A hinge at a springing already has its joint; a body in between would have no mass.
             hinges.retain(|hinge| *hinge > 1e-6 * spacing && end - hinge > 1e-6 * spacing);
@@ -128,20 +129,20 @@ pub fn joints_rad(
 /// When there are fewer than two joints.
 pub fn project(
     before: &Field,
-    ring: &Ring,
+    profile: &dyn Profile,
     joints_rad: &[f64],
 ) -> Result<Projection, ProjectionError> {
     assert!(joints_rad.len() >= 2, "a body lies between two joints");
-    let energy_before = before.product(before, ring);
+    let energy_before = before.product(before, profile);
     let scale = energy_before.sqrt();
     let bodies: Vec<[Twist; 3]> = joints_rad
         .windows(2)
-        .map(|ends| orthonormal_twists(ring, ends[0], ends[1]))
+        .map(|ends| orthonormal_twists(profile, ends[0], ends[1]))
         .collect();
     let mut target = Vec::with_capacity(3 * bodies.len());
-    let mut passed = before.momentum_to(ring, joints_rad[0]);
+    let mut passed = before.momentum_to(profile, joints_rad[0]);
     for (twists, end) in bodies.iter().zip(&joints_rad[1..]) {
-        let reached = before.momentum_to(ring, *end);
+        let reached = before.momentum_to(profile, *end);
         let momentum = reached - passed;
         target.extend(twists.map(|twist| twist.power(&momentum) / scale));
         passed = reached;
@@ -151,8 +152,9 @@ pub fn project(
     let count = joints_rad.len();
     let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
     for (joint, angle) in joints_rad.iter().enumerate() {
-        let (radial, tangent) = (ring.radial(*angle), ring.tangent(*angle));
-        let edges = [Edge::Intrados, Edge::Extrados].map(|edge| ring.point(*angle, edge));
+        let (outward, onward) = (profile.outward(*angle), profile.onward(*angle));
+        let middle = profile.middle(*angle);
+        let edges = [Edge::Intrados, Edge::Extrados].map(|edge| profile.point(*angle, edge));
         let neighbours = [(joint.checked_sub(1), -1.0), (Some(joint), 1.0)];
         for (body, side) in neighbours {
             let Some((body, twists)) = body.and_then(|body| Some((body, bodies.get(body)?))) else {
@@ -160,9 +162,9 @@ pub fn project(
             };
             for (axis, twist) in twists.iter().enumerate() {
                 let velocities = [
-                    (joint, twist.at(radial).dot(&radial)),
-                    (count + 2 * joint, -twist.at(edges[0]).dot(&tangent)),
-                    (count + 2 * joint + 1, -twist.at(edges[1]).dot(&tangent)),
+                    (joint, twist.at(middle).dot(&outward)),
+                    (count + 2 * joint, -twist.at(edges[0]).dot(&onward)),
+                    (count + 2 * joint + 1, -twist.at(edges[1]).dot(&onward)),
                 ];
                 for (row, velocity) in velocities {
                     rows.push(row);
@@ -201,14 +203,16 @@ pub fn project(
         let [gap_intrados, gap_extrados] = edge_rows.map(|row| solution.s[row] * scale);
         let [intrados, extrados] = edge_rows.map(|row| solution.z[row] * scale);
         let normal = intrados + extrados;
+        let thickness = profile.thickness(*angle);
         Joint {
             angle_rad: *angle,
-            opening_rates: [gap_extrados, gap_intrados].map(|gap| gap / ring.thickness_ratio()),
+            opening_rates: [gap_extrados, gap_intrados].map(|gap| gap / thickness),
             impulse: SectionResultant {
                 normal,
                 tangential: -solution.z[joint] * scale,
-                moment: 0.5 * (extrados - intrados) * ring.thickness_ratio(),
+                moment: 0.5 * (extrados - intrados) * thickness,
                 eccentricity_ratio: 0.5 * (extrados - intrados) / normal,
+                thickness,
             },
         }
     });
@@ -224,8 +228,8 @@ pub fn project(
 
 /// Motions of the part between two sections, orthogonal to each other and each with a kinetic energy of one half:
 /// two translations and the rotation about its centre of gravity.
-fn orthonormal_twists(ring: &Ring, from_rad: f64, to_rad: f64) -> [Twist; 3] {
-    let moments = ring.sector(from_rad, to_rad);
+fn orthonormal_twists(profile: &dyn Profile, from_rad: f64, to_rad: f64) -> [Twist; 3] {
+    let moments = profile.sector(from_rad, to_rad);
     let shift = 1.0 / moments.mass.sqrt();
     [
         Twist::translation(Vector2::new(shift, 0.0)),

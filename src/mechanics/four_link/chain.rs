@@ -4,15 +4,20 @@
 //! that starts at the incipient acceleration the whole sequence is a property of the arch. Links are
 //! computed when first asked for and cached; threads may share a chain.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
-use super::impact::{Impact, ImpactModel, impact, impact_onto};
+use nalgebra::Vector2;
+
+use super::impact::{Impact, ImpactLaw, impact, impact_onto};
 use super::impulse_line::ImpulseLine;
 use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
-use crate::mechanics::chain::Link;
-use crate::mechanics::geometry::ring::Ring;
+use super::thrust::ThrustLine;
+use crate::mechanics::chain::{Demand, Link};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::sway::Sway;
 
 /// A link whose hinges are this close to those of the link two before it closes the chain into a repeating
 /// pair. The effect on `r`, which is flat at a maximum, is far below what the search resolves.
@@ -35,24 +40,27 @@ pub struct ArchLink {
 }
 
 impl ArchLink {
-    fn new(ring: &Ring, impact: Impact) -> Self {
-        let linkage = Linkage::new(ring, &impact.mechanism);
+    fn new(profile: &dyn Profile, impact: Impact, law: ImpactLaw) -> Self {
+        let linkage = Linkage::new(profile, &impact.mechanism);
         let limit_rad = linkage.limit_rad();
+        let (rate_ratio, restitution) = law.measured(impact.rate_ratio, impact.restitution);
         Self {
             mechanism: impact.mechanism,
-            link: Link::new(linkage, limit_rad, impact.rate_ratio, impact.restitution),
-            impulse_line: impact.impulse_line,
+            link: Link::new(linkage, limit_rad, rate_ratio, restitution),
+            // The momentum theorems hold for the restitution that they give.
+            impulse_line: impact.impulse_line.filter(|_| law.is_theory()),
         }
     }
 }
 
-/// A ring with its chain of mechanisms: everything about an arch that does not depend on its size, its
+/// A profile with its chain of mechanisms: everything about an arch that does not depend on its size, its
 /// density or the ground motion.
 #[derive(Debug)]
-pub struct Chain {
-    ring: Ring,
+pub struct Chain<P = Ring> {
+    /// As seen in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
+    profiles: [P; 2],
     sites: HingeSites,
-    model: ImpactModel,
+    law: ImpactLaw,
     incipient: Incipient,
     /// Boxed, because a chain has room for many links and usually needs few.
     links: Box<[OnceLock<Option<Box<ArchLink>>>]>,
@@ -60,28 +68,37 @@ pub struct Chain {
     pair: OnceLock<usize>,
 }
 
-impl Chain {
-    /// The chain of `ring` under an impact model, from its onset by [`incipient`](super::limit::incipient).
+impl Chain<Ring> {
+    /// The ring.
+    #[must_use]
+    pub const fn ring(&self) -> &Ring {
+        &self.profiles[0]
+    }
+}
+
+impl<P: Profile> Chain<P> {
+    /// The chain of a profile and its mirror image under an impact law, from its onset by
+    /// [`incipient`](super::limit::incipient_of).
     pub(crate) fn new(
-        ring: Ring,
+        profiles: [P; 2],
         sites: HingeSites,
         incipient: Incipient,
-        model: ImpactModel,
+        law: ImpactLaw,
     ) -> Self {
         Self {
-            ring,
+            profiles,
             sites,
-            model,
+            law,
             incipient,
             links: (0..MAX_CHAIN_LENGTH).map(|_| OnceLock::new()).collect(),
             pair: OnceLock::new(),
         }
     }
 
-    /// The ring.
+    /// The profile in the frame in which the mechanism after so many impacts sways right.
     #[must_use]
-    pub const fn ring(&self) -> &Ring {
-        &self.ring
+    pub const fn profile(&self, impacts: usize) -> &P {
+        &self.profiles[impacts % 2]
     }
 
     /// Where hinges may form.
@@ -121,17 +138,22 @@ impl Chain {
                 restitution: 1.0,
                 impulse_line: None,
             };
-            return Some(ArchLink::new(&self.ring, first));
+            return Some(ArchLink::new(
+                self.profile(index),
+                first,
+                ImpactLaw::from(self.law.model),
+            ));
         };
+        let (profile, model) = (self.profile(index), self.law.model);
         let mechanism = |index: usize| Some(self.links[index].get()?.as_ref()?.mechanism);
         let closing = mechanism(previous)?;
         if index == MAX_CHAIN_LENGTH - 1 {
             self.pair.get_or_init(|| previous);
         }
         let impact = if self.pair.get() == Some(&previous) {
-            impact_onto(mechanism(previous - 1)?, &closing, &self.ring, self.model)?
+            impact_onto(mechanism(previous - 1)?, &closing, profile, model)?
         } else {
-            impact(&closing, &self.ring, self.sites, self.model)?
+            impact(&closing, profile, self.sites, model)?
         };
         if let Some(earlier) = previous.checked_sub(1).and_then(mechanism) {
             let (hinges, earlier) = (impact.mechanism.hinges_rad(), earlier.hinges_rad());
@@ -139,7 +161,77 @@ impl Chain {
                 self.pair.get_or_init(|| index);
             }
         }
-        Some(ArchLink::new(&self.ring, impact))
+        Some(ArchLink::new(profile, impact, self.law))
+    }
+}
+
+/// The chains after a first sway to the right and to the left: one and the same of a structure that is its own mirror
+/// image.
+#[derive(Debug)]
+pub(crate) struct Chains<P> {
+    right: Arc<Chain<P>>,
+    left: Arc<Chain<P>>,
+}
+
+// Not derived, because that would require the profile to be `Clone`.
+impl<P> Clone for Chains<P> {
+    fn clone(&self) -> Self {
+        Self {
+            right: self.right.clone(),
+            left: self.left.clone(),
+        }
+    }
+}
+
+impl<P: Profile> Chains<P> {
+    pub fn symmetric(chain: Chain<P>) -> Self {
+        let right = Arc::new(chain);
+        Self {
+            left: right.clone(),
+            right,
+        }
+    }
+
+    pub fn new(right: Chain<P>, left: Chain<P>) -> Self {
+        Self {
+            right: Arc::new(right),
+            left: Arc::new(left),
+        }
+    }
+
+    pub fn from(&self, first: Sway) -> &Chain<P> {
+        match first {
+            Sway::Right => &self.right,
+            Sway::Left => &self.left,
+        }
+    }
+
+    pub fn link(&self, first: Sway, impacts: usize) -> Option<&Link<Linkage>> {
+        self.from(first).link(impacts).map(|link| &link.link)
+    }
+
+    pub fn thrust_at_rest(&self, body_force_g: Vector2<f64>) -> ThrustLine {
+        let (right, left) = (self.right.incipient(), self.left.incipient());
+        ThrustLine::at_rest(right, left, self.right.profile(0), body_force_g)
+    }
+
+    pub fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
+        self.thrust_at_rest(body_force_g).demand(self.right.sites())
+    }
+
+    /// Sections, counted from the left, and edges of the hinges after so many impacts, when that sways to this side.
+    pub fn hinges(&self, impacts: usize, sway: Sway) -> Option<[(f64, Edge); 4]> {
+        let chain = self.from(sway.before(impacts));
+        let mechanism = &chain.link(impacts)?.mechanism;
+        Some(mechanism.hinges_from_left(chain.profile(impacts), sway))
+    }
+
+    pub fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
+        let link = self.from(sway.before(impacts)).link(impacts);
+        let line = link.and_then(|link| link.impulse_line.as_ref());
+        line.map_or(Vec::new(), |line| {
+            line.hinge_impulses_from_left(sway).to_vec()
+        })
     }
 }
 
@@ -147,12 +239,13 @@ impl Chain {
 mod tests {
     use super::*;
     use crate::mechanics::chain::Mechanism as _;
+    use crate::mechanics::four_link::impact::ImpactModel;
     use crate::mechanics::four_link::limit::incipient;
 
     fn chain(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Chain {
         let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
         let onset = incipient(&ring, sites).unwrap();
-        Chain::new(ring, sites, onset, ImpactModel::MaxRestitution)
+        Chain::new([ring; 2], sites, onset, ImpactModel::MaxRestitution.into())
     }
 
     #[test]

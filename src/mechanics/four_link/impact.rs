@@ -10,7 +10,7 @@ use super::impulse_line::ImpulseLine;
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
 use crate::mechanics::geometry::field::{Field, Momentum, Side, Twist};
-use crate::mechanics::geometry::ring::Ring;
+use crate::mechanics::geometry::profile::Profile;
 
 /// How the mechanism after an impact is found.
 ///
@@ -69,6 +69,50 @@ impl ImpactModel {
     }
 }
 
+/// An impact model, and how much of its restitution there is.
+///
+/// Experiments lose more energy than the theorems say, or less: a factor brings the restitution coefficient to what
+/// was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactLaw {
+    /// The model.
+    pub model: ImpactModel,
+    /// What its restitution coefficient is multiplied by; the product is at most one.
+    pub restitution_factor: f64,
+}
+
+impl From<ImpactModel> for ImpactLaw {
+    fn from(model: ImpactModel) -> Self {
+        Self {
+            model,
+            restitution_factor: 1.0,
+        }
+    }
+}
+
+impl ImpactLaw {
+    /// Checks a prescribed restitution coefficient and the factor.
+    pub(crate) fn check(self) -> Result<(), ArgumentError> {
+        self.model.check()?;
+        within("restitution_factor", self.restitution_factor, 0.0..=100.0).map(|_| ())
+    }
+
+    /// Rate and restitution coefficient of an impact by this law, from those of its model.
+    pub(crate) fn measured(self, rate_ratio: f64, restitution: f64) -> (f64, f64) {
+        if self.is_theory() || restitution <= 0.0 {
+            return (rate_ratio, restitution);
+        }
+        let measured = (self.restitution_factor * restitution).min(1.0);
+        (rate_ratio * (measured / restitution).sqrt(), measured)
+    }
+
+    /// Whether impacts are those of the model.
+    #[expect(clippy::float_cmp, reason = "the factor of the model itself")]
+    pub(crate) fn is_theory(self) -> bool {
+        self.restitution_factor == 1.0
+    }
+}
+
 /// An impact: what follows when a mechanism closes at unit rate.
 ///
 /// The mechanism after the impact sways to the other side; it is given in the frame in which that is the
@@ -89,33 +133,34 @@ pub struct Impact {
 /// The velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism
 /// that follows.
 #[must_use]
-pub fn closing_field(mechanism: &FourLink, ring: &Ring) -> Field {
-    mechanism.field().scaled(-1.0).mirrored(ring)
+pub fn closing_field(mechanism: &FourLink, profile: &dyn Profile) -> Field {
+    mechanism.field().scaled(-1.0).mirrored(profile)
 }
 
 /// The impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can
-/// follow.
+/// follow. The profile is that seen in the frame of what follows: of a structure that is not its own mirror image, the
+/// mirrored one.
 #[must_use]
 pub fn impact(
     mechanism: &FourLink,
-    ring: &Ring,
+    profile: &dyn Profile,
     sites: HingeSites,
     model: ImpactModel,
 ) -> Option<Impact> {
     let next = match model {
         ImpactModel::MaxRestitution => {
-            most_energetic(&closing_field(mechanism, ring), ring, sites)?
+            most_energetic(&closing_field(mechanism, profile), profile, sites)?
         }
         ImpactModel::SameSections => {
-            let [a, b, c, d] = mechanism
-                .hinges_rad()
-                .map(|angle| ring.embrace_rad() - angle);
-            FourLink::new(ring, [d, c, b, a])?
+            let [a, b, c, d] = mechanism.hinges_rad().map(|angle| profile.end() - angle);
+            FourLink::new(profile, [d, c, b, a])?
         }
         // The mirror image of a mechanism has, in its own frame, the same hinges.
-        ImpactModel::Mirrored | ImpactModel::Prescribed { .. } => *mechanism,
+        ImpactModel::Mirrored | ImpactModel::Prescribed { .. } => {
+            FourLink::new(profile, mechanism.hinges_rad())?
+        }
     };
-    impact_onto(next, mechanism, ring, model)
+    impact_onto(next, mechanism, profile, model)
 }
 
 /// The impact when `mechanism` closes and `next` is known to follow; `None` when that would have to
@@ -123,13 +168,13 @@ pub fn impact(
 pub(crate) fn impact_onto(
     next: FourLink,
     mechanism: &FourLink,
-    ring: &Ring,
+    profile: &dyn Profile,
     model: ImpactModel,
 ) -> Option<Impact> {
-    let closing = closing_field(mechanism, ring);
+    let closing = closing_field(mechanism, profile);
     let (rate_ratio, restitution) = match model {
         ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
-        _ => projection(&next, &closing, ring),
+        _ => projection(&next, &closing, profile),
     };
     (rate_ratio > 0.0).then(|| Impact {
         mechanism: next,
@@ -138,7 +183,7 @@ pub(crate) fn impact_onto(
         impulse_line: match model {
             ImpactModel::Prescribed { .. } => None,
             _ => Some(ImpulseLine::new(
-                ring,
+                profile,
                 &next,
                 &closing,
                 &next.field().scaled(rate_ratio),
@@ -153,12 +198,15 @@ pub(crate) fn impact_onto(
 /// The impulses act at hinges of the new mechanism and so do no work on it: `<u', u' q'> = <u', before>`.
 /// The restitution coefficient is then a squared cosine. Equal to [`MomentumTheorems::solve`], and faster.
 #[must_use]
-pub fn projection(mechanism: &FourLink, before: &Field, ring: &Ring) -> (f64, f64) {
+pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> (f64, f64) {
     let field = mechanism.field();
-    let (own, shared) = (field.product(&field, ring), field.product(before, ring));
+    let (own, shared) = (
+        field.product(&field, profile),
+        field.product(before, profile),
+    );
     (
         shared / own,
-        shared * shared / (own * before.product(before, ring)),
+        shared * shared / (own * before.product(before, profile)),
     )
 }
 
@@ -182,12 +230,12 @@ impl MomentumTheorems {
     /// Linear momentum along x and y and angular momentum about the centre for the part between the
     /// outer hinges, angular momentum of each end body about its inner hinge.
     #[must_use]
-    pub fn solve(mechanism: &FourLink, before: &Field, ring: &Ring) -> Self {
+    pub fn solve(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> Self {
         let [a, b, c, d] = mechanism.hinges_rad();
         let [point_a, point_b, point_c, point_d] = mechanism.points();
         let after = mechanism.field();
         let part = |field: &Field, from: f64, to: f64| {
-            field.momentum_to(ring, to) - field.momentum_to(ring, from)
+            field.momentum_to(profile, to) - field.momentum_to(profile, from)
         };
         let theorems = |whole: Momentum, first: Momentum, last: Momentum| {
             Vector5::new(
@@ -228,26 +276,26 @@ impl MomentumTheorems {
 }
 
 /// The admissible mechanism that keeps the most of the kinetic energy of `before`.
-fn most_energetic(before: &Field, ring: &Ring, sites: HingeSites) -> Option<FourLink> {
-    let lattice = Lattice::new(ring, sites);
-    let table = ProductTable::new(&lattice, before, ring);
+fn most_energetic(before: &Field, profile: &dyn Profile, sites: HingeSites) -> Option<FourLink> {
+    let lattice = Lattice::new(profile, sites);
+    let table = ProductTable::new(&lattice, before, profile);
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| table.retained(rotations, quadruple);
-    let objective = RetainedEnergy { before, ring };
-    best_mechanism(ring, sites, &lattice, &score, &objective).map(|(_, mechanism)| mechanism)
+    let objective = RetainedEnergy { before, profile };
+    best_mechanism(profile, sites, &lattice, &score, &objective).map(|(_, mechanism)| mechanism)
 }
 
 /// `<u', before>^2 / <u', u'>`: twice the kinetic energy that a mechanism keeps.
 struct RetainedEnergy<'a> {
     before: &'a Field,
-    ring: &'a Ring,
+    profile: &'a dyn Profile,
 }
 
 impl RetainedEnergy<'_> {
     /// The retained energy and the rate of the mechanism.
-    fn value(&self, mechanism: &FourLink) -> (f64, f64) {
+    fn retained(&self, mechanism: &FourLink) -> (f64, f64) {
         let field = mechanism.field();
-        let shared = field.product(self.before, self.ring);
-        let rate = shared / field.product(&field, self.ring);
+        let shared = field.product(self.before, self.profile);
+        let rate = shared / field.product(&field, self.profile);
         // A mechanism that would have to move backwards retains no energy.
         (if rate > 0.0 { shared * rate } else { -f64::MAX }, rate)
     }
@@ -258,11 +306,15 @@ impl Objective for RetainedEnergy<'_> {
         self.before.cuts_rad()
     }
 
+    fn value(&self, mechanism: &FourLink) -> f64 {
+        self.retained(mechanism).0
+    }
+
     /// The retained energy is the maximum over the rate `s` of `2 s <u', before> - s^2 <u', u'>`, so its
     /// derivative is `2 s` times that of the power of the load `before - s u'`: the moments of the
     /// impulse line. At a hinge the new field counts with the mean of both sides.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]) {
-        let (value, rate) = self.value(mechanism);
+        let (value, rate) = self.retained(mechanism);
         let after = mechanism.field().scaled(rate);
         let angles = mechanism.hinges_rad();
         let local: [Twist; 4] = std::array::from_fn(|i| {
@@ -270,7 +322,7 @@ impl Objective for RetainedEnergy<'_> {
             let mean = (after.at(angles[i], Side::Before) + after.at(angles[i], Side::After)) * 0.5;
             self.before.at(angles[i], side) - mean
         });
-        let line = ImpulseLine::new(self.ring, mechanism, self.before, &after);
+        let line = ImpulseLine::new(self.profile, mechanism, self.before, &after);
         let gradient = line.resultants().power_gradient(mechanism, local);
         (value, gradient.map(|slope| 2.0 * rate * slope))
     }
@@ -287,16 +339,16 @@ struct ProductTable {
 }
 
 impl ProductTable {
-    fn new(lattice: &Lattice, before: &Field, ring: &Ring) -> Self {
-        let end = ring.embrace_rad();
-        let whole = before.momentum_to(ring, end);
+    fn new(lattice: &Lattice, before: &Field, profile: &dyn Profile) -> Self {
+        let end = profile.end();
+        let whole = before.momentum_to(profile, end);
         let rotations: Vec<_> = lattice
             .sections_rad
             .iter()
             .flat_map(|angle| {
-                let moments = ring.sector(*angle, end);
-                let momentum = whole - before.momentum_to(ring, *angle);
-                [EDGES[0], EDGES[1]].map(|edge| (ring.point(*angle, edge), moments, momentum))
+                let moments = profile.sector(*angle, end);
+                let momentum = whole - before.momentum_to(profile, *angle);
+                [EDGES[0], EDGES[1]].map(|edge| (profile.point(*angle, edge), moments, momentum))
             })
             .collect();
         let with_before = rotations

@@ -5,12 +5,14 @@
 //! determine that. The points where the impulses cross their sections are the impulse line of the paper
 //! (Fig. 10).
 
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 
 use super::mechanism::{FourLink, HingeSites};
 use super::resultant::{Extremes, ResultantLine, SectionResultant};
 use crate::mechanics::geometry::field::Field;
-use crate::mechanics::geometry::ring::Ring;
+use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
 
 /// The impulses of an impact over the ring.
@@ -19,7 +21,7 @@ use crate::mechanics::sway::Sway;
 /// sways right, unless a name ends in `from_left`.
 #[derive(Clone, Debug)]
 pub struct ImpulseLine {
-    ring: Ring,
+    profile: Arc<dyn Profile>,
     mechanism: FourLink,
     resultants: ResultantLine,
 }
@@ -30,11 +32,11 @@ impl ImpulseLine {
     /// `after` has to be the projection of `before` onto the mechanism ([`super::impact::projection`]); the line
     /// then passes through all four hinges.
     #[must_use]
-    pub fn new(ring: &Ring, mechanism: &FourLink, before: &Field, after: &Field) -> Self {
+    pub fn new(profile: &dyn Profile, mechanism: &FourLink, before: &Field, after: &Field) -> Self {
         Self {
-            ring: *ring,
+            profile: profile.shared(),
             mechanism: *mechanism,
-            resultants: ResultantLine::through_hinges(ring, mechanism, before.minus(after)),
+            resultants: ResultantLine::through_hinges(profile, mechanism, before.minus(after)),
         }
     }
 
@@ -75,7 +77,7 @@ impl ImpulseLine {
     pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
         let section = self
             .resultants
-            .section(sway.from_left_rad(&self.ring, angle_rad));
+            .section(sway.from_left(&*self.profile, angle_rad));
         match sway {
             Sway::Right => section,
             Sway::Left => section.mirrored(),
@@ -92,7 +94,7 @@ impl ImpulseLine {
             &mut extremes.normal,
             &mut extremes.friction_ratio,
         ] {
-            extremum.angle_rad = sway.from_left_rad(&self.ring, extremum.angle_rad);
+            extremum.angle_rad = sway.from_left(&*self.profile, extremum.angle_rad);
         }
         extremes
     }

@@ -9,6 +9,7 @@ use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
 use super::self_weight::carries_its_weight;
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::field::{Field, Side, Twist};
+use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::{Edge, Ring, RingError};
 
 /// Onset of rocking under a push to the right.
@@ -57,8 +58,17 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
     if !carries_its_weight(ring, sites) {
         return Err(LimitError::CannotStand);
     }
-    let (acceleration_g, mechanism) = least_acceleration(ring, sites).ok_or(LimitError::NoPush)?;
-    let thrust_line = ResultantLine::through_hinges(ring, &mechanism, push(acceleration_g));
+    incipient_of(ring, sites)
+}
+
+/// The same of any profile that carries its own weight.
+///
+/// # Errors
+/// When no four-link mechanism governs, or no push moves one.
+pub fn incipient_of(profile: &dyn Profile, sites: HingeSites) -> Result<Incipient, LimitError> {
+    let (acceleration_g, mechanism) =
+        least_acceleration(profile, sites).ok_or(LimitError::NoPush)?;
+    let thrust_line = ResultantLine::through_hinges(profile, &mechanism, push(acceleration_g));
     if !thrust_line.extremes(sites).is_admissible() {
         return Err(LimitError::OtherMechanism { acceleration_g });
     }
@@ -95,20 +105,20 @@ fn push(acceleration_g: f64) -> Field {
     Field::uniform(Twist::translation(Vector2::new(acceleration_g, -1.0)))
 }
 
-/// Minimum of `int v_y / int v_x` for a ring that stands, the kinematic theorem.
+/// Minimum of `int v_y / int v_x` for what stands, the kinematic theorem.
 ///
-/// In such a ring a mechanism that sways to the right also rises. One that seems not to either does neither but
+/// There a mechanism that sways to the right also rises. One that seems not to either does neither but
 /// for rounding, as where hinges merge, or sways to the left.
-fn least_acceleration(ring: &Ring, sites: HingeSites) -> Option<(f64, FourLink)> {
-    let lattice = Lattice::new(ring, sites);
+fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, FourLink)> {
+    let lattice = Lattice::new(profile, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.
     let moments: Vec<[Vector2<f64>; 2]> = lattice
         .sections_rad
         .iter()
         .map(|angle| {
-            let part = ring.moments_to(*angle);
+            let part = profile.moments_to(*angle);
             [Edge::Intrados, Edge::Extrados].map(|edge| {
-                let arm = part.first - ring.point(*angle, edge) * part.mass;
+                let arm = part.first - profile.point(*angle, edge) * part.mass;
                 Vector2::new(-arm.y, arm.x)
             })
         })
@@ -124,15 +134,15 @@ fn least_acceleration(ring: &Ring, sites: HingeSites) -> Option<(f64, FourLink)>
             f64::NEG_INFINITY
         }
     };
-    let objective = LeastAcceleration { ring };
-    best_mechanism(ring, sites, &lattice, &score, &objective)
+    let objective = LeastAcceleration { profile };
+    best_mechanism(profile, sites, &lattice, &score, &objective)
         .filter(|(value, _)| value.is_finite())
         .map(|(value, mechanism)| (-value, mechanism))
 }
 
 /// Minus the acceleration at which a mechanism starts to move, if a push to the right does that.
 struct LeastAcceleration<'a> {
-    ring: &'a Ring,
+    profile: &'a dyn Profile,
 }
 
 impl Objective for LeastAcceleration<'_> {
@@ -140,20 +150,21 @@ impl Objective for LeastAcceleration<'_> {
         &[]
     }
 
+    fn value(&self, mechanism: &FourLink) -> f64 {
+        match acceleration_g(mechanism, self.profile) {
+            acceleration_g if acceleration_g > 0.0 => -acceleration_g,
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
     fn evaluate(&self, mechanism: &FourLink, _: [bool; 4]) -> (f64, [f64; 4]) {
-        let field = mechanism.field();
-        let sway = field.product(&push_only(), self.ring);
-        let acceleration_g = acceleration_g(mechanism, self.ring);
+        let sway = mechanism.field().product(&push_only(), self.profile);
+        let acceleration_g = acceleration_g(mechanism, self.profile);
         let load = push(acceleration_g);
         let local = [load.at(0.0, Side::After); 4];
-        let line = ResultantLine::through_hinges(self.ring, mechanism, load);
+        let line = ResultantLine::through_hinges(self.profile, mechanism, load);
         let gradient = line.power_gradient(mechanism, local);
-        let value = if acceleration_g > 0.0 {
-            -acceleration_g
-        } else {
-            f64::NEG_INFINITY
-        };
-        (value, gradient.map(|slope| slope / sway))
+        (self.value(mechanism), gradient.map(|slope| slope / sway))
     }
 }
 
@@ -164,11 +175,11 @@ fn push_only() -> Field {
 
 /// The push, in units of gravity, at which `mechanism` starts to move.
 #[must_use]
-pub fn acceleration_g(mechanism: &FourLink, ring: &Ring) -> f64 {
+pub fn acceleration_g(mechanism: &FourLink, profile: &dyn Profile) -> f64 {
     let field = mechanism.field();
     let rise = field.product(
         &Field::uniform(Twist::translation(Vector2::new(0.0, 1.0))),
-        ring,
+        profile,
     );
-    rise / field.product(&push_only(), ring)
+    rise / field.product(&push_only(), profile)
 }

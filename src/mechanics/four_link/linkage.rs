@@ -7,6 +7,8 @@
 //! turn infinitely fast; seen from the left body nothing special happens, and the equation of motion
 //! stays well conditioned beyond the limit.
 
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
@@ -14,7 +16,8 @@ use super::thrust::{Load, Part, ThrustLine};
 use crate::mechanics::chain::{Coefficients, Mechanism, Motion};
 use crate::mechanics::geometry::field::{Momentum, turned};
 use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::{MassMoments, Ring};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::MassMoments;
 
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +58,9 @@ impl Body {
 /// The four-bar linkage of a mechanism that sways right; lengths in mean radii, unit density.
 ///
 /// The middle body moves with B and turns about it; its mass is counted as a load of the left body at B.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Linkage {
-    ring: Ring,
+    profile: Arc<dyn Profile>,
     hinges_rad: [f64; 4],
     points: [Vector2<f64>; 4],
     /// Bar A-B.
@@ -101,17 +104,17 @@ fn angle_between(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
 impl Linkage {
     /// The linkage of `mechanism`.
     #[must_use]
-    pub fn new(ring: &Ring, mechanism: &FourLink) -> Self {
+    pub fn new(profile: &dyn Profile, mechanism: &FourLink) -> Self {
         let [a, b, c, d] = mechanism.hinges_rad();
         let [point_a, point_b, point_c, point_d] = mechanism.points();
-        let middle = ring.sector(b, c);
+        let middle = profile.sector(b, c);
         Self {
-            ring: *ring,
+            profile: profile.shared(),
             hinges_rad: mechanism.hinges_rad(),
             points: mechanism.points(),
-            left: Body::new(&ring.sector(a, b), point_a, point_b - point_a).loaded(middle.mass),
+            left: Body::new(&profile.sector(a, b), point_a, point_b - point_a).loaded(middle.mass),
             middle: Body::new(&middle, point_b, point_c - point_b),
-            right: Body::new(&ring.sector(c, d), point_d, point_c - point_d),
+            right: Body::new(&profile.sector(c, d), point_d, point_c - point_d),
             ground: point_d - point_a,
         }
     }
@@ -198,9 +201,9 @@ impl Linkage {
         let right = Load::of_body(point_d, rotate_back(turn_right, body_force), right_spin);
 
         let [a, b, c, d] = self.hinges_rad;
-        let on_left = left.resultant(&self.ring.sector(a, b));
-        let on_middle = middle.resultant(&self.ring.sector(b, c));
-        let on_right = right.resultant(&self.ring.sector(c, d));
+        let on_left = left.resultant(&self.profile.sector(a, b));
+        let on_middle = middle.resultant(&self.profile.sector(b, c));
+        let on_right = right.resultant(&self.profile.sector(c, d));
         let force_c = (bars.right * on_middle.about(point_b)
             + bars.middle * on_right.about(point_d))
             * bars.per_cross;
@@ -212,16 +215,16 @@ impl Linkage {
         let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
             let at_hinge = Momentum::applied_at(self.points[hinge], force);
             let known = (self.hinges_rad[hinge], at_hinge);
-            Part::new(&self.ring, end_rad, load, known)
+            Part::new(&*self.profile, end_rad, load, known)
         };
         ThrustLine::new(
-            &self.ring,
+            &*self.profile,
             vec![
                 part(0, a, still, force_a),
                 part(0, b, left, rotate_back(turn_left, force_a)),
                 part(1, c, middle, rotate_back(turn_middle, force_b)),
                 part(2, d, right, rotate_back(turn_right, force_c)),
-                part(3, self.ring.embrace_rad(), still, force_d),
+                part(3, self.profile.end(), still, force_d),
             ],
         )
     }
@@ -324,6 +327,7 @@ mod tests {
     use super::*;
     use crate::mechanics::four_link::limit::incipient;
     use crate::mechanics::four_link::mechanism::HingeSites;
+    use crate::mechanics::geometry::ring::Ring;
     use proptest::prelude::*;
 
     fn linkage(

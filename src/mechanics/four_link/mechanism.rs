@@ -1,14 +1,15 @@
 //! The four-link mechanism in the undeformed configuration.
 //!
-//! A ring is its own mirror image, so one orientation is enough: everything in [`crate::mechanics`] is
-//! about the mechanism that **sways right**, with hinges on intrados, extrados, intrados, extrados from
-//! the left springing. A sway to the left is the same mechanism seen in a mirror ([`Sway`]);
-//! left and right thus agree to the last bit.
+//! One orientation is enough: everything in [`crate::mechanics`] is about the mechanism that **sways right**, with
+//! hinges on intrados, extrados, intrados, extrados from the left springing. A sway to the left is a sway to the right
+//! seen in a mirror ([`Sway`]). A ring is its own mirror image, so that left and right agree to the last bit; a row
+//! of blocks may not be, and then has a profile for either side.
 
 use nalgebra::Vector2;
 
 use crate::mechanics::geometry::field::{Field, Twist};
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
 /// Edges of the hinges A, B, C, D of a mechanism that sways right.
@@ -59,12 +60,12 @@ impl FourLink {
     /// `None` when the sections are not in ascending order within the ring, or when a hinge would
     /// have to close.
     #[must_use]
-    pub fn new(ring: &Ring, hinges_rad: [f64; 4]) -> Option<Self> {
+    pub fn new(profile: &dyn Profile, hinges_rad: [f64; 4]) -> Option<Self> {
         let [first, .., last] = hinges_rad;
-        if !(first >= 0.0 && last <= ring.embrace_rad() && hinges_rad.is_sorted_by(|a, b| a < b)) {
+        if !(first >= 0.0 && last <= profile.end() && hinges_rad.is_sorted_by(|a, b| a < b)) {
             return None;
         }
-        let points = std::array::from_fn(|i| ring.point(hinges_rad[i], EDGES[i]));
+        let points = std::array::from_fn(|i| profile.point(hinges_rad[i], EDGES[i]));
         let openings = openings(&points)?;
         Some(Self {
             hinges_rad,
@@ -82,11 +83,11 @@ impl FourLink {
     /// Sections (in radians from the left springing) and edges of the hinges from left to right, as
     /// seen when the mechanism sways to the given side.
     #[must_use]
-    pub fn hinges_from_left(&self, ring: &Ring, sway: Sway) -> [(f64, Edge); 4] {
+    pub fn hinges_from_left(&self, profile: &dyn Profile, sway: Sway) -> [(f64, Edge); 4] {
         std::array::from_fn(|i| match sway {
             Sway::Right => (self.hinges_rad[i], EDGES[i]),
             Sway::Left => (
-                sway.from_left_rad(ring, self.hinges_rad[3 - i]),
+                sway.from_left(profile, self.hinges_rad[3 - i]),
                 EDGES[3 - i],
             ),
         })
@@ -134,6 +135,7 @@ pub enum HingeSites {
 mod tests {
     use super::*;
     use crate::mechanics::geometry::field::Side;
+    use crate::mechanics::geometry::ring::Ring;
 
     fn semicircle() -> (Ring, FourLink) {
         let ring = Ring::new(0.15, std::f64::consts::PI).unwrap();

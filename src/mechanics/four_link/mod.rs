@@ -8,6 +8,7 @@ pub mod limit;
 pub mod linkage;
 pub mod mechanism;
 pub mod resultant;
+pub mod row;
 mod search;
 pub mod self_weight;
 pub mod thrust;

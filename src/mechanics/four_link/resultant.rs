@@ -5,11 +5,14 @@
 //! the load is a change of velocity, an impulse. The points where these lines cross their sections
 //! make the thrust line (the impulse line). Through a hinge it passes by definition.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use crate::mechanics::geometry::field::{Field, Momentum, Twist};
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::Edge;
 
 /// A line may leave the ring by this much of the thickness, on account of rounding: hinges are placed to
 /// about 1e-8 rad, and the line touches the edges there.
@@ -18,7 +21,7 @@ pub const EDGE_TOLERANCE: f64 = 1e-6;
 /// The resultants over all sections of a ring under a load per unit mass.
 #[derive(Clone, Debug)]
 pub struct ResultantLine {
-    ring: Ring,
+    profile: Arc<dyn Profile>,
     load: Field,
     start: Momentum,
 }
@@ -35,21 +38,24 @@ pub struct SectionResultant {
     /// Where the line of action crosses the section, outwards from the axis, over the thickness:
     /// within -0.5 (intrados) to 0.5 (extrados) inside the ring.
     pub eccentricity_ratio: f64,
+    /// Thickness of the section.
+    pub thickness: f64,
 }
 
 impl SectionResultant {
     /// Components and position, at a section, of a force with its moment about the centre of the ring.
     #[must_use]
-    pub fn new(ring: &Ring, angle_rad: f64, resultant: &Momentum) -> Self {
-        let (radial, tangent) = (ring.radial(angle_rad), ring.tangent(angle_rad));
-        let normal = resultant.linear.dot(&tangent);
+    pub fn new(profile: &dyn Profile, angle_rad: f64, resultant: &Momentum) -> Self {
+        let normal = resultant.linear.dot(&profile.onward(angle_rad));
         // A force N at distance e outwards from the axis has the moment -e N about its point there.
-        let moment = -resultant.about(radial);
+        let moment = -resultant.about(profile.middle(angle_rad));
+        let thickness = profile.thickness(angle_rad);
         Self {
             normal,
-            tangential: resultant.linear.dot(&radial),
+            tangential: resultant.linear.dot(&profile.outward(angle_rad)),
             moment,
-            eccentricity_ratio: moment / (normal * ring.thickness_ratio()),
+            eccentricity_ratio: moment / (normal * thickness),
+            thickness,
         }
     }
 
@@ -98,7 +104,7 @@ impl ResultantLine {
     /// A mechanism makes the ring statically determinate but for one number: the line passes through
     /// C as well when the load does no work on the mechanism.
     #[must_use]
-    pub fn through_hinges(ring: &Ring, mechanism: &FourLink, load: Field) -> Self {
+    pub fn through_hinges(profile: &dyn Profile, mechanism: &FourLink, load: Field) -> Self {
         let hinges = [0, 1, 3];
         let points = mechanism.points();
         let matrix = Matrix3::from_fn(|row, column| {
@@ -107,7 +113,7 @@ impl ResultantLine {
         });
         let moments = Vector3::from_fn(|row, _| {
             let hinge = hinges[row];
-            load.momentum_to(ring, mechanism.hinges_rad()[hinge])
+            load.momentum_to(profile, mechanism.hinges_rad()[hinge])
                 .about(points[hinge])
         });
         let start = matrix
@@ -115,7 +121,7 @@ impl ResultantLine {
             .solve(&moments)
             .expect("three hinges of an admissible mechanism are not on one line");
         Self {
-            ring: *ring,
+            profile: profile.shared(),
             load,
             start: Momentum {
                 linear: start.xy(),
@@ -127,13 +133,13 @@ impl ResultantLine {
     /// Force (impulse) at a section, with its moment about the centre of the ring.
     #[must_use]
     pub fn at(&self, angle_rad: f64) -> Momentum {
-        self.start + self.load.momentum_to(&self.ring, angle_rad)
+        self.start + self.load.momentum_to(&*self.profile, angle_rad)
     }
 
     /// Components and position at a section.
     #[must_use]
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
-        SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
+        SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
     /// The extremes over all sections where hinges sit anywhere, and over the joints of voussoirs, which
@@ -174,11 +180,11 @@ impl ResultantLine {
         };
         let sections = match sites {
             HingeSites::Voussoirs(count) => {
-                return top(self.ring.sections(count).into_iter().map(at));
+                return top(self.profile.sections(count).into_iter().map(at));
             }
             HingeSites::Anywhere => {
-                let inside = |cut: &&f64| **cut > 0.0 && **cut < self.ring.embrace_rad();
-                let mut sections = self.ring.sections(SAMPLES);
+                let inside = |cut: &&f64| **cut > 0.0 && **cut < self.profile.end();
+                let mut sections = self.profile.sections(SAMPLES);
                 sections.extend(self.load.cuts_rad().iter().filter(inside));
                 sections.sort_by(f64::total_cmp);
                 sections
@@ -201,9 +207,10 @@ impl ResultantLine {
     /// Derivative with respect to the angle of the moment about the edge point of the section, where
     /// the load is `local`. Zero where the line touches the edge.
     fn edge_moment_slope(&self, angle_rad: f64, edge: Edge, local: Twist) -> f64 {
-        let slice = local.momentum(&self.ring.slice(angle_rad));
-        let along_edge = self.ring.tangent(angle_rad) * self.ring.radius(edge);
-        slice.about(self.ring.point(angle_rad, edge)) - along_edge.perp(&self.at(angle_rad).linear)
+        let slice = local.momentum(&self.profile.slice(angle_rad));
+        let along_edge = self.profile.edge_slope(angle_rad, edge);
+        slice.about(self.profile.point(angle_rad, edge))
+            - along_edge.perp(&self.at(angle_rad).linear)
     }
 
     /// Derivative of the power of the load on `mechanism` (at `q' = 1`) with respect to the sections

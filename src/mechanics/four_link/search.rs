@@ -9,7 +9,8 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::mechanism::{EDGES, FourLink, HingeSites, openings};
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::Edge;
 
 /// Lattice intervals where hinges sit anywhere. From 12 to 60 intervals give the same A_L and the same
 /// first six restitution coefficients, to 1e-9, for 138 arches from 70 to 180 degrees and t/R 0.03 to 0.29.
@@ -44,20 +45,20 @@ pub(crate) type Quadruple = [usize; 4];
 
 impl Lattice {
     /// The lattice for the given sites: a fixed number of equal intervals, or the joints.
-    pub fn new(ring: &Ring, sites: HingeSites) -> Self {
+    pub fn new(profile: &dyn Profile, sites: HingeSites) -> Self {
         let (intervals, stride) = match sites {
             HingeSites::Anywhere => (LATTICE_INTERVALS, 1),
             HingeSites::Voussoirs(count) => (count, count.div_ceil(EXHAUSTIVE_VOUSSOIRS)),
         };
-        let mut sections_rad = ring.sections(intervals);
+        let mut sections_rad = profile.sections(intervals);
         if sites == HingeSites::Anywhere {
             let near = sections_rad[1] * NEAR_SPRINGING;
             sections_rad.insert(1, near);
-            sections_rad.insert(intervals + 1, ring.embrace_rad() - near);
+            sections_rad.insert(intervals + 1, profile.end() - near);
         }
         let points = sections_rad
             .iter()
-            .map(|angle| [Edge::Intrados, Edge::Extrados].map(|edge| ring.point(*angle, edge)))
+            .map(|angle| [Edge::Intrados, Edge::Extrados].map(|edge| profile.point(*angle, edge)))
             .collect();
         Self {
             sections_rad,
@@ -178,6 +179,8 @@ impl Lattice {
 pub(crate) trait Objective {
     /// Sections where the gradient may jump, in radians.
     fn kinks_rad(&self) -> &[f64];
+    /// The value.
+    fn value(&self, mechanism: &FourLink) -> f64;
     /// The value, and its derivatives with respect to the sections of the hinges. Where the derivatives
     /// to either side differ, `above` chooses for each hinge that towards larger angles.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]);
@@ -186,7 +189,7 @@ pub(crate) trait Objective {
 /// The mechanism with the largest value of `objective`, which `score` gives for the mechanisms of
 /// `lattice`; `None` when no mechanism counts.
 pub(crate) fn best_mechanism(
-    ring: &Ring,
+    profile: &dyn Profile,
     sites: HingeSites,
     lattice: &Lattice,
     score: &impl Fn(&[f64; 4], &Quadruple) -> f64,
@@ -197,37 +200,37 @@ pub(crate) fn best_mechanism(
         .into_iter()
         .map(|quadruple| quadruple.map(|i| lattice.sections_rad[i]));
     if let HingeSites::Voussoirs(_) = sites {
-        let mechanism = FourLink::new(ring, starts.into_iter().next()?)?;
-        return Some((objective.evaluate(&mechanism, [true; 4]).0, mechanism));
+        let mechanism = FourLink::new(profile, starts.into_iter().next()?)?;
+        return Some((objective.value(&mechanism), mechanism));
     }
-    let mut ends = [objective.kinks_rad(), &[0.0, ring.embrace_rad()]].concat();
+    let mut ends = [objective.kinks_rad(), &[0.0, profile.end()]].concat();
     ends.sort_by(f64::total_cmp);
     ends.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
     starts
-        .filter_map(|start| ascend_all_sides(ring, &ends, start, objective))
+        .filter_map(|start| ascend_all_sides(profile, &ends, start, objective))
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
 }
 
 /// Relative differences of values below this are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Newton's method from `start` to a local maximum of `objective` over ordered sections of `ring`.
+/// Newton's method from `start` to a local maximum of `objective` over ordered sections of `profile`.
 ///
 /// Bounds and kinks, the `ends`, cut the range of every hinge into cells in which the objective is smooth.
 /// A hinge that runs into the end of its cell stays there if the slope beyond sends it back, and goes on
 /// otherwise.
 fn ascend(
-    ring: &Ring,
+    profile: &dyn Profile,
     ends: &[f64],
     start: [f64; 4],
     objective: &impl Objective,
 ) -> Option<(f64, FourLink)> {
     let mut climber = Climber {
-        ring,
+        profile,
         objective,
         cells: start.map(|angle| Cell::containing(ends, angle)),
     };
-    let mut mechanism = FourLink::new(ring, start)?;
+    let mut mechanism = FourLink::new(profile, start)?;
     for _ in 0..MAX_NEWTON_STEPS {
         match climber.step(&mechanism) {
             Some(better) => mechanism = better,
@@ -242,14 +245,14 @@ fn ascend(
 /// maximum on either side of it, often within one interval of the lattice, which then starts from one of
 /// them only.
 fn ascend_all_sides(
-    ring: &Ring,
+    profile: &dyn Profile,
     ends: &[f64],
     start: [f64; 4],
     objective: &impl Objective,
 ) -> Option<(f64, FourLink)> {
-    let mut top = ascend(ring, ends, start, objective)?;
+    let mut top = ascend(profile, ends, start, objective)?;
     #[expect(clippy::cast_precision_loss, reason = "a small number")]
-    let interval = ring.embrace_rad() / LATTICE_INTERVALS as f64;
+    let interval = profile.end() / LATTICE_INTERVALS as f64;
     loop {
         let angles = top.1.hinges_rad();
         let twins = (0..4).flat_map(|i| {
@@ -261,7 +264,7 @@ fn ascend_all_sides(
             })
         });
         let best = twins
-            .filter_map(|twin| ascend(ring, ends, twin, objective))
+            .filter_map(|twin| ascend(profile, ends, twin, objective))
             .max_by(|(a, _), (b, _)| a.total_cmp(b));
         match best {
             Some(best) if best.0 > top.0 + ROUNDING * top.0.abs() => top = best,
@@ -308,7 +311,7 @@ impl Cell {
 }
 
 struct Climber<'a, O> {
-    ring: &'a Ring,
+    profile: &'a dyn Profile,
     objective: &'a O,
     cells: [Cell; 4],
 }
@@ -378,7 +381,7 @@ impl<O: Objective> Climber<'_, O> {
                 let (low, high) = self.range(&moved, *i);
                 moved[*i] = (moved[*i] + change).min(high).max(low);
             }
-            if let Some(candidate) = FourLink::new(self.ring, moved) {
+            if let Some(candidate) = FourLink::new(self.profile, moved) {
                 let (trial, trial_gradient) = self.evaluate(&candidate);
                 let trial_slope = free
                     .iter()
@@ -406,7 +409,7 @@ impl<O: Objective> Climber<'_, O> {
                 let mut moved = angles;
                 let (low, high) = self.range(&angles, *i);
                 moved[*i] = (moved[*i] + by).min(high).max(low);
-                let mechanism = FourLink::new(self.ring, moved)?;
+                let mechanism = FourLink::new(self.profile, moved)?;
                 Some((moved[*i], self.evaluate(&mechanism).1))
             };
             let ((low, before), (high, after)) = (shifted(-h)?, shifted(h)?);

@@ -10,6 +10,7 @@
 //! would travel, and the four-link motion is no longer that of rigid blocks without tension.
 
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
@@ -18,7 +19,8 @@ use super::mechanism::HingeSites;
 use super::resultant::{Extremum, SectionResultant, climb};
 use crate::mechanics::chain::Demand;
 use crate::mechanics::geometry::field::{Momentum, Twist, turned};
-use crate::mechanics::geometry::ring::{MassMoments, Ring};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::MassMoments;
 
 /// Samples of a continuous ring per right angle; between two of them the line has at most one maximum.
 const SAMPLES: f64 = 90.0;
@@ -40,7 +42,7 @@ impl Demand {
         friction: 0.0,
     };
 
-    /// Measures resultants against sections of the given thickness; `weight` is that of the whole
+    /// Measures resultants against their sections; `weight` is that of the whole
     /// structure, in the unit of the resultants.
     ///
     /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, for the moment `M` about the axis and the
@@ -48,18 +50,15 @@ impl Demand {
     /// excess is `(|M| - N t / 2) / (0.01 weight t)` and the friction `|V| / (0.01 weight)`, which
     /// continue the others and are always finite.
     #[must_use]
-    pub fn of_sections(
-        sections: impl Iterator<Item = SectionResultant>,
-        thickness: f64,
-        weight: f64,
-    ) -> Self {
+    pub fn of_sections(sections: impl Iterator<Item = SectionResultant>, weight: f64) -> Self {
         sections.fold(Self::NONE, |demand, section| {
-            demand.max(Self::of_section(&section, thickness, weight))
+            demand.max(Self::of_section(&section, weight))
         })
     }
 
     /// The demand of a resultant on its section; a negative excess is the distance inside.
-    fn of_section(section: &SectionResultant, thickness: f64, weight: f64) -> Self {
+    fn of_section(section: &SectionResultant, weight: f64) -> Self {
+        let thickness = section.thickness;
         let normal = section.normal.max(MIN_NORMAL * weight);
         let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
         Self {
@@ -140,18 +139,23 @@ impl Part {
     /// The part that ends at `end_rad`, under `load`, with the resultant `known` at the section
     /// `known_rad`.
     #[must_use]
-    pub fn new(ring: &Ring, end_rad: f64, load: Load, (known_rad, known): (f64, Momentum)) -> Self {
+    pub fn new(
+        profile: &dyn Profile,
+        end_rad: f64,
+        load: Load,
+        (known_rad, known): (f64, Momentum),
+    ) -> Self {
         Self {
             end_rad,
             load,
-            start: known - load.resultant(&ring.moments_to(known_rad)),
+            start: known - load.resultant(&profile.moments_to(known_rad)),
         }
     }
 
     /// The resultant at a section.
     #[must_use]
-    pub fn at(&self, ring: &Ring, angle_rad: f64) -> Momentum {
-        self.start + self.load.resultant(&ring.moments_to(angle_rad))
+    pub fn at(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
+        self.start + self.load.resultant(&profile.moments_to(angle_rad))
     }
 }
 
@@ -159,43 +163,53 @@ impl Part {
 ///
 /// Forces are in weights of `rho d R^2`. Each is in the frame of the part's material: components and
 /// positions refer to the section where it is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ThrustLine {
-    ring: Ring,
+    profile: Arc<dyn Profile>,
     parts: Vec<Part>,
 }
 
 impl ThrustLine {
     /// The line over consecutive parts, from the left springing to the right.
-    pub(crate) fn new(ring: &Ring, parts: Vec<Part>) -> Self {
-        Self { ring: *ring, parts }
+    pub(crate) fn new(profile: &dyn Profile, parts: Vec<Part>) -> Self {
+        Self {
+            profile: profile.shared(),
+            parts,
+        }
     }
 
-    /// A line of the ring at rest under a force per unit mass in g.
+    /// A line of the structure at rest under a force per unit mass in g.
     ///
-    /// At rest the ring is hyperstatic, and one admissible line proves that it can stay at rest. This is the
-    /// mean of the two limit lines, at `A_L` to the right and to the left, weighted so that their loads
-    /// add up to the load: moments and normal forces being linear in the load, it is
-    /// inside wherever both are, and grows into that of the mechanism that starts.
+    /// At rest it is hyperstatic, and one admissible line proves that it can stay at rest. This is the
+    /// mean of the two limit lines, at `A_L` to the right and to the left (the latter as its mirror image, which sways
+    /// right), weighted so that their loads add up to the load: moments and normal forces being linear in the load,
+    /// it is inside wherever both are, and grows into that of the mechanism that starts.
     #[must_use]
-    pub fn at_rest(incipient: &Incipient, ring: &Ring, body_force_g: Vector2<f64>) -> Self {
-        let right = incipient.thrust_line.at(0.0);
-        let end = incipient.thrust_line.at(ring.embrace_rad());
+    pub fn at_rest(
+        to_right: &Incipient,
+        to_left: &Incipient,
+        profile: &dyn Profile,
+        body_force_g: Vector2<f64>,
+    ) -> Self {
+        let right = to_right.thrust_line.at(0.0);
+        let end = to_left.thrust_line.at(profile.end());
         // In the mirror the parts before and after the section change places, and with them the sign.
         let left = Momentum {
             linear: Vector2::new(end.linear.x, -end.linear.y),
             angular: end.angular,
         };
-        let (weight, push) = (-body_force_g.y, body_force_g.x / incipient.acceleration_g);
+        let both_g = to_right.acceleration_g + to_left.acceleration_g;
+        let (weight, push) = (-body_force_g.y, body_force_g.x / both_g);
+        let shares = [to_left, to_right].map(|onset| 2.0 * onset.acceleration_g / both_g);
         Self::new(
-            ring,
+            profile,
             vec![Part::new(
-                ring,
-                ring.embrace_rad(),
+                profile,
+                profile.end(),
                 Load::uniform(body_force_g),
                 (
                     0.0,
-                    (right + left) * (0.5 * weight) + (right - left) * (0.5 * push),
+                    (right * shares[0] + left * shares[1]) * (0.5 * weight) + (right - left) * push,
                 ),
             )],
         )
@@ -205,13 +219,13 @@ impl ThrustLine {
     #[must_use]
     pub fn at(&self, angle_rad: f64) -> Momentum {
         let index = self.parts.partition_point(|part| part.end_rad < angle_rad);
-        self.parts[index.min(self.parts.len() - 1)].at(&self.ring, angle_rad)
+        self.parts[index.min(self.parts.len() - 1)].at(&*self.profile, angle_rad)
     }
 
     /// Components and position at a section.
     #[must_use]
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
-        SectionResultant::new(&self.ring, angle_rad, &self.at(angle_rad))
+        SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
     /// Where the line crosses these sections, outwards from the axis over the thickness: within -0.5 to 0.5 inside the
@@ -229,12 +243,11 @@ impl ThrustLine {
     /// The largest demands over the joints, or over all sections of a continuous ring.
     #[must_use]
     pub fn demand(&self, sites: HingeSites) -> Demand {
-        let thickness = self.ring.thickness_ratio();
-        let weight = self.ring.moments_to(self.ring.embrace_rad()).mass;
+        let weight = self.profile.moments_to(self.profile.end()).mass;
         match sites {
             HingeSites::Voussoirs(count) => {
-                let joints = self.ring.sections(count).into_iter();
-                Demand::of_sections(joints.map(|angle| self.section(angle)), thickness, weight)
+                let joints = self.profile.sections(count).into_iter();
+                Demand::of_sections(joints.map(|angle| self.section(angle)), weight)
             }
             HingeSites::Anywhere => {
                 let starts = std::iter::once(0.0).chain(self.parts.iter().map(|part| part.end_rad));
@@ -243,9 +256,10 @@ impl ThrustLine {
                     .filter(|(start, part)| *start < part.end_rad)
                     .fold(Demand::NONE, |demand, (start, part)| {
                         let at = |angle_rad: f64| {
-                            let resultant = part.at(&self.ring, angle_rad);
-                            let section = SectionResultant::new(&self.ring, angle_rad, &resultant);
-                            Demand::of_section(&section, thickness, weight)
+                            let resultant = part.at(&*self.profile, angle_rad);
+                            let section =
+                                SectionResultant::new(&*self.profile, angle_rad, &resultant);
+                            Demand::of_section(&section, weight)
                         };
                         largest(demand, start, part.end_rad, &at)
                     })

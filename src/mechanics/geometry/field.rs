@@ -10,7 +10,8 @@ use std::ops::{Add, Mul, Sub};
 
 use nalgebra::Vector2;
 
-use super::ring::{MassMoments, Ring};
+use super::profile::Profile;
+use super::ring::MassMoments;
 
 /// `k x v`: `v` turned by a right angle anticlockwise.
 pub(crate) fn turned(v: Vector2<f64>) -> Vector2<f64> {
@@ -236,15 +237,15 @@ impl Field {
         }
     }
 
-    /// The mirror image about the vertical axis of `ring`.
+    /// The mirror image about the vertical axis of the profile.
     #[must_use]
-    pub fn mirrored(&self, ring: &Ring) -> Self {
+    pub fn mirrored(&self, profile: &dyn Profile) -> Self {
         Self {
             cuts_rad: self
                 .cuts_rad
                 .iter()
                 .rev()
-                .map(|cut| ring.embrace_rad() - cut)
+                .map(|cut| profile.end() - cut)
                 .collect(),
             twists: self.twists.iter().rev().map(Twist::mirrored).collect(),
         }
@@ -265,38 +266,34 @@ impl Field {
     }
 
     /// The rigid sectors: bounds and motion of each.
-    fn sectors(&self, embrace_rad: f64) -> impl Iterator<Item = (f64, f64, Twist)> {
+    fn sectors(&self, end: f64) -> impl Iterator<Item = (f64, f64, Twist)> {
         let starts = std::iter::once(0.0).chain(self.cuts_rad.iter().copied());
-        let ends = self
-            .cuts_rad
-            .iter()
-            .copied()
-            .chain(std::iter::once(embrace_rad));
+        let ends = self.cuts_rad.iter().copied().chain(std::iter::once(end));
         starts
             .zip(ends)
             .zip(&self.twists)
             .map(|((start, end), twist)| (start, end, *twist))
     }
 
-    /// Momentum of the part of `ring` from the left springing to `angle_rad`.
+    /// Momentum of the part of the profile from the left springing to `angle_rad`.
     #[must_use]
-    pub fn momentum_to(&self, ring: &Ring, angle_rad: f64) -> Momentum {
-        self.sectors(ring.embrace_rad())
+    pub fn momentum_to(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
+        self.sectors(profile.end())
             .take_while(|(start, ..)| *start < angle_rad)
-            .map(|(start, end, twist)| twist.momentum(&ring.sector(start, end.min(angle_rad))))
+            .map(|(start, end, twist)| twist.momentum(&profile.sector(start, end.min(angle_rad))))
             .fold(Momentum::ZERO, Add::add)
     }
 
     /// The scalar product with another field: the integral of `rho v . w` over the ring, cut at the
     /// sections of both (the seven bodies of Eq. (3) of the paper, up to nine in general).
     #[must_use]
-    pub fn product(&self, other: &Self, ring: &Ring) -> f64 {
+    pub fn product(&self, other: &Self, profile: &dyn Profile) -> f64 {
         let mut sum = 0.0;
-        for (start, end, twist) in self.sectors(ring.embrace_rad()) {
-            for (other_start, other_end, other_twist) in other.sectors(ring.embrace_rad()) {
+        for (start, end, twist) in self.sectors(profile.end()) {
+            for (other_start, other_end, other_twist) in other.sectors(profile.end()) {
                 let (from, to) = (start.max(other_start), end.min(other_end));
                 if from < to {
-                    sum += twist.power(&other_twist.momentum(&ring.sector(from, to)));
+                    sum += twist.power(&other_twist.momentum(&profile.sector(from, to)));
                 }
             }
         }
@@ -307,6 +304,7 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanics::geometry::ring::Ring;
 
     fn example() -> (Ring, Field, Field) {
         let ring = Ring::new(0.2, 2.8).unwrap();

@@ -2,4 +2,5 @@
 pub mod curve;
 pub mod field;
 pub mod pose;
+pub mod profile;
 pub mod ring;

@@ -135,14 +135,22 @@ impl Shape {
         }
     }
 
-    /// Of what it is made; blocks have densities of their own.
-    fn material(&self) -> Option<Material> {
+    /// Of what it is made; of blocks with densities of their own, the first.
+    #[must_use]
+    pub fn material(&self) -> Material {
         match self {
-            Self::Circular(arch) => Some(arch.material()),
-            Self::PointedArch(arch) => Some(arch.dimensions.material),
-            Self::EllipticArch(arch) => Some(arch.dimensions.material),
-            Self::BasketArch(arch) => Some(arch.dimensions.material),
-            Self::Blocks(_) => None,
+            Self::Circular(arch) => arch.material(),
+            Self::PointedArch(arch) => arch.dimensions.material,
+            Self::EllipticArch(arch) => arch.dimensions.material,
+            Self::BasketArch(arch) => arch.dimensions.material,
+            Self::Blocks(blocks) => Material {
+                depth_m: blocks.depth_m,
+                density_kg_m3: blocks
+                    .density_kg_m3
+                    .first()
+                    .copied()
+                    .unwrap_or(DENSITY_KG_M3),
+            },
         }
     }
 
@@ -238,11 +246,10 @@ impl Masonry {
     ) -> Result<Self, MasonryError> {
         let arch = shape.cut()?;
         let mut extra = vec![None; arch.voussoirs()];
-        let material = match shape.material() {
-            Some(material) => material,
-            None if piers.are_none() && fill.is_none() => Material::default(),
-            None => return Err(MasonryError::Blocks),
-        };
+        if matches!(shape, Shape::Blocks(_)) && (!piers.are_none() || fill.is_some()) {
+            return Err(MasonryError::Blocks);
+        }
+        let material = shape.material();
         if let Some(fill) = &fill {
             fill.add_to(&mut extra, &arch, material)
                 .map_err(MasonryError::Fill)?;

@@ -1,0 +1,204 @@
+//! What hinges divide into rigid parts: a continuous ring, or a row of blocks between joints.
+//!
+//! Sections follow each other from the left support to the right one and are named by a number that rises from zero to
+//! [`Profile::end`]: the angle of a ring, the index of a joint. At each of them a hinge may sit on either edge.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use super::field::turned;
+use super::ring::{Edge, MassMoments, Ring};
+use crate::mechanics::blocks::{Joint, Row, Supports};
+
+/// Sections with two edges each, and the mass before each of them.
+///
+/// Lengths are in the size of the structure, masses in a unit of its own.
+pub trait Profile: Debug + Send + Sync {
+    /// The last section; the first one is zero.
+    fn end(&self) -> f64;
+
+    /// Point of a section on an edge.
+    fn point(&self, section: f64, edge: Edge) -> Vector2<f64>;
+
+    /// The middle of a section.
+    fn middle(&self, section: f64) -> Vector2<f64> {
+        (self.point(section, Edge::Intrados) + self.point(section, Edge::Extrados)) * 0.5
+    }
+
+    /// Unit vector from the intrados to the extrados.
+    fn outward(&self, section: f64) -> Vector2<f64>;
+
+    /// Unit normal of a section towards the right support.
+    fn onward(&self, section: f64) -> Vector2<f64> {
+        -turned(self.outward(section))
+    }
+
+    /// Distance of the edges at a section.
+    fn thickness(&self, section: f64) -> f64;
+
+    /// Mass moments of what lies before a section.
+    fn moments_to(&self, section: f64) -> MassMoments;
+
+    /// Mass moments between two sections.
+    fn sector(&self, from: f64, to: f64) -> MassMoments {
+        self.moments_to(to) - self.moments_to(from)
+    }
+
+    /// Mass moments per unit of the section's number; none where hinges can sit at joints only.
+    fn slice(&self, _section: f64) -> MassMoments {
+        MassMoments::NONE
+    }
+
+    /// Derivative of the point on an edge with respect to the section's number, likewise.
+    fn edge_slope(&self, _section: f64, _edge: Edge) -> Vector2<f64> {
+        Vector2::zeros()
+    }
+
+    /// The sections that cut it into equal parts, the supports included; of a row its joints, whatever the number.
+    fn sections(&self, parts: usize) -> Vec<f64>;
+
+    /// The same to keep.
+    fn shared(&self) -> Arc<dyn Profile>;
+}
+
+impl Profile for Ring {
+    fn end(&self) -> f64 {
+        self.embrace_rad()
+    }
+
+    fn point(&self, section: f64, edge: Edge) -> Vector2<f64> {
+        Self::point(self, section, edge)
+    }
+
+    fn middle(&self, section: f64) -> Vector2<f64> {
+        self.radial(section)
+    }
+
+    fn outward(&self, section: f64) -> Vector2<f64> {
+        self.radial(section)
+    }
+
+    fn onward(&self, section: f64) -> Vector2<f64> {
+        self.tangent(section)
+    }
+
+    fn thickness(&self, _: f64) -> f64 {
+        self.thickness_ratio()
+    }
+
+    fn moments_to(&self, section: f64) -> MassMoments {
+        Self::moments_to(self, section)
+    }
+
+    fn slice(&self, section: f64) -> MassMoments {
+        Self::slice(self, section)
+    }
+
+    fn edge_slope(&self, section: f64, edge: Edge) -> Vector2<f64> {
+        self.tangent(section) * self.radius(edge)
+    }
+
+    fn sections(&self, parts: usize) -> Vec<f64> {
+        Self::sections(self, parts)
+    }
+
+    fn shared(&self) -> Arc<dyn Profile> {
+        Arc::new(*self)
+    }
+}
+
+/// A row of blocks between two supports, whose sections are its joints; in its size and its whole mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointedProfile {
+    joints: Vec<Joint>,
+    /// Before every joint.
+    moments: Vec<MassMoments>,
+}
+
+impl JointedProfile {
+    /// The profile of a row; `None` for a stack, which has no right support.
+    #[must_use]
+    pub fn new(row: &Row) -> Option<Self> {
+        if row.supports() == Supports::Left {
+            return None;
+        }
+        let (per_m, per_kg) = (row.size_m().recip(), row.mass_kg().recip());
+        let mut before = MassMoments::NONE;
+        let mut moments = vec![before];
+        for block in row.blocks() {
+            let own = block.moments_at(block.centre_m);
+            before = before
+                + MassMoments {
+                    mass: own.mass * per_kg,
+                    first: own.first * (per_kg * per_m),
+                    polar: own.polar * (per_kg * per_m * per_m),
+                };
+            moments.push(before);
+        }
+        let joints = row.joints().iter();
+        Some(Self {
+            joints: joints
+                .map(|joint| Joint {
+                    intrados_m: joint.intrados_m * per_m,
+                    extrados_m: joint.extrados_m * per_m,
+                })
+                .collect(),
+            moments,
+        })
+    }
+
+    /// Number of its joints.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The joint that a section is.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "sections are joints, which are few"
+    )]
+    pub fn joint(section: f64) -> usize {
+        section.round().max(0.0) as usize
+    }
+
+    fn at(&self, section: f64) -> &Joint {
+        &self.joints[Self::joint(section).min(self.joints.len() - 1)]
+    }
+}
+
+impl Profile for JointedProfile {
+    #[expect(clippy::cast_precision_loss, reason = "joints are few")]
+    fn end(&self) -> f64 {
+        (self.joints.len() - 1) as f64
+    }
+
+    fn point(&self, section: f64, edge: Edge) -> Vector2<f64> {
+        self.at(section).corner_m(edge)
+    }
+
+    fn outward(&self, section: f64) -> Vector2<f64> {
+        self.at(section).along()
+    }
+
+    fn thickness(&self, section: f64) -> f64 {
+        self.at(section).thickness_m()
+    }
+
+    fn moments_to(&self, section: f64) -> MassMoments {
+        self.moments[Self::joint(section).min(self.moments.len() - 1)]
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "joints are few")]
+    fn sections(&self, _: usize) -> Vec<f64> {
+        (0..self.joints.len()).map(|joint| joint as f64).collect()
+    }
+
+    fn shared(&self) -> Arc<dyn Profile> {
+        Arc::new(self.clone())
+    }
+}

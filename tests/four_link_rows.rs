@@ -1,0 +1,499 @@
+//! Four links on rows of blocks: circular voussoirs against the ring, static against kinematic theorem, mirror images.
+#![allow(clippy::unwrap_used)]
+
+use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::mechanics::blocks::{Block, Row, Supports};
+use archrock::mechanics::chain::{Hinge, Mechanism as _, MechanismChain as _};
+use archrock::mechanics::four_link::certificate::project;
+use archrock::mechanics::four_link::impact::closing_field;
+use archrock::mechanics::geometry::profile::{JointedProfile, Profile as _};
+use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::masonry::{
+    BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, Masonry, Material, Pier,
+    Piers, PlacedLoad, PointedArch, Shape,
+};
+use archrock::mechanics::stability::{falls, onset};
+use archrock::{
+    Arch, FourLinkArch, FourLinkError, FourLinkRow, GroundMotion, ImpactLaw, ImpactModel, Initial,
+    Model as _, Outcome, Pulse, Request, Sway,
+};
+use nalgebra::Vector2;
+
+const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
+
+fn ring(embrace_deg: f64) -> Ring {
+    Ring::new(0.15, embrace_deg.to_radians()).unwrap()
+}
+
+fn circular(embrace_deg: f64, voussoirs: usize) -> (FourLinkArch, Row) {
+    let arch = Arch::new(5.0, 0.15, embrace_deg).unwrap();
+    let arch = arch.with_voussoirs(voussoirs).unwrap();
+    let row = Row::arch(&arch.ring(), voussoirs, 5.0, 1.0, 2000.0).unwrap();
+    let arch = FourLinkArch::new(arch, ImpactModel::MaxRestitution).unwrap();
+    (arch, row)
+}
+
+fn rocking(row: &Row) -> FourLinkRow {
+    FourLinkRow::new(row, ImpactModel::MaxRestitution).unwrap()
+}
+
+fn push(amplitude_g: f64) -> GroundMotion {
+    GroundMotion::pulse(Pulse::Rectangular, amplitude_g * 9.81, 0.2, 0.0).unwrap()
+}
+
+fn joints(model: &FourLinkRow, impacts: usize, sway: Sway) -> Vec<usize> {
+    let hinges = model.hinges(impacts, sway).into_iter();
+    hinges
+        .map(|hinge| match hinge {
+            Hinge::Joint { joint, .. } => joint,
+            other => panic!("{other:?}"),
+        })
+        .collect()
+}
+
+/// The voussoirs of a ring as blocks that know nothing of it.
+#[test]
+fn circular_voussoirs_as_a_row_are_those_of_the_ring() {
+    for (embrace_deg, voussoirs) in [(157.5, 7), (180.0, 18), (180.0, 60)] {
+        let (arch, row) = circular(embrace_deg, voussoirs);
+        let model = rocking(&row);
+        let sections = ring(embrace_deg).sections(voussoirs);
+        for first in SIDES {
+            let there = model.incipient_towards_g(first);
+            assert!((there / arch.incipient_g() - 1.0).abs() < 1e-12, "{there}");
+            for impacts in 0..8 {
+                let (exact, own) = (
+                    arch.link_from(first, impacts).unwrap(),
+                    model.link_from(first, impacts).unwrap(),
+                );
+                assert!((own.restitution - exact.restitution).abs() < 1e-12);
+                assert!((own.critical_rad / exact.critical_rad - 1.0).abs() < 1e-11);
+                let sway = first.before(impacts);
+                let at: Vec<f64> = joints(&model, impacts, sway)
+                    .into_iter()
+                    .map(|joint| sections[joint])
+                    .collect();
+                let hinges = arch.hinges(impacts, sway);
+                for (angle, hinge) in at.iter().zip(hinges) {
+                    let Hinge::Section { angle_rad, .. } = hinge else {
+                        panic!("{hinge:?}");
+                    };
+                    assert!((angle - angle_rad).abs() < 1e-12);
+                }
+            }
+        }
+        let ground = push(-1.8 * arch.incipient_g());
+        let request = Request {
+            output_step_s: 0.01,
+            ..Request::default()
+        };
+        let exact = arch.history(&ground, &request).unwrap();
+        let own = model.history(&ground, &request).unwrap();
+        assert_eq!(own.summary.outcome, exact.summary.outcome);
+        assert_eq!(own.summary.impacts, exact.summary.impacts);
+        let peaks = own.summary.peak_rotations_rad.iter();
+        for (peak, there) in peaks.zip(&exact.summary.peak_rotations_rad) {
+            assert!((peak / there - 1.0).abs() < 1e-9);
+        }
+        let thrusts = [&own, &exact].map(|history| history.summary.thrust.unwrap());
+        let [excess, there] = thrusts.map(|thrust| thrust.largest_excess.value);
+        assert!((excess - there).abs() < 1e-7, "{excess} {there}");
+        let [friction, there] = thrusts.map(|thrust| thrust.largest_friction.value);
+        assert!((friction - there).abs() < 1e-7, "{friction} {there}");
+    }
+}
+
+/// Voussoirs whose curved sides are polygons of `n` sides: errors fall with the square of `n`.
+#[test]
+fn many_sided_voussoirs_converge_to_sectors() {
+    let (arch, exact) = circular(157.5, 7);
+    let sections = ring(157.5).sections(7);
+    let errors = [8, 16, 32].map(|sides| {
+        let outline = |ends: &[f64]| {
+            let at = |i: u32| ends[0] + (ends[1] - ends[0]) * f64::from(i) / f64::from(sides);
+            let point = |i, radius: f64| ring(157.5).radial(at(i)) * (5.0 * radius);
+            let outer = (0..=sides).map(|i| point(i, 1.075));
+            outer
+                .chain((0..=sides).rev().map(|i| point(i, 0.925)))
+                .collect::<Vec<_>>()
+        };
+        let outlines = sections.windows(2).map(outline);
+        let blocks = outlines.map(|outline| Block::prism(&outline, 1.0, 2000.0));
+        let joints = exact.joints().to_vec();
+        let row = Row::new(blocks.collect(), joints, Supports::Both, 5.0).unwrap();
+        let model = rocking(&row);
+        let ground = push(-0.5);
+        let request = Request::default();
+        let peak = |model: &dyn archrock::Model| {
+            let summary = model.simulate(&ground, &request, None).unwrap();
+            summary.peak_rotations_rad[0]
+        };
+        [
+            model.incipient_g() / arch.incipient_g() - 1.0,
+            model.link(1).unwrap().restitution - arch.link(1).unwrap().restitution,
+            peak(&model) / peak(&arch) - 1.0,
+        ]
+    });
+    for quantity in 0..3 {
+        let [coarse, middle, fine] = [0, 1, 2].map(|level: usize| errors[level][quantity]);
+        for ratio in [coarse / middle, middle / fine] {
+            assert!((ratio - 4.0).abs() < 0.1, "{quantity}: {ratio}");
+        }
+        assert!(fine.abs() < 1e-4);
+    }
+}
+
+/// Random numbers that are the same everywhere (splitmix64).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        f64::from(u32::try_from((z ^ (z >> 31)) >> 32).unwrap()) / f64::from(u32::MAX)
+    }
+
+    fn within(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.next()
+    }
+
+    fn chance(&mut self) -> bool {
+        self.next() < 0.5
+    }
+
+    fn pick(&mut self, count: u32) -> u32 {
+        (0..count)
+            .find(|i| self.0 % u64::from(count) == u64::from(*i))
+            .unwrap()
+    }
+}
+
+fn random(numbers: &mut Numbers) -> Option<Masonry> {
+    let voussoirs = [5, 8, 11, 16][numbers.pick(4) as usize];
+    let thickness_m = numbers.within(0.5, 1.4);
+    let dimensions = |rise_m| Dimensions {
+        span_m: 10.0,
+        rise_m,
+        thickness_m,
+        voussoirs,
+        material: Material::default(),
+    };
+    numbers.next();
+    let shape = match numbers.pick(4) {
+        0 => Shape::PointedArch(PointedArch {
+            dimensions: dimensions(numbers.within(5.0, 9.0)),
+        }),
+        1 => Shape::EllipticArch(EllipticArch {
+            dimensions: dimensions(numbers.within(3.0, 7.0)),
+        }),
+        2 => Shape::BasketArch(BasketArch {
+            dimensions: dimensions(numbers.within(3.2, 5.0)),
+            crown_deg: numbers.within(40.0, 75.0),
+        }),
+        _ => {
+            let embrace_deg = numbers.within(130.0, 180.0);
+            let arch = Arch::new(5.0, thickness_m / 5.0, embrace_deg).ok()?;
+            let mut inner: Vec<f64> = (1..voussoirs)
+                .map(|_| numbers.within(0.0, embrace_deg))
+                .collect();
+            inner.sort_by(f64::total_cmp);
+            let mut joints_deg = vec![0.0];
+            joints_deg.extend(inner);
+            joints_deg.push(embrace_deg);
+            Shape::Circular(CircularArch::new(arch, Some(joints_deg)).ok()?)
+        }
+    };
+    let pier = |numbers: &mut Numbers| {
+        numbers.chance().then(|| Pier {
+            height_m: numbers.within(1.0, 4.0),
+            width_m: numbers.within(1.5, 4.0),
+            blocks: 1 + numbers.pick(3) as usize,
+            density_kg_m3: None,
+        })
+    };
+    let piers = Piers {
+        left: pier(numbers),
+        right: pier(numbers),
+    };
+    let fill = numbers.chance().then(|| Fill {
+        level: if numbers.chance() {
+            FillLevel::AboveCrown(numbers.within(0.0, 1.0))
+        } else {
+            FillLevel::AboveSpringing(numbers.within(0.5, 3.0))
+        },
+        density_kg_m3: 1600.0,
+    });
+    let loads = if numbers.chance() {
+        vec![PlacedLoad {
+            mass_kg: numbers.within(100.0, 4000.0),
+            x_m: numbers.within(-3.0, 3.0),
+            width_m: 0.5,
+        }]
+    } else {
+        Vec::new()
+    };
+    Masonry::new(shape, piers, fill, loads).ok()
+}
+
+/// Where four links start (kinematic theorem, confirmed by its thrust line) they start at the push of the static
+/// programme with any number of hinges; where they are refused, that push is lower, or more joints open.
+#[test]
+fn static_and_kinematic_theorem_agree_on_random_shapes() {
+    let mut numbers = Numbers(12);
+    let (mut compared, mut refused, mut standing) = (0, 0, 0);
+    while standing < 200 {
+        let Some(masonry) = random(&mut numbers) else {
+            continue;
+        };
+        let row = masonry.row();
+        if falls(row).unwrap().is_some() {
+            continue;
+        }
+        standing += 1;
+        let of_static = SIDES.map(|sway| onset(row, sway).unwrap());
+        match FourLinkRow::new(row, ImpactModel::MaxRestitution) {
+            Ok(model) => {
+                let free = FreeHinges::new(row.clone()).unwrap();
+                for (sway, of_static) in SIDES.into_iter().zip(&of_static) {
+                    let (own, there) = (
+                        model.incipient_towards_g(sway),
+                        of_static.as_ref().unwrap().acceleration_g,
+                    );
+                    assert!(
+                        (own / there - 1.0).abs() < 1e-8,
+                        "{own} {there} {masonry:?}"
+                    );
+                    let free_g = free.incipient_acceleration_g(sway).unwrap();
+                    assert!((own / free_g - 1.0).abs() < 1e-8);
+                    compared += 1;
+                }
+            }
+            Err(FourLinkError::Row { sway, .. }) => {
+                let side = usize::from(sway == Sway::Left);
+                let openings = of_static[side]
+                    .as_ref()
+                    .map_or(0, |onset| onset.openings.len());
+                assert_ne!(openings, 4, "{masonry:?}");
+                refused += 1;
+            }
+            Err(error) => panic!("{error} {masonry:?}"),
+        }
+    }
+    assert!(compared >= 200, "{compared} compared, {refused} refused");
+}
+
+/// What sways right in a row sways left in its mirror image, and nothing else changes.
+#[test]
+fn mirror_images_of_uneven_rows() {
+    let mut numbers = Numbers(3);
+    let mut compared = 0;
+    while compared < 10 {
+        let Some(masonry) = random(&mut numbers) else {
+            continue;
+        };
+        let mirrored = masonry.row().mirrored().unwrap();
+        let Ok(own) = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution) else {
+            continue;
+        };
+        let there = rocking(&mirrored);
+        let last = mirrored.joints().len() - 1;
+        for first in SIDES {
+            let (a, b) = (
+                own.incipient_towards_g(first),
+                there.incipient_towards_g(first.opposite()),
+            );
+            assert_eq!(a.to_bits(), b.to_bits());
+            for impacts in 0..4 {
+                let (a, b) = (
+                    own.link_from(first, impacts),
+                    there.link_from(first.opposite(), impacts),
+                );
+                assert_eq!(a.map(|l| l.restitution), b.map(|l| l.restitution));
+                let sway = first.before(impacts);
+                let mut hinges = joints(&own, impacts, sway);
+                hinges.reverse();
+                let hinges: Vec<usize> = hinges.into_iter().map(|joint| last - joint).collect();
+                assert_eq!(hinges, joints(&there, impacts, sway.opposite()));
+            }
+        }
+        let amplitude_g = 2.0 * own.incipient_g();
+        let run = |model: &FourLinkRow, sign: f64| {
+            model
+                .history(&push(sign * amplitude_g), &Request::default())
+                .unwrap()
+        };
+        let (history, image) = (run(&own, -1.0), run(&there, 1.0));
+        assert_eq!(history.samples.len(), image.samples.len());
+        for (sample, seen) in history.samples.iter().zip(image.samples.iter()) {
+            let mirrored: Vec<f64> = seen.rotations_rad.iter().rev().map(|q| -q + 0.0).collect();
+            assert_eq!(sample.rotations_rad, mirrored);
+        }
+        let mirrored = match image.summary.outcome {
+            Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
+            other => other,
+        };
+        assert_eq!(history.summary.outcome, mirrored);
+        compared += 1;
+    }
+}
+
+/// The cone of all motions that open joints bounds the restitution of four links, and is the energy that the free
+/// hinges keep when the same mechanism shuts all at once.
+#[test]
+fn the_certificate_bounds_the_impact_of_a_row() {
+    let dimensions = Dimensions {
+        span_m: 10.0,
+        rise_m: 6.5,
+        thickness_m: 0.9,
+        voussoirs: 14,
+        material: Material::default(),
+    };
+    let load = PlacedLoad {
+        mass_kg: 2500.0,
+        x_m: 1.5,
+        width_m: 0.0,
+    };
+    let shape = Shape::PointedArch(PointedArch { dimensions });
+    let masonry = Masonry::new(shape, Piers::default(), None, vec![load]).unwrap();
+    let model = rocking(masonry.row());
+    for first in SIDES {
+        let chain = model.chain(first);
+        let closing = &chain.link(0).unwrap().mechanism;
+        let profile: &JointedProfile = chain.profile(1);
+        let field = closing_field(closing, profile);
+        let cone = project(&field, profile, &profile.sections(0)).unwrap();
+        let own = chain.link(1).unwrap();
+        let gap = cone.restitution - own.link.restitution;
+        assert!((-1e-9..0.02).contains(&gap), "{gap}");
+        let line = own.impulse_line.as_ref().unwrap();
+        let admissible = line.resultants().extremes(chain.sites()).is_admissible();
+        assert_eq!(admissible, gap < 1e-7, "{gap}");
+        // Impulses at the hinges carry no moment: the line passes through all four corners.
+        for (section, edge) in own.mechanism.hinges_from_left(profile, Sway::Right) {
+            let moment = line
+                .resultants()
+                .at(section)
+                .about(profile.point(section, edge));
+            assert!(moment.abs() < 1e-12);
+        }
+    }
+}
+
+/// In motion the thrust line passes through the four hinges, by the equation of motion; at the release it is that of
+/// gravity.
+#[test]
+fn the_thrust_line_in_motion_passes_through_the_hinges() {
+    let (_, row) = circular(180.0, 18);
+    let row = row.carrying(
+        12,
+        &Block {
+            mass_kg: 900.0,
+            centre_m: Vector2::new(2.0, 5.0),
+            inertia_kg_m2: 10.0,
+        },
+    );
+    let model = rocking(&row);
+    for first in SIDES {
+        let chain = model.chain(first);
+        let link = chain.link(0).unwrap();
+        let linkage = &link.link.mechanism;
+        let q_rad = 0.3 * link.link.critical_rad;
+        let c = linkage.coefficients(q_rad);
+        let (rate, body_force_g) = (0.2, Vector2::new(0.15, -1.0));
+        let acceleration = (body_force_g.x * c.s_x + body_force_g.y * c.s_y
+            - 0.5 * c.inertia_slope * rate * rate)
+            / c.inertia;
+        let motion = archrock::mechanics::chain::Motion {
+            q_rad,
+            rate,
+            acceleration,
+            body_force_g,
+        };
+        let line = linkage.thrust_line(&motion);
+        let profile = chain.profile(0);
+        for (section, edge) in link.mechanism.hinges_from_left(profile, Sway::Right) {
+            let moment = line.at(section).about(profile.point(section, edge));
+            assert!(moment.abs() < 1e-12, "{moment}");
+        }
+    }
+}
+
+#[test]
+fn an_uneven_row_is_released_and_overturns_by_side() {
+    let (_, row) = circular(180.0, 18);
+    let load = Block {
+        mass_kg: 3000.0,
+        centre_m: Vector2::new(2.5, 5.0),
+        inertia_kg_m2: 0.0,
+    };
+    let model = rocking(&row.carrying(13, &load));
+    let [right, left] = SIDES.map(|sway| model.incipient_towards_g(sway));
+    assert!((right / left - 1.0).abs() > 0.05);
+    // A pulse between the two moves it to the weaker side only.
+    let between_g = 0.5 * (right + left);
+    let weaker = if right < left {
+        Sway::Right
+    } else {
+        Sway::Left
+    };
+    for (side, moves) in [(weaker, true), (weaker.opposite(), false)] {
+        let ground = push(-side.sign() * between_g);
+        let summary = model.simulate(&ground, &Request::default(), None).unwrap();
+        assert_eq!(summary.outcome != Outcome::NeverMoved, moves, "{side:?}");
+    }
+    for sway in SIDES {
+        let critical_rad = model.link_from(sway, 0).unwrap().critical_rad;
+        for (part, falls) in [(0.999, false), (1.001, true)] {
+            let request = Request {
+                initial: Some(Initial {
+                    sway,
+                    rotation_rad: part * critical_rad,
+                }),
+                ..Request::default()
+            };
+            let summary = model
+                .simulate(&GroundMotion::still(), &request, None)
+                .unwrap();
+            assert_eq!(summary.outcome == Outcome::Overturned(sway), falls);
+        }
+    }
+}
+
+#[test]
+fn measured_restitution_scales_that_of_the_model() {
+    let (_, row) = circular(157.5, 7);
+    let law = |restitution_factor| ImpactLaw {
+        model: ImpactModel::MaxRestitution,
+        restitution_factor,
+    };
+    let theory = rocking(&row);
+    for (factor, most) in [(0.67, 1.0), (0.96, 1.0), (1.9, 1.0)] {
+        let measured = FourLinkRow::new(&row, law(factor)).unwrap();
+        let arch = Arch::new(10.0, 0.15, 157.5)
+            .unwrap()
+            .with_voussoirs(7)
+            .unwrap();
+        let arch = FourLinkArch::new(arch, law(factor)).unwrap();
+        for impacts in 1..4 {
+            let own = measured.link(impacts).unwrap();
+            let there = theory.link(impacts).unwrap();
+            let expected = f64::min(factor * there.restitution, most);
+            assert!((own.restitution - expected).abs() < 1e-15);
+            // The energy that the rate stands for is that part.
+            let before = measured.link(impacts - 1).unwrap();
+            let kept = own.rate_ratio.powi(2) * own.at_zero.inertia / before.at_zero.inertia;
+            assert!((kept - expected).abs() < 1e-12);
+            assert!((arch.link(impacts).unwrap().restitution - expected).abs() < 1e-12);
+        }
+    }
+    let refused = FourLinkRow::new(&row, law(-0.1)).unwrap_err().to_string();
+    assert!(refused.contains("restitution_factor"), "{refused}");
+    // Nothing is left at all.
+    let stopped = FourLinkRow::new(&row, law(0.0)).unwrap();
+    let summary = stopped
+        .simulate(&push(-0.5), &Request::default(), None)
+        .unwrap();
+    assert_eq!((summary.outcome, summary.impacts), (Outcome::Rest, 1));
+}
