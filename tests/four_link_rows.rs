@@ -134,10 +134,10 @@ fn many_sided_voussoirs_converge_to_sectors() {
             peak(&model) / peak(&arch) - 1.0,
         ]
     });
-    for quantity in 0..3 {
-        let [coarse, middle, fine] = [0, 1, 2].map(|level: usize| errors[level][quantity]);
+    let [coarse, middle, fine] = errors;
+    for ((coarse, middle), fine) in coarse.into_iter().zip(middle).zip(fine) {
         for ratio in [coarse / middle, middle / fine] {
-            assert!((ratio - 4.0).abs() < 0.1, "{quantity}: {ratio}");
+            assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
         }
         assert!(fine.abs() < 1e-4);
     }
@@ -496,4 +496,21 @@ fn measured_restitution_scales_that_of_the_model() {
         .simulate(&push(-0.5), &Request::default(), None)
         .unwrap();
     assert_eq!((summary.outcome, summary.impacts), (Outcome::Rest, 1));
+}
+
+#[test]
+fn the_factor_is_read_and_written() {
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n[impact]\nrestitution_factor = 0.95\n";
+    let scenario = archrock::Scenario::parse(text, "a.toml").unwrap();
+    assert_eq!(scenario.impact.restitution_factor, 0.95);
+    assert_eq!(
+        archrock::Scenario::parse(&scenario.to_toml(), "a.toml").unwrap(),
+        scenario
+    );
+    let refused = archrock::Scenario::parse(&text.replace("0.95", "-1"), "a.toml").unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .starts_with("a.toml:6:22: `restitution_factor = -1` is out of range")
+    );
 }

@@ -256,8 +256,11 @@ impl Report {
         let codes = frames.iter().flat_map(|frame| {
             let mut codes = vec![0; joints];
             for open in &frame.hinges {
-                if let Hinge::Joint { joint, edge } = open.hinge {
-                    codes[joint] = edge_code(edge);
+                // A row whose blocks move as few bodies has its hinges in the layout.
+                if let Hinge::Joint { joint, edge } = open.hinge
+                    && let Some(code) = codes.get_mut(joint)
+                {
+                    *code = edge_code(edge);
                 }
             }
             codes
