@@ -9,6 +9,7 @@ use std::fs;
 use std::path::Path;
 
 use archrock::dynamics::free_hinges::{FreeHinges, Steps};
+use archrock::output::Figure;
 use archrock::output::map::draw;
 use archrock::scenario::{Changes, Hinges, Scenario, ScenarioErrors, Source};
 use archrock::studies::boundary::ImpactFreeBoundary;
@@ -173,7 +174,7 @@ fn the_spread_counts_outcomes_with_half_and_double_steps() {
         .filter(|row| matches!(row.spread, Some(Ok(outcomes)) if outcomes > 1))
         .count();
     assert!(0 < doubtful && doubtful < rows.len() / 2, "{doubtful}");
-    let picture = draw("Title", &map, &rows, &[]);
+    let picture = draw(Figure::SCREEN, "Title", &map, &rows, &[]);
     assert!(picture.contains("outcome depends on the steps"));
     let hatch = picture.lines().find(|line| line.contains("\"spread\""));
     assert_eq!(hatch.unwrap().matches('L').count(), doubtful);
@@ -185,7 +186,7 @@ fn the_spread_counts_outcomes_with_half_and_double_steps() {
         let without = map.row(index);
         assert_eq!((&without.result, without.spread), (&with.result, None));
     }
-    assert!(!draw("Title", &map, &rows, &[]).contains("depends on the steps"));
+    assert!(!draw(Figure::SCREEN, "Title", &map, &rows, &[]).contains("depends on the steps"));
 }
 
 // The program.

@@ -9,7 +9,7 @@ use std::path::Path;
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::output::{map, pictures};
+use archrock::output::{Figure, map, pictures};
 use archrock::studies::boundary::ImpactFreeBoundary;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::runner::Study as _;
@@ -129,7 +129,7 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
         let arch = arch(thickness_ratio, embrace_deg);
         let chain = arch.chain();
-        let picture = pictures::limit(chain);
+        let picture = pictures::limit(Figure::SCREEN, chain);
         let document = Document::parse(&picture).unwrap();
         let sheet = check_hinges(&document, chain, 0, Sway::Right);
         let lines = named(&document, "thrust line");
@@ -157,12 +157,15 @@ fn joints_are_drawn_where_there_are_voussoirs() {
     let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
     let arch = four_links(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();
-    for picture in [pictures::limit(chain), pictures::impact(chain, 1).unwrap()] {
+    for picture in [
+        pictures::limit(Figure::SCREEN, chain),
+        pictures::impact(Figure::SCREEN, chain, 1).unwrap(),
+    ] {
         let document = Document::parse(&picture).unwrap();
         assert_eq!(named(&document, "joint").len(), 8);
     }
     // The hinges are at joints.
-    let picture = pictures::limit(chain);
+    let picture = pictures::limit(Figure::SCREEN, chain);
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 0, Sway::Right);
 }
@@ -190,7 +193,7 @@ fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
 fn limit_shows_rigid_bodies_joined_at_hinges() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::limit(chain);
+    let picture = pictures::limit(Figure::SCREEN, chain);
     let document = Document::parse(&picture).unwrap();
     let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
     assert_eq!(hinges.len(), 4);
@@ -225,7 +228,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 fn the_second_impact_has_a_picture_of_its_own() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(chain, 2).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, chain, 2).unwrap();
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 2, Sway::Right);
     let title = &texts(&document)[0];
@@ -242,7 +245,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
             .fold(f64::INFINITY, f64::min)
     };
     assert!(left("body 1") < left("body 2") && left("body 2") < left("body 3"));
-    assert!(pictures::impact(chain, 0).is_none());
+    assert!(pictures::impact(Figure::SCREEN, chain, 0).is_none());
 
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
@@ -263,7 +266,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
 fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(chain, 1).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, chain, 1).unwrap();
     let document = Document::parse(&picture).unwrap();
     let sheet = check_hinges(&document, chain, 1, Sway::Left);
     assert!(
@@ -570,7 +573,7 @@ fn the_map_shows_every_cell_and_the_boundaries() {
     let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
     let boundary = ImpactFreeBoundary::new(&cells).unwrap();
     let boundaries: Vec<_> = (0..3).map(|x| boundary.row(x)).collect();
-    let picture = map::draw("a < b", &cells, &rows, &boundaries);
+    let picture = map::draw(Figure::SCREEN, "a < b", &cells, &rows, &boundaries);
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));
 

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
+use archrock::output::Figure;
 use archrock::output::spectrum::draw;
 use archrock::studies::runner::Study as _;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow, StructureKind};
@@ -402,7 +403,7 @@ fn pictures_of_much_and_of_little() {
         let scenario = scenario(text);
         let points = OverturningSpectrum::new(&scenario).unwrap();
         let rows: Vec<_> = (0..points.count()).map(|index| points.row(index)).collect();
-        let picture = draw("a title", &points, &rows);
+        let picture = draw(Figure::SCREEN, "a title", &points, &rows);
         assert!(
             !picture.contains("NaN") && !picture.contains("inf"),
             "{picture}"

@@ -11,6 +11,7 @@ use std::path::Path;
 
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
+use archrock::output::Figure;
 use archrock::output::suite::{Heading, draw, failures, to_json, write_fragility};
 use archrock::scenario::{Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, PeakRotation};
@@ -604,7 +605,7 @@ fn a_level_of_which_all_failed_has_no_fraction() {
     let json = to_json(&heading(), &results).unwrap();
     assert!(json["no_fit"].as_str().unwrap().starts_with("all 1 cases"));
     assert_eq!(
-        draw(&heading(), &results)
+        draw(Figure::SCREEN, &heading(), &results)
             .matches("data-name=\"fraction\"")
             .count(),
         1

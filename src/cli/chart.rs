@@ -8,6 +8,7 @@ use archrock::output::chart;
 use archrock::scenario::Structure;
 use archrock::studies::survey::shape_results;
 
+use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
 use super::study::say;
 use super::{Failure, commands};
@@ -19,6 +20,8 @@ pub struct Arguments {
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOption,
 }
 
 const PICTURE: &str = "chart.svg";
@@ -61,10 +64,12 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         })
         .collect();
     let results = shape_results(&shapes, sites, scenario.impact);
+    let own = [(arch.embrace_deg(), arch.thickness_ratio())];
+    let own = shape_results(&own, sites, scenario.impact);
     chart::write_table(folder.file(TABLE), &results)?;
     folder
         .file(PICTURE)
-        .write_all(chart::draw(&results).as_bytes())
+        .write_all(chart::draw(arguments.figure.get(), &results, own.first()).as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the chart: {error}")))?;
     folder.complete()?;
     if !quiet {

@@ -7,6 +7,7 @@ use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
 use archrock::output::record as output;
 use archrock::scenario::{Format, Layout, Sampling, Series, Unit};
 
+use super::figure::FigureOption;
 use super::scenario_file::SetOption;
 use super::{Failure, commands, print};
 
@@ -20,6 +21,8 @@ pub struct Arguments {
     /// Draw the record to this SVG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOption,
 }
 
 /// Gravity where no scenario tells it.
@@ -90,7 +93,13 @@ fn check_record(file: &Path, arguments: &Arguments) -> Result<String, Failure> {
     let intensity = Intensity::of(&samples, GRAVITY_M_S2);
     if let Some(plot) = &arguments.plot {
         let title = file.file_name().unwrap_or_default().to_string_lossy();
-        let picture = output::draw(&title, &samples, &intensity, GRAVITY_M_S2);
+        let picture = output::draw(
+            arguments.figure.get(),
+            &title,
+            &samples,
+            &intensity,
+            GRAVITY_M_S2,
+        );
         commands::write_picture(plot, &picture)?;
     }
     Ok(record_text(file, &series, &intensity))

@@ -13,7 +13,7 @@ use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::stability::onset;
 use archrock::mechanics::sway::Sway;
-use archrock::output::{mechanisms, pictures};
+use archrock::output::{Figure, mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
 
 use super::scenario_file::ScenarioFile;
@@ -27,11 +27,15 @@ pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
     model.map_err(|error| Failure::Input(error.to_string()))
 }
 
-pub fn limit(file: &ScenarioFile, format: Format, plot: Option<&Path>) -> Result<(), Failure> {
+pub fn limit(
+    file: &ScenarioFile,
+    format: Format,
+    plot: Option<(&Path, Figure)>,
+) -> Result<(), Failure> {
     let scenario = file.open()?.read(None)?;
-    if let Some(plot) = plot {
+    if let Some((plot, figure)) = plot {
         let arch = arch(&scenario, "--plot is")?;
-        write_picture(plot, &pictures::limit(arch.chain()))?;
+        write_picture(plot, &pictures::limit(figure, arch.chain()))?;
     }
     if let Structure::Masonry(masonry) = &scenario.structure {
         return row_limit(&scenario, masonry.row(), format);

@@ -23,6 +23,7 @@ use archrock::scenario::{Scenario, Structure};
 use serde_json::json;
 
 use super::commands::{self, degrees, pretty};
+use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, print};
 
@@ -51,6 +52,8 @@ pub struct Arguments {
     /// Also draw the impact to this SVG file: mechanisms, bodies, impulse line.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOption,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -115,7 +118,8 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if let Some(plot) = &arguments.plot {
-        let picture = pictures::impact(arch.chain(), chosen()?.index).ok_or_else(|| {
+        let picture = pictures::impact(arguments.figure.get(), arch.chain(), chosen()?.index);
+        let picture = picture.ok_or_else(|| {
             Failure::Input(format!(
                 "--plot: impact {} stops the arch; there is no mechanism after it to draw",
                 arguments.link

@@ -3,12 +3,13 @@
 use std::io::Write as _;
 
 use archrock::dynamics::history::Outcome;
-use archrock::output::map as output;
+use archrock::output::{Figure, map as output};
 use archrock::scenario::{Quantity, Scenario};
 use archrock::studies::boundary::{MapRow, MapWithBoundary};
 use archrock::studies::map::{CellResult, CellRow, OverturningMap};
 
 use super::Failure;
+use super::figure::FigureOption;
 use super::scenario_file::Destination;
 use super::study::{HingesOption, Options, counts, failed_in_words, in_words, say, write_summary};
 
@@ -20,6 +21,8 @@ pub struct Arguments {
     boundary: BoundaryOption,
     #[command(flatten)]
     hinges: HingesOption,
+    #[command(flatten)]
+    figure: FigureOption,
 }
 
 /// What the results of a map may have besides.
@@ -47,7 +50,14 @@ pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let Some((rows, part)) = options.compute(&study, &place, quiet)? else {
         return Ok(());
     };
-    finish(&map, rows, &place, arguments.boundary, quiet)?;
+    finish(
+        &map,
+        rows,
+        &place,
+        arguments.boundary,
+        arguments.figure.get(),
+        quiet,
+    )?;
     Ok(part.remove()?)
 }
 
@@ -94,12 +104,13 @@ pub fn merge(
     rows: Vec<MapRow>,
     place: &Destination,
     boundary: BoundaryOption,
+    figure: Figure,
     quiet: bool,
 ) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
     let map = overturning_map(&scenario)?;
     boundary.check(&MapWithBoundary::new(&map))?;
-    finish(&map, rows, place, boundary, quiet)
+    finish(&map, rows, place, boundary, figure, quiet)
 }
 
 /// Writes the results.
@@ -108,6 +119,7 @@ fn finish(
     rows: Vec<MapRow>,
     place: &Destination,
     boundary: BoundaryOption,
+    figure: Figure,
     quiet: bool,
 ) -> Result<(), Failure> {
     let scenario = map.scenario();
@@ -123,7 +135,7 @@ fn finish(
         folder.forget(BOUNDARY);
     }
     let title = scenario.title.as_deref().unwrap_or("Overturning map");
-    let picture = output::draw(title, map, &cells, &boundaries);
+    let picture = output::draw(figure, title, map, &cells, &boundaries);
     folder
         .file(PICTURE)
         .write_all(picture.as_bytes())

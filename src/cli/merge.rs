@@ -9,6 +9,7 @@ use archrock::studies::spectrum::OverturningSpectrum;
 use archrock::studies::suite::RecordSuite;
 
 use super::Failure;
+use super::figure::FigureOption;
 use super::map::{self, BoundaryOption};
 use super::scenario_file::Destination;
 use super::spectrum;
@@ -24,10 +25,12 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     boundary: BoundaryOption,
+    #[command(flatten)]
+    figure: FigureOption,
 }
 
 pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let parts = &arguments.parts;
+    let (parts, figure) = (&arguments.parts, arguments.figure.get());
     let beside = parts[0].parent();
     let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
     let beside = beside.unwrap_or(Path::new("."));
@@ -35,17 +38,24 @@ pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     match part::read_header(&parts[0])?.study.as_str() {
         MapWithBoundary::NAME => {
             let (header, rows) = part::merge(parts)?;
-            map::merge(&header.scenario, rows, &place, arguments.boundary, quiet)
+            map::merge(
+                &header.scenario,
+                rows,
+                &place,
+                arguments.boundary,
+                figure,
+                quiet,
+            )
         }
         OverturningSpectrum::NAME => {
             arguments.boundary.refuse()?;
             let (header, rows) = part::merge(parts)?;
-            spectrum::merge(&header.scenario, &rows, &place, quiet)
+            spectrum::merge(&header.scenario, &rows, &place, figure, quiet)
         }
         RecordSuite::NAME => {
             arguments.boundary.refuse()?;
             let (header, rows) = part::merge(parts)?;
-            suite::merge(&header.scenario, rows, &place, quiet)
+            suite::merge(&header.scenario, rows, &place, figure, quiet)
         }
         study => Err(Failure::Input(format!(
             "unknown study {study:?}: merge with the version of archrock that wrote the parts"

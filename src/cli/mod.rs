@@ -6,6 +6,7 @@
 mod chart;
 mod check;
 mod commands;
+mod figure;
 mod impact;
 mod init;
 mod map;
@@ -26,6 +27,7 @@ use archrock::output::OutputError;
 use archrock::scenario::{Scenario, ScenarioErrors};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
+use figure::FigureOption;
 use scenario_file::ScenarioFile;
 
 /// Simulates masonry arches and free-standing columns that rock under ground motion.
@@ -55,6 +57,8 @@ enum Command {
         /// Also draw the mechanism and the thrust line to this SVG file.
         #[arg(long, value_name = "FILE")]
         plot: Option<PathBuf>,
+        #[command(flatten)]
+        figure: FigureOption,
     },
     /// Print the mechanisms after successive impacts, their restitution and impulses.
     Impact(impact::Arguments),
@@ -140,7 +144,11 @@ pub fn main() -> ExitCode {
             scenario,
             format,
             plot,
-        } => commands::limit(&scenario, format, plot.as_deref()),
+            figure,
+        } => {
+            let plot = plot.as_deref().map(|path| (path, figure.get()));
+            commands::limit(&scenario, format, plot)
+        }
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => map::map(&map, arguments.quiet),

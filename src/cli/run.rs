@@ -18,13 +18,14 @@ use archrock::output::results::{self, EventsWriter};
 use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::scene::Scene;
 use archrock::output::timeline::Timeline;
-use archrock::output::{Folder, OutputError};
+use archrock::output::{Figure, Folder, OutputError, Subject};
 use archrock::scenario::{Ground, Hinges, Scenario, Series, Structure};
 use clap::ValueEnum;
 use serde_json::{Value, json};
 
 use self::extras::{Extras, File, POSES, PosesTable};
 use super::check::sampling_in_words;
+use super::figure::FigureOption;
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::study::impact_ignored;
 use super::{Failure, Format, commands, print};
@@ -62,6 +63,8 @@ pub struct Arguments {
     no_spread: bool,
     #[command(flatten)]
     extras: extras::Options,
+    #[command(flatten)]
+    figure: FigureOption,
 }
 
 /// Models of motion.
@@ -287,6 +290,7 @@ struct Place {
     to_stdout: bool,
     /// What is written beside the tables.
     extras: extras::Options,
+    figure: Figure,
 }
 
 impl Place {
@@ -307,6 +311,7 @@ impl Place {
             results,
             to_stdout,
             extras: arguments.extras.clone(),
+            figure: arguments.figure.get(),
         })
     }
 
@@ -321,6 +326,7 @@ impl Place {
             results: self.results.as_ref().map(|results| results.within(name)),
             to_stdout: false,
             extras: self.extras.clone(),
+            figure: self.figure,
         }
     }
 
@@ -373,14 +379,12 @@ fn both(
     }
     let options = arguments.options()?;
     // Neither is run where the other cannot be.
-    commands::model(four)?;
-    free_hinges::model(free)?;
+    let models = (commands::model(four)?, free_hinges::model(free)?);
     let mut folder = match &place.results {
         Some(results) => Some(results.open(&[OVERLAY])?),
         None => None,
     };
-    let gravity_m_s2 = four.simulation.gravity_m_s2;
-    let mut curves = [Curves::new(gravity_m_s2), Curves::new(gravity_m_s2)];
+    let mut curves = [Curves::new(), Curves::new()];
     let [of_four, of_free] = &mut curves;
     let of_four = four_links(four, &place.within("four"), false, Some(of_four))?;
     let of_free = free_hinges::run(free, &place.within("free"), options, Some(of_free))?;
@@ -395,7 +399,9 @@ fn both(
             .as_deref()
             .unwrap_or("Four links and free hinges");
         let [of_four, of_free] = &curves;
-        let picture = overlay::draw(title, &[("four links", of_four), ("free hinges", of_free)]);
+        let named = [("four links", of_four), ("free hinges", of_free)];
+        let subject = subject(four, &*models.0, title);
+        let picture = overlay::draw(place.figure, &subject, &named);
         folder
             .file(OVERLAY)
             .write_all(picture.as_bytes())
@@ -435,7 +441,7 @@ fn four_links(
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let mut folder = place.open(&[EVENTS, IMPACTS, PICTURE, SUMMARY])?;
     let bodies = model.bodies();
-    let mut timeline = Timeline::new(&bodies, gravity_m_s2);
+    let mut timeline = Timeline::new(&bodies);
     let scene = Scene::new(&scenario.structure);
     let mut extras = Extras::new(
         &place.extras,
@@ -479,11 +485,13 @@ fn four_links(
         table.finish()?;
         results::write_impacts(folder.file(IMPACTS), &*model, &events)?;
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let subject = subject(scenario, &*model, title);
+        let picture = timeline.draw(place.figure, &subject, &events, &summary);
         folder
             .file(PICTURE)
-            .write_all(timeline.draw(title, &events).as_bytes())
+            .write_all(picture.as_bytes())
             .map_err(cannot_write("the picture"))?;
-        extras.write(&mut folder, scenario, title, &mut text)?;
+        extras.write(&mut folder, scenario, (place.figure, title), &mut text)?;
         writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
@@ -493,6 +501,20 @@ fn four_links(
         text,
         summary: json,
     })
+}
+
+/// What a history is of.
+fn subject<'a>(
+    scenario: &'a Scenario,
+    model: &(impl Model + ?Sized),
+    title: &'a str,
+) -> Subject<'a> {
+    Subject {
+        title,
+        ground: scenario.ground_motion(),
+        gravity_m_s2: scenario.simulation.gravity_m_s2,
+        incipient_g: [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway)),
+    }
 }
 
 /// Says which files there are.

@@ -3,11 +3,12 @@
 use std::io::Write as _;
 
 use archrock::output::ending::Failed;
-use archrock::output::spectrum as output;
+use archrock::output::{Figure, spectrum as output};
 use archrock::scenario::Scenario;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow};
 
 use super::Failure;
+use super::figure::FigureOption;
 use super::scenario_file::Destination;
 use super::study::{Options, failed_in_words, say, write_summary};
 
@@ -15,6 +16,8 @@ use super::study::{Options, failed_in_words, say, write_summary};
 pub struct Arguments {
     #[command(flatten)]
     options: Options,
+    #[command(flatten)]
+    figure: FigureOption,
 }
 
 const PICTURE: &str = "spectrum.svg";
@@ -38,7 +41,14 @@ pub fn spectrum(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let Some((rows, part)) = options.compute(&spectrum, &place, quiet)? else {
         return Ok(());
     };
-    finish(&scenario, &spectrum, &rows, &place, quiet)?;
+    finish(
+        &scenario,
+        &spectrum,
+        &rows,
+        &place,
+        arguments.figure.get(),
+        quiet,
+    )?;
     Ok(part.remove()?)
 }
 
@@ -47,6 +57,7 @@ pub fn merge(
     scenario: &str,
     rows: &[PointRow],
     place: &Destination,
+    figure: Figure,
     quiet: bool,
 ) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
@@ -55,6 +66,7 @@ pub fn merge(
         &OverturningSpectrum::new(&scenario)?,
         rows,
         place,
+        figure,
         quiet,
     )
 }
@@ -65,13 +77,14 @@ fn finish(
     spectrum: &OverturningSpectrum<'_>,
     rows: &[PointRow],
     place: &Destination,
+    figure: Figure,
     quiet: bool,
 ) -> Result<(), Failure> {
     let mut folder = place.open(&[PICTURE, SUMMARY, TABLE])?;
     let title = scenario.title.as_deref().unwrap_or("Overturning spectrum");
     folder
         .file(PICTURE)
-        .write_all(output::draw(title, spectrum, rows).as_bytes())
+        .write_all(output::draw(figure, title, spectrum, rows).as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
     let failures = output::failures(rows);
     write_summary(folder.file(SUMMARY), scenario, rows.len(), &failures)?;

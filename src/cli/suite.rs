@@ -3,6 +3,7 @@
 use std::io::Write as _;
 
 use archrock::dynamics::history::Outcome;
+use archrock::output::Figure;
 use archrock::output::ida;
 use archrock::output::suite::{self as output, Heading};
 use archrock::output::survival;
@@ -11,6 +12,7 @@ use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 
 use super::Failure;
 use super::commands::pretty;
+use super::figure::FigureOption;
 use super::scenario_file::Destination;
 use super::study::{HingesOption, Options, counts, failed_in_words, in_words, say};
 
@@ -20,6 +22,8 @@ pub struct Arguments {
     options: Options,
     #[command(flatten)]
     hinges: HingesOption,
+    #[command(flatten)]
+    figure: FigureOption,
 }
 
 const PICTURE: &str = "suite.svg";
@@ -42,7 +46,7 @@ pub fn suite(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         return Ok(());
     };
     let heading = Heading::of(&scenario, suite);
-    finish(&heading, rows, &place, quiet)?;
+    finish(&heading, rows, &place, arguments.figure.get(), quiet)?;
     Ok(part.remove()?)
 }
 
@@ -65,13 +69,14 @@ pub fn merge(
     scenario: &str,
     rows: Vec<CaseRow>,
     place: &Destination,
+    figure: Figure,
     quiet: bool,
 ) -> Result<(), Failure> {
     let heading = Heading::of_resolved(scenario).ok_or_else(|| {
         let message = "the scenario of the parts is damaged: compute them again";
         Failure::Input(message.to_owned())
     })?;
-    finish(&heading, rows, place, quiet)
+    finish(&heading, rows, place, figure, quiet)
 }
 
 /// Writes the results.
@@ -79,6 +84,7 @@ fn finish(
     heading: &Heading,
     rows: Vec<CaseRow>,
     place: &Destination,
+    figure: Figure,
     quiet: bool,
 ) -> Result<(), Failure> {
     let results = SuiteFragility::new(heading.measure, rows);
@@ -86,8 +92,8 @@ fn finish(
     let mut folder = place.open(&files)?;
     output::write_fragility(folder.file(LEVELS), &results)?;
     for (name, text) in [
-        (PICTURE, output::draw(heading, &results)),
-        (IDA, ida::draw(heading, &results)),
+        (PICTURE, output::draw(figure, heading, &results)),
+        (IDA, ida::draw(figure, heading, &results)),
         (FRAGILITY, pretty(&output::to_json(heading, &results)?)),
     ] {
         folder

@@ -18,6 +18,7 @@ use archrock::studies::threshold::{
 };
 use serde_json::Value;
 
+use super::figure::FigureOption;
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
 use super::study::{Display, Threads, impact_ignored, say};
@@ -32,6 +33,8 @@ pub struct Arguments {
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOption,
     /// Model of motion [default: free if the scenario has [free_hinges], else four].
     #[arg(long, value_enum)]
     hinges: Option<Models>,
@@ -147,7 +150,7 @@ fn find(
     let peak_g = output::peak_g(scenario, ground);
     let of_models: Vec<&Scenario> = scenarios.iter().collect();
     let json = output::to_json(&of_models, ground, factors, &found)?;
-    let picture = output::draw(title, peak_g, factors, &found);
+    let picture = output::draw(arguments.figure.get(), title, peak_g, factors, &found);
     let summary = commands::pretty(&json);
     for (name, text) in [(PICTURE, &picture), (SUMMARY, &summary)] {
         folder

@@ -2,9 +2,7 @@
 
 use std::io::Write;
 
-use nalgebra::Vector2;
-
-use super::svg::{Axes, CURVES, Drawing, Frame, Scale};
+use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use super::{OutputError, finite};
 use crate::studies::survey::ShapeResult;
 
@@ -43,12 +41,12 @@ pub fn write_table(writer: impl Write, results: &[ShapeResult]) -> Result<(), Ou
 /// A quantity of a shape, if it has it.
 type Quantity = fn(&ShapeResult) -> Option<f64>;
 
-/// Draws three panels, a curve for each embrace angle. Results come embrace by embrace, thicknesses ascending.
+/// Draws three panels, a curve for each embrace angle, and marks the results of the scenario's own arch. Results come
+/// embrace by embrace, thicknesses ascending.
 #[must_use]
-pub fn draw(results: &[ShapeResult]) -> String {
-    let mut drawing = Drawing::new(900.0, 940.0);
-    let title = "Circular arches of several embrace angles";
-    drawing.title(title);
+pub fn draw(figure: Figure, results: &[ShapeResult], own: Option<&ShapeResult>) -> String {
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title("Circular arches of several embrace angles");
     let groups: Vec<&[ShapeResult]> = results
         .chunk_by(|a, b| a.embrace_deg.to_bits() == b.embrace_deg.to_bits())
         .collect();
@@ -57,34 +55,50 @@ pub fn draw(results: &[ShapeResult]) -> String {
         .filter_map(|group| group.first())
         .map(|first| format!("{} deg", first.embrace_deg))
         .collect();
-    let legend = names.iter().map(String::as_str).zip(CURVES);
-    drawing.legend(Vector2::new(85.0, 54.0), 130.0, legend);
-    let thickness = Scale::around(results.iter().map(|result| result.thickness_ratio), 8);
+    let own_name = own.map(|own| {
+        let (embrace_deg, thickness_ratio) = (own.embrace_deg, own.thickness_ratio);
+        format!("the scenario's arch, {embrace_deg} deg, t/R = {thickness_ratio}")
+    });
+    let mut keys: Vec<Key<'_>> = names
+        .iter()
+        .zip(CURVES)
+        .map(|(name, stroke)| (name.as_str(), Sign::Line(stroke)))
+        .collect();
+    keys.extend(
+        own_name
+            .iter()
+            .map(|name| (name.as_str(), Sign::Circle(4.0, OWN))),
+    );
+    let mut top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
+    let thicknesses = results.iter().map(|result| result.thickness_ratio);
+    let thickness = Scale::around(thicknesses, figure.ticks(8));
     let panels: [(&str, Quantity); 3] = [
         ("A_L (g)", |result| Some(result.incipient_g)),
         ("r, first impact", |result| result.first_restitution),
         ("r, repeating impacts", |result| result.last_restitution),
     ];
-    let mut top = 80.0;
     for (index, (label, quantity)) in panels.into_iter().enumerate() {
+        let height = figure.height_px(250.0);
         let axes = Axes {
-            frame: Frame {
-                left: 85.0,
-                top,
-                width: 790.0,
-                height: 250.0,
-            },
+            frame: figure.plot(top, height),
             x: thickness,
             y: Scale::around(results.iter().filter_map(quantity).chain([0.0]), 6),
         };
         axes.draw(&mut drawing, (index == 2).then_some("t / R"), label);
+        let place = |result: &ShapeResult| {
+            quantity(result).map(|value| axes.place(result.thickness_ratio, value))
+        };
         for ((group, name), stroke) in groups.iter().zip(&names).zip(CURVES) {
-            let points = group.iter().filter_map(|result| {
-                quantity(result).map(|value| axes.place(result.thickness_ratio, value))
-            });
+            let points = group.iter().filter_map(place);
             drawing.curve(&format!("{label} {name}"), points, stroke);
         }
-        top += 270.0;
+        if let Some(at) = own.and_then(place) {
+            drawing.circle(&format!("{label} own"), at, 4.0, OWN);
+        }
+        top += height + 20.0;
     }
-    drawing.finish()
+    drawing.finish(top + 40.0)
 }
+
+/// The scenario's own arch.
+const OWN: Stroke = Stroke::new(color::BLACK, 1.8, "");

@@ -1,9 +1,7 @@
 //! Incremental dynamic analysis: how far each record drives the structure as it gets stronger.
 
-use nalgebra::Vector2;
-
 use super::suite::{Heading, intensity_label, intensity_scale};
-use super::svg::{Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
+use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::studies::suite::{CaseRow, SuiteFragility};
 
 /// Records that get curves of their own looks and names.
@@ -13,20 +11,20 @@ const OVERTURNED: f64 = 1.0;
 /// How far what survives may be drawn.
 const SURVIVED: f64 = 0.94;
 
-const FRAME: Frame = Frame {
-    left: 85.0,
-    top: 110.0,
-    width: 790.0,
-    height: 480.0,
-};
-
 /// Draws the intensity against the peak rotation, over the critical one where that is known: a curve for every record as
 /// it is, and at the right end what overturns.
 #[must_use]
-pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
-    let mut drawing = Drawing::new(900.0, 650.0);
-    drawing.title(heading.title());
+pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
+    let mut drawing = Drawing::new(figure);
+    let mut top = drawing.title(heading.title());
     let records = records(results);
+    if records.len() <= NAMED {
+        let named = records.iter().zip(CURVES);
+        let keys: Vec<Key<'_>> = named
+            .map(|(cases, stroke)| (cases[0].record.as_str(), Sign::Line(stroke)))
+            .collect();
+        top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
+    }
     let over_critical = results
         .cases
         .iter()
@@ -44,9 +42,9 @@ pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
         largest.max(1e-3)
     };
     let axes = Axes {
-        frame: FRAME,
-        x: Scale::exactly(0.0, largest / SURVIVED, 8),
-        y: intensity_scale(heading, &results.levels),
+        frame: figure.plot(top + 8.0, figure.height_px(480.0)),
+        x: Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8)),
+        y: intensity_scale(heading, &results.levels, figure),
     };
     let label = if over_critical {
         "peak rotation / critical rotation; at the right end: overturned"
@@ -86,14 +84,7 @@ pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
             drawing.circle(mark, at, 2.2, Stroke::new(stroke.color, 1.0, ""));
         }
     }
-    if records.len() <= NAMED {
-        for (index, (cases, stroke)) in (0_u32..).zip(records.iter().zip(CURVES)) {
-            let (column, row) = (f64::from(index % 3), f64::from(index / 3));
-            let at = Vector2::new(FRAME.left + 265.0 * column, 54.0 + 22.0 * row);
-            drawing.legend(at, 0.0, [(cases[0].record.as_str(), stroke)]);
-        }
-    }
-    drawing.finish()
+    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
 const MANY: Stroke = Stroke::new(color::BLUE, 0.9, "");

@@ -1,9 +1,7 @@
 //! Kinds of outcomes and their colours, the same in all pictures.
 
-use nalgebra::Vector2;
-
 use super::ending;
-use super::svg::{Anchor, Drawing, Stroke, color};
+use super::svg::{Key, Sign, color};
 
 /// Outcome of an arch that cannot carry its own weight.
 pub(super) const CANNOT_STAND: &str = "cannot_stand";
@@ -56,28 +54,10 @@ impl Kind {
     }
 }
 
-/// Height of a row of a legend.
-pub(super) const LEGEND_ROW: f64 = 24.0;
-
-/// What the colours of these kinds mean, in as many rows of that width as it takes; returns where these end.
-pub(super) fn legend(drawing: &mut Drawing, at: Vector2<f64>, width: f64, kinds: &[Kind]) -> f64 {
-    let (mut x, mut y) = (at.x, at.y);
-    for kind in Kind::ALL.into_iter().filter(|kind| kinds.contains(kind)) {
-        #[expect(clippy::cast_precision_loss, reason = "the length of a label")]
-        let advance = 46.0 + 6.6 * kind.label.len() as f64;
-        if x + advance > at.x + width {
-            (x, y) = (at.x, y + LEGEND_ROW);
-        }
-        let swatch = format!("M{x} {y}h22v14h-22z");
-        let outline = Stroke::new(color::GREY, 0.8, "");
-        drawing.path("", &swatch, kind.fill, outline);
-        drawing.label(
-            Vector2::new(x + 28.0, y + 12.0),
-            Anchor::Start,
-            0.0,
-            kind.label,
-        );
-        x += advance;
-    }
-    y + LEGEND_ROW
+/// What the colours of these kinds mean.
+pub(super) fn keys(kinds: &[Kind]) -> Vec<Key<'static>> {
+    let present = Kind::ALL.into_iter().filter(|kind| kinds.contains(kind));
+    present
+        .map(|kind| (kind.label, Sign::Band(kind.fill, 1.0)))
+        .collect()
 }

@@ -3,11 +3,9 @@
 use std::fmt::Write as _;
 use std::io::Write;
 
-use nalgebra::Vector2;
-
 use super::ending::{self, Failed};
 use super::kind::{self, CANNOT_STAND, Kind, NOT_FOUR_LINKS};
-use super::svg::{Axes, Drawing, Frame, Scale, Stroke, color};
+use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use super::{OutputError, finite};
 use crate::scenario::{Axis, Quantity, Spacing};
 use crate::studies::boundary::{Boundary, BoundaryRow};
@@ -157,7 +155,7 @@ const fn label(quantity: Quantity) -> &'static str {
 }
 
 /// The scale of an axis and the edges of the cells along it, halfway between their values.
-fn scale(axis: &Axis) -> (Scale, Vec<f64>) {
+fn scale(axis: &Axis, figure: Figure) -> (Scale, Vec<f64>) {
     let values = axis.sequence.values();
     let logarithmic =
         axis.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
@@ -196,7 +194,7 @@ fn scale(axis: &Axis) -> (Scale, Vec<f64>) {
     let scale = if logarithmic {
         Scale::logarithmic(low, high)
     } else {
-        Scale::exactly(low, high, 8)
+        Scale::exactly(low, high, figure.ticks(8))
     };
     (scale, edges)
 }
@@ -204,24 +202,21 @@ fn scale(axis: &Axis) -> (Scale, Vec<f64>) {
 /// Draws the map. Boundaries are of maps whose y is the amplitude.
 #[must_use]
 pub fn draw(
+    figure: Figure,
     title: &str,
     map: &OverturningMap<'_>,
     rows: &[CellRow],
     boundaries: &[BoundaryRow],
 ) -> String {
     let boundaries: Vec<_> = found(boundaries).collect();
-    let mut drawing = Drawing::new(900.0, 720.0);
-    drawing.title(title);
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title(title);
     let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result)).collect();
-    let top = legend(&mut drawing, map, &kinds, !boundaries.is_empty());
-    let [(x, x_edges), (y, y_edges)] = map.axes().map(scale);
+    let [(x, x_edges), (y, y_edges)] = map.axes().map(|axis| scale(axis, figure));
+    let keys = legend(map, &kinds, &boundaries, &y);
+    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let axes = Axes {
-        frame: Frame {
-            left: LEFT,
-            top,
-            width: WIDTH,
-            height: 660.0 - top,
-        },
+        frame: figure.plot(top, figure.height_px(560.0)),
         x,
         y,
     };
@@ -269,7 +264,7 @@ pub fn draw(
             curve("no-impact", IMPACT_FREE, |b| b.impact_free_g);
         }
     });
-    drawing.finish()
+    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
 /// Strikes out the cells whose outcome depends on the steps.
@@ -295,34 +290,35 @@ const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
 const INCIPIENT: Stroke = Stroke::new(color::BLUE, 2.0, "7 4");
 const IMPACT_FREE: Stroke = Stroke::new(color::BLACK, 2.2, "");
 
-const LEFT: f64 = 85.0;
-const WIDTH: f64 = 790.0;
-
-/// What the colours and lines mean; returns where that ends.
+/// What the colours mean, and the lines that are on these axes.
 fn legend(
-    drawing: &mut Drawing,
     map: &OverturningMap<'_>,
     kinds: &[Kind],
-    boundaries: bool,
-) -> f64 {
-    let mut y = kind::legend(drawing, Vector2::new(LEFT, 46.0), WIDTH, kinds);
+    boundaries: &[(f64, Boundary)],
+    y: &Scale,
+) -> Vec<Key<'static>> {
+    let mut keys = kind::keys(kinds);
     if map.has_spread() {
         let words = "outcome depends on the steps of the computation";
-        drawing.legend(Vector2::new(LEFT, y + 10.0), WIDTH, [(words, DOUBTFUL)]);
-        y += kind::LEGEND_ROW;
+        keys.push((words, Sign::Line(DOUBTFUL)));
     }
-    if boundaries {
+    let shown = |value: fn(&Boundary) -> Option<f64>| {
+        let mut values = boundaries
+            .iter()
+            .filter_map(|(_, boundary)| value(boundary));
+        values.any(|value| (y.low..=y.high).contains(&value) || (y.low..=y.high).contains(&-value))
+    };
+    if shown(|boundary| Some(boundary.incipient_g)) {
         let incipient = if map.moves_vertically() {
             "incipient acceleration, were there no vertical motion"
         } else {
             "incipient acceleration"
         };
-        let entries = [
-            (incipient, INCIPIENT),
-            ("least amplitude that overturns without impact", IMPACT_FREE),
-        ];
-        drawing.legend(Vector2::new(LEFT, y + 10.0), 395.0, entries);
-        y += kind::LEGEND_ROW;
+        keys.push((incipient, Sign::Line(INCIPIENT)));
     }
-    y + 6.0
+    if shown(|boundary| boundary.impact_free_g) {
+        let words = "least amplitude that overturns without impact";
+        keys.push((words, Sign::Line(IMPACT_FREE)));
+    }
+    keys
 }

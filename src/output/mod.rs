@@ -4,9 +4,11 @@
 
 pub mod chart;
 pub mod ending;
+mod envelope;
 mod film;
 mod folder;
 pub mod free_hinges;
+mod ground;
 pub mod ida;
 pub mod impact;
 mod kind;
@@ -14,6 +16,7 @@ pub mod map;
 pub mod mechanisms;
 pub mod overlay;
 mod page;
+mod panels;
 pub mod pictures;
 pub mod poses;
 pub mod record;
@@ -33,6 +36,8 @@ pub mod timeline;
 use std::io;
 
 pub use folder::Folder;
+pub use panels::Subject;
+pub use svg::Figure;
 use thiserror::Error;
 
 /// Why results could not be written.

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::impact;
-use super::svg::{Anchor, Drawing, Stroke, color};
+use super::svg::{Anchor, Drawing, Figure, Stroke, color};
 use crate::mechanics::chain::Mechanism as _;
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
 use crate::mechanics::four_link::impact::closing_field;
@@ -205,23 +205,22 @@ fn rotations_text([left, middle, right]: [f64; 3]) -> String {
 ///
 /// The mechanism is drawn to scale at finite rotations, at a quarter of the way to its limit position.
 #[must_use]
-pub fn limit(chain: &Chain) -> String {
+pub fn limit(figure: Figure, chain: &Chain) -> String {
     let ring = chain.ring();
     let link = chain
         .link(0)
         .expect("a chain begins with the mechanism that starts");
-    let place = |middle: f64| Place::new(ring, middle, 100.0, 400.0);
-    let height = place(0.0).bottom() + 80.0;
-    let mut drawing = Drawing::new(1000.0, height);
+    let mut drawing = Drawing::new(figure);
     let incipient = chain.incipient();
     let title = format!(
         "Incipient rocking at A_L = {:.5} g; {}",
         incipient.acceleration_g,
         shape(ring)
     );
-    drawing.label(Vector2::new(500.0, 28.0), Anchor::Middle, 0.0, &title);
+    let top = drawing.title(&title);
+    let cells = Cells::new(figure);
 
-    let left = place(255.0);
+    let (left, middle) = cells.first(ring, top);
     left.whole(&mut drawing, "#f4f4f4", Stroke::new(color::BLACK, 1.2, ""));
     left.joints(&mut drawing, chain.sites());
     left.resultants(
@@ -231,56 +230,97 @@ pub fn limit(chain: &Chain) -> String {
         Sway::Right,
     );
     left.hinges(&mut drawing, link, Sway::Right, "");
-    let below = Vector2::new(255.0, height - 46.0);
-    let text = "Thrust line under gravity and a push of A_L to the right";
-    drawing.label(below, Anchor::Middle, 0.0, text);
+    let text = "Thrust line under gravity and a push of A_L to the right; A to D: hinges, circles at the edge about \
+                which the arch turns";
+    let first_end = cells.caption(&mut drawing, middle, left.bottom(), text);
 
-    let right = place(735.0);
+    let (right, middle) = cells.second(ring, top, first_end);
     let rotations = right.mechanism(&mut drawing, link, Sway::Right);
-    let caption = [
-        "Mechanism, to scale, at rotations (anticlockwise) of".to_owned(),
-        rotations_text(rotations),
-    ];
-    for (text, up) in caption.iter().zip([46.0, 29.0]) {
-        drawing.label(Vector2::new(735.0, height - up), Anchor::Middle, 0.0, text);
+    let text = format!(
+        "Mechanism, to scale, at rotations (anticlockwise) of {}",
+        rotations_text(rotations)
+    );
+    let end = cells.caption(&mut drawing, middle, right.bottom(), &text);
+    drawing.finish(end.max(first_end) + 12.0)
+}
+
+/// Two arches side by side, or one below the other where there is not the room.
+struct Cells {
+    /// Width of a cell in pixels.
+    width: f64,
+    side_by_side: bool,
+}
+
+/// Room above an arch, for its hinges and a body that rises.
+const ABOVE_PX: f64 = 42.0;
+
+impl Cells {
+    fn new(figure: Figure) -> Self {
+        let columns = figure.columns(2, 340.0);
+        Self {
+            width: figure.width_px() / if columns == 2 { 2.0 } else { 1.0 },
+            side_by_side: columns == 2,
+        }
     }
-    drawing.finish()
+
+    /// The place of the first arch below `top`, and the middle of its cell.
+    fn first(&self, ring: &Ring, top: f64) -> (Place, f64) {
+        let middle = 0.5 * self.width;
+        let place = Place::new(ring, middle, top + ABOVE_PX, 0.8 * self.width);
+        (place, middle)
+    }
+
+    /// That of the second, where the first ends at `first_end`.
+    fn second(&self, ring: &Ring, top: f64, first_end: f64) -> (Place, f64) {
+        let (middle, top) = if self.side_by_side {
+            (1.5 * self.width, top)
+        } else {
+            (0.5 * self.width, first_end)
+        };
+        let place = Place::new(ring, middle, top + ABOVE_PX, 0.8 * self.width);
+        (place, middle)
+    }
+
+    /// Text below an arch; returns where it ends.
+    fn caption(&self, drawing: &mut Drawing, middle: f64, bottom: f64, text: &str) -> f64 {
+        let at = Vector2::new(middle, bottom + 34.0);
+        drawing.caption_at(at, self.width - 16.0, text)
+    }
 }
 
 /// Impact number `index`, from 1, after a first sway to the right, as Fig. 10 of the paper: the mechanisms before
 /// and after, the bodies that both together cut out of the ring (Eq. (3)), and the impulse line. `None` when
 /// this impact or one before it stops the arch.
 #[must_use]
-pub fn impact(chain: &Chain, index: usize) -> Option<String> {
+pub fn impact(figure: Figure, chain: &Chain, index: usize) -> Option<String> {
     let ring = chain.ring();
     let (before, after) = (chain.link(index.checked_sub(1)?)?, chain.link(index)?);
     let sway_after = impact::sway(index);
     let sway_before = sway_after.opposite();
-    let place = |middle: f64, top: f64, width: f64| Place::new(ring, middle, top, width);
-    let upper_end = place(0.0, 100.0, 370.0).bottom();
-    let lower_top = upper_end + 130.0;
-    let height = place(0.0, lower_top, 640.0).bottom() + 60.0;
-    let mut drawing = Drawing::new(900.0, height);
+    let mut drawing = Drawing::new(figure);
     let title = format!(
         "Impact {index}: restitution (kinetic energy after/before) r = {:.6}; {}",
         after.link.restitution,
         shape(ring)
     );
-    drawing.label(Vector2::new(450.0, 28.0), Anchor::Middle, 0.0, &title);
-    for (middle, link, sway, mark, text) in [
-        (225.0, before, sway_before, "", "u before the impact"),
-        (675.0, after, sway_after, "'", "u' after the impact"),
-    ] {
-        let place = place(middle, 100.0, 370.0);
-        let rotations = place.mechanism(&mut drawing, link, sway);
-        let below = Vector2::new(middle, upper_end + 30.0);
-        let text = format!("{text}, hinges A{mark} to D{mark}, drawn at rotations of");
-        drawing.label(below, Anchor::Middle, 0.0, &text);
-        let below = below + Vector2::new(0.0, 18.0);
-        drawing.label(below, Anchor::Middle, 0.0, &rotations_text(rotations));
-    }
+    let top = drawing.title(&title);
+    let cells = Cells::new(figure);
+    let caption = |text: &str, mark: &str, rotations: [f64; 3]| {
+        let rotations = rotations_text(rotations);
+        format!("{text}, hinges A{mark} to D{mark}, drawn at rotations of {rotations}")
+    };
+    let (place, middle) = cells.first(ring, top);
+    let rotations = place.mechanism(&mut drawing, before, sway_before);
+    let text = caption("u before the impact", "", rotations);
+    let first_end = cells.caption(&mut drawing, middle, place.bottom(), &text);
+    let (place, middle) = cells.second(ring, top, first_end);
+    let rotations = place.mechanism(&mut drawing, after, sway_after);
+    let text = caption("u' after the impact", "'", rotations);
+    let second_end = cells.caption(&mut drawing, middle, place.bottom(), &text);
 
-    let place = place(450.0, lower_top, 640.0);
+    let lower_top = first_end.max(second_end) + ABOVE_PX + 14.0;
+    let (wide, middle) = (0.71 * figure.width_px(), 0.5 * figure.width_px());
+    let place = Place::new(ring, middle, lower_top, wide);
     let closing = closing_field(&before.mechanism, ring);
     let field = after.mechanism.field();
     // All in the frame of the new mechanism, which is drawn in a mirror if it sways left.
@@ -339,8 +379,9 @@ pub fn impact(chain: &Chain, index: usize) -> Option<String> {
         let at = place.px(ring.point(angle, edge), Sway::Right);
         drawing.circle("hinge before", at, 2.5, Stroke::new(color::GREY, 1.2, ""));
     }
-    let below = Vector2::new(450.0, height - 28.0);
-    let text = "Impulse line through the hinges of u'; the bodies are cut out by the hinges of u (grey) and u'";
-    drawing.label(below, Anchor::Middle, 0.0, text);
-    Some(drawing.finish())
+    let text = "Impulse line through the hinges A' to D' of u', at the edges about which the arch turns after the \
+                impact; grey circles: the hinges A to D of u, which close; 1, 2 ...: the bodies that both together cut \
+                out of the arch";
+    let end = drawing.caption(place.bottom() + 34.0, text);
+    Some(drawing.finish(end + 12.0))
 }

@@ -7,10 +7,12 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
+use super::envelope::Envelope;
 use super::film::{Film, Frame};
+use super::ground::curve_g;
 use super::page::{escaped, filled, script_safe};
 use super::scene::{FARTHEST, Mark, Scene};
-use super::timeline::{Envelope, LARGEST_EXCESS};
+use super::timeline::LARGEST_EXCESS;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State};
 use crate::mechanics::chain::Hinge;
@@ -40,7 +42,6 @@ pub struct Report {
     bodies: Vec<String>,
     gravity_m_s2: f64,
     film: Film,
-    ground_g: Envelope,
     energy: Envelope,
     in_barriers: bool,
     excess_ratio: Envelope,
@@ -59,7 +60,6 @@ impl Report {
             bodies: bodies.to_vec(),
             gravity_m_s2,
             film: Film::new(most),
-            ground_g: Envelope::of_columns(CURVE_COLUMNS),
             energy: Envelope::of_columns(CURVE_COLUMNS),
             in_barriers: false,
             excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
@@ -71,8 +71,6 @@ impl Report {
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.film.push(sample);
-        let ground_g = sample.ground_acceleration_m_s2 / self.gravity_m_s2;
-        self.ground_g.push(time_s, ground_g);
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
@@ -174,7 +172,10 @@ impl Report {
         } else {
             "Energy (J)"
         };
-        let excess = self.leaves.then(|| curve(&self.excess_ratio));
+        let excess = self
+            .leaves
+            .then(|| curve(&self.excess_ratio.points().collect::<Vec<_>>()));
+        let end_s = frames.last().map_or(0.0, |frame| frame.time_s);
         json!({
             "bodies": self.bodies,
             "unit_m": unit_m,
@@ -186,8 +187,8 @@ impl Report {
             "frames": self.frames(ground, frames, layout_of, joints.len()),
             "energy_label": energy_label,
             "curves": {
-                "ground_g": curve(&self.ground_g),
-                "energy": curve(&self.energy),
+                "ground_g": curve(&curve_g(ground, self.gravity_m_s2, end_s)),
+                "energy": curve(&self.energy.points().collect::<Vec<_>>()),
                 "excess": excess,
             },
         })
@@ -329,8 +330,7 @@ fn floats(values: impl Iterator<Item = f64>) -> String {
 }
 
 /// All times, then all values.
-fn curve(envelope: &Envelope) -> String {
-    let points: Vec<(f64, f64)> = envelope.points().collect();
+fn curve(points: &[(f64, f64)]) -> String {
     let times_s = points.iter().map(|point| point.0);
     floats(times_s.chain(points.iter().map(|point| point.1)))
 }

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
-use nalgebra::Vector2;
-
-use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
-use super::timeline::{COLUMNS, Envelope, explain_shades, shade};
+use super::envelope::{COLUMNS, Envelope};
+use super::panels::{
+    Curve, Doing, MAIN, OVERTURNS, Panels, Subject, around, draw_curves, mark_overturning,
+};
+use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 use crate::dynamics::free_hinges::HalfCycle;
 use crate::dynamics::history::{Outcome, Sample, State, Summary};
 use crate::mechanics::blocks::{Row, Supports};
@@ -24,8 +25,6 @@ const JOINT_COLUMNS: usize = 800;
 /// Collects the samples of a history, thinned, and draws them.
 #[derive(Clone, Debug)]
 pub struct RowTimeline {
-    gravity_m_s2: f64,
-    ground_g: Envelope,
     rotations_rad: Vec<Envelope>,
     energy: Envelope,
     /// Whether energies are parts of a barrier; else J.
@@ -39,14 +38,12 @@ pub struct RowTimeline {
 impl RowTimeline {
     /// An empty one, for this row.
     #[must_use]
-    pub fn new(row: &Row, gravity_m_s2: f64) -> Self {
+    pub fn new(row: &Row) -> Self {
         let blocks = row.blocks().len();
         let columns = (COLUMNS_OF_ALL / blocks).clamp(LEAST_COLUMNS, COLUMNS);
         Self {
-            gravity_m_s2,
-            ground_g: Envelope::of_columns(COLUMNS),
             rotations_rad: vec![Envelope::of_columns(columns); blocks],
-            energy: Envelope::of_columns(COLUMNS),
+            energy: Envelope::new(),
             in_barriers: false,
             joints: OpenJoints::new(row.joints().len()),
             edges: match row.supports() {
@@ -61,8 +58,6 @@ impl RowTimeline {
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.end_s = time_s;
-        let ground_g = sample.ground_acceleration_m_s2 / self.gravity_m_s2;
-        self.ground_g.push(time_s, ground_g);
         let envelopes = self.rotations_rad.iter_mut();
         for (envelope, rotation) in envelopes.zip(&sample.rotations_rad) {
             envelope.push(time_s, *rotation);
@@ -73,118 +68,98 @@ impl RowTimeline {
         self.joints.push(sample);
     }
 
-    /// The picture, with what the history comes to.
+    /// The picture, with what the history came to.
     #[must_use]
-    pub fn draw(&self, title: &str, summary: &Summary) -> String {
-        let (left, width) = (85.0, 790.0);
-        let joints_height = (14 * self.joints.count).clamp(60, 260) as f64;
-        let heights = [110.0, 240.0, joints_height, 120.0];
-        let mut drawing = Drawing::new(
-            900.0,
-            70.0 + heights.iter().sum::<f64>() + 4.0 * 22.0 + 88.0,
-        );
-        drawing.title(title);
-        let time = Scale::exactly(0.0, self.end_s.max(f64::MIN_POSITIVE), 10);
-        let mut top = 70.0;
-        let mut next = |height: f64, y: Scale| {
-            let frame = Frame {
-                left,
-                top,
-                width,
-                height,
-            };
-            top += height + 22.0;
-            Axes { frame, x: time, y }
-        };
-        // A little room, so that no curve runs along the frame.
-        let around = |curves: &[&Envelope], ticks: u32| {
-            let values = curves.iter().flat_map(|envelope| envelope.values());
-            Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
-        };
-        let black = Stroke::new(color::BLACK, 1.4, "");
-        let curve =
-            |drawing: &mut Drawing, axes: &Axes, name: &str, envelope: &Envelope, stroke| {
-                let points = envelope.points().map(|(t, value)| axes.place(t, value));
-                drawing.curve(name, points, stroke);
-            };
-        let mut hops = false;
+    pub fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String {
+        let mut panels = Panels::new(figure, subject.title, self.end_s);
+        let doing = doing(summary);
+        let doing = Some(&doing);
+        panels.ground(110.0, subject, doing);
 
-        let axes = next(heights[0], around(&[&self.ground_g], 3));
-        hops |= self.shade(&mut drawing, &axes, summary);
-        axes.draw(&mut drawing, None, "Ground (g)");
-        curve(&mut drawing, &axes, "ground", &self.ground_g, black);
-
-        let blocks: Vec<&Envelope> = self.rotations_rad.iter().collect();
-        let axes = next(heights[1], around(&blocks, 6));
-        hops |= self.shade(&mut drawing, &axes, summary);
-        axes.draw(&mut drawing, None, "Rotation (rad)");
+        // The block that turns most is drawn above the others.
         let largest = largest_block(&summary.peak_rotations_rad);
-        for (block, envelope) in blocks.iter().enumerate() {
-            if block != largest {
-                let name = (block + 1).to_string();
-                curve(&mut drawing, &axes, &name, envelope, BLOCK);
+        let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
+        let rotations: Vec<Curve> = others
+            .map(|block| (block, BLOCK))
+            .chain([(largest, LARGEST)])
+            .map(|(block, stroke)| {
+                let points = self.rotations_rad[block].points();
+                Curve::new((block + 1).to_string(), points, stroke)
+            })
+            .collect();
+        let values = rotations.iter().flat_map(|curve| &curve.points);
+        let y = around(values.map(|point| point.1), 6);
+        let overturned_s = match summary.outcome {
+            Outcome::Overturned(_) => Some(summary.outcome_time_s),
+            Outcome::NeverMoved | Outcome::Rest | Outcome::StillRocking => None,
+        };
+        panels.panel("Rotation (rad)", 240.0, y, doing, |drawing, axes| {
+            draw_curves(drawing, axes, &rotations);
+            if let Some(time_s) = overturned_s {
+                mark_overturning(drawing, axes, time_s);
             }
+        });
+
+        let mut keys = Vec::new();
+        let name = format!("block {}, which turns most", largest + 1);
+        if self.rotations_rad.len() > 1 {
+            keys.extend([
+                (name.as_str(), Sign::Line(LARGEST)),
+                ("others", Sign::Line(BLOCK)),
+            ]);
         }
-        let name = (largest + 1).to_string();
-        curve(&mut drawing, &axes, &name, blocks[largest], LARGEST);
-
-        #[expect(clippy::cast_precision_loss, reason = "few joints")]
-        let highest = self.joints.count as f64 - 0.5;
-        let ticks = u32::try_from(self.joints.count.min(6)).unwrap_or(6);
-        let axes = next(heights[2], Scale::exactly(-0.5, highest, ticks));
-        axes.draw(&mut drawing, None, "Open joint");
-        self.joints.draw(&mut drawing, &axes, self.end_s);
-
-        let axes = next(heights[3], around(&[&self.energy], 3));
-        hops |= self.shade(&mut drawing, &axes, summary);
-        let label = if self.in_barriers {
-            "Energy / barrier"
-        } else {
-            "Energy (J)"
-        };
-        axes.draw(&mut drawing, Some("Time (s)"), label);
-        curve(&mut drawing, &axes, "energy", &self.energy, black);
-
-        let y = top + 44.0;
-        let name = format!("block {name}, which turns most");
-        let at = Vector2::new(left, y);
-        drawing.legend(at, 230.0, [(&*name, LARGEST), ("others", BLOCK)]);
-        explain_shades(&mut drawing, Vector2::new(430.0, y), hops);
-        self.explain_joints(&mut drawing, Vector2::new(left, y + 26.0));
-        drawing.finish()
-    }
-
-    /// Shades the half cycles.
-    fn shade(&self, drawing: &mut Drawing, axes: &Axes, summary: &Summary) -> bool {
-        let run = summary.free_hinges.as_deref();
-        let half_cycles: &[HalfCycle] = run.map_or(&[], |run| &run.half_cycles);
-        let end = match summary.outcome {
-            Outcome::Rest => Some(State::Rest),
-            Outcome::Overturned(sway) => Some(State::Overturned(sway)),
-            Outcome::NeverMoved | Outcome::StillRocking => None,
-        };
-        let changes = half_cycles
-            .iter()
-            .map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)))
-            .chain(end.map(|state| (summary.outcome_time_s, state)));
-        shade(drawing, axes, self.end_s, State::Rest, changes)
-    }
-
-    fn explain_joints(&self, drawing: &mut Drawing, at: Vector2<f64>) {
-        let mut x = at.x;
-        let [intrados, extrados] = self.edges;
-        for ((kind, _), text) in KINDS.into_iter().zip([intrados, extrados, "parted"]) {
-            let frame = Frame {
-                left: x,
-                top: at.y - 5.0,
-                width: 24.0,
-                height: 10.0,
+        // Without anything to be seen these would only take room.
+        if self.joints.any() {
+            #[expect(clippy::cast_precision_loss, reason = "few joints")]
+            let (height, highest) = (
+                (14 * self.joints.count).clamp(60, 260) as f64,
+                self.joints.count as f64 - 0.5,
+            );
+            let ticks = u32::try_from(self.joints.count.min(6)).unwrap_or(6);
+            let y = Scale::exactly(-0.5, highest, ticks);
+            panels.panel("Open joint", height, y, None, |drawing, axes| {
+                self.joints.draw(drawing, axes, self.end_s);
+            });
+            let [intrados, extrados] = self.edges;
+            let texts = KINDS.into_iter().zip([intrados, extrados, "parted"]);
+            keys.extend(
+                texts
+                    .filter(|((_, bit), _)| self.joints.has(*bit))
+                    .map(|((kind, _), text)| (text, Sign::Band(kind.fill, 1.0))),
+            );
+        }
+        let energy = Curve::new("energy", self.energy.points(), MAIN);
+        if !energy.is_flat() {
+            let label = if self.in_barriers {
+                "Energy / barrier"
+            } else {
+                "Energy (J)"
             };
-            drawing.band("key", &frame, kind.fill, 1.0);
-            let at = Vector2::new(x + 30.0, at.y + 4.5);
-            drawing.label(at, Anchor::Start, 0.0, text);
-            x += 230.0;
+            panels.curves(label, 120.0, &[energy], doing);
         }
+        if overturned_s.is_some() {
+            keys.push(OVERTURNS);
+        }
+        panels.finish(&keys, summary.outcome != Outcome::NeverMoved)
+    }
+}
+
+/// The half cycles, and the end.
+fn doing(summary: &Summary) -> Doing {
+    let run = summary.free_hinges.as_deref();
+    let half_cycles: &[HalfCycle] = run.map_or(&[], |run| &run.half_cycles);
+    let end = match summary.outcome {
+        Outcome::Rest => Some(State::Rest),
+        Outcome::Overturned(sway) => Some(State::Overturned(sway)),
+        Outcome::NeverMoved | Outcome::StillRocking => None,
+    };
+    let cycles = half_cycles.iter();
+    let changes = cycles
+        .map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)))
+        .chain(end.map(|state| (summary.outcome_time_s, state)));
+    Doing {
+        start: State::Rest,
+        changes: changes.collect(),
     }
 }
 
@@ -256,6 +231,16 @@ impl OpenJoints {
             starts_s: Vec::new(),
             bits: Vec::new(),
         }
+    }
+
+    /// Whether any is ever open.
+    fn any(&self) -> bool {
+        self.bits.iter().any(|bits| *bits != 0)
+    }
+
+    /// Whether any is ever open in this way.
+    fn has(&self, bit: u8) -> bool {
+        self.bits.iter().any(|bits| bits & bit != 0)
     }
 
     fn push(&mut self, sample: &Sample) {
@@ -332,6 +317,7 @@ impl OpenJoints {
 mod tests {
     use super::*;
     use crate::dynamics::history::OpenHinge;
+    use nalgebra::Vector2;
 
     /// A sample in which joint 1 of 3 is open at the intrados, and joint 2 parted if asked.
     fn sample(time_s: f64, parted: bool) -> Sample {

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::scene::{Mark, Scene};
-use super::svg::{Anchor, Drawing, Stroke, color};
+use super::svg::{Anchor, Drawing, Figure, Stroke, color};
 use crate::dynamics::history::{Sample, State};
 
 /// Collects the samples nearest to chosen times, and draws them.
@@ -18,7 +18,8 @@ pub struct Snapshots {
 
 /// Pictures in a row, at most.
 const COLUMNS: usize = 3;
-const WIDTH_PX: f64 = 900.0;
+/// A picture is at least so wide.
+const LEAST_PX: f64 = 180.0;
 
 impl Snapshots {
     /// Of a structure at these times in seconds, displacements drawn times `exaggeration`.
@@ -55,35 +56,30 @@ impl Snapshots {
 
     /// The picture.
     #[must_use]
-    pub fn draw(&self, title: &str) -> String {
-        let shown: Vec<&Sample> = self
-            .taken
-            .iter()
-            .filter_map(|(_, sample)| sample.as_ref())
-            .collect();
-        let columns = shown.len().clamp(1, COLUMNS);
+    pub fn draw(&self, figure: Figure, title: &str) -> String {
+        let taken = self.taken.iter();
+        let shown: Vec<&Sample> = taken.filter_map(|(_, sample)| sample.as_ref()).collect();
+        let columns = figure.columns(shown.len().clamp(1, COLUMNS), LEAST_PX);
         #[expect(clippy::cast_precision_loss, reason = "few pictures")]
-        let (cell_px, rows) = (
-            WIDTH_PX / columns as f64,
-            shown.len().div_ceil(columns) as f64,
-        );
+        let cell_px = figure.width_px() / columns as f64;
         let [low_m, high_m] = self.scene.bounds_m();
         let (width_m, height_m) = (high_m.x - low_m.x, high_m.y - low_m.y);
         // Room for the sway, and not higher than wide.
         let scale = ((cell_px - 30.0) / (1.25 * width_m)).min(cell_px / (1.1 * height_m));
-        let tall_px = 1.1 * scale * height_m + 52.0;
-        let top = 48.0;
-        let mut drawing = Drawing::new(WIDTH_PX, top + rows * tall_px + 34.0);
-        drawing.title(title);
-        for (index, sample) in shown.iter().enumerate() {
-            #[expect(clippy::cast_precision_loss, reason = "few pictures")]
-            let (column, row) = ((index % columns) as f64, (index / columns) as f64);
-            let place = Place {
-                middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
-                at: Vector2::new((column + 0.5) * cell_px, top + (row + 1.0) * tall_px - 40.0),
-                scale,
-            };
-            self.draw_one(&mut drawing, &place, sample, 0.5 * cell_px - 8.0);
+        let tall_px = 1.1 * scale * height_m;
+        let mut drawing = Drawing::new(figure);
+        let mut top = drawing.title(title) + 14.0;
+        for row in shown.chunks(columns) {
+            for (column, sample) in (0_u32..).zip(row) {
+                let at = Vector2::new((f64::from(column) + 0.5) * cell_px, top + tall_px);
+                let place = Place {
+                    middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
+                    at,
+                    scale,
+                };
+                self.draw_one(&mut drawing, &place, sample, 0.5 * cell_px - 8.0);
+            }
+            top += tall_px + 52.0;
         }
         let exaggeration = if self.exaggeration == 1.0 {
             "to scale".to_owned()
@@ -96,9 +92,8 @@ impl Snapshots {
             "; blue: thrust line"
         };
         let caption = format!("{exaggeration}; dashed: at rest; circles: open hinges{thrust}");
-        let at = Vector2::new(0.5 * WIDTH_PX, top + rows * tall_px + 18.0);
-        drawing.label(at, Anchor::Middle, 0.0, &caption);
-        drawing.finish()
+        let end = drawing.caption(top, &caption);
+        drawing.finish(end + 8.0)
     }
 
     fn draw_one(&self, drawing: &mut Drawing, place: &Place, sample: &Sample, half_px: f64) {
@@ -115,8 +110,8 @@ impl Snapshots {
         for piece in self.scene.pieces(&sample.hinges) {
             let fill = match piece.body {
                 None => "#e4e4e4",
-                Some(body) if body % 2 == 0 => "#dceaf4",
-                Some(_) => "#f6e6d6",
+                Some(body) if poses.len() == LINKS.len() => LINKS[body],
+                Some(_) => "#f3efe6",
             };
             let outline = piece.moved(poses, self.exaggeration).into_iter();
             let name = match piece.body {
@@ -144,6 +139,9 @@ impl Snapshots {
         drawing.label(below, Anchor::Middle, 0.0, &text);
     }
 }
+
+/// Colours of the bodies of a four-link mechanism.
+const LINKS: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];
 
 /// Places metres on the sheet.
 struct Place {

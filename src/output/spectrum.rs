@@ -5,7 +5,7 @@ use std::io::Write;
 use nalgebra::Vector2;
 
 use super::ending::{Failed, number};
-use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
+use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use super::{OutputError, finite};
 use crate::studies::spectrum::{OverturningSpectrum, PointRow, StructureKind};
 
@@ -106,16 +106,54 @@ const RADIUS_PX: f64 = 3.0;
 /// Draws the spectrum: overturning without impact as curves, and weaker pulses that overturn after impacts as
 /// points.
 #[must_use]
-pub fn draw(title: &str, spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> String {
-    let mut drawing = Drawing::new(900.0, 660.0);
-    drawing.title(title);
+pub fn draw(
+    figure: Figure,
+    title: &str,
+    spectrum: &OverturningSpectrum<'_>,
+    rows: &[PointRow],
+) -> String {
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title(title);
+    let size = spectrum.sizes().len();
+    let beside_arch = spectrum.structures().len() > 1;
+    let structures: Vec<(&Look, &[PointRow], String)> = spectrum
+        .structures()
+        .iter()
+        .zip(rows.chunks(size))
+        .map(|((kind, _), rows)| {
+            let look = match kind {
+                StructureKind::Arch => &ARCH,
+                StructureKind::Column => &COLUMN,
+            };
+            let called = match kind {
+                StructureKind::Column if beside_arch => "equivalent column",
+                _ => kind.name(),
+            };
+            (look, rows, called.to_owned())
+        })
+        .collect();
+    let texts: Vec<(String, Sign)> = structures
+        .iter()
+        .flat_map(|(look, rows, called)| {
+            let edge = rows
+                .iter()
+                .any(|row| row.no_impact_over_incipient.is_some());
+            let less = rows.iter().any(|row| row.minimum_after_impacts().is_some());
+            let edge = edge.then(|| (format!("{called}, without impact"), Sign::Line(look.line)));
+            let less = less.then(|| {
+                let text = format!("{called}, less after impacts (of those tried)");
+                (text, Sign::Circle(RADIUS_PX, look.point))
+            });
+            edge.into_iter().chain(less)
+        })
+        .collect();
+    let keys: Vec<Key<'_>> = texts
+        .iter()
+        .map(|(text, sign)| (text.as_str(), *sign))
+        .collect();
+    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let axes = Axes {
-        frame: Frame {
-            left: 85.0,
-            top: 100.0,
-            width: 790.0,
-            height: 500.0,
-        },
+        frame: figure.plot(top, figure.height_px(500.0)),
         x: scale(spectrum.sizes()),
         y: scale(&heights(spectrum, rows)),
     };
@@ -124,34 +162,20 @@ pub fn draw(title: &str, spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) 
         Some("size p t_p"),
         "peak acceleration / (g A_L)",
     );
-    let size = spectrum.sizes().len();
-    let beside_arch = spectrum.structures().len() > 1;
-    for (index, ((kind, _), rows)) in spectrum
-        .structures()
-        .iter()
-        .zip(rows.chunks(size))
-        .enumerate()
-    {
-        let look = match kind {
-            StructureKind::Arch => ARCH,
-            StructureKind::Column => COLUMN,
-        };
-        drawing.within(&axes.frame, |drawing| curves(drawing, &axes, &look, rows));
-        let called = match kind {
-            StructureKind::Column if beside_arch => "equivalent column",
-            _ => kind.name(),
-        };
-        #[expect(clippy::cast_precision_loss, reason = "one or two")]
-        let y = 54.0 + 22.0 * index as f64;
-        let text = format!("{called}, without impact");
-        drawing.legend(Vector2::new(85.0, y), 0.0, [(text.as_str(), look.line)]);
-        if rows.iter().any(|row| row.minimum_after_impacts().is_some()) {
-            drawing.circle("", Vector2::new(415.0, y), RADIUS_PX, look.point);
-            let text = format!("{called}, less after impacts (of those tried)");
-            drawing.label(Vector2::new(430.0, y + 4.5), Anchor::Start, 0.0, &text);
+    for (look, rows, _) in &structures {
+        drawing.within(&axes.frame, |drawing| curves(drawing, &axes, look, rows));
+    }
+    // Circles on the edge of the frame are whole.
+    for (look, rows, _) in &structures {
+        for row in *rows {
+            let least = row.minimum_after_impacts();
+            if let Some(least) = least.filter(|least| *least <= axes.y.high * (1.0 + 1e-9)) {
+                let name = format!("{} least", look.name);
+                drawing.circle(&name, axes.place(row.p_t, least), RADIUS_PX, look.point);
+            }
         }
     }
-    drawing.finish()
+    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
 /// Peak accelerations to be drawn, ascending: from the least tried to the largest result, unless that is beyond
@@ -190,12 +214,6 @@ fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[PointRow]) {
             drawing.curve(&name, [only - reach, only + reach], look.line);
         } else {
             drawing.curve(&name, places, look.line);
-        }
-    }
-    for row in rows {
-        if let Some(least) = row.minimum_after_impacts() {
-            let name = format!("{} least", look.name);
-            drawing.circle(&name, axes.place(row.p_t, least), RADIUS_PX, look.point);
         }
     }
 }

@@ -2,11 +2,10 @@
 
 use std::io::Write;
 
-use nalgebra::Vector2;
 use serde_json::{Value, json};
 
 use super::ending::{self, Failed};
-use super::svg::{Anchor, Axes, Drawing, Frame, Scale, Stroke, color};
+use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 use super::{OutputError, finite};
 use crate::scenario::{Measure, Scenario, Spacing, Suite};
 use crate::studies::fragility::{Errors, Fragility};
@@ -255,12 +254,13 @@ pub fn curve_in_words(results: &SuiteFragility) -> Option<String> {
 
 /// Draws fractions, curve and band.
 #[must_use]
-pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
-    let mut drawing = Drawing::new(900.0, 600.0);
-    drawing.title(heading.title());
+pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title(heading.title());
+    let top = legend(&mut drawing, figure, top, results);
     let axes = Axes {
-        frame: FRAME,
-        x: intensity_scale(heading, &results.levels),
+        frame: figure.plot(top, figure.height_px(405.0)),
+        x: intensity_scale(heading, &results.levels, figure),
         y: Scale::exactly(0.0, 1.0, 5),
     };
     if let Ok(fit) = &results.fit {
@@ -278,8 +278,7 @@ pub fn draw(heading: &Heading, results: &SuiteFragility) -> String {
             drawing.circle("fraction", at, 4.5, POINT);
         }
     }
-    legend(&mut drawing, results);
-    drawing.finish()
+    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
 /// What the intensities are, in words.
@@ -291,7 +290,7 @@ pub(super) const fn intensity_label(measure: Measure) -> &'static str {
 }
 
 /// From below the lowest level to above the highest.
-pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow]) -> Scale {
+pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow], figure: Figure) -> Scale {
     let ends = [levels.first(), levels.last()];
     let [low, high] = ends.map(|level| level.map_or(1.0, |level| level.intensity));
     match heading.spacing {
@@ -299,47 +298,27 @@ pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow]) -> Sca
             let margin = (high / low).powf(0.05);
             Scale::logarithmic(low / margin, high * margin)
         }
-        Spacing::Linear => Scale::exactly(0.0, 1.05 * high, 8),
+        Spacing::Linear => Scale::exactly(0.0, 1.05 * high, figure.ticks(8)),
     }
 }
 
-fn legend(drawing: &mut Drawing, results: &SuiteFragility) {
-    let mut x = FRAME.left;
-    let mut entry = |drawing: &mut Drawing, text: &str, advance: f64| {
-        drawing.label(Vector2::new(x + 36.0, 58.5), Anchor::Start, 0.0, text);
-        x += advance;
-        x - advance
-    };
+/// What is drawn, and the curve in words or why there is none; returns where that ends.
+fn legend(drawing: &mut Drawing, figure: Figure, top: f64, results: &SuiteFragility) -> f64 {
     let cases: usize = results.levels.iter().map(|level| level.cases).sum();
     let text = format!("fraction of {}, {cases} cases", records_in_words(results));
-    let left = entry(drawing, &text, 300.0);
-    drawing.circle("", Vector2::new(left + 15.0, 54.0), 4.5, POINT);
-    match curve_in_words(results) {
-        Some(words) => {
-            let left = entry(drawing, "lognormal curve", 190.0);
-            let start = Vector2::new(left, 54.0);
-            drawing.line(start, start + Vector2::new(30.0, 0.0), CURVE);
-            let left = entry(drawing, "95 % band", 0.0);
-            let swatch = format!("M{left} 47h30v14h-30z");
-            drawing.path("", &swatch, BAND, Stroke::new(BAND, 0.0, ""));
-            drawing.label(Vector2::new(FRAME.left, 86.0), Anchor::Start, 0.0, &words);
-        }
-        None => {
-            let reason = format!("no curve: {}", no_fit(results).unwrap_or_default());
-            for (text, y) in wrapped(&reason, 115).iter().zip([86.0, 103.0, 120.0]) {
-                drawing.label(Vector2::new(FRAME.left, y), Anchor::Start, 0.0, text);
-            }
-        }
+    let mut keys = vec![(text.as_str(), Sign::Circle(4.5, POINT))];
+    let words = curve_in_words(results);
+    if words.is_some() {
+        keys.extend([
+            ("lognormal curve", Sign::Line(CURVE)),
+            ("95 % band", Sign::Band(BAND, 1.0)),
+        ]);
     }
+    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys);
+    let words =
+        words.unwrap_or_else(|| format!("no curve: {}", no_fit(results).unwrap_or_default()));
+    drawing.caption(top + 14.0, &words) + 10.0
 }
-
-/// Where the curve is drawn.
-const FRAME: Frame = Frame {
-    left: 85.0,
-    top: 135.0,
-    width: 790.0,
-    height: 405.0,
-};
 
 const CURVE: Stroke = Stroke::new(color::BLUE, 2.0, "");
 const POINT: Stroke = Stroke::new(color::VERMILION, 1.8, "");
@@ -382,19 +361,4 @@ fn digits(error: f64) -> usize {
     )]
     let digits = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
     digits
-}
-
-/// Lines of at most so many characters, unless a word has more.
-fn wrapped(text: &str, most: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= most => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }

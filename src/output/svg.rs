@@ -4,6 +4,8 @@
 //! stand for a result carry its name in `data-name`, for scripts and tests.
 
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 
 use nalgebra::Vector2;
 
@@ -80,50 +82,207 @@ pub struct Frame {
     pub height: f64,
 }
 
-/// A drawing.
-#[derive(Clone, Debug)]
-pub struct Drawing {
-    width: f64,
-    text: String,
+/// How wide a picture is. It is laid out in pixels, with text of 13; a wider one has room for more, not larger text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figure {
+    width_px: f64,
+    /// Width in print, where that is given.
+    width_mm: Option<f64>,
 }
 
 /// Size of text in pixels.
 const TEXT_PX: f64 = 13.0;
+/// The same in print.
+const TEXT_PT: f64 = 8.0;
+const MM_PER_PT: f64 = 25.4 / 72.0;
 
-/// Characters of a title that fit even if they are wide.
-const MAX_TITLE: usize = 90;
+/// Width of a character, about: of letters and digits as they come.
+const CHARACTER_PX: f64 = 6.6;
+
+/// Lines that a title may have; more is cut.
+const TITLE_LINES: usize = 3;
+/// From the baseline of a line of text to that of the next.
+const LINE_PX: f64 = 17.0;
+
+impl Figure {
+    /// For the screen: 900 pixels.
+    pub const SCREEN: Self = Self {
+        width_px: 900.0,
+        width_mm: None,
+    };
+
+    /// Widths for print, in mm.
+    const WIDTHS_MM: RangeInclusive<f64> = 60.0..=500.0;
+
+    /// For print at this width, in mm, at which text is 8 pt.
+    fn of_width_mm(width_mm: f64) -> Self {
+        Self {
+            width_px: width_mm / (MM_PER_PT * TEXT_PT) * TEXT_PX,
+            width_mm: Some(width_mm),
+        }
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub const fn width_px(&self) -> f64 {
+        self.width_px
+    }
+
+    /// A height that goes with the width, of what is this high on the screen, in pixels.
+    #[must_use]
+    pub fn height_px(&self, on_screen_px: f64) -> f64 {
+        on_screen_px * (0.35 + 0.65 * self.width_px / Self::SCREEN.width_px)
+    }
+
+    /// Ticks along the width where there are so many on the screen.
+    #[must_use]
+    pub fn ticks(&self, on_screen: u32) -> u32 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a few"
+        )]
+        let ticks = (f64::from(on_screen) * self.width_px / Self::SCREEN.width_px).round() as u32;
+        ticks.max(3)
+    }
+
+    /// How many things stand side by side that are at least so wide, of `wanted` at most.
+    #[must_use]
+    pub fn columns(&self, wanted: usize, least_px: f64) -> usize {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a few"
+        )]
+        let fit = (self.width_px / least_px) as usize;
+        fit.clamp(1, wanted)
+    }
+
+    /// The frame of a plot over the whole width, below `top`, with room for its labels.
+    #[must_use]
+    pub fn plot(&self, top: f64, height: f64) -> Frame {
+        let left = 85.0;
+        Frame {
+            left,
+            top,
+            width: self.width_px - left - 25.0,
+            height,
+        }
+    }
+
+    /// Text in lines that fit into so many pixels.
+    fn lines(text: &str, width_px: f64) -> Vec<String> {
+        let mut lines = vec![String::new()];
+        for word in text.split_whitespace() {
+            let last = lines.len() - 1;
+            let line = &mut lines[last];
+            if line.is_empty() {
+                line.push_str(word);
+            } else if text_px(line) + text_px(word) + CHARACTER_PX <= width_px {
+                *line += &format!(" {word}");
+            } else {
+                lines.push(word.to_owned());
+            }
+        }
+        lines
+    }
+}
+
+impl FromStr for Figure {
+    type Err = String;
+
+    /// A width with its unit, such as `85mm` or `8.5cm`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let units = [("mm", 1.0), ("cm", 10.0), ("in", 25.4)];
+        let number = |(unit, mm): (&str, f64)| {
+            let number: f64 = text.trim().strip_suffix(unit)?.trim().parse().ok()?;
+            Some(number * mm)
+        };
+        let width_mm = units.into_iter().find_map(number);
+        let fits = width_mm.filter(|width_mm| Self::WIDTHS_MM.contains(width_mm));
+        fits.map(Self::of_width_mm)
+            .ok_or_else(|| "give a width from 60mm to 500mm, such as 85mm or 17cm".to_owned())
+    }
+}
+
+/// Width of a text, about, in pixels.
+#[expect(clippy::cast_precision_loss, reason = "the length of a label")]
+fn text_px(text: &str) -> f64 {
+    CHARACTER_PX * text.chars().count() as f64
+}
+
+/// A drawing.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    figure: Figure,
+    text: String,
+}
 
 impl Drawing {
-    /// A white sheet, in pixels.
+    /// A white sheet.
     #[must_use]
-    pub fn new(width: f64, height: f64) -> Self {
-        let mut text = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"Helvetica, Arial, sans-serif\" \
-             font-size=\"{TEXT_PX}\">\n"
-        );
-        let _ = writeln!(
-            text,
-            "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"
-        );
-        Self { width, text }
-    }
-
-    /// A title in the middle above all else; a long one is cut.
-    pub fn title(&mut self, title: &str) {
-        let mut shown: String = title.chars().take(MAX_TITLE).collect();
-        if title.chars().nth(MAX_TITLE).is_some() {
-            shown.push_str("...");
+    pub const fn new(figure: Figure) -> Self {
+        Self {
+            figure,
+            text: String::new(),
         }
-        let at = Vector2::new(0.5 * self.width, 26.0);
-        self.label(at, Anchor::Middle, 0.0, &shown);
     }
 
-    /// The file.
+    /// A title in the middle above all else, in a few lines; a very long one is cut. Returns where it ends.
+    pub fn title(&mut self, title: &str) -> f64 {
+        let width_px = self.figure.width_px - 20.0;
+        let mut lines = Figure::lines(title, width_px);
+        if lines.len() > TITLE_LINES {
+            lines.truncate(TITLE_LINES);
+            lines[TITLE_LINES - 1].push_str(" ...");
+        }
+        self.paragraph(&lines, Vector2::new(0.5 * self.figure.width_px, 26.0))
+    }
+
+    /// Text in the middle, its first baseline at `y`, in as many lines as it takes; returns where it ends.
+    pub fn caption(&mut self, y: f64, text: &str) -> f64 {
+        let middle = Vector2::new(0.5 * self.figure.width_px, y);
+        self.caption_at(middle, self.figure.width_px - 20.0, text)
+    }
+
+    /// The same around the middle of its first baseline, so wide at most.
+    pub fn caption_at(&mut self, middle: Vector2<f64>, width_px: f64, text: &str) -> f64 {
+        self.paragraph(&Figure::lines(text, width_px), middle)
+    }
+
+    fn paragraph(&mut self, lines: &[String], middle: Vector2<f64>) -> f64 {
+        let mut y = middle.y;
+        for line in lines {
+            let at = Vector2::new(middle.x, y);
+            // A word that is longer than a line.
+            let mut shown: String = line.chars().take(LONGEST_LINE).collect();
+            if shown.len() < line.len() {
+                shown.push_str("...");
+            }
+            self.label(at, Anchor::Middle, 0.0, &shown);
+            y += LINE_PX;
+        }
+        y - LINE_PX + 8.0
+    }
+
+    /// The file, of this height in pixels.
     #[must_use]
-    pub fn finish(mut self) -> String {
-        self.text += "</svg>\n";
-        self.text
+    pub fn finish(self, height: f64) -> String {
+        let Figure { width_px, width_mm } = self.figure;
+        let (wide, high) = match width_mm {
+            None => (width_px.to_string(), height.to_string()),
+            Some(width_mm) => (
+                format!("{width_mm}mm"),
+                format!("{:.3}mm", height * width_mm / width_px),
+            ),
+        };
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{high}\" \
+             viewBox=\"0 0 {width_px} {height}\" font-family=\"Helvetica, Arial, sans-serif\" \
+             font-size=\"{TEXT_PX}\">\n\
+             <rect width=\"{width_px}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            self.text
+        )
     }
 
     /// A polyline named `name`; nothing for less than two points.
@@ -252,22 +411,83 @@ impl Drawing {
         );
     }
 
-    /// A legend of lines, one beside the other from `at` to the right; `advance_px` apart.
-    pub fn legend<'a>(
-        &mut self,
-        at: Vector2<f64>,
-        advance_px: f64,
-        entries: impl IntoIterator<Item = (&'a str, Stroke)>,
-    ) {
-        let mut x = at.x;
-        for (text, stroke) in entries {
-            let start = Vector2::new(x, at.y);
-            self.line(start, start + Vector2::new(30.0, 0.0), stroke);
-            self.label(start + Vector2::new(36.0, 4.5), Anchor::Start, 0.0, text);
-            x += advance_px;
+    /// A legend below `top`, in as many rows as it takes: from `left` on, what each entry draws at the middle of its key,
+    /// 24 pixels wide, and its text. Returns where it ends.
+    pub fn legend(&mut self, left: f64, top: f64, entries: &[Key<'_>]) -> f64 {
+        if entries.is_empty() {
+            return top;
         }
+        let right = self.figure.width_px - 15.0;
+        let (mut x, mut y) = (left, top + 0.5 * LEGEND_ROW_PX);
+        for (text, sign) in entries {
+            let advance = KEY_PX + 6.0 + text_px(text) + 18.0;
+            if x > left && x + advance > right {
+                (x, y) = (left, y + LEGEND_ROW_PX);
+            }
+            let middle = Vector2::new(x + 0.5 * KEY_PX, y);
+            match *sign {
+                Sign::Line(stroke) => {
+                    let half = Vector2::new(0.5 * KEY_PX, 0.0);
+                    self.line(middle - half, middle + half, stroke);
+                }
+                Sign::Band(fill, opacity) => {
+                    let frame = Frame {
+                        left: x,
+                        top: y - 7.0,
+                        width: KEY_PX,
+                        height: 14.0,
+                    };
+                    self.band("key", &frame, fill, opacity);
+                    self.outline(&frame, Stroke::new(color::GREY, 0.6, ""));
+                }
+                Sign::Circle(radius, stroke) => self.circle("", middle, radius, stroke),
+                Sign::Tick(stroke) => {
+                    let half = Vector2::new(0.0, 5.0);
+                    self.line(middle - half, middle + half, stroke);
+                }
+            }
+            let at = Vector2::new(x + KEY_PX + 6.0, y + 4.5);
+            self.label(at, Anchor::Start, 0.0, text);
+            x += advance;
+        }
+        y + 0.5 * LEGEND_ROW_PX
+    }
+
+    /// A rectangle without filling.
+    pub fn outline(&mut self, frame: &Frame, stroke: Stroke) {
+        let Frame {
+            left,
+            top,
+            width,
+            height,
+        } = frame;
+        let path = format!("M{left:.2} {top:.2}h{width:.2}v{height:.2}h-{width:.2}Z");
+        self.path("", &path, "none", stroke);
     }
 }
+
+/// An entry of a legend: its text, and what it explains.
+pub type Key<'a> = (&'a str, Sign);
+
+/// What an entry of a legend shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sign {
+    /// A line.
+    Line(Stroke),
+    /// An area of this colour and opacity.
+    Band(&'static str, f64),
+    /// A circle of this radius in pixels.
+    Circle(f64, Stroke),
+    /// A short upright line.
+    Tick(Stroke),
+}
+
+/// Width of what a legend shows.
+const KEY_PX: f64 = 24.0;
+/// Height of a row of a legend.
+const LEGEND_ROW_PX: f64 = 24.0;
+/// Characters that a line is cut at, however long its words are.
+const LONGEST_LINE: usize = 130;
 
 /// The name of a mark that stands for a result; nothing for others.
 fn name_attribute(name: &str) -> String {
@@ -492,22 +712,28 @@ impl Axes {
             let at = Vector2::new(left - 8.0, y + 4.5);
             drawing.label(at, Anchor::End, 0.0, &text);
         }
-        for (value, text) in self.x.ticks() {
+        for (value, _) in self.x.ticks() {
             let x = self.place(value, self.y.low).x;
             drawing.line(Vector2::new(x, bottom), Vector2::new(x, bottom + 5.0), thin);
-            if x_label.is_some() {
-                let at = Vector2::new(x, bottom + 19.0);
-                drawing.label(at, Anchor::Middle, 0.0, &text);
-            }
         }
         let frame = format!("M{left} {top}H{right}V{bottom}H{left}Z");
         drawing.path("", &frame, "none", thin);
         let at = Vector2::new(left - 58.0, top + 0.5 * height);
         drawing.label(at, Anchor::Middle, 90.0, y_label);
         if let Some(label) = x_label {
-            let at = Vector2::new(left + 0.5 * width, bottom + 38.0);
-            drawing.label(at, Anchor::Middle, 0.0, label);
+            self.label_x(drawing, label);
         }
+    }
+
+    /// Labels of the ticks below, and what they are.
+    pub fn label_x(&self, drawing: &mut Drawing, label: &str) {
+        let bottom = self.frame.top + self.frame.height;
+        for (value, text) in self.x.ticks() {
+            let at = Vector2::new(self.place(value, self.y.low).x, bottom + 19.0);
+            drawing.label(at, Anchor::Middle, 0.0, &text);
+        }
+        let at = Vector2::new(self.frame.left + 0.5 * self.frame.width, bottom + 38.0);
+        drawing.label(at, Anchor::Middle, 0.0, label);
     }
 }
 
@@ -558,13 +784,50 @@ mod tests {
     }
 
     #[test]
+    fn text_is_8_points_at_the_width_of_a_figure() {
+        for (text, width_mm) in [("85mm", 85.0), ("17 cm", 170.0), ("3.5in", 88.9)] {
+            let figure: Figure = text.parse().unwrap();
+            let sheet = Drawing::new(figure).finish(figure.width_px());
+            // A square sheet is as high as it is wide.
+            let size = format!("width=\"{width_mm}mm\" height=\"{width_mm:.3}mm\"");
+            assert!(sheet.contains(&size), "{sheet}");
+            let points = TEXT_PX / figure.width_px() * width_mm / 25.4 * 72.0;
+            assert!((points - 8.0).abs() < 1e-12);
+        }
+        for wrong in ["85", "5mm", "-85mm", "NaNmm", "infmm", "85 px", ""] {
+            assert!(wrong.parse::<Figure>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn titles_and_legends_take_the_rows_they_need() {
+        let narrow: Figure = "85mm".parse().unwrap();
+        let title =
+            "An arch of thirty-six voussoirs on two piers under the second of seven records";
+        let [short, long] =
+            [Figure::SCREEN, narrow].map(|figure| Drawing::new(figure).title(title));
+        assert_eq!(long, short + LINE_PX);
+        let keys = ["left", "middle", "right", "sways right", "sways left"]
+            .map(|text| (text, Sign::Line(CURVES[0])));
+        let rows = |figure: Figure| Drawing::new(figure).legend(85.0, 0.0, &keys) / LEGEND_ROW_PX;
+        assert_eq!(rows(Figure::SCREEN), 1.0);
+        assert_eq!(rows(narrow), 2.0);
+        let mut drawing = Drawing::new(narrow);
+        drawing.title(&"x".repeat(1000));
+        assert!(
+            drawing.finish(9.0).len() < 1000,
+            "a word without end is cut"
+        );
+    }
+
+    #[test]
     fn text_is_escaped() {
-        let mut drawing = Drawing::new(10.0, 10.0);
+        let mut drawing = Drawing::new(Figure::SCREEN);
         let text = "a < b & \"c\" \u{7}";
         drawing.label(Vector2::zeros(), Anchor::Start, 0.0, text);
         assert!(
             drawing
-                .finish()
+                .finish(10.0)
                 .contains("a &lt; b &amp; &quot;c&quot; </text>")
         );
     }

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use serde_json::{Value, json};
 
 use super::kind::{self, GROUND_FALLS, Kind};
-use super::svg::{Anchor, Axes, CURVES, Drawing, Frame, Scale, Stroke, color};
+use super::svg::{Anchor, Axes, CURVES, Drawing, Figure, Frame, Scale, Sign, Stroke, color};
 use super::{OutputError, ending, finite};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Outcome;
@@ -166,9 +166,6 @@ fn sample_to_json(sample: &FactorSample) -> Value {
     }
 }
 
-const LEFT: f64 = 95.0;
-const WIDTH: f64 = 780.0;
-
 /// Room for the labels of the edges above a strip.
 const EDGE_LABELS: f64 = 58.0;
 const STRIP: f64 = 28.0;
@@ -181,55 +178,55 @@ const EDGE: Stroke = Stroke::new(color::GREY, 0.8, "");
 /// Draws the outcome over the factor as a strip for each model, with the edges of the bands, and the largest
 /// rotation below. `peak_g` is the peak acceleration of the ground at the factor 1.
 #[must_use]
-pub fn draw(title: &str, peak_g: f64, factors: &Factors, thresholds: &[Threshold]) -> String {
-    #[expect(clippy::cast_precision_loss, reason = "a handful of models")]
-    let strips = thresholds.len() as f64 * (EDGE_LABELS + STRIP);
-    let height = 500.0 + strips;
-    let mut drawing = Drawing::new(900.0, height);
-    drawing.title(title);
+pub fn draw(
+    figure: Figure,
+    title: &str,
+    peak_g: f64,
+    factors: &Factors,
+    thresholds: &[Threshold],
+) -> String {
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title(title);
     let kinds: Vec<Kind> = thresholds
         .iter()
         .flat_map(|threshold| threshold.samples.iter().map(kind_of))
         .collect();
-    let mut top = kind::legend(&mut drawing, Vector2::new(LEFT, 46.0), WIDTH, &kinds);
     let names: Vec<String> = thresholds.iter().map(name).collect();
     let rotation = Rotation::of(thresholds);
-    let mut entries = Vec::new();
+    let mut keys = kind::keys(&kinds);
     if rotation == Rotation::OverCritical {
-        entries.push(("unstable equilibrium", CRITICAL));
+        keys.push(("unstable equilibrium", Sign::Line(CRITICAL)));
     }
     if let [_, _, ..] = names[..] {
-        entries.extend(names.iter().map(String::as_str).zip(curves()));
+        let named = names.iter().map(String::as_str).zip(curves());
+        keys.extend(named.map(|(name, stroke)| (name, Sign::Line(stroke))));
     }
-    drawing.legend(Vector2::new(LEFT, top + 10.0), 190.0, entries);
-    top += kind::LEGEND_ROW;
+    let Frame { left, width, .. } = figure.plot(0.0, 0.0);
+    let mut top = drawing.legend(left, top, &keys);
 
     let (first, last) = (factors.first(), factors.last());
     let x = if last < 2.0 * first {
-        Scale::exactly(first, last, 8)
+        Scale::exactly(first, last, figure.ticks(8))
     } else {
         Scale::logarithmic(first, last)
     };
+    #[expect(clippy::cast_precision_loss, reason = "a handful of models")]
+    let strips = thresholds.len() as f64 * (EDGE_LABELS + STRIP);
     let axes = Axes {
-        frame: Frame {
-            left: LEFT,
-            top: top + strips + 16.0,
-            width: WIDTH,
-            height: height - 60.0 - (top + strips + 16.0),
-        },
+        frame: figure.plot(top + strips + 16.0, figure.height_px(320.0)),
         x,
         y: rotation.scale(thresholds),
     };
     for (threshold, name) in thresholds.iter().zip(&names) {
         top += EDGE_LABELS;
         let frame = Frame {
-            left: LEFT,
+            left,
             top,
-            width: WIDTH,
+            width,
             height: STRIP,
         };
         strip(&mut drawing, &Axes { frame, ..axes }, threshold);
-        let at = Vector2::new(LEFT - 8.0, top + 0.5 * STRIP + 4.5);
+        let at = Vector2::new(left - 8.0, top + 0.5 * STRIP + 4.5);
         drawing.label(at, Anchor::End, 0.0, name);
         top += STRIP;
     }
@@ -256,7 +253,7 @@ pub fn draw(title: &str, peak_g: f64, factors: &Factors, thresholds: &[Threshold
             }
         }
     });
-    drawing.finish()
+    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
 /// What the curves of the models look like.

@@ -8,7 +8,7 @@ use archrock::output::poses::PosesWriter;
 use archrock::output::report::Report;
 use archrock::output::scene::Scene;
 use archrock::output::snapshots::Snapshots;
-use archrock::output::{Folder, OutputError};
+use archrock::output::{Figure, Folder, OutputError};
 use archrock::scenario::Scenario;
 
 use super::cannot_write;
@@ -123,7 +123,7 @@ impl Extras {
         &self,
         folder: &mut Folder,
         scenario: &Scenario,
-        title: &str,
+        (figure, title): (Figure, &str),
         said: &mut String,
     ) -> Result<(), Failure> {
         if let Some(report) = &self.report {
@@ -136,7 +136,7 @@ impl Extras {
         if let Some(snapshots) = &self.snapshots {
             folder
                 .file(SNAPSHOTS)
-                .write_all(snapshots.draw(title).as_bytes())
+                .write_all(snapshots.draw(figure, title).as_bytes())
                 .map_err(cannot_write("the snapshots"))?;
             let beyond: Vec<_> = snapshots.beyond_s().iter().map(f64::to_string).collect();
             if !beyond.is_empty() {

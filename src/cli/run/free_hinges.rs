@@ -23,7 +23,7 @@ use archrock::scenario::Scenario;
 use super::extras::{Extras, File, POSES, PosesTable};
 use super::{
     EVENTS, IMPACTS, JOINTS, PICTURE, Place, ROTATIONS, SUMMARY, Told, cannot_write, cut_short,
-    incipient, outcome, written,
+    incipient, outcome, subject, written,
 };
 use crate::cli::Failure;
 
@@ -53,7 +53,7 @@ pub fn run(
     let model = model(scenario)?;
     let ground = scenario.ground_motion();
     let mut folder = place.open(&[JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY])?;
-    let mut timeline = RowTimeline::new(model.row(), scenario.simulation.gravity_m_s2);
+    let mut timeline = RowTimeline::new(model.row());
     let mut extras = Extras::new(
         &place.extras,
         folder.as_ref(),
@@ -87,11 +87,13 @@ pub fn run(
     let json = self::summary(scenario, &model, &summary, spread)?;
     if let Some(mut folder) = folder {
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let subject = subject(scenario, &model, title);
+        let picture = timeline.draw(place.figure, &subject, &summary);
         folder
             .file(PICTURE)
-            .write_all(timeline.draw(title, &summary).as_bytes())
+            .write_all(picture.as_bytes())
             .map_err(cannot_write("the picture"))?;
-        extras.write(&mut folder, scenario, title, &mut text)?;
+        extras.write(&mut folder, scenario, (place.figure, title), &mut text)?;
         writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;

@@ -1,0 +1,307 @@
+//! Panels over a shared time axis: what all pictures of histories have in common.
+
+use super::ground;
+use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::State;
+use crate::mechanics::sway::Sway;
+
+/// Bands narrower than this many pixels are not told apart.
+const NARROWEST_PX: f64 = 1.0;
+
+/// Between panels.
+const GAP_PX: f64 = 22.0;
+
+/// What a history is of.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// Above the picture.
+    pub title: &'a str,
+    /// How the ground moves.
+    pub ground: &'a GroundMotion,
+    /// Gravity.
+    pub gravity_m_s2: f64,
+    /// Pushes that start the structure to the right and to the left, in g, where there are any.
+    pub incipient_g: [Option<f64>; 2],
+}
+
+/// A curve over time.
+pub(super) struct Curve {
+    pub(super) name: String,
+    pub(super) points: Vec<(f64, f64)>,
+    pub(super) stroke: Stroke,
+}
+
+pub(super) const MAIN: Stroke = Stroke::new(color::BLACK, 1.4, "");
+const INCIPIENT: Stroke = Stroke::new(color::PURPLE, 1.3, "6 4");
+const OVERTURNING: Stroke = Stroke::new(color::VERMILION, 1.8, "8 3 2 3");
+
+impl Curve {
+    pub(super) fn new(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = (f64, f64)>,
+        stroke: Stroke,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            points: points.into_iter().collect(),
+            stroke,
+        }
+    }
+
+    /// Whether there is anything to be seen of it.
+    pub(super) fn is_flat(&self) -> bool {
+        self.points.iter().all(|(_, value)| *value == 0.0)
+    }
+}
+
+/// What the structure does over time, for shading.
+pub(super) struct Doing {
+    pub(super) start: State,
+    pub(super) changes: Vec<(f64, State)>,
+}
+
+/// A picture of panels, one below the other.
+pub(super) struct Panels {
+    figure: Figure,
+    drawing: Drawing,
+    start_s: f64,
+    end_s: f64,
+    top: f64,
+    /// Where the lowest panel ends, and its axes, which get the labels of the times.
+    last: Option<Axes>,
+    /// Whether there were hops too short to be told apart.
+    hops: bool,
+    /// Whether what starts the structure is drawn.
+    incipient: bool,
+}
+
+impl Panels {
+    /// Of a history, from time zero on.
+    pub(super) fn new(figure: Figure, title: &str, end_s: f64) -> Self {
+        Self::spanning(figure, title, [0.0, end_s.max(f64::MIN_POSITIVE)])
+    }
+
+    /// Over these times.
+    pub(super) fn spanning(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
+        let mut drawing = Drawing::new(figure);
+        let top = drawing.title(title) + 20.0;
+        Self {
+            figure,
+            drawing,
+            start_s,
+            end_s,
+            top,
+            last: None,
+            hops: false,
+            incipient: false,
+        }
+    }
+
+    /// The next panel, so high on the screen: shades behind, axes, then what `draw` draws.
+    pub(super) fn panel(
+        &mut self,
+        label: &str,
+        height_px: f64,
+        y: Scale,
+        doing: Option<&Doing>,
+        draw: impl FnOnce(&mut Drawing, &Axes),
+    ) {
+        let height = self.figure.height_px(height_px);
+        let axes = Axes {
+            frame: self.figure.plot(self.top, height),
+            x: Scale::exactly(self.start_s, self.end_s, self.figure.ticks(10)),
+            y,
+        };
+        if let Some(doing) = doing {
+            self.hops |= shade(&mut self.drawing, &axes, self.end_s, doing);
+        }
+        axes.draw(&mut self.drawing, None, label);
+        draw(&mut self.drawing, &axes);
+        self.top += height + GAP_PX;
+        self.last = Some(axes);
+    }
+
+    /// A panel with these curves and a scale that holds them.
+    pub(super) fn curves(
+        &mut self,
+        label: &str,
+        height_px: f64,
+        curves: &[Curve],
+        doing: Option<&Doing>,
+    ) {
+        let values = curves.iter().flat_map(|curve| &curve.points);
+        let y = around(values.map(|point| point.1), ticks(height_px));
+        self.panel(label, height_px, y, doing, |drawing, axes| {
+            draw_curves(drawing, axes, curves);
+        });
+    }
+
+    /// The panel of the ground, with what starts the structure; nothing where the ground stays still.
+    pub(super) fn ground(&mut self, height_px: f64, subject: &Subject<'_>, doing: Option<&Doing>) {
+        let Subject {
+            ground,
+            gravity_m_s2,
+            ..
+        } = *subject;
+        let curve = Curve::new(
+            "ground",
+            ground::curve_g(ground, gravity_m_s2, self.end_s),
+            MAIN,
+        );
+        if curve.is_flat() {
+            return;
+        }
+        let largest = curve
+            .points
+            .iter()
+            .fold(0.0_f64, |most, point| most.max(point.1.abs()));
+        let [right, left] = subject.incipient_g;
+        // Ground that accelerates to the left pushes to the right. Far beyond what the ground does it would hide that.
+        let levels = [right.map(|g| -g), left].into_iter().flatten();
+        let levels: Vec<f64> = levels.filter(|level| level.abs() < 4.0 * largest).collect();
+        let values = curve.points.iter().map(|point| point.1);
+        let y = around(values.chain(levels.iter().copied()), ticks(height_px));
+        self.incipient |= !levels.is_empty();
+        self.panel("Ground (g)", height_px, y, doing, |drawing, axes| {
+            for level in levels {
+                let ends = [axes.x.low, axes.x.high].map(|time_s| axes.place(time_s, level));
+                drawing.curve("A_L", ends, INCIPIENT);
+            }
+            draw_curves(drawing, axes, &[curve]);
+        });
+    }
+
+    /// The file, with the time below the panels and a legend: these entries first, then those of what all pictures
+    /// have.
+    pub(super) fn finish(mut self, keys: &[Key<'_>], shaded: bool) -> String {
+        if let Some(axes) = self.last {
+            axes.label_x(&mut self.drawing, "Time (s)");
+        }
+        let mut keys = keys.to_vec();
+        if shaded {
+            for ((_, fill), text) in [(SWAYS_RIGHT, "sways right"), (SWAYS_LEFT, "sways left")] {
+                keys.push((text, Sign::Band(fill, OPACITY)));
+            }
+        }
+        if self.hops {
+            keys.push(("hops", Sign::Band(HOPS.1, OPACITY)));
+        }
+        if self.incipient {
+            keys.push(("A_L, which starts it from rest", Sign::Line(INCIPIENT)));
+        }
+        let left = self.figure.plot(0.0, 0.0).left;
+        let end = self.drawing.legend(left, self.top + 30.0, &keys);
+        self.drawing.finish(end + 12.0)
+    }
+}
+
+/// Ticks of a panel that is so high on the screen.
+fn ticks(height_px: f64) -> u32 {
+    if height_px > 200.0 { 6 } else { 3 }
+}
+
+/// A scale that holds values and zero, with a little room, so that no curve runs along the frame.
+pub(super) fn around(values: impl Iterator<Item = f64>, ticks: u32) -> Scale {
+    Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
+}
+
+pub(super) fn draw_curves(drawing: &mut Drawing, axes: &Axes, curves: &[Curve]) {
+    for Curve {
+        name,
+        points,
+        stroke,
+    } in curves
+    {
+        let places = points.iter().map(|(t, value)| axes.place(*t, *value));
+        drawing.curve(name, places, *stroke);
+    }
+}
+
+/// Name and colour of a band.
+type Shade = (&'static str, &'static str);
+
+const SWAYS_RIGHT: Shade = ("right", color::SKY);
+const SWAYS_LEFT: Shade = ("left", color::ORANGE);
+const OVERTURNED: Shade = ("overturned", color::BLACK);
+/// Hops to both sides, each too short to be seen.
+const HOPS: Shade = ("hops", color::GREY);
+
+/// So strong are the colours of bands.
+const OPACITY: f64 = 0.22;
+
+const fn shade_of(state: State) -> Option<Shade> {
+    match state {
+        State::Rest => None,
+        State::Rocking(Sway::Right) => Some(SWAYS_RIGHT),
+        State::Rocking(Sway::Left) => Some(SWAYS_LEFT),
+        State::Overturned(_) => Some(OVERTURNED),
+    }
+}
+
+/// Shades what the structure does from its beginning on, and tells whether there are hops too short to be told apart:
+/// these get one shade together.
+fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &Doing) -> bool {
+    let place = |time_s: f64| axes.place(time_s.min(end_s), axes.y.low).x;
+    let mut band = |(name, fill): Shade, left: f64, right: f64| {
+        let mut frame = axes.frame;
+        frame.left = left;
+        frame.width = right - left;
+        drawing.band(name, &frame, fill, OPACITY);
+    };
+    let changes = doing.changes.iter().copied();
+    let ends_s = changes.clone().map(|(time_s, _)| time_s).chain([end_s]);
+    // Where the last band ends that is wide enough to be seen.
+    let mut drawn = place(0.0);
+    let mut hops = false;
+    let states = [(0.0, doing.start)].into_iter().chain(changes);
+    for ((from_s, state), to_s) in states.zip(ends_s) {
+        let (left, right) = (place(from_s), place(to_s));
+        if right - left < NARROWEST_PX && to_s < end_s {
+            continue;
+        }
+        if left - drawn >= NARROWEST_PX {
+            band(HOPS, drawn, left);
+            hops = true;
+            drawn = left;
+        }
+        if let Some(shade) = shade_of(state)
+            && right - drawn >= NARROWEST_PX
+        {
+            band(shade, drawn, right);
+        }
+        drawn = right;
+    }
+    hops
+}
+
+/// The entry of a legend for the instant of overturning.
+pub(super) const OVERTURNS: Key<'static> = ("overturns", Sign::Line(OVERTURNING));
+
+/// Marks the instant of overturning.
+pub(super) fn mark_overturning(drawing: &mut Drawing, axes: &Axes, time_s: f64) {
+    let ends = [axes.y.low, axes.y.high].map(|y| axes.place(time_s, y));
+    drawing.curve("overturning", ends, OVERTURNING);
+}
+
+/// How an impact is marked.
+pub(super) const IMPACT: Stroke = Stroke::new(color::VERMILION, 1.0, "");
+/// Marks closer together than this, in pixels, would run into one.
+const BETWEEN_MARKS_PX: f64 = 2.5;
+
+/// Marks impacts along the lower side by short upright lines, those apart from the last mark.
+pub(super) fn mark_impacts(
+    drawing: &mut Drawing,
+    axes: &Axes,
+    impacts_s: impl Iterator<Item = f64>,
+) {
+    let mut last_px = f64::NEG_INFINITY;
+    for time_s in impacts_s {
+        let at = axes.place(time_s, axes.y.low);
+        if at.x - last_px >= BETWEEN_MARKS_PX {
+            let path = format!("M{:.2} {:.2}v-10", at.x, at.y);
+            drawing.path("impact", &path, "none", IMPACT);
+            last_px = at.x;
+        }
+    }
+}
