@@ -578,7 +578,22 @@ fn the_map_shows_every_cell_and_the_boundaries() {
     assert!(texts(&document).iter().any(|text| text == "a < b"));
 
     // The frame is 790 by 560 pixels; x from 0.15 to 0.75 s, y over five octaves from 0.1 g / sqrt(2).
-    let (left, top, width, height) = (85.0, 100.0, 790.0, 560.0);
+    let (left, width, height) = (85.0, 790.0, 560.0);
+    let kinds = ["never_moved", "rest", "overturned-0"];
+    let all: Vec<_> = kinds
+        .iter()
+        .flat_map(|name| rectangles(&document, name))
+        .collect();
+    // Below title and legend.
+    let top = all
+        .iter()
+        .map(|[_, _, top, _]| *top)
+        .fold(f64::INFINITY, f64::min);
+    let bottom = all
+        .iter()
+        .map(|[_, _, _, bottom]| *bottom)
+        .fold(0.0, f64::max);
+    assert!((bottom - top - height).abs() < PIXEL);
     let x_edges = [0.15, 0.25, 0.45, 0.75].map(|x: f64| left + width * (x - 0.15) / 0.6);
     let y_edge = |row: u32| top + height * (1.0 - f64::from(row) / 5.0);
     let y_of = |amplitude_g: f64| top + height * (1.0 - ((amplitude_g / 0.1).log2() + 0.5) / 5.0);

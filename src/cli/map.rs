@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 use archrock::dynamics::history::Outcome;
-use archrock::output::{Figure, map as output};
+use archrock::output::{Figure, map as output, map_page};
 use archrock::scenario::{Quantity, Scenario};
 use archrock::studies::boundary::{MapRow, MapWithBoundary};
 use archrock::studies::map::{CellResult, CellRow, OverturningMap};
@@ -34,6 +34,8 @@ pub struct BoundaryOption {
 }
 
 const PICTURE: &str = "map.svg";
+/// The same with a cursor.
+const PAGE: &str = "map.html";
 const SUMMARY: &str = "map.json";
 const BOUNDARY: &str = "no_impact.csv";
 /// Written last: a folder that has it is complete.
@@ -50,14 +52,8 @@ pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let Some((rows, part)) = options.compute(&study, &place, quiet)? else {
         return Ok(());
     };
-    finish(
-        &map,
-        rows,
-        &place,
-        arguments.boundary,
-        arguments.figure.get(),
-        quiet,
-    )?;
+    let figure = arguments.figure.get();
+    finish(&map, rows, &place, arguments.boundary, figure, quiet)?;
     Ok(part.remove()?)
 }
 
@@ -124,7 +120,7 @@ fn finish(
 ) -> Result<(), Failure> {
     let scenario = map.scenario();
     let (cells, boundaries) = MapRow::sorted(rows);
-    let mut files = vec![PICTURE, SUMMARY, TABLE];
+    let mut files = vec![PICTURE, PAGE, SUMMARY, TABLE];
     if boundary.no_impact {
         files.insert(0, BOUNDARY);
     }
@@ -140,6 +136,11 @@ fn finish(
         .file(PICTURE)
         .write_all(picture.as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
+    let page = map_page::page(title, map, &cells, &boundaries);
+    folder
+        .file(PAGE)
+        .write_all(page.as_bytes())
+        .map_err(|error| Failure::Work(format!("cannot write the page: {error}")))?;
     let failures = output::failures(map, &cells, &boundaries);
     write_summary(folder.file(SUMMARY), scenario, cells.len(), &failures)?;
     output::write_table(folder.file(TABLE), map, &cells)?;

@@ -134,7 +134,7 @@ fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
 }
 
 /// What a cell is coloured by.
-fn kind_of(result: &CellResult) -> Kind {
+pub(super) fn kind_of(result: &CellResult) -> Kind {
     let impacts = match result {
         CellResult::Ended(ending) => ending.impacts_of_all_hinges(),
         _ => None,
@@ -142,7 +142,7 @@ fn kind_of(result: &CellResult) -> Kind {
     Kind::of(outcome(result), impacts)
 }
 
-const fn label(quantity: Quantity) -> &'static str {
+pub(super) const fn label(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Duration => "pulse duration (s)",
         Quantity::Frequency => "pulse frequency (Hz)",
@@ -208,6 +208,25 @@ pub fn draw(
     rows: &[CellRow],
     boundaries: &[BoundaryRow],
 ) -> String {
+    drawn(figure, title, map, rows, boundaries).picture
+}
+
+/// The picture of a map, and where its cells are.
+pub(super) struct Drawn {
+    pub(super) picture: String,
+    pub(super) height_px: f64,
+    /// Edges of the columns from the left, and of the lines from below.
+    pub(super) edges_px: [Vec<f64>; 2],
+}
+
+/// As [`draw`].
+pub(super) fn drawn(
+    figure: Figure,
+    title: &str,
+    map: &OverturningMap<'_>,
+    rows: &[CellRow],
+    boundaries: &[BoundaryRow],
+) -> Drawn {
     let boundaries: Vec<_> = found(boundaries).collect();
     let mut drawing = Drawing::new(figure);
     let top = drawing.title(title);
@@ -264,7 +283,21 @@ pub fn draw(
             curve("no-impact", IMPACT_FREE, |b| b.impact_free_g);
         }
     });
-    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+    let height_px = axes.frame.top + axes.frame.height + 56.0;
+    Drawn {
+        picture: drawing.finish(height_px),
+        height_px,
+        edges_px: [
+            x_edges
+                .iter()
+                .map(|x| axes.place(*x, axes.y.low).x)
+                .collect(),
+            y_edges
+                .iter()
+                .map(|y| axes.place(axes.x.low, *y).y)
+                .collect(),
+        ],
+    }
 }
 
 /// Strikes out the cells whose outcome depends on the steps.

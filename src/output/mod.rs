@@ -13,6 +13,7 @@ pub mod ida;
 pub mod impact;
 mod kind;
 pub mod map;
+pub mod map_page;
 pub mod mechanisms;
 pub mod overlay;
 mod page;

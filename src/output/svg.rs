@@ -196,7 +196,8 @@ impl FromStr for Figure {
         let units = [("mm", 1.0), ("cm", 10.0), ("in", 25.4)];
         let number = |(unit, mm): (&str, f64)| {
             let number: f64 = text.trim().strip_suffix(unit)?.trim().parse().ok()?;
-            Some(number * mm)
+            // Without the residue of rounding.
+            Some((number * mm * 1e6).round() / 1e6)
         };
         let width_mm = units.into_iter().find_map(number);
         let fits = width_mm.filter(|width_mm| Self::WIDTHS_MM.contains(width_mm));

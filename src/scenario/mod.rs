@@ -72,7 +72,7 @@ pub(crate) use spectrum::block;
 pub use structure::{ModelError, Structure};
 pub use suite::{Measure, Suite};
 use table::{Reading, Table, Text};
-use toml_text::toml_text;
+pub(crate) use toml_text::toml_text;
 
 named! {
     /// A model of motion.

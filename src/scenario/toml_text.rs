@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 /// The text of a table and of all that are in it. A range, which is a table with the key `from`, stands in one
 /// line.
-pub(super) fn toml_text(table: &Map<String, Value>) -> String {
+pub(crate) fn toml_text(table: &Map<String, Value>) -> String {
     let mut text = String::new();
     write_table(&mut text, "", table);
     text

@@ -1,0 +1,128 @@
+//! `map.html`: a map with a cursor that tells the numbers of a cell, and the command that runs it.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+
+use super::kind::Kind;
+use super::map::{self, Drawn};
+use super::page::{escaped, filled, script_safe};
+use super::svg::Figure;
+use crate::scenario::{Ground, Quantity, toml_text};
+use crate::studies::boundary::BoundaryRow;
+use crate::studies::map::{CellResult, CellRow, OverturningMap};
+
+/// The page.
+#[must_use]
+pub fn page(
+    title: &str,
+    map: &OverturningMap<'_>,
+    rows: &[CellRow],
+    boundaries: &[BoundaryRow],
+) -> String {
+    let drawn = map::drawn(Figure::SCREEN, title, map, rows, boundaries);
+    let data = data(map, rows, &drawn);
+    let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
+    filled(
+        include_str!("map_page/page.html"),
+        &[
+            ("PROGRAM", &version),
+            ("TITLE", &escaped(title)),
+            ("PICTURE", &drawn.picture),
+            ("SCENARIO", &escaped(&map.scenario().to_toml())),
+            ("DATA", &script_safe(&data)),
+            ("SCRIPT", include_str!("map_page/page.js")),
+        ],
+    )
+}
+
+fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn) -> Value {
+    let kinds: Vec<Kind> = rows.iter().map(|row| map::kind_of(&row.result)).collect();
+    let index = |kind: &Kind| {
+        Kind::ALL
+            .iter()
+            .position(|known| known == kind)
+            .unwrap_or(0)
+    };
+    let kinds = kinds
+        .iter()
+        .map(|kind| u8::try_from(index(kind)).unwrap_or(0));
+    let ended = |row: &CellRow| match &row.result {
+        CellResult::Ended(ending) => Some(*ending),
+        _ => None,
+    };
+    let column = |name: &str, value: &dyn Fn(&CellRow) -> Option<f64>| {
+        // What a cell does not have is not a number, which the page leaves out.
+        let values = rows.iter().map(|row| value(row).unwrap_or(f64::NAN));
+        let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
+        json!({ "name": name, "values": BASE64_STANDARD.encode(bytes) })
+    };
+    #[expect(clippy::cast_precision_loss, reason = "numbers of impacts are small")]
+    let columns = [
+        column("impacts", &|row| Some(ended(row)?.impacts as f64)),
+        column("outcome_time_s", &|row| Some(ended(row)?.outcome_time_s)),
+        column("peak_rotation_over_critical", &|row| {
+            ended(row)?.peak.over_critical()
+        }),
+        column("peak_rotation_rad", &|row| ended(row)?.peak.rad()),
+        column("energy_defect_ratio", &|row| {
+            Some(ended(row)?.energy_defect_ratio)
+        }),
+    ];
+    let axes = map.axes();
+    let values = map.values();
+    let axis = |i: usize| {
+        json!({
+            "label": map::label(axes[i].quantity),
+            "values": values[i],
+            "edges_px": drawn.edges_px[i],
+        })
+    };
+    json!({
+        "axes": [axis(0), axis(1)],
+        "sheet_px": { "width": Figure::SCREEN.width_px(), "height": drawn.height_px },
+        "kinds": BASE64_STANDARD.encode(kinds.collect::<Vec<u8>>()),
+        "labels": Kind::ALL.map(|kind| kind.label),
+        "columns": columns,
+        "command": command(map),
+    })
+}
+
+/// The command that runs a cell, with places for its two values: the whole scenario on standard input, so that it does
+/// not matter where the page is and which keys the scenario file gives its dimensions by.
+fn command(map: &OverturningMap<'_>) -> String {
+    let scenario = map.scenario();
+    let mut table = scenario.to_json();
+    for study in ["map", "suite", "spectrum"] {
+        if let Some(table) = table.as_object_mut() {
+            table.shift_remove(study);
+        }
+    }
+    let mut places = Vec::new();
+    for (axis, place) in map.axes().into_iter().zip(["cell.x", "cell.y"]) {
+        let (outer, key, place) = match axis.quantity {
+            Quantity::Duration => ("ground", "duration_s", place.to_owned()),
+            Quantity::Frequency => ("ground", "duration_s", format!("1/{place}")),
+            Quantity::Amplitude => ("ground", "amplitude_g", place.to_owned()),
+            Quantity::Restitution => ("impact", "restitution", place.to_owned()),
+            Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace => {
+                ("arch", axis.quantity.name(), place.to_owned())
+            }
+        };
+        let mut inner = &mut table[outer];
+        if let Some(Ground::Pulse(pulse)) = &scenario.ground
+            && outer == "ground"
+        {
+            inner = &mut inner[pulse.kind.name()];
+        }
+        let place = format!("{{{place}}}");
+        inner[key] = Value::String(place.clone());
+        places.push(place);
+    }
+    let mut text = table.as_object().map_or(String::new(), toml_text);
+    for place in places {
+        // Numbers have no quotation marks.
+        text = text.replace(&format!("= \"{place}\""), &format!("= {place}"));
+    }
+    format!("archrock run - --out cell <<'END'\n{text}END\n")
+}
