@@ -17,7 +17,7 @@
 //! - [`scenario`]: what to simulate, as a TOML file. [`studies`]: many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
-//! The arch of the paper, and the history of the README:
+//! The arch of the paper, and the history of `docs/example.md`:
 //!
 //! ```
 //! use archrock::{Arch, FourLinkArch, GroundMotion, ImpactModel, Model, Outcome, Pulse, Request};

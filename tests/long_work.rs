@@ -1,4 +1,4 @@
-//! The ways to spread a study over machines, as the README shows them.
+//! The ways to spread a study over machines, as docs/long-work.md shows them.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
@@ -7,10 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The block of code of the README that has these words.
+/// The block of code of the documentation that has these words.
 fn block(words: &str) -> String {
-    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
-    let block = readme.split("```").find_map(|block| {
+    let page = fs::read_to_string(repository().join("docs/long-work.md")).unwrap();
+    let block = page.split("```").find_map(|block| {
         block
             .strip_prefix("bash\n")
             .filter(|code| code.contains(words))
@@ -24,7 +24,7 @@ fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A folder with the scenario that the README speaks of, on a coarser grid so that it is quick.
+/// A folder with the scenario that it speaks of, on a coarser grid so that it is quick.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let name = "scenarios/semicircle-map.toml";
