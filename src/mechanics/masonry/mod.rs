@@ -2,7 +2,7 @@
 //! their dimensions.
 //!
 //! Coordinates are in metres, x from the middle of the span to the right. An arch is what lies between two edges at
-//! half a thickness from its middle line, cut by joints normal to that ([`cut`]).
+//! half a thickness from its middle line, cut by joints normal to that (`cut`).
 
 mod cut;
 mod fill;
