@@ -3,13 +3,18 @@
 
 mod common;
 
-use archrock::mechanics::chain::{Demand, Mechanism as _, MechanismChain as _, Motion};
+use std::ops::ControlFlow;
+
+use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::dynamics::model::Recorder;
+use archrock::mechanics::chain::{Demand, Hinge, Mechanism as _, MechanismChain as _, Motion};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
 use archrock::mechanics::four_link::thrust::ThrustLine;
-use archrock::{FourLinkArch, GroundMotion, History, Pulse, Sample, State, Sway};
-use common::{GRAVITY, four_links, run, sampled, semicircle};
+use archrock::mechanics::geometry::ring::Edge;
+use archrock::{Arch, FourLinkArch, GroundMotion, History, Model, Pulse, Sample, State, Sway};
+use common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoirs};
 use nalgebra::{SMatrix, SVector, Vector2};
 
 fn arches() -> [FourLinkArch; 4] {
@@ -424,4 +429,122 @@ fn where_nothing_moves_there_are_no_shares() {
     assert_eq!(record.shares_within(), None);
     assert_eq!(record.largest_excess.value, 0.0);
     assert!(record.largest_friction.value > 0.1);
+}
+
+/// Keeps the lines of thrust of a history.
+#[derive(Default)]
+struct Lines(Vec<Sample>);
+
+impl Recorder for Lines {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.0.push(sample.clone());
+        ControlFlow::Continue(())
+    }
+
+    fn wants_thrust_line(&self) -> bool {
+        true
+    }
+}
+
+fn lines(model: &impl Model, ground: &GroundMotion) -> Vec<Sample> {
+    let mut lines = Lines::default();
+    model
+        .simulate(ground, &sampled(3.0, 0.01), Some(&mut lines))
+        .unwrap();
+    lines.0
+}
+
+/// The excess is that of the worst joint, and at open hinges the line is at their edge: both from other computations.
+#[test]
+fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
+    let arch = seven_voussoirs();
+    let ring = *arch.chain().ring();
+    let sections = arch.arch().thrust_sections_rad();
+    assert_eq!(sections, ring.sections(7));
+    let mut swayed = [0, 0];
+    for amplitude in [-0.5, 0.5] {
+        let ground =
+            GroundMotion::pulse(Pulse::Rectangular, amplitude * GRAVITY, 0.25, 0.1).unwrap();
+        for sample in lines(&arch, &ground) {
+            let ratios = &sample.eccentricity_ratios;
+            assert_eq!(ratios.len(), 8);
+            let worst = ratios
+                .iter()
+                .map(|ratio| ratio.unwrap().abs())
+                .fold(0.0, f64::max);
+            let excess = (worst - 0.5).max(0.0);
+            // Where a section is hardly pressed the excess is defined otherwise, and larger than anything drawn.
+            if worst < 3.0 {
+                let miss = (excess - sample.demand.excess_ratio).abs();
+                assert!(miss < 1e-6, "{} {worst} {:?}", sample.time_s, sample.demand);
+            }
+            for open in &sample.hinges {
+                let Hinge::Section { angle_rad, edge } = open.hinge else {
+                    panic!("{open:?}")
+                };
+                let at = sections
+                    .iter()
+                    .position(|s| (s - angle_rad).abs() < 1e-9)
+                    .unwrap();
+                let due = if edge == Edge::Extrados { 0.5 } else { -0.5 };
+                let ratio = ratios[at].unwrap();
+                assert!(
+                    (ratio - due).abs() < 1e-6,
+                    "{} {ratio} {due}",
+                    sample.time_s
+                );
+            }
+            match sample.state.sway() {
+                Some(Sway::Right) => swayed[0] += 1,
+                Some(Sway::Left) => swayed[1] += 1,
+                None => {}
+            }
+        }
+    }
+    assert!(swayed.iter().all(|count| *count > 50), "{swayed:?}");
+}
+
+/// Blocks without tension keep the line inside, and touch at the edge where a joint is open.
+#[test]
+fn lines_of_thrust_of_free_hinges_stay_inside() {
+    let arch = Arch::new(5.0, 0.15, 180.0)
+        .unwrap()
+        .with_voussoirs(18)
+        .unwrap();
+    let model = FreeHinges::of_arch(&arch).unwrap();
+    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.3 * GRAVITY, 0.2, 0.0).unwrap();
+    let mut open = 0;
+    for sample in lines(&model, &ground) {
+        assert_eq!(sample.eccentricity_ratios.len(), 19);
+        for ratio in sample.eccentricity_ratios.iter().flatten() {
+            assert!(ratio.abs() < 0.5 + 1e-9, "{ratio}");
+        }
+        for hinge in &sample.hinges {
+            let Hinge::Joint {
+                joint,
+                edge: Some(edge),
+            } = hinge.hinge
+            else {
+                continue;
+            };
+            let due = if edge == Edge::Extrados { 0.5 } else { -0.5 };
+            if let Some(ratio) = sample.eccentricity_ratios[joint] {
+                assert!(
+                    (ratio - due).abs() < 1e-9,
+                    "joint {joint} at {}: {ratio}",
+                    sample.time_s
+                );
+                open += 1;
+            }
+        }
+    }
+    assert!(open > 300, "{open}");
+    // Recorders that do not ask for lines get none.
+    let history = run(&model, &ground, &sampled(0.5, 0.01));
+    assert!(
+        history
+            .samples
+            .iter()
+            .all(|sample| sample.eccentricity_ratios.is_empty())
+    );
 }

@@ -47,9 +47,9 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
         y: intensity_scale(heading, &results.levels, figure),
     };
     let label = if over_critical {
-        "peak rotation / critical rotation; at the right end: overturned"
+        "peak / critical rotation; right end: overturned"
     } else {
-        "peak rotation (rad); at the right end: overturned"
+        "peak rotation (rad); right end: overturned"
     };
     axes.draw(&mut drawing, Some(label), intensity_label(results.measure));
     if over_critical {

@@ -270,6 +270,8 @@ impl Drawing {
     #[must_use]
     pub fn finish(self, height: f64) -> String {
         let Figure { width_px, width_mm } = self.figure;
+        let thousandths = |length: f64| (length * 1e3).round() / 1e3;
+        let (width_px, height) = (thousandths(width_px), thousandths(height));
         let (wide, high) = match width_mm {
             None => (width_px.to_string(), height.to_string()),
             Some(width_mm) => (
@@ -448,7 +450,15 @@ impl Drawing {
                 }
             }
             let at = Vector2::new(x + KEY_PX + 6.0, y + 4.5);
-            self.label(at, Anchor::Start, 0.0, text);
+            // A text that is wider than the picture goes on below.
+            let lines = Figure::lines(text, (right - at.x).max(CHARACTER_PX));
+            for (number, line) in (0_u32..).zip(&lines) {
+                let down = Vector2::new(0.0, LINE_PX * f64::from(number));
+                self.label(at + down, Anchor::Start, 0.0, line);
+                if number > 0 {
+                    y += LINE_PX;
+                }
+            }
             x += advance;
         }
         y + 0.5 * LEGEND_ROW_PX
@@ -813,6 +823,12 @@ mod tests {
         let rows = |figure: Figure| Drawing::new(figure).legend(85.0, 0.0, &keys) / LEGEND_ROW_PX;
         assert_eq!(rows(Figure::SCREEN), 1.0);
         assert_eq!(rows(narrow), 2.0);
+        let long = ["a text of a legend that is wider than the picture of a column is"; 2]
+            .map(|text| (text, Sign::Line(CURVES[0])));
+        let mut drawing = Drawing::new(narrow);
+        let end = drawing.legend(85.0, 0.0, &long);
+        assert_eq!(end, 2.0 * (LEGEND_ROW_PX + LINE_PX));
+        assert_eq!(drawing.finish(end).matches("<text").count(), 4);
         let mut drawing = Drawing::new(narrow);
         drawing.title(&"x".repeat(1000));
         assert!(
