@@ -3,6 +3,7 @@
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
+mod capacity;
 mod chart;
 mod check;
 mod commands;
@@ -62,6 +63,8 @@ enum Command {
     },
     /// Print the mechanisms after successive impacts, their restitution and impulses.
     Impact(impact::Arguments),
+    /// Find the quasi-static capacity curve of the first mechanism and its equivalent oscillator.
+    Capacity(capacity::Arguments),
     /// Chart the incipient acceleration and the restitution against thickness for several embrace angles.
     Chart(chart::Arguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
@@ -150,6 +153,7 @@ pub fn main() -> ExitCode {
             commands::limit(&scenario, format, plot)
         }
         Command::Impact(arguments) => impact::impact(&arguments),
+        Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => map::map(&map, arguments.quiet),
         Command::Spectrum(spectrum) => spectrum::spectrum(&spectrum, arguments.quiet),

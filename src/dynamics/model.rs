@@ -11,6 +11,7 @@ use super::ground::GroundMotion;
 use super::history::{Event, History, Recording, Sample, Summary};
 pub use super::hybrid::engine::EngineError;
 use crate::argument::{ArgumentError, above, within};
+use crate::mechanics::capacity::Displaced;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
 use crate::mechanics::sway::Sway;
@@ -98,6 +99,9 @@ pub trait MechanismModel: Model {
     fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent> {
         self.equivalent_towards(Sway::Right, gravity_m_s2)
     }
+
+    /// Its first mechanism to this side, at this part of its way to the unstable equilibrium; `None` if it has none.
+    fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
     /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
     ///

@@ -1,6 +1,7 @@
 //! Mechanics of arches and columns: pure functions, no time, no files.
 pub mod arch;
 pub mod blocks;
+pub mod capacity;
 pub mod chain;
 pub mod column;
 // The inside of rows of blocks, public for its tests.

@@ -11,9 +11,11 @@
 //! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them;
 //! - [`suite`]: what records overturn, at several levels, and the [`fragility`] curve of that;
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
+//! - [`capacity`]: capacity curves, without a history;
 //! - [`survey`]: arches of many shapes compared, without a history.
 
 pub mod boundary;
+pub mod capacity;
 pub mod ending;
 pub mod fragility;
 mod impact_free;

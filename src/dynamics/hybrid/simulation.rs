@@ -16,6 +16,7 @@ use crate::dynamics::history::{
 };
 use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError};
 use crate::dynamics::thrust::ThrustRecord;
+use crate::mechanics::capacity::{Displaced, displaced};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
 use crate::mechanics::geometry::pose::Pose;
@@ -127,6 +128,10 @@ impl<C: MechanismChain> MechanismModel for C {
 
     fn equivalent_towards(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent> {
         equivalent_towards(self, sway, gravity_m_s2)
+    }
+
+    fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced> {
+        displaced(self, sway, part)
     }
 
     fn overturns_without_impact(

@@ -1,0 +1,234 @@
+//! The quasi-static capacity of a mechanism at finite displacements, and its equivalent oscillator.
+//!
+//! Held at the rotation `q`, the first mechanism is in equilibrium under gravity and the horizontal acceleration
+//! `a(q) = S_y(q) / S_x(q)` (in g): virtual power, as at the onset, where `a(0) = A_L`. It falls to zero at the unstable
+//! equilibrium. Drawn against the horizontal displacement `d` of a control point it is the capacity curve, and `d` at its
+//! end the ultimate displacement.
+//!
+//! The equivalent oscillator is that of the kinematic approach to masonry (reviewed by Casapulla, Giresini and Lourenço,
+//! Rocking and kinematic approaches for rigid block analysis of masonry walls, Buildings 7, 69, 2017), defined
+//! here as follows. With `m_i` the masses of the blocks at their centres of gravity, `u_i` the horizontal velocities of these
+//! as the mechanism starts and `u_c` that of the control point,
+//!
+//! - participating mass `M* = (sum m u)^2 / sum m u^2`, fraction `e* = M* / sum m`;
+//! - acceleration `a* = a / e*`: `M* a*` is the force `a sum m`;
+//! - displacement `d* = d sum m u^2 / (u_c sum m u)`;
+//! - secant period `T = 2 pi sqrt(d* / (g a*))`.
+//!
+//! The sums run over the blocks that the mechanism moves. One block has `e* = 1`.
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::chain::{Mechanism as _, MechanismChain};
+use super::geometry::pose::Pose;
+use super::sway::Sway;
+
+/// A structure on the way of its first mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Displaced {
+    /// The coordinate of the mechanism, in radians.
+    pub q_rad: f64,
+    /// Horizontal acceleration that it is in equilibrium with, in units of gravity, against the sway.
+    pub acceleration_g: f64,
+    /// Poses of its bodies from left to right, in metres, in the frame of the ground.
+    pub poses: Vec<Pose>,
+}
+
+/// The first mechanism to a side, at this part of its way to the unstable equilibrium.
+#[must_use]
+pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Option<Displaced> {
+    let link = structure.link_from(sway, 0)?;
+    let q_rad = part * link.critical_rad;
+    let coefficients = link.mechanism.coefficients(q_rad);
+    let (mut poses, mut hinges) = (Vec::new(), Vec::new());
+    link.mechanism.place(q_rad, &mut poses, &mut hinges);
+    for pose in &mut poses {
+        *pose = pose.scaled(structure.length_m());
+    }
+    if sway == Sway::Left {
+        poses.reverse();
+        for pose in &mut poses {
+            *pose = pose.mirrored();
+        }
+    }
+    Some(Displaced {
+        q_rad,
+        acceleration_g: coefficients.s_y / coefficients.s_x,
+        poses,
+    })
+}
+
+/// A point that moves with a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// Where it is in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+    /// Index of the body; `None`: it stands still.
+    pub body: Option<usize>,
+}
+
+impl Carried {
+    /// Its horizontal displacement in metres.
+    fn shift_m(&self, poses: &[Pose]) -> f64 {
+        let pose = self.body.and_then(|body| poses.get(body));
+        pose.map_or(0.0, |pose| (pose.of(self.at_m) - self.at_m).x)
+    }
+}
+
+/// A point of the capacity curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// The coordinate of the mechanism, in radians.
+    pub q_rad: f64,
+    /// Displacement of the control point in the direction of the sway, in metres.
+    pub displacement_m: f64,
+    /// Acceleration `a`, in g.
+    pub acceleration_g: f64,
+    /// Displacement `d*` of the oscillator, in metres.
+    pub oscillator_displacement_m: f64,
+    /// Its acceleration `a*`, in g.
+    pub oscillator_acceleration_g: f64,
+    /// Its secant period in seconds; `None` at the unstable equilibrium, where it grows beyond bounds.
+    pub secant_period_s: Option<f64>,
+}
+
+/// The capacity of the first mechanism to a side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Capacity {
+    /// To which side.
+    pub sway: Sway,
+    /// The control point.
+    pub control: Carried,
+    /// Participating mass `M*` in kg.
+    pub participating_mass_kg: f64,
+    /// Its part `e*` of the mass that moves.
+    pub mass_fraction: f64,
+    /// From rest to the unstable equilibrium, at equal steps of the coordinate.
+    pub curve: Vec<CurvePoint>,
+}
+
+/// Why there is no capacity curve.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum CapacityError {
+    /// The control point stands still, or moves against the sway.
+    #[error(
+        "the control point ({:?}, {:?}) m does not move to the {side} with the mechanism: choose a point of a block that does",
+        .at_m.x, .at_m.y, side = .sway.name()
+    )]
+    Control {
+        /// Where it is.
+        at_m: Vector2<f64>,
+        /// The side.
+        sway: Sway,
+    },
+}
+
+/// Intervals of a capacity curve.
+const INTERVALS: u32 = 100;
+
+/// Part of the way to the unstable equilibrium by which velocities at the start are taken as central differences: they
+/// err by its square.
+const START: f64 = 1e-5;
+
+impl Capacity {
+    /// The capacity of a mechanism given by its positions at parts of the way to the unstable equilibrium; `masses` are in
+    /// kg.
+    ///
+    /// # Errors
+    /// When the control point does not move.
+    pub fn new(
+        sway: Sway,
+        displaced: impl Fn(f64) -> Displaced,
+        masses: &[(f64, Carried)],
+        control: Carried,
+        gravity_m_s2: f64,
+    ) -> Result<Self, CapacityError> {
+        let (before, after) = (displaced(-START), displaced(START));
+        let velocity = |point: &Carried| {
+            let moved = point.shift_m(&after.poses) - point.shift_m(&before.poses);
+            sway.sign() * moved / (after.q_rad - before.q_rad)
+        };
+        let control_velocity = velocity(&control);
+        let fastest = masses
+            .iter()
+            .map(|(_, point)| velocity(point).abs())
+            .fold(0.0, f64::max);
+        if control_velocity <= 1e-9 * fastest {
+            let at_m = control.at_m;
+            return Err(CapacityError::Control { at_m, sway });
+        }
+        let (mut whole, mut first, mut second) = (0.0, 0.0, 0.0);
+        for (mass_kg, point) in masses.iter().filter(|(_, point)| point.body.is_some()) {
+            let velocity = velocity(point);
+            whole += mass_kg;
+            first += mass_kg * velocity;
+            second += mass_kg * velocity * velocity;
+        }
+        let participating_mass_kg = first * first / second;
+        let mass_fraction = participating_mass_kg / whole;
+        let to_oscillator = second / (control_velocity * first);
+        let curve = (0..=INTERVALS).map(|step| {
+            let here = displaced(f64::from(step) / f64::from(INTERVALS));
+            let displacement_m = sway.sign() * control.shift_m(&here.poses) + 0.0;
+            // At the end rounding may leave it on either side of zero.
+            let last = step == INTERVALS;
+            let acceleration_g = if last { 0.0 } else { here.acceleration_g };
+            let oscillator_displacement_m = displacement_m * to_oscillator;
+            let oscillator_acceleration_g = acceleration_g / mass_fraction;
+            let square_s2 = oscillator_displacement_m / (gravity_m_s2 * oscillator_acceleration_g);
+            CurvePoint {
+                q_rad: here.q_rad,
+                displacement_m,
+                acceleration_g,
+                oscillator_displacement_m,
+                oscillator_acceleration_g,
+                secant_period_s: (!last).then(|| 2.0 * std::f64::consts::PI * square_s2.sqrt()),
+            }
+        });
+        Ok(Self {
+            sway,
+            control,
+            participating_mass_kg,
+            mass_fraction,
+            curve: curve.collect(),
+        })
+    }
+
+    /// Its start: `a(0) = A_L`, and `a0*`.
+    ///
+    /// # Panics
+    /// Never: a curve has points.
+    #[must_use]
+    pub fn start(&self) -> &CurvePoint {
+        self.curve.first().expect("a curve has points")
+    }
+
+    /// Its end: the ultimate displacement, and `d0*`.
+    ///
+    /// # Panics
+    /// Never: a curve has points.
+    #[must_use]
+    pub fn end(&self) -> &CurvePoint {
+        self.curve.last().expect("a curve has points")
+    }
+
+    /// The secant period, in seconds, at this part of the ultimate displacement, between 0 and 1: on straight lines
+    /// between the points of the curve.
+    #[must_use]
+    pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
+        let wanted_m = part * self.end().oscillator_displacement_m;
+        let pair = self
+            .curve
+            .windows(2)
+            .find(|pair| pair[1].oscillator_displacement_m >= wanted_m)?;
+        let [low, high] = [&pair[0], &pair[1]];
+        let share = (wanted_m - low.oscillator_displacement_m)
+            / (high.oscillator_displacement_m - low.oscillator_displacement_m);
+        let acceleration_g = low.oscillator_acceleration_g
+            + share * (high.oscillator_acceleration_g - low.oscillator_acceleration_g);
+        (acceleration_g > 0.0).then(|| {
+            2.0 * std::f64::consts::PI * (wanted_m / (gravity_m_s2 * acceleration_g)).sqrt()
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! Capacity curves as a table, JSON and a picture.
+
+use std::io::Write;
+
+use nalgebra::Vector2;
+use serde_json::{Map, Value, json};
+
+use super::svg::{Axes, CURVES, Drawing, Frame, Scale};
+use super::{OutputError, finite};
+use crate::mechanics::capacity::Capacity;
+
+/// Parts of the ultimate displacement at which secant periods are told.
+pub const PARTS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+
+/// Writes a row for each point of the curves, those to the right first. The secant period is empty at the unstable
+/// equilibrium.
+///
+/// # Errors
+/// When the system refuses, or a value is not finite.
+pub fn write_table(writer: impl Write, sides: &[Capacity; 2]) -> Result<(), OutputError> {
+    const WHAT: &str = "cannot write the capacity curve";
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record([
+        "sway",
+        "q_rad",
+        "displacement_m",
+        "acceleration_g",
+        "oscillator_displacement_m",
+        "oscillator_acceleration_g",
+        "secant_period_s",
+    ])
+    .map_err(OutputError::csv(WHAT))?;
+    for side in sides {
+        for point in &side.curve {
+            let numbers = [
+                point.q_rad,
+                point.displacement_m,
+                point.acceleration_g,
+                point.oscillator_displacement_m,
+                point.oscillator_acceleration_g,
+            ];
+            finite("of a row of capacity.csv", &numbers)?;
+            csv.serialize((side.sway.name(), numbers, point.secant_period_s))
+                .map_err(OutputError::csv(WHAT))?;
+        }
+    }
+    csv.flush().map_err(OutputError::io(WHAT))
+}
+
+/// Both sides, without the points of the curves.
+#[must_use]
+pub fn to_json(sides: &[Capacity; 2], gravity_m_s2: f64) -> Value {
+    let side = |capacity: &Capacity| {
+        let periods: Map<String, Value> = PARTS
+            .iter()
+            .map(|part| {
+                (
+                    format!("{part}"),
+                    capacity.secant_period_s(*part, gravity_m_s2).into(),
+                )
+            })
+            .collect();
+        json!({
+            "control_point_m": [capacity.control.at_m.x, capacity.control.at_m.y],
+            "acceleration_g": capacity.start().acceleration_g,
+            "ultimate_displacement_m": capacity.end().displacement_m,
+            "oscillator": {
+                "participating_mass_kg": capacity.participating_mass_kg,
+                "mass_fraction": capacity.mass_fraction,
+                "acceleration_g": capacity.start().oscillator_acceleration_g,
+                "ultimate_displacement_m": capacity.end().oscillator_displacement_m,
+                "secant_period_s_at_part_of_ultimate": periods,
+            },
+        })
+    };
+    let [right, left] = sides;
+    json!({ "capacity": { "right": side(right), "left": side(left) } })
+}
+
+/// Acceleration against displacement of the control point, both sides.
+#[must_use]
+pub fn draw(title: &str, sides: &[Capacity; 2]) -> String {
+    let mut drawing = Drawing::new(900.0, 480.0);
+    drawing.title(title);
+    let names = sides
+        .each_ref()
+        .map(|side| format!("to the {}", side.sway.name()));
+    let legend = names.iter().map(String::as_str).zip(CURVES);
+    drawing.legend(Vector2::new(85.0, 54.0), 130.0, legend);
+    let points = || sides.iter().flat_map(|side| &side.curve);
+    let axes = Axes {
+        frame: Frame {
+            left: 85.0,
+            top: 80.0,
+            width: 790.0,
+            height: 330.0,
+        },
+        x: Scale::around(points().map(|point| point.displacement_m), 8),
+        y: Scale::around(points().map(|point| point.acceleration_g), 6),
+    };
+    let label = "Displacement of the control point (m)";
+    axes.draw(&mut drawing, Some(label), "a (g)");
+    for ((side, name), stroke) in sides.iter().zip(&names).zip(CURVES) {
+        let curve = side.curve.iter();
+        let points = curve.map(|point| axes.place(point.displacement_m, point.acceleration_g));
+        drawing.curve(name, points, stroke);
+    }
+    drawing.finish()
+}

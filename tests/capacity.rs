@@ -1,0 +1,156 @@
+//! Capacity curves against closed forms, the onset, the potential of the simulation and mirror images.
+#![allow(clippy::unwrap_used)]
+
+use archrock::mechanics::capacity::Capacity;
+use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
+use archrock::scenario::Structure;
+use archrock::studies::capacity::{NoCapacity, capacity};
+use archrock::{
+    Column, FourLinkRow, GroundMotion, ImpactModel, Initial, Model as _, Request, Scenario, Sway,
+};
+use nalgebra::Vector2;
+
+const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::parse(text, "a.toml").unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+const POINTED: &str = "[pointed_arch]\nspan_m = 6\nrise_m = 4\nthickness_m = 0.6\nvoussoirs = 14\n[piers]\nheight_m = 2\n\
+                       width_m = 1.6\n[[load]]\nmass_kg = 1500\nx_m = 1\n";
+
+/// A block that turns about its toe: `a = tan(alpha - q)`, and the middle of its top moves on a circle.
+#[test]
+fn a_column_has_the_capacity_of_a_block() {
+    let (height_m, width_m) = (4.0, 0.8);
+    let scenario = scenario("[column]\nheight_m = 4\nwidth_m = 0.8\n");
+    let alpha = Column::new(height_m, width_m).unwrap().slenderness_rad();
+    for side in &capacity(&scenario, None).unwrap() {
+        assert!((side.mass_fraction - 1.0).abs() < 1e-12);
+        assert!((side.participating_mass_kg / (2000.0 * height_m * width_m) - 1.0).abs() < 1e-12);
+        let (end, start) = (side.end(), side.start());
+        assert!((end.q_rad - alpha).abs() < 1e-12);
+        assert!((start.acceleration_g - width_m / height_m).abs() < 1e-12);
+        for point in &side.curve {
+            let (sin, cos) = point.q_rad.sin_cos();
+            assert!((point.acceleration_g - (alpha - point.q_rad).tan()).abs() < 1e-12);
+            let top = height_m * sin + 0.5 * width_m * (1.0 - cos);
+            assert!((point.displacement_m - top).abs() < 1e-12);
+            // Its centre of gravity is half as high, and starts half as fast.
+            assert!((point.oscillator_displacement_m - 0.5 * top).abs() < 1e-9);
+        }
+        // On straight lines between a hundred points.
+        let half = side.secant_period_s(0.5, 9.81).unwrap();
+        let middle = &side.curve[50];
+        assert!(
+            (half / middle.secant_period_s.unwrap() - 1.0).abs() < 0.02,
+            "{half}"
+        );
+    }
+}
+
+fn check_side(side: &Capacity, incipient_g: f64) {
+    assert!((side.start().acceleration_g / incipient_g - 1.0).abs() < 1e-9);
+    assert_eq!(side.end().acceleration_g, 0.0);
+    assert!(side.curve[99].acceleration_g > 0.0);
+    assert!((side.start().displacement_m).abs() < 1e-12);
+    let falls = side.curve.windows(2);
+    for pair in falls {
+        assert!(pair[1].acceleration_g < pair[0].acceleration_g);
+        assert!(pair[1].displacement_m > pair[0].displacement_m);
+    }
+    assert!(side.mass_fraction > 0.0 && side.mass_fraction < 1.0);
+    let start = side.start();
+    let part = start.acceleration_g / start.oscillator_acceleration_g;
+    assert!((part - side.mass_fraction).abs() < 1e-12);
+}
+
+#[test]
+fn curves_begin_at_the_onset_and_end_at_the_unstable_equilibrium() {
+    for text in [
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n",
+        "[arch]\nmean_radius_m = 10\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n",
+        POINTED,
+    ] {
+        let scenario = scenario(text);
+        let model = scenario.structure.model(scenario.impact).unwrap();
+        for side in &capacity(&scenario, None).unwrap() {
+            check_side(side, model.incipient_acceleration_g(side.sway).unwrap());
+        }
+    }
+}
+
+/// The work of the horizontal force that holds the mechanism is its potential energy: `int a dX = Y`, with `X` and `Y`
+/// mass times displacement of the centre of gravity; and that is the energy of a history released there.
+#[test]
+fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
+    let scenario = scenario(POINTED);
+    let Structure::Masonry(masonry) = &scenario.structure else {
+        panic!("{:?}", scenario.structure);
+    };
+    let model = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution).unwrap();
+    let unit_j = 9.81 * model.mass_unit_kg() * model.length_m();
+    for (sway, side) in SIDES.into_iter().zip(&capacity(&scenario, None).unwrap()) {
+        let mechanism = &model.link_from(sway, 0).unwrap().mechanism;
+        let mut work = 0.0;
+        // Simpson over pairs of intervals.
+        for pair in side.curve.windows(3).step_by(2) {
+            let slope =
+                |i: usize| pair[i].acceleration_g * mechanism.coefficients(pair[i].q_rad).s_x;
+            work += (slope(0) + 4.0 * slope(1) + slope(2)) * (pair[2].q_rad - pair[0].q_rad) / 6.0;
+            let q_rad = pair[2].q_rad;
+            assert!((work / mechanism.displacement(q_rad).y - 1.0).abs() < 1e-8);
+            if q_rad > 0.99 * side.end().q_rad {
+                continue;
+            }
+            let request = Request {
+                initial: Some(Initial {
+                    sway,
+                    rotation_rad: q_rad,
+                }),
+                end_s: 0.01,
+                ..Request::default()
+            };
+            let history = model.history(&GroundMotion::still(), &request).unwrap();
+            let energy_j = history.samples.iter().next().unwrap().energy_j;
+            assert!((work * unit_j / energy_j - 1.0).abs() < 1e-8);
+        }
+    }
+}
+
+/// The participating mass of a continuous ring is the limit of many voussoirs that move alike.
+#[test]
+fn mirror_images_exchange_their_sides() {
+    let mirrored = POINTED.replace("x_m = 1", "x_m = -1");
+    let (own, image) = (
+        capacity(&scenario(POINTED), Some(Vector2::new(0.5, 4.0))).unwrap(),
+        capacity(&scenario(&mirrored), Some(Vector2::new(-0.5, 4.0))).unwrap(),
+    );
+    for (side, seen) in own.iter().zip(image.iter().rev()) {
+        assert!((side.mass_fraction / seen.mass_fraction - 1.0).abs() < 1e-9);
+        for (a, b) in side.curve.iter().zip(&seen.curve) {
+            assert!((a.displacement_m - b.displacement_m).abs() < 1e-9);
+            assert!((a.acceleration_g - b.acceleration_g).abs() < 1e-9);
+        }
+    }
+    assert!((own[0].end().displacement_m / own[1].end().displacement_m - 1.0).abs() > 0.05);
+}
+
+#[test]
+fn control_points_must_be_on_the_structure_and_move() {
+    let scenario = scenario(POINTED);
+    let outside = capacity(&scenario, Some(Vector2::new(0.0, 0.0))).unwrap_err();
+    assert_eq!(outside, NoCapacity::Outside(Vector2::zeros()));
+    // A left pier stands still while the arch sways right: its hinges are in the arch and at the right springing.
+    let still = capacity(&scenario, Some(Vector2::new(-3.5, -1.0))).unwrap_err();
+    assert!(
+        still.to_string().contains("does not move to the right"),
+        "{still}"
+    );
+    let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
+    let refused = capacity(&self::scenario(lintel), None);
+    assert!(
+        matches!(refused, Err(NoCapacity::FourLinks(_))),
+        "{refused:?}"
+    );
+}

@@ -1,0 +1,104 @@
+//! The numbers of docs/validation.md.
+#![allow(clippy::unwrap_used)]
+
+use archrock::Arch;
+use archrock::Sway;
+use archrock::mechanics::blocks::Row;
+use archrock::mechanics::four_link::limit::least_thickness_ratio;
+use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::masonry::{
+    Dimensions, EllipticArch, Masonry, Material, Piers, PointedArch, Shape,
+};
+use archrock::mechanics::stability::{falls, onset};
+use std::f64::consts::PI;
+
+/// The least number at which something holds that holds from there on, to 1e-6.
+fn least(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    while high - low > 1e-6 {
+        let middle = 0.5 * (low + high);
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+/// Milankovitch: 0.1075 for radial joints. The ring by its own statics, rows of blocks by the static programme, which
+/// knows nothing of rings; a row with few joints needs less.
+#[test]
+fn least_thickness_of_a_semicircle() {
+    let ring = least_thickness_ratio(PI, HingeSites::Anywhere, 1e-9).unwrap();
+    assert!((ring - 0.1075).abs() < 5e-5, "{ring}");
+    let row = |voussoirs| {
+        least(0.05, 0.2, |ratio| {
+            let ring = Ring::new(ratio, PI).unwrap();
+            let row = Row::arch(&ring, voussoirs, 1.0, 1.0, 1.0).unwrap();
+            falls(&row).unwrap().is_none()
+        })
+    };
+    let (coarse, fine) = (row(20), row(160));
+    assert!(
+        coarse <= fine && fine <= ring + 1e-5 && ring - fine < 1e-4,
+        "{coarse} {fine} {ring}"
+    );
+}
+
+/// Least t/R of a semicircle under horizontal accelerations: 0.1359, 0.1690, 0.2064, 0.2475, 0.2917.
+#[test]
+fn least_thickness_of_a_semicircle_under_acceleration() {
+    for (acceleration_g, published) in [
+        (0.1, 0.1359),
+        (0.2, 0.1690),
+        (0.3, 0.2064),
+        (0.4, 0.2475),
+        (0.5, 0.2917),
+    ] {
+        let ratio = least(0.11, 0.4, |ratio| {
+            let arch = Arch::new(1.0, ratio, 180.0).unwrap();
+            arch.incipient().unwrap().acceleration_g >= acceleration_g
+        });
+        assert!(
+            (ratio - published).abs() < 1e-4,
+            "{acceleration_g}: {ratio}"
+        );
+        // The static programme on 120 voussoirs asks for the same, or a little less.
+        let ring = Ring::new(ratio, PI).unwrap();
+        let row = Row::arch(&ring, 120, 1.0, 1.0, 1.0).unwrap();
+        let of_row = onset(&row, Sway::Right).unwrap().unwrap().acceleration_g;
+        assert!(
+            (-1e-6..2e-3).contains(&(of_row - acceleration_g)),
+            "{of_row}"
+        );
+    }
+}
+
+/// Least thickness over half the span, a hundred voussoirs, by the static programme: the table of the page.
+#[test]
+fn least_thickness_of_pointed_and_elliptic_arches() {
+    let of = |rise: f64| {
+        least(0.005, 0.6, |thickness_m| {
+            let dimensions = Dimensions {
+                span_m: 2.0,
+                rise_m: rise,
+                thickness_m,
+                voussoirs: 100,
+                material: Material::default(),
+            };
+            let shape = if rise > 1.0 {
+                Shape::PointedArch(PointedArch { dimensions })
+            } else {
+                Shape::EllipticArch(EllipticArch { dimensions })
+            };
+            let masonry = Masonry::new(shape, Piers::default(), None, Vec::new());
+            masonry.is_ok_and(|masonry| masonry.stands().unwrap())
+        })
+    };
+    let found = [1.0, 1.25, 1.5, 3.0_f64.sqrt(), 2.0, 0.8, 0.6].map(of);
+    let page = [0.1075, 0.0871, 0.0777, 0.0799, 0.0977, 0.1075, 0.1029];
+    for (found, page) in found.into_iter().zip(page) {
+        assert!((found - page).abs() < 1e-4, "{found} {page}");
+    }
+}
