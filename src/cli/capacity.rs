@@ -10,6 +10,7 @@ use archrock::studies::capacity::capacity as capacities;
 use nalgebra::Vector2;
 
 use super::commands::pretty;
+use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
 use super::study::say;
 use super::{Failure, Format, print};
@@ -24,6 +25,8 @@ pub struct Arguments {
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOption,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -59,7 +62,13 @@ pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     json["scenario"] = scenario.to_json();
     let json = pretty(&json);
     output::write_table(folder.file(TABLE), &sides)?;
-    for (name, text) in [(PICTURE, &output::draw(title, &sides)), (SUMMARY, &json)] {
+    for (name, text) in [
+        (
+            PICTURE,
+            &output::draw(arguments.figure.get(), title, &sides),
+        ),
+        (SUMMARY, &json),
+    ] {
         folder
             .file(name)
             .write_all(text.as_bytes())

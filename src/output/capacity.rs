@@ -2,10 +2,9 @@
 
 use std::io::Write;
 
-use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
-use super::svg::{Axes, CURVES, Drawing, Frame, Scale};
+use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign};
 use super::{OutputError, finite};
 use crate::mechanics::capacity::Capacity;
 
@@ -79,31 +78,31 @@ pub fn to_json(sides: &[Capacity; 2], gravity_m_s2: f64) -> Value {
 
 /// Acceleration against displacement of the control point, both sides.
 #[must_use]
-pub fn draw(title: &str, sides: &[Capacity; 2]) -> String {
-    let mut drawing = Drawing::new(900.0, 480.0);
-    drawing.title(title);
+pub fn draw(figure: Figure, title: &str, sides: &[Capacity; 2]) -> String {
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title(title);
     let names = sides
         .each_ref()
         .map(|side| format!("to the {}", side.sway.name()));
-    let legend = names.iter().map(String::as_str).zip(CURVES);
-    drawing.legend(Vector2::new(85.0, 54.0), 130.0, legend);
+    let keys: Vec<Key<'_>> = names
+        .iter()
+        .zip(CURVES)
+        .map(|(name, stroke)| (name.as_str(), Sign::Line(stroke)))
+        .collect();
+    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let points = || sides.iter().flat_map(|side| &side.curve);
+    let height = figure.height_px(330.0);
     let axes = Axes {
-        frame: Frame {
-            left: 85.0,
-            top: 80.0,
-            width: 790.0,
-            height: 330.0,
-        },
-        x: Scale::around(points().map(|point| point.displacement_m), 8),
+        frame: figure.plot(top, height),
+        x: Scale::around(points().map(|point| point.displacement_m), figure.ticks(8)),
         y: Scale::around(points().map(|point| point.acceleration_g), 6),
     };
-    let label = "Displacement of the control point (m)";
+    let label = "displacement of the control point (m)";
     axes.draw(&mut drawing, Some(label), "a (g)");
     for ((side, name), stroke) in sides.iter().zip(&names).zip(CURVES) {
         let curve = side.curve.iter();
         let points = curve.map(|point| axes.place(point.displacement_m, point.acceleration_g));
         drawing.curve(name, points, stroke);
     }
-    drawing.finish()
+    drawing.finish(top + height + 60.0)
 }
