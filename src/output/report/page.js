@@ -295,6 +295,8 @@
   }
 
   function addPlot(label, tall, xs, curves, legend) {
+    // What never differs from zero would only take room.
+    if (curves.every(({ values }) => farthest(values) === 0)) return;
     const holder = document.createElement("div");
     holder.className = "plot";
     find("plots").append(holder);
@@ -347,13 +349,14 @@
   }
 
   function zoom(factor) {
+    if (plots.length === 0) return;
     const { min, max } = plots[0].scales.x;
     const half = (0.5 * (max - min)) / factor;
     const from = Math.max(0, Math.min(time - half, end - 2 * half));
     plots[0].setScale("x", { min: from, max: Math.min(end, from + 2 * half) });
   }
 
-  const showAll = () => plots[0].setScale("x", { min: 0, max: end });
+  const showAll = () => plots[0]?.setScale("x", { min: 0, max: end });
 
   function curve(encoded) {
     const values = new Float32Array(buffer(encoded));
