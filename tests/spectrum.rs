@@ -363,7 +363,7 @@ fn errors_have_a_place_and_a_remedy() {
         (
             "p_t = { from = 1, to = 0.5, count = 3 }",
             (1, 24),
-            "above 1.0",
+            "above 1",
         ),
         (
             "\nacceleration_over_incipient = [2, 1]",
