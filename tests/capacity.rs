@@ -1,6 +1,8 @@
 //! Capacity curves against closed forms, the onset, the potential of the simulation and mirror images.
 #![allow(clippy::unwrap_used)]
 
+mod program;
+
 use archrock::mechanics::capacity::Capacity;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::scenario::Structure;
@@ -118,7 +120,6 @@ fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
     }
 }
 
-/// The participating mass of a continuous ring is the limit of many voussoirs that move alike.
 #[test]
 fn mirror_images_exchange_their_sides() {
     let mirrored = POINTED.replace("x_m = 1", "x_m = -1");
@@ -134,6 +135,45 @@ fn mirror_images_exchange_their_sides() {
         }
     }
     assert!((own[0].end().displacement_m / own[1].end().displacement_m - 1.0).abs() > 0.05);
+}
+
+/// What the command writes is what the library says, and a wrong point is a usage error.
+#[test]
+fn the_command_writes_table_picture_and_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.toml"), POINTED).unwrap();
+    let output = program::archrock(folder.path(), &["capacity", "a.toml", "--format", "json"]);
+    assert!(output.status.success(), "{}", program::stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let own = capacity(&scenario(POINTED), None).unwrap();
+    let results = folder.path().join("results/a");
+    let table = std::fs::read_to_string(results.join("capacity.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    for (index, side) in own.iter().enumerate() {
+        let told = &json["capacity"][side.sway.name()];
+        assert_eq!(told["acceleration_g"], side.start().acceleration_g);
+        assert_eq!(told["ultimate_displacement_m"], side.end().displacement_m);
+        assert_eq!(told["oscillator"]["mass_fraction"], side.mass_fraction);
+        for (point, row) in side.curve.iter().zip(&rows[1 + index * side.curve.len()..]) {
+            assert_eq!(row[0], side.sway.name());
+            assert_eq!(row[2].parse::<f64>().unwrap(), point.displacement_m);
+            assert_eq!(row[3].parse::<f64>().unwrap(), point.acceleration_g);
+        }
+    }
+    let picture = std::fs::read_to_string(results.join("capacity.svg")).unwrap();
+    assert!(roxmltree::Document::parse(&picture).is_ok());
+    for (point, words) in [("0", "two numbers"), ("0,100", "not on the structure")] {
+        let output = program::archrock(folder.path(), &["capacity", "a.toml", "--point", point]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(
+            program::stderr(&output).contains(words),
+            "{}",
+            program::stderr(&output)
+        );
+    }
 }
 
 #[test]

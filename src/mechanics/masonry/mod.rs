@@ -15,7 +15,7 @@ mod pointed;
 use serde::Serialize;
 use thiserror::Error;
 
-use super::arch::{Arch, DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
+use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
 use super::blocks::{MAX_BLOCKS, Row, RowError, Supports};
 use super::stability::falls;
 use crate::argument::{ArgumentError, within};
@@ -347,14 +347,5 @@ impl Masonry {
             self.fill,
             self.loads.clone(),
         )
-    }
-
-    /// A circular arch with its voussoirs, and nothing else.
-    ///
-    /// # Errors
-    /// When it has no voussoirs.
-    pub fn of_arch(arch: &Arch) -> Result<Self, MasonryError> {
-        let shape = Shape::Circular(CircularArch::new(arch.clone(), None)?);
-        Self::new(shape, Piers::default(), None, Vec::new())
     }
 }
