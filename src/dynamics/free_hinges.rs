@@ -3,8 +3,10 @@
 //! The state is the gaps of the joints ([`crate::mechanics::joints`]) and the velocities of the pieces that move
 //! as one; `engine` steps them.
 
+mod course;
 mod engine;
 mod model;
+mod sliding;
 pub mod spread;
 
 use std::ops::ControlFlow;
@@ -22,6 +24,8 @@ use crate::mechanics::sway::Sway;
 
 /// A row has overturned when it is lower than at rest by this part of weight times size.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
+/// The same where joints slip, so that a row may come to rest lower than it stood.
+const SLIPPED_ENERGY_RATIO: f64 = 1e-2;
 
 /// How a motion is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +38,8 @@ pub struct Settings {
     pub end_s: f64,
     /// Time between samples in seconds; without it there are none.
     pub output_step_s: Option<f64>,
+    /// Coulomb's coefficient of friction at every joint; without it joints do not slip.
+    pub friction_coefficient: Option<f64>,
 }
 
 impl Settings {
@@ -57,6 +63,7 @@ impl Settings {
             shortest_step_s: steps[1] * scale,
             end_s,
             output_step_s: None,
+            friction_coefficient: None,
         }
     }
 
@@ -106,6 +113,16 @@ pub enum FreeHingeError {
         /// Why.
         reason: ContactError,
     },
+    /// Friction was not found.
+    #[error(
+        "at {time_s} s the bound of friction at a joint is wrong by {error:.1e} of the largest one"
+    )]
+    Friction {
+        /// When, in seconds.
+        time_s: f64,
+        /// By how much.
+        error: f64,
+    },
     /// The ends of an arch parted in the computation.
     #[error("at {time_s} s the ends of the arch miss each other by {error_m:.3e} m")]
     Closure {
@@ -133,6 +150,10 @@ pub struct Sample<'a> {
     pub frames: &'a [Frame],
     /// Number of joints that are open.
     pub open_joints: usize,
+    /// Offset of the right face of every joint towards the extrados, in metres; none where joints do not slip.
+    pub offsets_m: &'a [f64],
+    /// Number of joints that slip.
+    pub slipping_joints: usize,
     /// Largest ratio of tangential to normal force at a joint that is pressed, in the step before.
     pub friction_demand: f64,
     /// Least normal force at a joint in the step before, in newtons.
@@ -156,8 +177,10 @@ pub struct Impact<'a> {
     pub opened: &'a [usize],
     /// Kinetic energy before, in joules.
     pub energy_before_j: f64,
-    /// Kinetic energy taken, in joules.
+    /// Kinetic energy taken by the impact itself, in joules.
     pub energy_taken_j: f64,
+    /// Kinetic energy that friction takes in the step of the impact, in joules, where joints slip.
+    pub friction_j: Option<f64>,
     /// Rotations of the blocks in radians.
     pub rotations_rad: &'a [f64],
     /// Rotation rates of the blocks after the impact, in rad/s.
@@ -238,6 +261,21 @@ pub struct Cost {
     pub most_iterations: usize,
 }
 
+/// What slipped in a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sliding {
+    /// Energy that friction took, in joules.
+    pub friction_j: f64,
+    /// Offsets at the end: of the right face of every joint towards the extrados, in metres.
+    pub offsets_m: Vec<f64>,
+    /// Largest magnitudes of the offsets, in metres.
+    pub largest_offsets_m: Vec<f64>,
+    /// Steps whose bounds of friction did not converge.
+    pub unconverged: usize,
+    /// The largest error of such a bound, as part of the largest bound.
+    pub bound_error: f64,
+}
+
 /// A motion as a whole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
@@ -259,6 +297,8 @@ pub struct Run {
     pub energy_defect_ratio: f64,
     /// Largest error of closure in metres.
     pub closure_error_m: f64,
+    /// What slipped; `None` where joints do not slip.
+    pub sliding: Option<Sliding>,
     /// What it has cost.
     pub cost: Cost,
 }
@@ -281,12 +321,28 @@ pub fn simulate(
     if let Some(rotations_rad) = initial_rad {
         engine.release(rotations_rad)?;
     }
-    engine.run(recorder)
+    if let Some(coefficient) = settings.friction_coefficient {
+        let engine = sliding::Engine::new(
+            engine.placement(),
+            row,
+            ground,
+            gravity_m_s2,
+            settings,
+            coefficient,
+        );
+        return course::run(engine, ground, settings, recorder);
+    }
+    course::run(engine, ground, settings, recorder)
 }
 
 /// Potential energy below which a row has overturned, in joules.
-fn fallen_energy_j(row: &Row, gravity_m_s2: f64) -> f64 {
-    -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m()
+fn fallen_energy_j(row: &Row, gravity_m_s2: f64, slips: bool) -> f64 {
+    let ratio = if slips {
+        SLIPPED_ENERGY_RATIO
+    } else {
+        FALLEN_ENERGY_RATIO
+    };
+    -ratio * row.mass_kg() * gravity_m_s2 * row.size_m()
 }
 
 fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {
@@ -297,6 +353,10 @@ fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {
         ("shortest step in s", settings.shortest_step_s),
         ("end in s", settings.end_s),
         ("output step in s", output_step_s),
+        (
+            "coefficient of friction",
+            settings.friction_coefficient.unwrap_or(1.0),
+        ),
     ] {
         if !(value > 0.0 && value < f64::INFINITY) {
             let allowed = "it must be positive and finite";

@@ -38,6 +38,16 @@ impl Pose {
         shift_m: Vector2::new(0.0, 0.0),
     };
 
+    /// A rotation about the origin, then a displacement.
+    #[must_use]
+    pub fn new(rotation_rad: f64, shift_m: Vector2<f64>) -> Self {
+        Self {
+            rotation_rad,
+            turn: unit(rotation_rad),
+            shift_m,
+        }
+    }
+
     /// Where the point is that was at `point_m`.
     #[must_use]
     pub fn of(&self, point_m: Vector2<f64>) -> Vector2<f64> {

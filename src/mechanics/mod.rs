@@ -7,11 +7,15 @@ pub mod column;
 // The inside of rows of blocks, public for its tests.
 #[doc(hidden)]
 pub mod contact;
+#[doc(hidden)]
+pub mod coulomb;
 pub mod equivalent;
 pub mod four_link;
 pub mod geometry;
 #[doc(hidden)]
 pub mod joints;
 pub mod masonry;
+#[doc(hidden)]
+pub mod slip;
 pub mod stability;
 pub mod sway;

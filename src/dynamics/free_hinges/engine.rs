@@ -13,14 +13,15 @@ mod observation;
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
-use super::{Cost, FreeHingeError, HalfCycle, Outcome, Recorder, Run, Settings, fallen_energy_j};
+pub(super) use self::observation::{rise, sway};
+use super::course::{Course, Stepper, equal_step};
+use super::{FreeHingeError, Recorder, Run, Settings, fallen_energy_j};
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::contact::{Corners, Load, Program};
 use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::{Placement, SHUT_RATIO};
-use crate::mechanics::sway::Sway;
 
 /// An arch whose ends miss each other by more than this part of the thickness of a joint is in error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
@@ -61,16 +62,11 @@ impl Piece {
 
 pub(super) struct Engine<'a> {
     row: &'a Row,
-    ground: &'a GroundMotion,
     velocity: GroundVelocity<'a>,
     gravity: f64,
     settings: &'a Settings,
-    /// Weight times size.
-    energy_unit: f64,
-    /// Potential energy below which the row has overturned.
-    fallen: f64,
     thinnest: f64,
-    time: f64,
+    course: Course,
     /// The last step, zero where position and velocity belong to the same instant.
     last_step: f64,
     placement: Placement,
@@ -93,22 +89,15 @@ pub(super) struct Engine<'a> {
     opened: Vec<usize>,
     /// Corners that touched at the beginning of the step.
     closed: Vec<Corners>,
+    /// Where the joints were pressed in the step that ended at an impact.
+    pressed: Vec<Corners>,
     rotations: Vec<f64>,
     rates: Vec<f64>,
-    potential: f64,
     start_energy: f64,
     ground_work: f64,
     friction_demand: f64,
     least_normal: f64,
-    cycle: Option<HalfCycle>,
-    cycle_energy: Option<f64>,
-    rising: bool,
-    highest_s: f64,
     step_iterations: usize,
-    moved: bool,
-    /// Whether the recorder broke.
-    stopped: bool,
-    run: Run,
 }
 
 impl<'a> Engine<'a> {
@@ -124,14 +113,11 @@ impl<'a> Engine<'a> {
         let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
         let mut engine = Self {
             row,
-            ground,
             velocity: GroundVelocity::new(ground),
             gravity,
             settings,
-            energy_unit: row.mass_kg() * gravity * row.size_m(),
-            fallen: fallen_energy_j(row, gravity),
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
-            time: 0.0,
+            course: Course::new(row, gravity, fallen_energy_j(row, gravity, false)),
             last_step: 0.0,
             backup: placement.clone(),
             placement,
@@ -149,32 +135,14 @@ impl<'a> Engine<'a> {
             shut: Vec::with_capacity(joints),
             opened: Vec::with_capacity(joints),
             closed: vec![[true; 2]; joints],
+            pressed: vec![[true; 2]; joints],
             rotations: vec![0.0; blocks],
             rates: vec![0.0; blocks],
-            potential: 0.0,
             start_energy: 0.0,
             ground_work: 0.0,
             friction_demand: 0.0,
             least_normal: f64::INFINITY,
-            cycle: None,
-            cycle_energy: None,
-            rising: false,
-            highest_s: 0.0,
             step_iterations: 0,
-            moved: false,
-            stopped: false,
-            run: Run {
-                outcome: Outcome::Rocking,
-                end_s: 0.0,
-                peaks_rad: vec![0.0; blocks],
-                half_cycles: Vec::new(),
-                least_normal_n: f64::INFINITY,
-                friction_demand: 0.0,
-                energy_taken_j: 0.0,
-                energy_defect_ratio: 0.0,
-                closure_error_m: 0.0,
-                cost: Cost::default(),
-            },
         };
         engine.stand_still();
         engine
@@ -192,6 +160,11 @@ impl<'a> Engine<'a> {
             rate: 0.0,
         });
         self.weigh_pieces();
+    }
+
+    /// Where the blocks are.
+    pub(super) fn placement(&self) -> &Placement {
+        &self.placement
     }
 
     /// Takes up the initial rotations, at rest.
@@ -223,75 +196,20 @@ impl<'a> Engine<'a> {
         if self.row.supports() == Supports::Left || open >= 3 {
             self.program.start_from(&active);
         }
-        self.moved = open > 0;
         self.weigh_pieces();
-        self.potential = self.height_energy();
-        self.start_energy = self.potential;
-        self.rising = true;
+        self.start_energy = self.height_energy();
+        self.course.released(self.start_energy, open > 0);
         Ok(())
     }
 
-    pub(super) fn run(mut self, recorder: &mut impl Recorder) -> Result<Run, FreeHingeError> {
-        let mut samples = 0_u32;
-        let mut sampled_s = None;
-        let quiet_s = self.ground.end_s();
-        loop {
-            let mark = self
-                .settings
-                .output_step_s
-                .map_or(f64::INFINITY, |step| f64::from(samples) * step);
-            if self.time >= mark - 1e-9 * self.settings.shortest_step_s {
-                samples += 1;
-                self.sample(recorder)?;
-                sampled_s = Some(self.time);
-                continue;
-            }
-            let outcome = if self.stopped {
-                Some(Outcome::Rocking)
-            } else if self.potential < self.fallen {
-                let sway = if self.sway() > 0.0 {
-                    Sway::Right
-                } else {
-                    Sway::Left
-                };
-                let time_s = self.highest_s;
-                Some(Outcome::Overturned { sway, time_s })
-            } else if self.time >= quiet_s && self.rests() {
-                Some(if self.moved {
-                    Outcome::Rest { time_s: self.time }
-                } else {
-                    Outcome::NeverMoved
-                })
-            } else if self.time >= self.settings.end_s {
-                Some(Outcome::Rocking)
-            } else {
-                None
-            };
-            if let Some(outcome) = outcome {
-                self.run.outcome = outcome;
-                break;
-            }
-            self.step(mark.min(self.settings.end_s), recorder)?;
-            self.observe();
-        }
-        if self.settings.output_step_s.is_some() && sampled_s != Some(self.time) && !self.stopped {
-            self.sample(recorder)?;
-        }
-        self.end_cycle(None);
-        self.run.end_s = self.time;
-        Ok(self.run)
-    }
-
-    /// One step, at most to the given time.
-    fn step(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+    /// One step, at most to the given time, at its landing if there is one.
+    fn advance(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
         self.step_iterations = 0;
-        let longest = self.settings.longest_step_s;
-        let left = until - self.time;
-        let mut step = left / (left / longest - 1e-9).ceil().max(1.0);
+        let mut step = equal_step(self.course.time, until, self.settings.longest_step_s);
         let before = self.momentum();
         self.touch_shut();
         self.closed.copy_from_slice(&self.touching);
-        let taken_before = self.run.energy_taken_j;
+        let taken_before = self.course.run.energy_taken_j;
         self.landing.fill([0.0; 2]);
         let shortest = self.settings.shortest_step_s.min(step);
 
@@ -341,12 +259,14 @@ impl<'a> Engine<'a> {
             self.impact()?;
             self.report(taken_before, recorder);
         }
-        let cost = &mut self.run.cost;
+        let cost = &mut self.course.run.cost;
         cost.steps += 1;
         cost.merged += usize::from(merged);
         cost.most_iterations = cost.most_iterations.max(self.step_iterations);
+        self.observe();
         Ok(())
     }
+
     /// Corners that may not close: those that touch.
     fn touch_shut(&mut self) {
         for (touching, gaps) in self.touching.iter_mut().zip(self.placement.gaps_m()) {
@@ -374,7 +294,10 @@ impl<'a> Engine<'a> {
 
     /// The interval of the kick of a step.
     fn kicked(&self, step: f64) -> (f64, f64) {
-        (self.time - 0.5 * self.last_step, self.time + 0.5 * step)
+        (
+            self.course.time - 0.5 * self.last_step,
+            self.course.time + 0.5 * step,
+        )
     }
 
     fn solve_step(&mut self, step: f64) -> Result<(), FreeHingeError> {
@@ -392,10 +315,10 @@ impl<'a> Engine<'a> {
         };
         let effort = self.program.solve(&self.placement, &load);
         let effort = effort.map_err(|reason| FreeHingeError::Contact {
-            time_s: self.time,
+            time_s: self.course.time,
             reason,
         })?;
-        let cost = &mut self.run.cost;
+        let cost = &mut self.course.run.cost;
         cost.programs += 1;
         cost.iterations += effort.iterations;
         cost.relaxed += effort.relaxed;
@@ -494,7 +417,7 @@ impl<'a> Engine<'a> {
             }
             self.solve_step(step)?;
         }
-        self.run.energy_taken_j += without - self.kinetic_of_solution();
+        self.course.run.energy_taken_j += without - self.kinetic_of_solution();
         Ok(())
     }
 
@@ -555,8 +478,8 @@ impl<'a> Engine<'a> {
         }
         self.least_normal = least / (to_s - from_s);
         self.friction_demand = demand;
-        self.run.least_normal_n = self.run.least_normal_n.min(self.least_normal);
-        self.run.friction_demand = self.run.friction_demand.max(demand);
+        self.course.run.least_normal_n = self.course.run.least_normal_n.min(self.least_normal);
+        self.course.run.friction_demand = self.course.run.friction_demand.max(demand);
     }
 
     /// Moves the row over a step that was solved.
@@ -572,17 +495,17 @@ impl<'a> Engine<'a> {
         let change = &self.change;
         self.placement.open(|joint| change[joint]);
         self.take_pieces();
-        self.time += step;
+        self.course.time += step;
         self.last_step = step;
         self.close();
         let error_m = self.placement.closure_error();
-        self.run.closure_error_m = self.run.closure_error_m.max(error_m);
+        self.course.run.closure_error_m = self.course.run.closure_error_m.max(error_m);
         // Also when it is not a number.
         if error_m <= LARGEST_CLOSURE_RATIO * self.thinnest {
             self.weigh_pieces();
             Ok(())
         } else {
-            let time_s = self.time;
+            let time_s = self.course.time;
             Err(FreeHingeError::Closure { time_s, error_m })
         }
     }
@@ -677,7 +600,8 @@ impl<'a> Engine<'a> {
     /// Completes the velocity at a landing with the old mechanism, then projects it.
     fn impact(&mut self) -> Result<(), FreeHingeError> {
         let before = self.momentum();
-        let (impulse, ground) = self.impulse(self.time - 0.5 * self.last_step, self.time);
+        let (impulse, ground) =
+            self.impulse(self.course.time - 0.5 * self.last_step, self.course.time);
         self.kick(impulse);
         self.jumps.fill(Twist::ZERO);
         self.landing.fill([0.0; 2]);
@@ -687,21 +611,54 @@ impl<'a> Engine<'a> {
                 touching[edge] &= closed[edge];
             }
         }
+        self.pressed.copy_from_slice(self.program.active());
         self.solve()?;
         let kinetic_before = self.kinetic_of_solution();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.ground_work -= ground.dot(&mean);
-        self.potential = self.height_energy();
+        self.course.potential = self.height_energy();
         self.audit(kinetic_before);
         self.free.copy_from_slice(self.program.velocities());
         self.touch_shut();
+        // A step with several landings knows already where they lead.
+        self.program.start_from(&self.pressed);
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
-        self.run.energy_taken_j += kinetic_before - kinetic_after;
+        self.course.run.energy_taken_j += kinetic_before - kinetic_after;
         self.take_pieces();
         self.last_step = 0.0;
-        self.run.cost.impacts += 1;
+        self.course.run.cost.impacts += 1;
         Ok(())
+    }
+}
+
+impl Stepper for Engine<'_> {
+    fn course(&self) -> &Course {
+        &self.course
+    }
+
+    fn course_mut(&mut self) -> &mut Course {
+        &mut self.course
+    }
+
+    fn step(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+        self.advance(until, recorder)
+    }
+
+    fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+        self.record(recorder)
+    }
+
+    fn rests_since(&self) -> Option<f64> {
+        self.is_at_rest().then_some(self.course.time)
+    }
+
+    fn sway(&self) -> f64 {
+        sway(self.row, self.placement.centres_m())
+    }
+
+    fn finish(self) -> Run {
+        self.course.run
     }
 }
 
@@ -828,9 +785,11 @@ mod tests {
                     worst = worst.max((ours.at(centre) - judge.at(centre)).norm());
                 }
                 engine.step(60.0, &mut ()).unwrap();
-                engine.observe();
             }
-            assert!(fastest > 0.05 && engine.run.cost.impacts > 3, "{fastest}");
+            assert!(
+                fastest > 0.05 && engine.course.run.cost.impacts > 3,
+                "{fastest}"
+            );
             assert!(worst < 1e-8 && compared > 250, "{worst} {compared}");
         }
     }

@@ -324,7 +324,7 @@ impl Model for FreeHinges {
             model: self,
             ground,
             barrier_j: self.barrier_j(request.gravity_m_s2),
-            fallen_j: super::fallen_energy_j(&self.row, request.gravity_m_s2),
+            fallen_j: super::fallen_energy_j(&self.row, request.gravity_m_s2, false),
             phase: 0,
             thrust: ThrustRecord::default(),
             sample: undeformed(self.row.blocks().len()),

@@ -3,14 +3,12 @@
 use nalgebra::Vector2;
 
 use super::{Engine, Piece};
-use crate::dynamics::free_hinges::{FreeHingeError, HalfCycle, Impact, Recorder, Sample};
+use crate::dynamics::free_hinges::{FreeHingeError, Impact, Recorder, Sample};
+use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::field::Twist;
-use crate::mechanics::sway::Sway;
 
 /// At rest, kinetic and potential energy are below this part of weight times size.
 const REST_ENERGY_RATIO: f64 = 1e-9;
-/// Sways below this part of the size do not count as a change of side.
-const SWAY_RATIO: f64 = 1e-9;
 /// Joints that open at less than this part of the fastest rate do not count as opened by an impact.
 const LEAST_OPENING: f64 = 1e-9;
 
@@ -25,89 +23,52 @@ pub(super) fn momentum(pieces: &[Piece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
 }
 
+/// Rise of the blocks with their centres at the given places, times their masses.
+pub(in crate::dynamics::free_hinges) fn rise(row: &Row, centres_m: &[Vector2<f64>]) -> f64 {
+    let rises = row.blocks().iter().zip(centres_m);
+    rises
+        .map(|(block, centre)| block.mass_kg * (centre.y - block.centre_m.y))
+        .sum()
+}
+
+/// Horizontal displacement of the centre of gravity times the mass.
+pub(in crate::dynamics::free_hinges) fn sway(row: &Row, centres_m: &[Vector2<f64>]) -> f64 {
+    let shifts = row.blocks().iter().zip(centres_m);
+    shifts
+        .map(|(block, centre)| block.mass_kg * (centre.x - block.centre_m.x))
+        .sum()
+}
+
 impl Engine<'_> {
     pub(super) fn momentum(&self) -> Vector2<f64> {
         momentum(&self.pieces)
     }
 
-    /// Potential energy above the undeformed row.
     pub(super) fn height_energy(&self) -> f64 {
-        let rises = self.row.blocks().iter().zip(self.placement.centres_m());
-        let sum: f64 = rises
-            .map(|(block, centre)| block.mass_kg * (centre.y - block.centre_m.y))
-            .sum();
-        self.gravity * sum
+        self.gravity * rise(self.row, self.placement.centres_m())
     }
 
-    /// Horizontal displacement of the centre of gravity times the mass.
-    pub(super) fn sway(&self) -> f64 {
-        let shifts = self.row.blocks().iter().zip(self.placement.centres_m());
-        shifts
-            .map(|(block, centre)| block.mass_kg * (centre.x - block.centre_m.x))
-            .sum()
-    }
-
-    pub(super) fn rests(&self) -> bool {
-        let least = REST_ENERGY_RATIO * self.energy_unit;
-        kinetic(&self.pieces) < least && self.potential.abs() < least
+    pub(super) fn is_at_rest(&self) -> bool {
+        let least = REST_ENERGY_RATIO * self.course.energy_unit;
+        kinetic(&self.pieces) < least && self.course.potential.abs() < least
     }
 
     /// Compares the energy at an instant with its balance.
     pub(super) fn audit(&mut self, kinetic: f64) {
-        let due = self.start_energy + self.ground_work - self.run.energy_taken_j;
-        let defect = (kinetic + self.potential - due) / self.energy_unit;
-        let worst = &mut self.run.energy_defect_ratio;
+        let due = self.start_energy + self.ground_work - self.course.run.energy_taken_j;
+        let defect = (kinetic + self.course.potential - due) / self.course.energy_unit;
+        let worst = &mut self.course.run.energy_defect_ratio;
         *worst = worst.max(defect.abs());
     }
 
-    /// Peaks, half cycles and energy after a step.
+    /// Tells the course of the motion about the state after a step.
     pub(super) fn observe(&mut self) {
-        let mut largest = 0.0_f64;
-        for (peak, pose) in self.run.peaks_rad.iter_mut().zip(self.placement.poses()) {
-            let rotation = pose.rotation_rad.abs();
-            *peak = peak.max(rotation);
-            largest = largest.max(rotation);
-        }
-        self.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
-        let before = self.potential;
-        self.potential = self.height_energy();
-        if self.potential >= before {
-            self.rising = true;
-        } else if self.rising {
-            self.rising = false;
-            self.highest_s = self.time;
-        }
-        let sway = self.sway();
-        let least = SWAY_RATIO * self.energy_unit / self.gravity;
-        if sway.abs() > least {
-            let side = if sway > 0.0 { Sway::Right } else { Sway::Left };
-            if self.cycle.is_none_or(|cycle| cycle.sway != side) {
-                self.end_cycle(Some(kinetic(&self.pieces) + self.potential));
-                self.cycle = Some(HalfCycle {
-                    sway: side,
-                    start_s: self.time,
-                    duration_s: 0.0,
-                    peak_rad: 0.0,
-                    energy_ratio: None,
-                });
-            }
-        }
-        if let Some(cycle) = &mut self.cycle {
-            cycle.peak_rad = cycle.peak_rad.max(largest);
-        }
-    }
-
-    /// Files the half cycle that ends now, with the energy that is left if it is known.
-    pub(super) fn end_cycle(&mut self, energy: Option<f64>) {
-        if let Some(mut cycle) = self.cycle.take() {
-            cycle.duration_s = self.time - cycle.start_s;
-            let ratio = energy
-                .zip(self.cycle_energy)
-                .map(|(after, before)| after / before);
-            cycle.energy_ratio = ratio.filter(|ratio| ratio.is_finite());
-            self.run.half_cycles.push(cycle);
-            self.cycle_energy = energy;
-        }
+        self.course.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
+        let potential = self.height_energy();
+        let sway = sway(self.row, self.placement.centres_m());
+        let rotations = self.placement.poses().iter().map(|pose| pose.rotation_rad);
+        let kinetic = kinetic(&self.pieces);
+        self.course.observe(rotations, potential, kinetic, sway);
     }
 
     pub(super) fn report(&mut self, taken_before: f64, recorder: &mut impl Recorder) {
@@ -134,19 +95,20 @@ impl Engine<'_> {
         for (rate, twist) in self.rates.iter_mut().zip(self.program.velocities()) {
             *rate = twist.rate;
         }
-        let energy_taken_j = self.run.energy_taken_j - taken_before;
+        let energy_taken_j = self.course.run.energy_taken_j - taken_before;
         let flow = recorder.impact(&Impact {
-            time_s: self.time,
+            time_s: self.course.time,
             shut: &self.shut,
             opened: &self.opened,
             energy_before_j: kinetic(&self.pieces) + energy_taken_j,
             energy_taken_j,
+            friction_j: None,
             rotations_rad: &self.rotations,
             rates_after_rad_s: &self.rates,
-            potential_j: self.potential,
+            potential_j: self.course.potential,
             poses: self.placement.poses(),
         });
-        self.stopped |= flow.is_break();
+        self.course.stopped |= flow.is_break();
     }
 
     pub(super) fn note_rotations(&mut self) {
@@ -155,9 +117,10 @@ impl Engine<'_> {
         }
     }
 
-    pub(super) fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+    pub(super) fn record(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
         let before = self.momentum();
-        let (impulse, ground) = self.impulse(self.time - 0.5 * self.last_step, self.time);
+        let (impulse, ground) =
+            self.impulse(self.course.time - 0.5 * self.last_step, self.course.time);
         self.kick(impulse);
         self.jumps.fill(Twist::ZERO);
         self.landing.fill([0.0; 2]);
@@ -178,7 +141,7 @@ impl Engine<'_> {
         self.note_rotations();
         let gaps_m = self.placement.gaps_m();
         let flow = recorder.sample(&Sample {
-            time_s: self.time,
+            time_s: self.course.time,
             rotations_rad: &self.rotations,
             rates_rad_s: &self.rates,
             gaps_m,
@@ -189,10 +152,12 @@ impl Engine<'_> {
             least_normal_n: self.least_normal,
             // The programs were exchanged: this is the solution of the sample.
             corner_impulses_n_s: self.auxiliary.corner_impulses(),
+            offsets_m: &[],
+            slipping_joints: 0,
             kinetic_j,
-            potential_j: self.potential,
+            potential_j: self.course.potential,
         });
-        self.stopped |= flow.is_break();
+        self.course.stopped |= flow.is_break();
         Ok(())
     }
 }

@@ -1,0 +1,503 @@
+//! The motion of a row whose joints open and slip, in equal steps.
+//!
+//! The state is the position of every block, its velocity half a step before, and the offset at which every joint stuck last. A step
+//! is that of the leapfrog: a kick by gravity and ground, the velocities that the joints allow ([`crate::mechanics::coulomb`]), and a
+//! drift. What gaps and offsets are short of zero is made up for in the step after, and so is the curvature of the motion, known
+//! from the velocity before: no other correction keeps the row together.
+//!
+//! Steps do not end at landings: an impact happens within a step, and its time is known to within one.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::course::{Course, Stepper, equal_step};
+use super::engine::{rise, sway};
+use super::{FreeHingeError, Impact, Recorder, Run, Sample, Settings, Sliding, fallen_energy_j};
+use crate::dynamics::ground::{GroundMotion, GroundVelocity};
+use crate::mechanics::blocks::Row;
+use crate::mechanics::coulomb::{Along, Mode, Program};
+use crate::mechanics::joints::{Frame, Placement, Pose};
+use crate::mechanics::slip::{Contact, Faces, Position};
+
+/// Rates are found to within this part of the fastest motion, and of what gravity does in a step.
+const RATE_TOLERANCE: f64 = 1e-9;
+/// Corners land when they were farther apart than this part of the thickness of their joint.
+const APART_RATIO: f64 = 1e-9;
+/// At rest, the kinetic energy is below this part of weight times size ...
+const REST_ENERGY_RATIO: f64 = 1e-9;
+/// ... for this part of the time in which the size falls free: longer than at any turning point.
+const REST_TIME_RATIO: f64 = 0.5;
+/// The energy is compared with its balance once in so many steps.
+const AUDIT_STEPS: usize = 32;
+/// Joints with less than this part of the largest normal force are not pressed.
+const LOADED: f64 = 1e-6;
+/// Bounds of friction that are wrong by less than this part of the largest one have converged.
+const CONVERGED: f64 = 1e-9;
+/// Bounds of friction that are wrong by more than this part of the largest one are an error.
+const LARGEST_BOUND_ERROR: f64 = 0.05;
+
+pub(super) struct Engine<'a> {
+    row: &'a Row,
+    velocity: GroundVelocity<'a>,
+    gravity: f64,
+    settings: &'a Settings,
+    course: Course,
+    faces: Vec<Faces>,
+    positions: Vec<Position>,
+    velocities: Vec<Vector3<f64>>,
+    contacts: Vec<Contact>,
+    /// Where every joint stuck last.
+    stuck: Vec<f64>,
+    /// By how much the coordinates of every joint are short of zero at the end of the step.
+    lags: Vec<Vector3<f64>>,
+    /// Rates of the coordinates in the motion before the step.
+    rates_before: Vec<Vector3<f64>>,
+    /// Time up to which the kicks have gone.
+    kicked_s: f64,
+    last_step: f64,
+    program: Program,
+    /// For what must not touch the modes.
+    auxiliary: Program,
+    modes_before: Vec<Mode>,
+    sliding: Sliding,
+    ground_work: f64,
+    /// The least energy so far, without what the ground did.
+    least_energy: f64,
+    steps_since_audit: usize,
+    quiet_since_s: f64,
+    friction_demand: f64,
+    least_normal: f64,
+    centres: Vec<Vector2<f64>>,
+    poses: Vec<Pose>,
+    frames: Vec<Frame>,
+    gaps: Vec<[f64; 2]>,
+    offsets: Vec<f64>,
+    rotations: Vec<f64>,
+    rates: Vec<f64>,
+    shut: Vec<usize>,
+    opened: Vec<usize>,
+}
+
+impl<'a> Engine<'a> {
+    pub(super) fn new(
+        placement: &Placement,
+        row: &'a Row,
+        ground: &'a GroundMotion,
+        gravity: f64,
+        settings: &'a Settings,
+        coefficient: f64,
+    ) -> Self {
+        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let faces = Faces::of_row(row);
+        let at = placement.centres_m().iter().zip(placement.poses());
+        let positions: Vec<Position> = at
+            .map(|(centre, pose)| Position::new(*centre, pose.rotation_rad))
+            .collect();
+        let contacts: Vec<Contact> = (0..joints)
+            .map(|joint| contact(&faces, &positions, joint))
+            .collect();
+        let program = Program::new(row, coefficient);
+        let still = Sliding {
+            friction_j: 0.0,
+            offsets_m: vec![0.0; joints],
+            largest_offsets_m: vec![0.0; joints],
+            unconverged: 0,
+            bound_error: 0.0,
+        };
+        let nowhere = Frame {
+            intrados_m: Vector2::zeros(),
+            along: Vector2::zeros(),
+            normal: Vector2::zeros(),
+            thickness_m: 0.0,
+        };
+        let mut course = Course::new(row, gravity, fallen_energy_j(row, gravity, true));
+        let start_energy = gravity * rise(row, placement.centres_m());
+        if placement.shut_corners() < 2 * joints {
+            course.released(start_energy, true);
+        }
+        Self {
+            row,
+            velocity: GroundVelocity::new(ground),
+            gravity,
+            settings,
+            course,
+            velocities: vec![Vector3::zeros(); blocks],
+            stuck: contacts.iter().map(|c| c.coordinates_m.z).collect(),
+            lags: vec![Vector3::zeros(); joints],
+            rates_before: vec![Vector3::zeros(); joints],
+            kicked_s: 0.0,
+            last_step: settings.longest_step_s,
+            auxiliary: program.clone(),
+            program,
+            modes_before: vec![Mode::WHOLE; joints],
+            sliding: still,
+            ground_work: 0.0,
+            least_energy: start_energy,
+            steps_since_audit: 0,
+            quiet_since_s: 0.0,
+            friction_demand: 0.0,
+            least_normal: f64::INFINITY,
+            centres: placement.centres_m().to_vec(),
+            poses: placement.poses().to_vec(),
+            frames: vec![nowhere; joints],
+            gaps: placement.gaps_m().to_vec(),
+            offsets: vec![0.0; joints],
+            rotations: vec![0.0; blocks],
+            rates: vec![0.0; blocks],
+            shut: Vec::with_capacity(joints),
+            opened: Vec::with_capacity(joints),
+            faces,
+            positions,
+            contacts,
+        }
+    }
+
+    /// Change of velocity by gravity and ground from the last kick until a time, and that of the ground alone.
+    fn kick(&self, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
+        let ground = self.velocity.at(to_s) - self.velocity.at(self.kicked_s);
+        let fall = Vector2::new(0.0, self.gravity * (to_s - self.kicked_s));
+        (-ground - fall, ground)
+    }
+
+    fn load(program: &mut Program, velocities: &[Vector3<f64>], kick: Vector2<f64>) {
+        program.load(|block| velocities[block] + Vector3::new(kick.x, kick.y, 0.0));
+    }
+
+    fn momentum(&self) -> Vector2<f64> {
+        let blocks = self.row.blocks().iter().zip(&self.velocities);
+        blocks.map(|(block, v)| v.xy() * block.mass_kg).sum()
+    }
+
+    fn kinetic(&self) -> f64 {
+        0.5 * self.program.twice_kinetic_j()
+    }
+
+    /// By how much the coordinates would be short of zero at the end of a step, did the joints move on as in the last
+    /// solution, besides what their rates make of it: what they are now, and the curvature of the motion.
+    fn lag(&mut self, step: f64) {
+        let moved = |positions: &[Position], program: &Program, block: usize| {
+            let v = program.velocity(block) * step;
+            let position = &positions[block];
+            Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z)
+        };
+        let mut left = Position::HELD;
+        for joint in 0..self.faces.len() {
+            let right = if joint < self.positions.len() {
+                moved(&self.positions, &self.program, joint)
+            } else {
+                Position::HELD
+            };
+            let now = self.contacts[joint].coordinates_m;
+            let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
+            // A joint that moves as one has none, whatever straight lines say.
+            if self.program.modes()[joint] != Mode::WHOLE {
+                let then = self.faces[joint].contact(&left, &right).coordinates_m;
+                lag += then - now - self.program.joint_rate(joint) * step;
+            }
+            self.lags[joint] = lag / step;
+            left = right;
+        }
+    }
+
+    /// One step, at most to the given time.
+    fn advance(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+        let step = equal_step(self.course.time, until, self.settings.longest_step_s);
+        let to_s = self.course.time + 0.5 * step;
+        let (kick, ground) = self.kick(to_s);
+        let momentum = self.momentum();
+        self.program
+            .place(&self.faces, &self.contacts, &self.positions);
+        self.modes_before.copy_from_slice(self.program.modes());
+        for joint in 0..self.faces.len() {
+            self.rates_before[joint] = self.program.joint_rate(joint);
+        }
+        self.lag(step);
+        Self::load(&mut self.program, &self.velocities, kick);
+        let fastest = self
+            .velocities
+            .iter()
+            .map(|v| v.x.abs() + v.y.abs())
+            .fold(0.0, f64::max);
+        let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
+        let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
+        let mut passes = solution.passes;
+        if solution.changed {
+            self.lag(step);
+            solution = self.program.solve(|joint| self.lags[joint], tolerance);
+            passes += solution.passes;
+        }
+        let cost = &mut self.course.run.cost;
+        cost.steps += 1;
+        cost.programs += 1;
+        cost.iterations += passes;
+        cost.most_iterations = cost.most_iterations.max(passes);
+        self.judge(solution.bound_error)?;
+
+        let (mut taken, mut rubbed) = (0.0, 0.0);
+        for (joint, impulse) in self.program.impulses().iter().enumerate() {
+            let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
+            taken -= impulse.x * mean.x + impulse.y * mean.y;
+            rubbed -= impulse.z * mean.z;
+        }
+        self.course.run.energy_taken_j += taken;
+        self.sliding.friction_j += rubbed;
+        for (block, velocity) in self.velocities.iter_mut().enumerate() {
+            *velocity = self.program.velocity(block);
+        }
+        self.ground_work -= ground.dot(&((momentum + self.momentum()) * 0.5));
+        self.note_forces(to_s - self.kicked_s);
+        self.kicked_s = to_s;
+        self.last_step = step;
+        let landed = self.find_landings();
+        self.drift(step);
+        if landed {
+            self.report(taken, rubbed, recorder);
+        }
+        self.steps_since_audit += 1;
+        if self.steps_since_audit >= AUDIT_STEPS {
+            self.synchronise();
+        }
+        Ok(())
+    }
+
+    /// Counts a step whose bounds of friction did not converge.
+    fn judge(&mut self, error: f64) -> Result<(), FreeHingeError> {
+        if error <= CONVERGED {
+            return Ok(());
+        }
+        self.sliding.unconverged += 1;
+        self.sliding.bound_error = self.sliding.bound_error.max(error);
+        if error <= LARGEST_BOUND_ERROR {
+            Ok(())
+        } else {
+            let time_s = self.course.time;
+            Err(FreeHingeError::Friction { time_s, error })
+        }
+    }
+
+    fn note_forces(&mut self, time_s: f64) {
+        let impulses = self.program.impulses().iter();
+        let normals = impulses.clone().map(|impulse| impulse.x + impulse.y);
+        let least = normals.clone().fold(f64::INFINITY, f64::min);
+        let most = normals.fold(0.0, f64::max);
+        self.friction_demand = impulses
+            .filter(|impulse| impulse.x + impulse.y > LOADED * most)
+            .map(|impulse| impulse.z.abs() / (impulse.x + impulse.y))
+            .fold(0.0, f64::max);
+        self.least_normal = least / time_s;
+        let run = &mut self.course.run;
+        run.least_normal_n = run.least_normal_n.min(self.least_normal);
+        run.friction_demand = run.friction_demand.max(self.friction_demand);
+    }
+
+    /// Whether a corner lands in the step that was solved; notes the joints that shut and that open.
+    fn find_landings(&mut self) -> bool {
+        self.shut.clear();
+        self.opened.clear();
+        let mut landed = false;
+        for (joint, mode) in self.program.modes().iter().enumerate() {
+            let before = &self.modes_before[joint];
+            let gaps = &self.contacts[joint].coordinates_m;
+            let least = APART_RATIO * self.faces[joint].thickness_m;
+            let lands =
+                (0..2).any(|end| mode.pressed[end] && !before.pressed[end] && gaps[end] > least);
+            landed |= lands;
+            if lands && mode.pressed == [true; 2] {
+                self.shut.push(joint);
+            } else if before.pressed == [true; 2] && mode.pressed != [true; 2] {
+                self.opened.push(joint);
+            }
+        }
+        landed
+    }
+
+    fn drift(&mut self, step: f64) {
+        for ((position, velocity), centre) in self
+            .positions
+            .iter_mut()
+            .zip(&self.velocities)
+            .zip(&mut self.centres)
+        {
+            *centre = position.centre_m + velocity.xy() * step;
+            *position = Position::new(*centre, position.rotation_rad + velocity.z * step);
+        }
+        self.course.time += step;
+        for joint in 0..self.faces.len() {
+            let contact = contact(&self.faces, &self.positions, joint);
+            let offset_m = contact.coordinates_m.z;
+            if self.program.modes()[joint].along != Along::Stick {
+                self.stuck[joint] = offset_m;
+            }
+            let largest = &mut self.sliding.largest_offsets_m[joint];
+            *largest = largest.max(self.stuck[joint].abs());
+            let least = APART_RATIO * self.faces[joint].thickness_m;
+            let [intrados, extrados, _] = contact.coordinates_m.into();
+            self.course.moved |= self.stuck[joint].abs().max(intrados).max(extrados) > least;
+            self.course.fallen_apart |= contact.ends_m[1] <= contact.ends_m[0];
+            self.contacts[joint] = contact;
+        }
+        let kinetic = self.kinetic();
+        let potential = self.gravity * rise(self.row, &self.centres);
+        let sway = sway(self.row, &self.centres);
+        let rotations = self.positions.iter().map(|position| position.rotation_rad);
+        self.course.observe(rotations, potential, kinetic, sway);
+        if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
+            self.quiet_since_s = self.course.time;
+        }
+    }
+
+    /// Velocities at the instant of the positions, from those half a step before, and the energy there; compares it with the least
+    /// so far. What grows beyond it has been created.
+    fn synchronise(&mut self) -> f64 {
+        self.steps_since_audit = 0;
+        let (kick, ground) = self.kick(self.course.time);
+        self.auxiliary
+            .place(&self.faces, &self.contacts, &self.positions);
+        self.auxiliary.start_from(&self.program, 0.5);
+        Self::load(&mut self.auxiliary, &self.velocities, kick);
+        let (modes, contacts, step) = (self.program.modes(), &self.contacts, self.last_step);
+        let apart = |joint: usize| {
+            let gap = |end: usize| {
+                if modes[joint].pressed[end] {
+                    0.0
+                } else {
+                    contacts[joint].coordinates_m[end].max(0.0) / step
+                }
+            };
+            Vector3::new(gap(0), gap(1), 0.0)
+        };
+        self.auxiliary
+            .solve(apart, RATE_TOLERANCE * self.gravity * step);
+        let kinetic = 0.5 * self.auxiliary.twice_kinetic_j();
+        let blocks = self.row.blocks().iter().enumerate();
+        let momentum: Vector2<f64> = blocks
+            .map(|(index, block)| self.auxiliary.velocity(index).xy() * block.mass_kg)
+            .sum();
+        let work = ground.dot(&((self.momentum() + momentum) * 0.5));
+        let potential = self.gravity * rise(self.row, &self.centres);
+        let energy = kinetic + potential - (self.ground_work - work);
+        let created = (energy - self.least_energy) / self.course.energy_unit;
+        self.least_energy = self.least_energy.min(energy);
+        let worst = &mut self.course.run.energy_defect_ratio;
+        *worst = worst.max(created);
+        kinetic
+    }
+
+    fn note_poses(&mut self) {
+        let blocks = self.row.blocks().iter().zip(&self.positions).enumerate();
+        for (index, (block, position)) in blocks {
+            let turned = Pose::new(position.rotation_rad, Vector2::zeros());
+            let shift_m = position.centre_m - turned.of(block.centre_m);
+            self.poses[index] = Pose::new(position.rotation_rad, shift_m);
+            self.rotations[index] = position.rotation_rad;
+        }
+        for (joint, contact) in self.contacts.iter().enumerate() {
+            let pressed = self.program.modes()[joint].pressed;
+            for end in 0..2 {
+                self.gaps[joint][end] = if pressed[end] {
+                    0.0
+                } else {
+                    contact.coordinates_m[end].max(0.0)
+                };
+            }
+            self.offsets[joint] = self.stuck[joint];
+            self.frames[joint] = Frame {
+                intrados_m: contact.middle_m + contact.along * contact.ends_m[0],
+                along: contact.along,
+                normal: contact.normal,
+                thickness_m: contact.ends_m[1] - contact.ends_m[0],
+            };
+        }
+    }
+
+    fn report(&mut self, taken: f64, rubbed: f64, recorder: &mut impl Recorder) {
+        self.note_poses();
+        for (rate, velocity) in self.rates.iter_mut().zip(&self.velocities) {
+            *rate = velocity.z;
+        }
+        self.course.run.cost.impacts += 1;
+        let flow = recorder.impact(&Impact {
+            time_s: self.course.time,
+            shut: &self.shut,
+            opened: &self.opened,
+            energy_before_j: self.kinetic() + taken + rubbed,
+            energy_taken_j: taken,
+            friction_j: Some(rubbed),
+            rotations_rad: &self.rotations,
+            rates_after_rad_s: &self.rates,
+            potential_j: self.course.potential,
+            poses: &self.poses,
+        });
+        self.course.stopped |= flow.is_break();
+    }
+
+    fn record(&mut self, recorder: &mut impl Recorder) {
+        let kinetic_j = self.synchronise();
+        for (block, rate) in self.rates.iter_mut().enumerate() {
+            *rate = self.auxiliary.velocity(block).z;
+        }
+        self.note_poses();
+        let slips = |mode: &&Mode| matches!(mode.along, Along::Slip(_));
+        let flow = recorder.sample(&Sample {
+            time_s: self.course.time,
+            rotations_rad: &self.rotations,
+            rates_rad_s: &self.rates,
+            gaps_m: &self.gaps,
+            poses: &self.poses,
+            frames: &self.frames,
+            open_joints: self.gaps.iter().filter(|gaps| **gaps != [0.0; 2]).count(),
+            offsets_m: &self.offsets,
+            slipping_joints: self.program.modes().iter().filter(slips).count(),
+            friction_demand: self.friction_demand,
+            least_normal_n: self.least_normal,
+            kinetic_j,
+            potential_j: self.course.potential,
+        });
+        self.course.stopped |= flow.is_break();
+    }
+}
+
+/// The joint of this index at the positions of its blocks.
+fn contact(faces: &[Faces], positions: &[Position], joint: usize) -> Contact {
+    let block = |index: Option<usize>| index.and_then(|index| positions.get(index));
+    let (left, right) = (block(joint.checked_sub(1)), block(Some(joint)));
+    faces[joint].contact(
+        left.unwrap_or(&Position::HELD),
+        right.unwrap_or(&Position::HELD),
+    )
+}
+
+impl Stepper for Engine<'_> {
+    fn course(&self) -> &Course {
+        &self.course
+    }
+
+    fn course_mut(&mut self) -> &mut Course {
+        &mut self.course
+    }
+
+    fn step(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+        self.advance(until, recorder)
+    }
+
+    fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+        self.record(recorder);
+        Ok(())
+    }
+
+    fn rests_since(&self) -> Option<f64> {
+        let quiet_s = self.course.time - self.quiet_since_s;
+        let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
+        let undeformed = self.course.potential.abs() < REST_ENERGY_RATIO * self.course.energy_unit;
+        (quiet_s > if undeformed { 0.0 } else { long_s }).then_some(self.quiet_since_s)
+    }
+
+    fn sway(&self) -> f64 {
+        sway(self.row, &self.centres)
+    }
+
+    fn finish(mut self) -> Run {
+        self.sliding.offsets_m.copy_from_slice(&self.stuck);
+        self.course.run.sliding = Some(self.sliding);
+        self.course.run
+    }
+}

@@ -1,0 +1,587 @@
+//! The velocities of a row of blocks whose joints may open and slip: Coulomb's law at every joint, on the whole row at once.
+//!
+//! A joint has three rows: the rates of the gaps at the two ends of its contact, and that of its offset, each with its impulse
+//! `N_I`, `N_E` and `T` ([`crate::mechanics::slip`]). An end is pressed (rate zero, impulse compressive) or free. Along the joint
+//! it sticks (rate zero, `|T| <= mu (N_I + N_E)`), slips (`T = +-mu (N_I + N_E)` against the slip), or, with both ends free, takes
+//! no impulse. Given these modes the impulses solve a block-tridiagonal system with 3x3 blocks. Newton's method goes from modes to
+//! modes, from those of the step before; where it finds modes that confirm themselves, Coulomb's law holds exactly.
+//!
+//! Where it does not, the bounds of friction are held at those of the last impulses (Tresca). That program is convex, and solved by
+//! projected Newton steps on its dual; from its modes Newton's method starts again, else the bounds follow the impulses.
+//! Whatever comes out never drives a slip and never pulls: an early stop makes a bound wrong, never the sign of the work.
+//!
+//! A small proximal term draws the impulses to those of the step before. It settles them where the row does not, as at rest.
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+use super::blocks::Row;
+use super::slip::{Contact, Faces, Position};
+
+/// Weight of the proximal term, as part of the diagonal.
+const PROXIMAL: f64 = 1e-6;
+/// Newton passes in a row.
+const PASSES: usize = 8;
+/// Passes that change one mode at a time, after a program with given bounds.
+const SINGLE_PASSES: usize = 12;
+/// Steps of projected Newton on a program with given bounds.
+const BOUNDED_STEPS: usize = 60;
+/// How often bounds follow the impulses before the step counts as not converged.
+const BOUND_PASSES: usize = 120;
+/// Bounds that change by less than this part of the largest one are found.
+const SAME_BOUND: f64 = 1e-10;
+/// Part of the slope that a step along it has to achieve.
+const DESCENT: f64 = 1e-4;
+/// The shortest step of the search, as part of Newton's.
+const LEAST_PART: f64 = 1e-6;
+
+/// What a joint does along itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Along {
+    /// Both ends are free: there is no friction.
+    Free,
+    /// It sticks.
+    Stick,
+    /// It slips; friction on the right block has this sign.
+    Slip(f64),
+}
+
+/// What a joint does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Whether its ends are pressed, intrados and extrados.
+    pub pressed: [bool; 2],
+    /// Along the joint.
+    pub along: Along,
+}
+
+impl Mode {
+    /// Shut and sticking.
+    pub const WHOLE: Self = Self {
+        pressed: [true; 2],
+        along: Along::Stick,
+    };
+
+    /// No contact requires no friction, and contact that had none sticks first.
+    fn settled(mut self) -> Self {
+        if self.pressed == [false; 2] {
+            self.along = Along::Free;
+        } else if self.along == Along::Free {
+            self.along = Along::Stick;
+        }
+        self
+    }
+}
+
+/// How a solution was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Solution {
+    /// Systems solved.
+    pub passes: usize,
+    /// Whether a mode differs from that of the solution before.
+    pub changed: bool,
+    /// Largest error of a bound of friction, as part of the largest bound; zero where Coulomb's law holds.
+    pub bound_error: f64,
+}
+
+/// One equation of a row of the system.
+#[derive(Clone, Copy, Debug)]
+enum Equation {
+    /// Its rate vanishes.
+    Still,
+    /// Its impulse is given.
+    Given(f64),
+    /// Its impulse is so many times that at both ends.
+    Friction(f64),
+}
+
+/// The program of a row, with all the memory that it needs, and the modes and impulses of the last solution.
+#[derive(Clone, Debug)]
+pub struct Program {
+    coefficient: f64,
+    /// Roots of mass and inertia of every block: velocities and gradients are scaled with them.
+    roots: Vec<Vector3<f64>>,
+    /// Scaled gradients of the joints in the motions of their left and right blocks.
+    gradients: Vec<[Matrix3<f64>; 2]>,
+    /// Compliances within a joint, and with the next one.
+    own: Vec<Matrix3<f64>>,
+    next: Vec<Matrix3<f64>>,
+    /// Rates without impulses.
+    drive: Vec<Vector3<f64>>,
+    modes: Vec<Mode>,
+    impulses: Vec<Vector3<f64>>,
+    before: Vec<Vector3<f64>>,
+    rates: Vec<Vector3<f64>>,
+    /// Scaled velocities of the blocks.
+    velocities: Vec<Vector3<f64>>,
+    free: Vec<Vector3<f64>>,
+    bounds: Vec<f64>,
+    equations: Vec<[Equation; 3]>,
+    gains: Vec<Matrix3<f64>>,
+    target: Vec<Vector3<f64>>,
+    trial: Vec<Vector3<f64>>,
+    slopes: Vec<Vector3<f64>>,
+    modes_before: Vec<Mode>,
+    kept: Vec<Vector3<f64>>,
+}
+
+impl Program {
+    /// A program for a row with all joints shut, without impulses.
+    #[must_use]
+    pub fn new(row: &Row, coefficient: f64) -> Self {
+        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let roots = row.blocks().iter().map(|block| {
+            let mass = block.mass_kg.sqrt();
+            Vector3::new(mass, mass, block.inertia_kg_m2.sqrt())
+        });
+        Self {
+            coefficient,
+            roots: roots.collect(),
+            gradients: vec![[Matrix3::zeros(); 2]; joints],
+            own: vec![Matrix3::zeros(); joints],
+            next: vec![Matrix3::zeros(); joints],
+            drive: vec![Vector3::zeros(); joints],
+            modes: vec![Mode::WHOLE; joints],
+            impulses: vec![Vector3::zeros(); joints],
+            before: vec![Vector3::zeros(); joints],
+            rates: vec![Vector3::zeros(); joints],
+            velocities: vec![Vector3::zeros(); blocks],
+            free: vec![Vector3::zeros(); blocks],
+            bounds: vec![0.0; joints],
+            equations: vec![[Equation::Still; 3]; joints],
+            gains: vec![Matrix3::zeros(); joints],
+            target: vec![Vector3::zeros(); joints],
+            trial: vec![Vector3::zeros(); joints],
+            slopes: vec![Vector3::zeros(); joints],
+            modes_before: vec![Mode::WHOLE; joints],
+            kept: vec![Vector3::zeros(); joints],
+        }
+    }
+
+    /// What the joints do in the last solution.
+    #[must_use]
+    pub fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// Impulses in N s at the ends and along every joint, in the last solution.
+    #[must_use]
+    pub fn impulses(&self) -> &[Vector3<f64>] {
+        &self.impulses
+    }
+
+    /// Velocity (x, y) in m/s and rate of rotation in rad/s of a block, in the last solution.
+    #[must_use]
+    pub fn velocity(&self, block: usize) -> Vector3<f64> {
+        self.velocities[block].component_div(&self.roots[block])
+    }
+
+    /// Twice the kinetic energy in J, in the last solution.
+    #[must_use]
+    pub fn twice_kinetic_j(&self) -> f64 {
+        self.velocities.iter().map(Vector3::norm_squared).sum()
+    }
+
+    /// Starts the next solution from the modes and impulses of another program of the same row, the impulses scaled.
+    pub fn start_from(&mut self, other: &Self, scale: f64) {
+        self.modes.copy_from_slice(&other.modes);
+        for (own, theirs) in self.impulses.iter_mut().zip(&other.impulses) {
+            *own = theirs * scale;
+        }
+    }
+
+    /// Takes the positions of the joints: gradients and compliances.
+    pub fn place(&mut self, faces: &[Faces], contacts: &[Contact], positions: &[Position]) {
+        let blocks = positions.len();
+        let centre = |block: Option<usize>| {
+            let position = block.and_then(|block| positions.get(block));
+            position.map_or(Vector2::zeros(), |position| position.centre_m)
+        };
+        for joint in 0..faces.len() {
+            let before = joint.checked_sub(1);
+            let mut gradients =
+                contacts[joint].gradients(&faces[joint], centre(before), centre(Some(joint)));
+            for (side, block) in [before, Some(joint).filter(|block| *block < blocks)]
+                .into_iter()
+                .enumerate()
+            {
+                let scale = block.map_or(Vector3::zeros(), |block| {
+                    self.roots[block].map(|root| 1.0 / root)
+                });
+                for (mut column, scale) in gradients[side].column_iter_mut().zip(scale.iter()) {
+                    column *= *scale;
+                }
+            }
+            self.own[joint] =
+                gradients[0] * gradients[0].transpose() + gradients[1] * gradients[1].transpose();
+            if let Some(before) = before {
+                self.next[before] = self.gradients[before][1] * gradients[0].transpose();
+            }
+            self.gradients[joint] = gradients;
+        }
+    }
+
+    /// Rates of the coordinates of a joint when its blocks move so (scaled velocities).
+    fn rate(&self, joint: usize, velocities: &[Vector3<f64>]) -> Vector3<f64> {
+        let mut rate = Vector3::zeros();
+        if let Some(left) = joint.checked_sub(1) {
+            rate += self.gradients[joint][0] * velocities[left];
+        }
+        if let Some(right) = velocities.get(joint) {
+            rate += self.gradients[joint][1] * right;
+        }
+        rate
+    }
+
+    /// Rates of the coordinates of a joint in the last solution, in m/s.
+    #[must_use]
+    pub fn joint_rate(&self, joint: usize) -> Vector3<f64> {
+        self.rate(joint, &self.velocities)
+    }
+
+    /// Takes the motion that the blocks would have without each other: velocity (x, y) in m/s and rate in rad/s.
+    pub fn load(&mut self, motion: impl Fn(usize) -> Vector3<f64>) {
+        for block in 0..self.free.len() {
+            self.free[block] = motion(block).component_mul(&self.roots[block]);
+        }
+    }
+
+    /// Solves for the rates that the joints allow, on top of `lag`: by how much each coordinate is short of zero, per time, in m/s.
+    /// Rates are judged to within `tolerance` m/s.
+    pub fn solve(&mut self, lag: impl Fn(usize) -> Vector3<f64>, tolerance: f64) -> Solution {
+        for joint in 0..self.drive.len() {
+            self.drive[joint] = self.rate(joint, &self.free) + lag(joint);
+        }
+        self.before.copy_from_slice(&self.impulses);
+        self.modes_before.copy_from_slice(&self.modes);
+        let mut solution = Solution::default();
+        if !self.newton(PASSES, false, tolerance, &mut solution.passes) {
+            self.bounded(tolerance, &mut solution);
+        }
+        solution.changed = self.modes != self.modes_before;
+        self.set_velocities();
+        solution
+    }
+
+    fn set_velocities(&mut self) {
+        let joints = self.impulses.len();
+        for block in 0..self.velocities.len() {
+            let mut velocity =
+                self.free[block] + self.gradients[block][1].tr_mul(&self.impulses[block]);
+            if block + 1 < joints {
+                velocity += self.gradients[block + 1][0].tr_mul(&self.impulses[block + 1]);
+            }
+            self.velocities[block] = velocity;
+        }
+    }
+
+    /// Newton's method on the modes; false when they do not confirm themselves. Changes all wrong modes at once, or the
+    /// worst one alone.
+    fn newton(&mut self, passes: usize, one: bool, tolerance: f64, count: &mut usize) -> bool {
+        for _ in 0..passes {
+            for (equations, mode) in self.equations.iter_mut().zip(&self.modes) {
+                let end = |pressed| {
+                    if pressed {
+                        Equation::Still
+                    } else {
+                        Equation::Given(0.0)
+                    }
+                };
+                *equations = [
+                    end(mode.pressed[0]),
+                    end(mode.pressed[1]),
+                    match mode.along {
+                        Along::Free => Equation::Given(0.0),
+                        Along::Stick => Equation::Still,
+                        Along::Slip(sign) => Equation::Friction(sign * self.coefficient),
+                    },
+                ];
+            }
+            self.balance();
+            *count += 1;
+            std::mem::swap(&mut self.impulses, &mut self.target);
+            self.find_rates();
+            if self.mend(one, tolerance) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Changes the modes that the impulses and rates refute. True when there is none.
+    fn mend(&mut self, one: bool, tolerance: f64) -> bool {
+        let mut right = true;
+        let mut worst = (0.0, 0, Mode::WHOLE);
+        for joint in 0..self.modes.len() {
+            let (impulse, rate) = (&self.impulses[joint], &self.rates[joint]);
+            let compliance = self.own[joint].diagonal();
+            let mut mode = self.modes[joint];
+            let mut by = 0.0_f64;
+            for end in 0..2 {
+                // Impulses are compared by the rates that they cause.
+                let wrong = if mode.pressed[end] {
+                    -impulse[end] * compliance[end]
+                } else {
+                    -rate[end]
+                };
+                if wrong > tolerance {
+                    mode.pressed[end] ^= true;
+                    by = by.max(wrong);
+                }
+            }
+            let bound = self.coefficient * (impulse.x + impulse.y).max(0.0);
+            match mode.along {
+                Along::Stick => {
+                    let wrong = (impulse.z.abs() - bound) * compliance.z;
+                    if wrong > tolerance {
+                        mode.along = Along::Slip(impulse.z.signum());
+                        by = by.max(wrong);
+                    }
+                }
+                Along::Slip(sign) if sign * rate.z > tolerance => {
+                    mode.along = Along::Stick;
+                    by = by.max(sign * rate.z);
+                }
+                Along::Free | Along::Slip(_) => {}
+            }
+            let mode = mode.settled();
+            if mode != self.modes[joint] {
+                right = false;
+                if !one {
+                    self.modes[joint] = mode;
+                } else if by >= worst.0 {
+                    worst = (by, joint, mode);
+                }
+            }
+        }
+        if one && !right {
+            self.modes[worst.1] = worst.2;
+        }
+        right
+    }
+
+    /// Solves the equations for the impulses `target`, by elimination from left to right.
+    fn balance(&mut self) {
+        let joints = self.own.len();
+        let mut carried = Vector3::zeros();
+        let mut gain = Matrix3::zeros();
+        for joint in 0..joints {
+            let own = &self.own[joint];
+            let mut matrix = *own;
+            let mut right = -self.drive[joint];
+            let mut coupling = if joint == 0 {
+                Matrix3::zeros()
+            } else {
+                self.next[joint - 1].transpose()
+            };
+            let mut onward = self.next[joint];
+            for row in 0..3 {
+                match self.equations[joint][row] {
+                    Equation::Still => {
+                        let proximal = PROXIMAL * own[(row, row)];
+                        matrix[(row, row)] += proximal;
+                        right[row] += proximal * self.before[joint][row];
+                        continue;
+                    }
+                    Equation::Given(value) => {
+                        matrix.set_row(row, &nalgebra::RowVector3::zeros());
+                        matrix[(row, row)] = 1.0;
+                        right[row] = value;
+                    }
+                    Equation::Friction(factor) => {
+                        matrix.set_row(row, &nalgebra::RowVector3::new(-factor, -factor, 1.0));
+                        right[row] = 0.0;
+                    }
+                }
+                coupling.set_row(row, &nalgebra::RowVector3::zeros());
+                onward.set_row(row, &nalgebra::RowVector3::zeros());
+            }
+            if joint > 0 {
+                matrix -= coupling * gain;
+                right -= coupling * carried;
+            }
+            let pivot = inverse(&matrix);
+            carried = pivot * right;
+            gain = pivot * onward;
+            self.target[joint] = carried;
+            self.gains[joint] = gain;
+        }
+        for joint in (0..joints.saturating_sub(1)).rev() {
+            let later = self.gains[joint] * self.target[joint + 1];
+            self.target[joint] -= later;
+        }
+    }
+
+    /// Rates that the impulses leave, with the proximal term.
+    fn find_rates(&mut self) {
+        for joint in 0..self.rates.len() {
+            let mut rate = self.drive[joint] + self.own[joint] * self.impulses[joint];
+            if let Some(before) = joint.checked_sub(1) {
+                rate += self.next[before].tr_mul(&self.impulses[before]);
+            }
+            if let Some(after) = self.impulses.get(joint + 1) {
+                rate += self.next[joint] * after;
+            }
+            let drawn = self.impulses[joint] - self.before[joint];
+            let proximal = self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL;
+            self.rates[joint] = rate + proximal;
+        }
+    }
+
+    /// Goes over programs with given bounds to modes that hold, or to bounds that agree with the impulses.
+    fn bounded(&mut self, tolerance: f64, solution: &mut Solution) {
+        self.impulses.copy_from_slice(&self.before);
+        for pass in 0..BOUND_PASSES {
+            self.set_bounds();
+            self.descend(tolerance, &mut solution.passes);
+            let error = self.bound_error();
+            self.read_modes();
+            self.kept.copy_from_slice(&self.impulses);
+            if self.newton(PASSES, false, tolerance, &mut solution.passes) {
+                return;
+            }
+            self.impulses.copy_from_slice(&self.kept);
+            self.read_modes();
+            if pass % 4 == 0 && self.newton(SINGLE_PASSES, true, tolerance, &mut solution.passes) {
+                return;
+            }
+            self.impulses.copy_from_slice(&self.kept);
+            self.read_modes();
+            solution.bound_error = error;
+            if error <= SAME_BOUND {
+                return;
+            }
+        }
+    }
+
+    fn set_bounds(&mut self) {
+        for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
+            *bound = self.coefficient * (impulse.x.max(0.0) + impulse.y.max(0.0));
+        }
+    }
+
+    /// Largest difference of a bound from what the impulses allow, as part of the largest bound.
+    fn bound_error(&self) -> f64 {
+        let (mut largest, mut error) = (f64::MIN_POSITIVE, 0.0_f64);
+        for (bound, impulse) in self.bounds.iter().zip(&self.impulses) {
+            let allowed = self.coefficient * (impulse.x + impulse.y);
+            largest = largest.max(*bound).max(allowed);
+            error = error.max((bound - allowed).abs());
+        }
+        error / largest
+    }
+
+    /// Modes that belong to the impulses of a program with given bounds.
+    fn read_modes(&mut self) {
+        for (joint, mode) in self.modes.iter_mut().enumerate() {
+            let (impulse, bound) = (&self.impulses[joint], self.bounds[joint]);
+            *mode = Mode {
+                pressed: [impulse.x > 0.0, impulse.y > 0.0],
+                along: if impulse.z.abs() < bound {
+                    Along::Stick
+                } else {
+                    Along::Slip(impulse.z.signum())
+                },
+            }
+            .settled();
+        }
+    }
+
+    /// Least and largest impulse of a row while the bounds are given.
+    fn limits(&self, joint: usize, row: usize) -> (f64, f64) {
+        if row < 2 {
+            (0.0, f64::INFINITY)
+        } else {
+            (-self.bounds[joint], self.bounds[joint])
+        }
+    }
+
+    /// Solves the program with given bounds: projected Newton steps with a search along them.
+    fn descend(&mut self, tolerance: f64, count: &mut usize) {
+        for joint in 0..self.impulses.len() {
+            for row in 0..3 {
+                let (least, most) = self.limits(joint, row);
+                self.impulses[joint][row] = self.impulses[joint][row].clamp(least, most);
+            }
+        }
+        let mut height = self.height();
+        for _ in 0..BOUNDED_STEPS {
+            // `height` has left the rates at the impulses.
+            let mut open = 0.0_f64;
+            for joint in 0..self.impulses.len() {
+                for row in 0..3 {
+                    let (least, most) = self.limits(joint, row);
+                    let (impulse, rate) = (self.impulses[joint][row], self.rates[joint][row]);
+                    let held = (impulse <= least && rate > 0.0) || (impulse >= most && rate < 0.0);
+                    self.equations[joint][row] = if held || least >= most {
+                        Equation::Given(impulse)
+                    } else {
+                        open = open.max(rate.abs());
+                        Equation::Still
+                    };
+                }
+            }
+            if open <= 0.1 * tolerance {
+                break;
+            }
+            self.balance();
+            *count += 1;
+            self.trial.copy_from_slice(&self.impulses);
+            self.slopes.copy_from_slice(&self.rates);
+            let mut part = 1.0;
+            loop {
+                let mut slope = 0.0;
+                for joint in 0..self.impulses.len() {
+                    for row in 0..3 {
+                        let (least, most) = self.limits(joint, row);
+                        let from = self.trial[joint][row];
+                        let to = from + part * (self.target[joint][row] - from);
+                        self.impulses[joint][row] = to.clamp(least, most);
+                        slope += self.slopes[joint][row] * (self.impulses[joint][row] - from);
+                    }
+                }
+                let reached = self.height();
+                if reached <= height + DESCENT * slope || part < LEAST_PART {
+                    height = reached;
+                    break;
+                }
+                part *= 0.5;
+            }
+        }
+    }
+
+    /// What the program with given bounds makes least, in J; leaves the rates.
+    fn height(&mut self) -> f64 {
+        self.find_rates();
+        let mut twice = 0.0;
+        for joint in 0..self.impulses.len() {
+            let impulse = &self.impulses[joint];
+            let drawn = impulse - self.before[joint];
+            let proximal = self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL;
+            twice += impulse.dot(&(self.rates[joint] + self.drive[joint] - proximal))
+                + drawn.dot(&proximal);
+        }
+        0.5 * twice
+    }
+}
+
+/// Inverse by cofactors.
+fn inverse(m: &Matrix3<f64>) -> Matrix3<f64> {
+    let cofactor = |a: f64, b: f64, c: f64, d: f64| a * d - b * c;
+    let (c11, c12, c13) = (
+        cofactor(m.m22, m.m23, m.m32, m.m33),
+        cofactor(m.m23, m.m21, m.m33, m.m31),
+        cofactor(m.m21, m.m22, m.m31, m.m32),
+    );
+    let scale = 1.0 / (m.m11 * c11 + m.m12 * c12 + m.m13 * c13);
+    Matrix3::new(
+        c11,
+        cofactor(m.m13, m.m12, m.m33, m.m32),
+        cofactor(m.m12, m.m13, m.m22, m.m23),
+        c12,
+        cofactor(m.m11, m.m13, m.m31, m.m33),
+        cofactor(m.m13, m.m11, m.m23, m.m21),
+        c13,
+        cofactor(m.m12, m.m11, m.m32, m.m31),
+        cofactor(m.m11, m.m12, m.m21, m.m22),
+    ) * scale
+}

@@ -1,0 +1,235 @@
+//! Where the blocks of a row are when joints may slip: the position of each block, and the coordinates of the joint between two.
+//!
+//! The faces of a joint have turned against each other by `phi` and slid along each other. With `e` the unit vector from
+//! intrados to extrados at the mean angle of the faces, `n = s k x e` the normal towards the right block (`s` the handedness of
+//! the row) and `d` from the left face's intrados corner to that of the right face, the offset is `d . e`, and the gap at the
+//! place `x` along the joint is `d . n + 2 s tan(phi/2) x`. Faces that are offset touch at the ends of their overlap. The gaps
+//! there and the offset are the three coordinates; their gradients are exact, so that a solution for their rates needs no other
+//! correction than the curvature of the motion.
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+use super::blocks::{Joint, Row};
+use super::geometry::field::turned;
+
+/// The position of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// Its centre of gravity in metres.
+    pub centre_m: Vector2<f64>,
+    /// Its rotation in radians, anticlockwise.
+    pub rotation_rad: f64,
+    /// Cosine and sine of half the rotation.
+    half: Vector2<f64>,
+}
+
+impl Position {
+    /// Of a support, whose faces are given in the undeformed row.
+    pub const HELD: Self = Self {
+        centre_m: Vector2::new(0.0, 0.0),
+        rotation_rad: 0.0,
+        half: Vector2::new(1.0, 0.0),
+    };
+
+    /// A block with the given centre and rotation.
+    #[must_use]
+    pub fn new(centre_m: Vector2<f64>, rotation_rad: f64) -> Self {
+        let (sin, cos) = (0.5 * rotation_rad).sin_cos();
+        Self {
+            centre_m,
+            rotation_rad,
+            half: Vector2::new(cos, sin),
+        }
+    }
+
+    /// Where the point is that has this arm from the centre in the undeformed row.
+    #[must_use]
+    pub fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
+        self.centre_m + product(product(self.half, self.half), arm_m)
+    }
+}
+
+/// Product of complex numbers: turns one vector by the angle of a unit vector.
+fn product(a: Vector2<f64>, b: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(a.x * b.x - a.y * b.y, a.y * b.x + a.x * b.y)
+}
+
+/// A joint as it belongs to its two blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct Faces {
+    /// From the centres of the left and the right block to the intrados corner.
+    arms_m: [Vector2<f64>; 2],
+    along: Vector2<f64>,
+    /// Length of the faces in metres.
+    pub thickness_m: f64,
+    handedness: f64,
+}
+
+impl Faces {
+    /// The joints of a row.
+    #[must_use]
+    pub fn of_row(row: &Row) -> Vec<Self> {
+        let centre = |block: Option<usize>| {
+            let block = block.and_then(|block| row.blocks().get(block));
+            block.map_or(Vector2::zeros(), |block| block.centre_m)
+        };
+        let faces = |(index, joint): (usize, &Joint)| Self {
+            arms_m: [centre(index.checked_sub(1)), centre(Some(index))]
+                .map(|centre| joint.intrados_m - centre),
+            along: joint.along(),
+            thickness_m: joint.thickness_m(),
+            handedness: row.handedness(),
+        };
+        row.joints().iter().enumerate().map(faces).collect()
+    }
+
+    /// The joint between two blocks at these positions.
+    #[must_use]
+    pub fn contact(&self, left: &Position, right: &Position) -> Contact {
+        let s = self.handedness;
+        let half = product(right.half, Vector2::new(left.half.x, -left.half.y));
+        let along = product(product(left.half, right.half), self.along);
+        let normal = turned(along) * s;
+        let corners = [left.of_arm(self.arms_m[0]), right.of_arm(self.arms_m[1])];
+        let apart = corners[1] - corners[0];
+        let offset_m = apart.dot(&along);
+        let tangent = half.y / half.x;
+        let ends_m = [
+            0.5 * offset_m.abs(),
+            self.thickness_m * half.x - 0.5 * offset_m.abs(),
+        ];
+        let gap = |x: f64| apart.dot(&normal) + 2.0 * s * tangent * x;
+        Contact {
+            middle_m: (corners[0] + corners[1]) * 0.5,
+            along,
+            normal,
+            half,
+            ends_m,
+            coordinates_m: Vector3::new(gap(ends_m[0]), gap(ends_m[1]), offset_m),
+        }
+    }
+}
+
+/// A joint in the present position of its blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact {
+    /// Midway between the intrados corners of the faces.
+    pub middle_m: Vector2<f64>,
+    /// Unit vector from intrados to extrados, at the mean angle of the faces.
+    pub along: Vector2<f64>,
+    /// Unit normal towards the right block.
+    pub normal: Vector2<f64>,
+    /// Cosine and sine of half the angle between the faces.
+    half: Vector2<f64>,
+    /// Where the overlap of the faces begins and ends, along the joint from `middle_m`, in metres.
+    pub ends_m: [f64; 2],
+    /// Gaps at these ends and the offset of the right face towards the extrados, in metres.
+    pub coordinates_m: Vector3<f64>,
+}
+
+impl Contact {
+    /// By how much the forces at the ends of the overlap lean along the joint: they are normal to the face that they press.
+    fn lean(&self, faces: &Faces) -> f64 {
+        let offset_m = self.coordinates_m.z;
+        if offset_m == 0.0 {
+            0.0
+        } else {
+            faces.handedness * self.half.y / self.half.x * offset_m.signum()
+        }
+    }
+
+    /// Gradients of the three coordinates, a row each, in the velocities (x, y) and the rate of rotation of the right block,
+    /// and those in the motion of the left block, with the centres of the blocks.
+    #[must_use]
+    pub fn gradients(
+        &self,
+        faces: &Faces,
+        left_m: Vector2<f64>,
+        right_m: Vector2<f64>,
+    ) -> [Matrix3<f64>; 2] {
+        let s = faces.handedness;
+        let c = self.half.x;
+        let lean = self.lean(faces);
+        let forces = [
+            self.normal + self.along * lean,
+            self.normal - self.along * lean,
+            self.along,
+        ];
+        let squared = c * c;
+        let couples = [
+            s * self.ends_m[0] / squared,
+            s * (self.ends_m[1] / squared - faces.thickness_m * self.half.y * self.half.y / c),
+            0.0,
+        ];
+        let rows = |centre_m: Vector2<f64>, sign: f64| {
+            let arm = self.middle_m - centre_m;
+            let mut rows = Matrix3::zeros();
+            for (row, (force, couple)) in forces.iter().zip(couples).enumerate() {
+                rows[(row, 0)] = sign * force.x;
+                rows[(row, 1)] = sign * force.y;
+                rows[(row, 2)] = sign * (arm.perp(force) + couple);
+            }
+            rows
+        };
+        [rows(left_m, -1.0), rows(right_m, 1.0)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::geometry::ring::Ring;
+
+    /// Central differences of coordinates of order one over steps of 1e-6: errors of about 1e-10.
+    #[test]
+    fn gradients_are_those_of_the_coordinates() {
+        let ring = Ring::new(0.2, 2.5).unwrap();
+        let row = Row::arch(&ring, 3, 2.0, 1.0, 1.0).unwrap();
+        let faces = Faces::of_row(&row)[1];
+        let centres = [row.blocks()[0].centre_m, row.blocks()[1].centre_m];
+        for (shift, turns) in [
+            (Vector2::new(0.03, 0.01), [0.1, -0.2]),
+            (Vector2::new(-0.02, 0.02), [0.05, 0.3]),
+        ] {
+            let base = [
+                [centres[0].x, centres[0].y, turns[0]],
+                [centres[1].x + shift.x, centres[1].y + shift.y, turns[1]],
+            ];
+            let place = |at: &[[f64; 3]; 2]| {
+                let [left, right] = at.map(|p| Position::new(Vector2::new(p[0], p[1]), p[2]));
+                (faces.contact(&left, &right), left, right)
+            };
+            let (contact, left, right) = place(&base);
+            let gradients = contact.gradients(&faces, left.centre_m, right.centre_m);
+            assert!(contact.coordinates_m.z.abs() > 1e-3);
+            for block in 0..2 {
+                for axis in 0..3 {
+                    let moved = |by: f64| {
+                        let mut at = base;
+                        at[block][axis] += by;
+                        place(&at).0.coordinates_m
+                    };
+                    let slope = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                    let miss: Vector3<f64> = slope - gradients[block].column(axis);
+                    assert!(miss.norm() < 1e-8, "{block} {axis} {miss}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_undeformed_row_is_shut() {
+        let ring = Ring::new(0.15, 2.7).unwrap();
+        let row = Row::arch(&ring, 7, 10.0, 1.0, 1.0).unwrap();
+        let position = |block: Option<usize>| {
+            let block = block.and_then(|block| row.blocks().get(block));
+            block.map_or(Position::HELD, |block| Position::new(block.centre_m, 0.0))
+        };
+        for (joint, faces) in Faces::of_row(&row).iter().enumerate() {
+            let (left, right) = (position(joint.checked_sub(1)), position(Some(joint)));
+            let contact = faces.contact(&left, &right);
+            assert!(contact.coordinates_m.norm() < 1e-14);
+            assert!(contact.ends_m[0] < 1e-14 && (contact.ends_m[1] - 1.5).abs() < 1e-14);
+        }
+    }
+}
