@@ -8,7 +8,7 @@ mod program;
 use std::fs;
 use std::path::Path;
 
-use archrock::dynamics::free_hinges::{FreeHinges, Steps};
+use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::output::Figure;
 use archrock::output::map::draw;
 use archrock::scenario::{Changes, Hinges, Scenario, ScenarioErrors, Source};
@@ -113,12 +113,13 @@ fn a_cell_of_drums_is_the_history_of_their_column() {
     ));
     let map = OverturningMap::new(&scenario).unwrap();
     let column = Column::new(4.0, 0.8).unwrap().with_drums(3).unwrap();
-    let steps = Steps {
+    let steps = RowOptions {
         longest_step_s: Some(2e-3),
         shortest_step_s: None,
+        ..RowOptions::default()
     };
     let row = FreeHinges::of_column(&column).unwrap();
-    let row = row.with_steps(steps).unwrap();
+    let row = row.with_options(options).unwrap();
     for index in 0..map.count() {
         let [duration_s, amplitude_g] = map.coordinates(index);
         assert_eq!(
@@ -154,11 +155,12 @@ fn the_spread_counts_outcomes_with_half_and_double_steps() {
             GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
         let mut outcomes: Vec<_> = [1.0, 0.5, 2.0]
             .map(|factor| {
-                let steps = Steps {
+                let steps = RowOptions {
                     longest_step_s: Some(2e-2 * factor),
                     shortest_step_s: Some(1e-2 * factor),
+                    ..RowOptions::default()
                 };
-                let row = row.clone().with_steps(steps).unwrap();
+                let row = row.clone().with_options(options).unwrap();
                 let summary = row.simulate(&ground, &request, None);
                 summary.ok().map(|summary| summary.outcome.name())
             })

@@ -2,7 +2,7 @@
 
 mod common;
 
-use archrock::dynamics::free_hinges::{FreeHinges, FreeHingesError, Steps};
+use archrock::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::stability::StabilityError;
@@ -265,9 +265,9 @@ proptest! {
     #[test]
     fn steps(longest_s in number(1e-5..1e-3), shortest_s in number(1e-6..1e-4)) {
         let column = Column::new(4.0, 0.8).unwrap();
-        let steps = Steps { longest_step_s: Some(longest_s), shortest_step_s: Some(shortest_s) };
+        let options = RowOptions { longest_step_s: Some(longest_s), shortest_step_s: Some(shortest_s), ..RowOptions::default() };
         let allowed = |step_s: f64| step_s > 0.0 && step_s <= 1e9;
-        match FreeHinges::of_column(&column).unwrap().with_steps(steps) {
+        match FreeHinges::of_column(&column).unwrap().with_options(options) {
             Ok(_) => prop_assert!(longest_s >= shortest_s && allowed(shortest_s) && allowed(longest_s)),
             Err(error) => match error.argument {
                 "longest_step_s" => prop_assert!(!allowed(longest_s) || longest_s < shortest_s),

@@ -10,6 +10,7 @@ use archrock::mechanics::blocks::Row;
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::equivalent::{Block, Equivalent};
 use archrock::mechanics::four_link::arch::FourLinkArch;
+use archrock::mechanics::friction::{self, FrictionError};
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::stability::onset;
 use archrock::mechanics::sway::Sway;
@@ -42,9 +43,30 @@ pub fn limit(
     }
     let model = model(&scenario)?;
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+    let options = scenario.free_hinges.unwrap_or_default();
+    let slipping = match options.friction_coefficient {
+        Some(coefficient) => {
+            let free_hinges = scenario.structure.free_hinges(options);
+            let free_hinges = free_hinges.map_err(|error| Failure::Input(error.to_string()))?;
+            Some((free_hinges, coefficient))
+        }
+        None => None,
+    };
     match format {
-        Format::Json => print(&pretty(&mechanisms::limit(&*model, gravity_m_s2))),
-        Format::Text => print(&limit_text(&*model, gravity_m_s2)),
+        Format::Json => {
+            let mut limit = mechanisms::limit(&*model, gravity_m_s2);
+            if let Some((free_hinges, coefficient)) = slipping {
+                limit["friction"] = mechanisms::friction(free_hinges.row(), coefficient)?;
+            }
+            print(&pretty(&limit))
+        }
+        Format::Text => {
+            let mut text = limit_text(&*model, gravity_m_s2);
+            if let Some((free_hinges, coefficient)) = slipping {
+                text += &friction_text(free_hinges.row(), coefficient)?;
+            }
+            print(&text)
+        }
     }
 }
 
@@ -110,6 +132,57 @@ fn row_limit(scenario: &Scenario, row: &Row, format: Format) -> Result<(), Failu
         }
     }
     print(&text)
+impl From<FrictionError> for Failure {
+    fn from(error: FrictionError) -> Self {
+        match error {
+            FrictionError::CannotStand(_) | FrictionError::NeverStands => {
+                Self::Input(format!("{error}; give a larger friction_coefficient"))
+            }
+            FrictionError::NotSolved(_) => Self::Work(error.to_string()),
+        }
+    }
+}
+
+/// What the limit analysis says of joints that slip.
+fn friction_text(row: &Row, coefficient: f64) -> Result<String, FrictionError> {
+    let mut text =
+        format!("\nwith joints that slip at a coefficient of friction of {coefficient:?}:\n");
+    for sway in [Sway::Right, Sway::Left] {
+        let side = sway.name();
+        let Some(onset) = friction::onset(row, coefficient, sway)? else {
+            let _ = writeln!(text, "  no push to the {side} starts it");
+            continue;
+        };
+        let governs = if onset.sliding_governs() {
+            "sliding governs; it takes joints to open as they slip, and is an upper bound"
+        } else {
+            "no joint slips"
+        };
+        let _ = writeln!(
+            text,
+            "  a push of {:.8} g starts it to the {side}: {governs}",
+            onset.acceleration_g
+        );
+        for joint in &onset.yields {
+            let open = match joint.opens {
+                [true, true] => Some("opens at both edges"),
+                [true, false] => Some("opens at the intrados"),
+                [false, true] => Some("opens at the extrados"),
+                [false, false] => None,
+            };
+            let slips = joint
+                .slips
+                .map(|edge| format!("slips, its right side towards the {}", edge.name()));
+            let does: Vec<String> = open.map(str::to_owned).into_iter().chain(slips).collect();
+            let _ = writeln!(text, "    joint {} {}", joint.joint, does.join(" and "));
+        }
+    }
+    let least = friction::least_coefficient(row)?;
+    let _ = writeln!(
+        text,
+        "  the least coefficient at which it stands is {least:.6}"
+    );
+    Ok(text)
 }
 
 /// The arch of a scenario; the error for a column begins with `what`, subject and verb.

@@ -118,6 +118,8 @@ pub struct Sample {
     /// [`Arch::thrust_sections_rad`](crate::mechanics::arch::Arch::thrust_sections_rad), over the thickness; `None`
     /// where there is no pressure. Only where a [`Recorder`] wants it and the model knows it; else empty.
     pub eccentricity_ratios: Vec<Option<f64>>,
+    /// Offsets of the joints, in m, the right face towards the extrados, of a row whose joints slip; else none.
+    pub offsets_m: Vec<f64>,
 }
 
 named! {
@@ -171,6 +173,8 @@ pub struct Impact {
     pub energy_before_j: f64,
     /// Kinetic energy after, in J.
     pub energy_after_j: f64,
+    /// The part of the loss that friction took, in J, where joints slip.
+    pub friction_j: Option<f64>,
     /// Rotation rates of the bodies just before.
     pub rates_before_rad_s: Vec<f64>,
     /// Rotation rates of the bodies of the mechanism after.
@@ -289,6 +293,7 @@ pub struct Samples {
     pub rotation_over_critical: Vec<Option<f64>>,
     /// Gaps of the joints of a row of blocks at intrados and extrados, in m, joint by joint; else none.
     pub gaps_m: Vec<[f64; 2]>,
+    offsets_m: Vec<f64>,
 }
 
 impl Samples {
@@ -322,6 +327,7 @@ impl Samples {
         self.energy_j.push(sample.energy_j);
         self.energy_ratio.push(sample.energy_ratio);
         self.gaps_m.extend(&sample.gaps_m);
+        self.offsets_m.extend(&sample.offsets_m);
         self.rotation_over_critical
             .push(sample.rotation_over_critical);
     }
@@ -334,6 +340,8 @@ impl Samples {
         let by_body = index * bodies..(index + 1) * bodies;
         let joints = self.gaps_m.len() / self.len();
         let by_joint = index * joints..(index + 1) * joints;
+        let slipping = self.offsets_m.len() / self.len();
+        let slipping = index * slipping..(index + 1) * slipping;
         let hinges_end = self.first_hinge.get(index + 1).copied();
         let hinges = *self.first_hinge.get(index)?..hinges_end.unwrap_or(self.hinges.len());
         Some(Sample {
@@ -352,6 +360,7 @@ impl Samples {
             rotation_over_critical: *self.rotation_over_critical.get(index)?,
             gaps_m: self.gaps_m.get(by_joint)?.to_vec(),
             eccentricity_ratios: Vec::new(),
+            offsets_m: self.offsets_m.get(slipping)?.to_vec(),
         })
     }
 

@@ -11,6 +11,7 @@ pub mod contact;
 pub mod coulomb;
 pub mod equivalent;
 pub mod four_link;
+pub mod friction;
 pub mod geometry;
 #[doc(hidden)]
 pub mod joints;

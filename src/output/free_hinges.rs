@@ -15,7 +15,8 @@ use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
 /// Writes the gaps of all joints at both edges, a row per sample: `time_s`, `gap_0_intrados_m`, `gap_0_extrados_m`
-/// and so on.
+/// and so on; where joints slip, then `slip_0_m` and so on: the offset of the right face towards the extrados (of a column: of
+/// the upper face to the right).
 ///
 /// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
 /// joint is an arc: thickness times relative rotation, plus the smaller gap.
@@ -26,15 +27,20 @@ pub struct JointsWriter<W: Write> {
 impl<W: Write> JointsWriter<W> {
     const WHAT: &str = "cannot write the joints";
 
-    /// Starts with the header for so many joints.
+    /// Starts with the header for so many joints, which slip or do not.
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn new(writer: W, joints: usize) -> Result<Self, OutputError> {
+    pub fn new(writer: W, joints: usize, slip: bool) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
         let gaps = (0..joints)
             .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
-        let header = std::iter::once("time_s".to_owned()).chain(gaps);
+        let slips = (0..joints)
+            .filter(|_| slip)
+            .map(|joint| format!("slip_{joint}_m"));
+        let header = std::iter::once("time_s".to_owned())
+            .chain(gaps)
+            .chain(slips);
         csv.write_record(header)
             .map_err(OutputError::csv(Self::WHAT))?;
         Ok(Self { csv })
@@ -48,8 +54,9 @@ impl<W: Write> JointsWriter<W> {
         const ROW: &str = "of a row of joints.csv";
         finite(ROW, &[sample.time_s])?;
         finite(ROW, sample.gaps_m.as_flattened())?;
+        finite(ROW, &sample.offsets_m)?;
         self.csv
-            .serialize((sample.time_s, &sample.gaps_m[..]))
+            .serialize((sample.time_s, &sample.gaps_m[..], &sample.offsets_m[..]))
             .map_err(OutputError::csv(Self::WHAT))
     }
 
@@ -63,7 +70,8 @@ impl<W: Write> JointsWriter<W> {
 }
 
 /// Writes the landings, a row per impact: `impact` (from 1), `time_s`, `joints_shut` and `joints_opened` (numbers with
-/// spaces between), `energy_before_j`, `energy_after_j` and `energy_taken_j`, kinetic energies.
+/// spaces between), `energy_before_j`, `energy_after_j` and `energy_taken_j`, kinetic energies, and where joints slip `friction_j`, the
+/// part that friction took.
 pub struct LandingsWriter<W: Write> {
     csv: csv::Writer<W>,
     rows: usize,
@@ -72,13 +80,13 @@ pub struct LandingsWriter<W: Write> {
 impl<W: Write> LandingsWriter<W> {
     const WHAT: &str = "cannot write the impacts";
 
-    /// Starts with the header.
+    /// Starts with the header, for joints that slip or do not.
     ///
     /// # Errors
     /// When the system refuses.
-    pub fn new(writer: W) -> Result<Self, OutputError> {
+    pub fn new(writer: W, slip: bool) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
-        csv.write_record([
+        let columns = [
             "impact",
             "time_s",
             "joints_shut",
@@ -86,8 +94,9 @@ impl<W: Write> LandingsWriter<W> {
             "energy_before_j",
             "energy_after_j",
             "energy_taken_j",
-        ])
-        .map_err(OutputError::csv(Self::WHAT))?;
+        ];
+        csv.write_record(columns.into_iter().chain(slip.then_some("friction_j")))
+            .map_err(OutputError::csv(Self::WHAT))?;
         Ok(Self { csv, rows: 0 })
     }
 
@@ -98,6 +107,7 @@ impl<W: Write> LandingsWriter<W> {
     pub fn write(&mut self, time_s: f64, impact: &Impact) -> Result<(), OutputError> {
         let (before_j, after_j) = (impact.energy_before_j, impact.energy_after_j);
         finite("of a row of impacts.csv", &[time_s, before_j, after_j])?;
+        finite("of a row of impacts.csv", impact.friction_j.as_slice())?;
         self.rows += 1;
         self.csv
             .serialize((
@@ -108,6 +118,7 @@ impl<W: Write> LandingsWriter<W> {
                 before_j,
                 after_j,
                 before_j - after_j,
+                impact.friction_j.as_slice(),
             ))
             .map_err(OutputError::csv(Self::WHAT))
     }
@@ -134,8 +145,8 @@ fn joints(hinges: &[Hinge]) -> String {
 ///
 /// Normal forces and friction are those outside impacts; `largest_friction_demand` is that of the samples, as in
 /// `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the diagonal of
-/// a column). `spread` is left out where the run was not repeated; where a repetition failed it
-/// says why, as `failed`.
+/// a column). Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and what did
+/// not converge. `spread` is left out where the run was not repeated; where a repetition failed it says why, as `failed`.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -188,6 +199,20 @@ pub fn summary(
             ("closure_error_m", run.closure_error_m),
         ] {
             put(name, number(name, value)?);
+        }
+        if let Some(sliding) = &run.sliding {
+            put("friction_coefficient", json!(model.friction_coefficient()));
+            finite("of a slip", &sliding.offsets_m)?;
+            finite("of a slip", &sliding.largest_offsets_m)?;
+            put("slips_m", json!(sliding.offsets_m));
+            put("largest_slips_m", json!(sliding.largest_offsets_m));
+            for (name, value) in [
+                ("friction_j", sliding.friction_j),
+                ("friction_bound_error", sliding.bound_error),
+            ] {
+                put(name, number(name, value)?);
+            }
+            put("unconverged_steps", json!(sliding.unconverged));
         }
         for (name, count) in [
             ("steps", run.cost.steps),

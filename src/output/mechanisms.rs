@@ -7,6 +7,7 @@ use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Block;
+use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stability::RowOnset;
 use crate::mechanics::sway::Sway;
@@ -27,6 +28,44 @@ pub fn hinges(hinges: &[Hinge]) -> Value {
             }
         })
         .collect()
+}
+
+/// Limit analysis of a row whose joints slip with this coefficient: the associated bound to either side, whether sliding governs
+/// it, its mechanism, and the least coefficient with which the row stands.
+///
+/// # Errors
+/// When the row does not stand with this coefficient, or a programme is not solved.
+pub fn friction(row: &Row, coefficient: f64) -> Result<Value, FrictionError> {
+    let mut sides = serde_json::Map::new();
+    for sway in [Sway::Right, Sway::Left] {
+        let onset = friction::onset(row, coefficient, sway)?;
+        let mechanism = |onset: &FrictionOnset| -> Value {
+            let joints = onset.yields.iter().map(|joint| {
+                let [intrados, extrados] = joint.opens;
+                json!({
+                    "joint": joint.joint,
+                    "opens_intrados": intrados,
+                    "opens_extrados": extrados,
+                    "slips_towards": joint.slips.map(Edge::name),
+                })
+            });
+            joints.collect()
+        };
+        sides.insert(
+            sway.name().to_owned(),
+            json!({
+                "incipient_acceleration_g": onset.as_ref().map(|onset| onset.acceleration_g),
+                "sliding_governs": onset.as_ref().is_some_and(FrictionOnset::sliding_governs),
+                "mechanism": onset.as_ref().map(mechanism),
+            }),
+        );
+    }
+    let least_coefficient = friction::least_coefficient(row)?;
+    let mut result = json!({ "coefficient": coefficient, "least_coefficient": least_coefficient });
+    if let Some(more) = result.as_object_mut() {
+        more.append(&mut sides);
+    }
+    Ok(result)
 }
 
 /// Result of `limit` for a row of blocks: the push that starts it to each side, by the static programme, and the joints

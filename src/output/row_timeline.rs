@@ -345,6 +345,7 @@ mod tests {
             rotation_over_critical: None,
             gaps_m: Vec::new(),
             eccentricity_ratios: Vec::new(),
+            offsets_m: Vec::new(),
         }
     }
 

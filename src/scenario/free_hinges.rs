@@ -1,22 +1,26 @@
-//! Joints that open and shut anywhere: `[free_hinges]`.
+//! Joints that open and shut anywhere, and may slip: `[free_hinges]`.
 
 use std::ops::Bound::Included;
 
 use super::table::{Number, Reading, Table};
-use crate::dynamics::free_hinges::Steps;
+use crate::dynamics::free_hinges::RowOptions;
 
 /// With shorter steps a run takes forever; longer ones miss the motion.
 const STEP_S: Number = Number(Included(1e-9), Included(1.0));
+/// Joints of stone have 0.5 to 0.8. Beyond the upper end nothing slips, and below the lower one nothing stands.
+const COEFFICIENT: Number = Number(Included(1e-3), Included(1e3));
 
 /// Reads `[free_hinges]`, which may be empty.
-pub(super) fn read(table: &mut Table<'_>) -> Reading<Steps> {
+pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
     let longest_step_s = table.optional("longest_step_s", &STEP_S);
     let shortest_step_s = table.optional("shortest_step_s", &STEP_S);
-    let steps = Steps {
+    let friction_coefficient = table.optional("friction_coefficient", &COEFFICIENT);
+    let options = RowOptions {
         longest_step_s: longest_step_s?,
         shortest_step_s: shortest_step_s?,
+        friction_coefficient: friction_coefficient?,
     };
-    steps
+    options
         .checked()
-        .map_err(|error| table.wrong("longest_step_s", format!("does not fit: {error}")))
+        .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
 }

@@ -51,7 +51,7 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::dynamics::free_hinges::Steps;
+use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, Model, Request};
 use crate::mechanics::four_link::impact::ImpactLaw;
@@ -108,9 +108,9 @@ pub struct Scenario {
     /// What stands on the ground.
     #[serde(flatten)]
     pub structure: Structure,
-    /// Steps of the model whose joints open and shut anywhere; `None`: four links.
+    /// Options of the model whose joints open and shut anywhere; `None`: four links.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub free_hinges: Option<Steps>,
+    pub free_hinges: Option<RowOptions>,
     /// How the ground moves; `None`: it stays still.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,

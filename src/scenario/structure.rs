@@ -11,7 +11,7 @@ use super::masonry::{self, Beside};
 use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Table};
 use crate::argument::{plain, rounded_up, short};
-use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, Steps};
+use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::arch::{self, Arch};
 use crate::mechanics::blocks::MAX_BLOCKS;
@@ -141,13 +141,13 @@ impl Structure {
     ///
     /// # Errors
     /// When it is an arch without voussoirs, or cannot stand.
-    pub fn free_hinges(&self, steps: Steps) -> Result<FreeHinges, FreeHingesError> {
+    pub fn free_hinges(&self, options: RowOptions) -> Result<FreeHinges, FreeHingesError> {
         let model = match self {
             Self::Arch(arch) => FreeHinges::of_arch(arch)?,
             Self::Column(column) => FreeHinges::of_column(column)?,
             Self::Masonry(masonry) => FreeHinges::new(masonry.row().clone())?,
         };
-        Ok(model.with_steps(steps)?)
+        Ok(model.with_options(options)?)
     }
 }
 

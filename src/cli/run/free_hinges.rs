@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::thread::{self, JoinHandle};
 
 use archrock::dynamics::free_hinges::spread::{REPETITIONS, SAME_PEAK_RATIO, Spread};
-use archrock::dynamics::free_hinges::{FreeHinges, HalfCycle};
+use archrock::dynamics::free_hinges::{FreeHinges, HalfCycle, Sliding};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::{Model as _, Recorder, Request, SimulationError};
@@ -151,6 +151,7 @@ impl<'a> Tables<'a> {
         folder: Option<&'a mut Folder>,
     ) -> Result<Self, OutputError> {
         let blocks = model.bodies();
+        let slip = model.friction_coefficient().is_some();
         let (mut rotations, mut poses): (Option<File<'a>>, Option<File<'a>>) = (None, None);
         let (mut joints, mut events, mut landings) = (None, None, None);
         for (name, file) in folder.into_iter().flat_map(Folder::files) {
@@ -158,9 +159,11 @@ impl<'a> Tables<'a> {
             match name {
                 ROTATIONS => rotations = Some(file),
                 POSES => poses = Some(file),
-                JOINTS => joints = Some(JointsWriter::new(file, model.row().joints().len())?),
+                JOINTS => {
+                    joints = Some(JointsWriter::new(file, model.row().joints().len(), slip)?);
+                }
                 EVENTS => events = Some(EventsWriter::of_row(file)?),
-                IMPACTS => landings = Some(LandingsWriter::new(file)?),
+                IMPACTS => landings = Some(LandingsWriter::new(file, slip)?),
                 _ => {}
             }
         }
@@ -326,7 +329,13 @@ fn words(
     }
     text += &incipient(scenario, model, ground, history);
     text += &cut_short(scenario, ground, history);
-    if let Some(thrust) = &history.thrust {
+    if let Some(sliding) = history
+        .free_hinges
+        .as_deref()
+        .and_then(|run| run.sliding.as_ref())
+    {
+        text += &slips(model, sliding, history.outcome);
+    } else if let Some(thrust) = &history.thrust {
         let friction = thrust.largest_friction;
         let _ = writeln!(
             text,
@@ -344,6 +353,64 @@ fn words(
         }
         _ => {}
     }
+    text
+}
+
+/// Slips below this part of the thickness of a joint are not worth a word.
+const LEAST_SLIP_RATIO: f64 = 1e-6;
+/// Joints that the words tell of.
+const SLIPPED: usize = 4;
+
+/// Which joints slipped, what is left of it, and what friction took.
+fn slips(model: &FreeHinges, sliding: &Sliding, outcome: Outcome) -> String {
+    let joints = model.row().joints().iter().zip(&sliding.largest_offsets_m);
+    let mut slipped: Vec<(usize, f64, f64)> = joints
+        .zip(&sliding.offsets_m)
+        .enumerate()
+        .filter(|(_, ((joint, largest_m), _))| **largest_m > LEAST_SLIP_RATIO * joint.thickness_m())
+        .map(|(index, ((_, largest_m), end_m))| (index, *largest_m, *end_m))
+        .collect();
+    slipped.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut text =
+        match &slipped[..] {
+            [] => "  no joint slipped".to_owned(),
+            [..] => {
+                let named = slipped.iter().take(SLIPPED).map(|(joint, largest_m, end_m)| {
+                let (largest_mm, end_mm) = (1e3 * largest_m, 1e3 * end_m.abs());
+                if outcome == Outcome::Rest && (largest_mm - end_mm).abs() > 0.05 * largest_mm {
+                    format!("joint {joint} slipped {largest_mm:.3} mm, {end_mm:.3} mm in the end")
+                } else {
+                    format!("joint {joint} slipped {largest_mm:.3} mm")
+                }
+            });
+                let mut text = format!("  {}", named.collect::<Vec<_>>().join("; "));
+                if slipped.len() > SLIPPED {
+                    let _ = write!(text, "; {} more slipped less", slipped.len() - SLIPPED);
+                }
+                text
+            }
+        };
+    let _ = write!(text, "; friction took {:.3} J", sliding.friction_j);
+    if outcome == Outcome::Rest
+        && let Some(most_m) = slipped
+            .iter()
+            .map(|(_, _, end_m)| end_m.abs())
+            .max_by(f64::total_cmp)
+    {
+        let _ = write!(
+            text,
+            "\n  at rest, but not as it stood: joints are up to {:.3} mm off",
+            1e3 * most_m
+        );
+    }
+    if sliding.unconverged > 0 {
+        let _ = write!(
+            text,
+            "\n  friction did not converge in {} steps: bounds off by up to {:.1e}; take shorter steps",
+            sliding.unconverged, sliding.bound_error
+        );
+    }
+    text.push('\n');
     text
 }
 

@@ -39,41 +39,55 @@ pub struct FreeHinges {
     incipient_g: [Option<f64>; 2],
     /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
     first: Option<FirstMechanism>,
-    steps_s: Steps,
+    options: RowOptions,
 }
 
-/// Steps that were asked for; without one, it follows the size of the row.
+/// What was asked of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Steps {
-    /// The longest, in seconds.
+pub struct RowOptions {
+    /// The longest step, in seconds; without it, it follows the size of the row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
-    /// Landings within this time, in seconds, are one.
+    /// Landings within this time, in seconds, are one; without it, it follows the size of the row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortest_step_s: Option<f64>,
+    /// Coulomb's coefficient of friction at every joint; without it joints do not slip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_coefficient: Option<f64>,
 }
 
-impl Steps {
-    /// Refuses steps that are none.
+impl RowOptions {
+    /// Refuses steps and coefficients that are none.
     pub(crate) fn checked(self) -> Result<Self, ArgumentError> {
         for (argument, value) in [
             ("longest_step_s", self.longest_step_s),
             ("shortest_step_s", self.shortest_step_s),
+            ("friction_coefficient", self.friction_coefficient),
         ] {
             if let Some(value) = value {
                 above(argument, value, 0.0, 1e9)?;
             }
         }
-        if let (Some(longest_s), Some(shortest_s)) = (self.longest_step_s, self.shortest_step_s)
-            && longest_s < shortest_s
-        {
-            return Err(ArgumentError {
-                argument: "longest_step_s",
-                value: longest_s,
-                allowed: format!("at least the shortest step, {shortest_s:?}"),
-            });
+        let wrong = |argument, value, allowed| {
+            Err(ArgumentError {
+                argument,
+                value,
+                allowed,
+            })
+        };
+        match (self.longest_step_s, self.shortest_step_s) {
+            (_, Some(shortest_s)) if self.friction_coefficient.is_some() => wrong(
+                "shortest_step_s",
+                shortest_s,
+                "left out where joints slip: then all steps are the longest".to_owned(),
+            ),
+            (Some(longest_s), Some(shortest_s)) if longest_s < shortest_s => wrong(
+                "longest_step_s",
+                longest_s,
+                format!("at least the shortest step, {shortest_s:?}"),
+            ),
+            _ => Ok(self),
         }
-        Ok(self)
     }
 }
 
@@ -115,7 +129,7 @@ impl FreeHinges {
             row,
             incipient_g,
             first,
-            steps_s: Steps::default(),
+            options: RowOptions::default(),
         })
     }
 
@@ -159,13 +173,20 @@ impl FreeHinges {
         )?)
     }
 
-    /// The same with other steps.
+    /// The same with other options.
     ///
     /// # Errors
-    /// When a step is not positive and finite, or the longest is shorter than the shortest.
-    pub fn with_steps(self, steps_s: Steps) -> Result<Self, ArgumentError> {
-        let steps_s = steps_s.checked()?;
-        Ok(Self { steps_s, ..self })
+    /// When a step or the coefficient is not positive and finite, the longest step is shorter than the shortest, or a
+    /// shortest step is given for joints that slip.
+    pub fn with_options(self, options: RowOptions) -> Result<Self, ArgumentError> {
+        let options = options.checked()?;
+        Ok(Self { options, ..self })
+    }
+
+    /// Coulomb's coefficient of friction, where joints slip.
+    #[must_use]
+    pub const fn friction_coefficient(&self) -> Option<f64> {
+        self.options.friction_coefficient
     }
 
     /// The same with all steps so many times as long as those of samples, to see what depends on them.
@@ -182,9 +203,10 @@ impl FreeHinges {
 
     fn with_settings(&self, settings: &Settings) -> Self {
         Self {
-            steps_s: Steps {
+            options: RowOptions {
                 longest_step_s: Some(settings.longest_step_s),
                 shortest_step_s: Some(settings.shortest_step_s),
+                ..self.options
             },
             ..self.clone()
         }
@@ -222,20 +244,23 @@ impl FreeHinges {
     /// Steps for samples, or, ten times as coarse at landings, for the outcome alone.
     fn settings(&self, request: &Request, with_samples: bool) -> Settings {
         let (row, gravity_m_s2, end_s) = (&self.row, request.gravity_m_s2, request.end_s);
-        let mut settings = if with_samples {
-            Settings::fine(row, gravity_m_s2, end_s)
-        } else {
-            Settings::coarse(row, gravity_m_s2, end_s)
+        let friction = self.options.friction_coefficient;
+        let mut settings = match (friction, with_samples) {
+            (None, true) => Settings::fine(row, gravity_m_s2, end_s),
+            (None, false) => Settings::coarse(row, gravity_m_s2, end_s),
+            (Some(_), true) => Settings::equal_fine(row, gravity_m_s2, end_s),
+            (Some(_), false) => Settings::equal_coarse(row, gravity_m_s2, end_s),
         };
-        if let Some(longest_s) = self.steps_s.longest_step_s {
+        if let Some(longest_s) = self.options.longest_step_s {
             settings.longest_step_s = longest_s;
             settings.shortest_step_s = settings.shortest_step_s.min(longest_s);
         }
-        if let Some(shortest_s) = self.steps_s.shortest_step_s {
+        if let Some(shortest_s) = self.options.shortest_step_s {
             settings.shortest_step_s = shortest_s;
             settings.longest_step_s = settings.longest_step_s.max(shortest_s);
         }
         settings.output_step_s = with_samples.then_some(request.output_step_s);
+        settings.friction_coefficient = friction;
         settings
     }
 
@@ -324,7 +349,11 @@ impl Model for FreeHinges {
             model: self,
             ground,
             barrier_j: self.barrier_j(request.gravity_m_s2),
-            fallen_j: super::fallen_energy_j(&self.row, request.gravity_m_s2, false),
+            fallen_j: super::fallen_energy_j(
+                &self.row,
+                request.gravity_m_s2,
+                self.options.friction_coefficient.is_some(),
+            ),
             phase: 0,
             thrust: ThrustRecord::default(),
             sample: undeformed(self.row.blocks().len()),
@@ -421,7 +450,12 @@ impl Relay<'_, '_> {
 
 impl RowRecorder for Relay<'_, '_> {
     fn sample(&mut self, sample: &RowSample<'_>) -> ControlFlow<()> {
-        let state = self.doing(sample.poses, sample.potential_j);
+        let still = sample.open_joints == 0 && sample.slipping_joints == 0;
+        let state = if still {
+            State::Rest
+        } else {
+            self.doing(sample.poses, sample.potential_j)
+        };
         let pieces = self.ground.pieces();
         let piece = pieces.partition_point(|piece| piece.start_s <= sample.time_s) - 1;
         let (ground_m_s2, _) = pieces[piece].at(sample.time_s);
@@ -476,6 +510,8 @@ impl RowRecorder for Relay<'_, '_> {
                     (normal > 0.0).then(|| 0.5 * (extrados - intrados) / normal)
                 }));
         }
+        next.offsets_m.clear();
+        next.offsets_m.extend(sample.offsets_m);
         self.thrust
             .note(sample.time_s, state != State::Rest, &demand);
         match &mut self.recorder {
@@ -520,6 +556,7 @@ impl RowRecorder for Relay<'_, '_> {
                 restitution,
                 energy_before_j: landing.energy_before_j,
                 energy_after_j,
+                friction_j: landing.friction_j,
                 rates_before_rad_s: Vec::new(),
                 rates_after_rad_s: landing.rates_after_rad_s.to_vec(),
                 closed: hinges(landing.shut),
@@ -548,5 +585,6 @@ fn undeformed(blocks: usize) -> Sample {
         rotation_over_critical: None,
         gaps_m: Vec::new(),
         eccentricity_ratios: Vec::new(),
+        offsets_m: Vec::new(),
     }
 }

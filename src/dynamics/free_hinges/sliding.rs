@@ -420,7 +420,7 @@ impl<'a> Engine<'a> {
             shut: &self.shut,
             opened: &self.opened,
             energy_before_j: self.kinetic() + taken + rubbed,
-            energy_taken_j: taken,
+            energy_taken_j: taken + rubbed,
             friction_j: Some(rubbed),
             rotations_rad: &self.rotations,
             rates_after_rad_s: &self.rates,

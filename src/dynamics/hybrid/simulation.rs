@@ -287,6 +287,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
             restitution: self.after.map_or(0.0, |link| link.restitution),
             energy_before_j: energy_before * joule,
             energy_after_j: energy_after * joule,
+            friction_j: None,
             rates_before_rad_s: rates(self.before, self.sway, self.rate_before_rad_s),
             rates_after_rad_s: rates(
                 self.after.unwrap_or(self.before),
@@ -602,6 +603,7 @@ impl<'r> Sampler<'r> {
             rotation_over_critical: Some(rotation_over_critical),
             gaps_m: Vec::new(),
             eccentricity_ratios,
+            offsets_m: Vec::new(),
         }
     }
 

@@ -1,0 +1,271 @@
+//! Limit analysis of a row whose joints slip by Coulomb's law.
+//!
+//! A joint carries compression at its two corners, `N_I, N_E >= 0`, and `|T| <= mu (N_I + N_E)` along itself. The largest push under
+//! which such forces balance the row is a linear programme. Its multipliers are the mechanism: which joints open about which
+//! edge, and which slip. They obey the associated flow rule, by which a joint that slips also opens, by `mu` times the slip. Stone
+//! does not do that, and the push is an upper bound of what the row bears; it is the answer where no joint of the
+//! mechanism slips.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
+};
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::blocks::Row;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
+
+/// Rates below this part of the largest one count as none.
+const LEAST_RATE: f64 = 1e-4;
+/// The least coefficient is found to within this.
+const COEFFICIENT_TOLERANCE: f64 = 1e-7;
+/// Coefficients beyond this one are as good as no sliding.
+const LARGEST_COEFFICIENT: f64 = 100.0;
+/// Friction that is short of so many times the weight at every joint is not short.
+const LEAST_SHORTAGE: f64 = 1e-8;
+
+/// What a joint does in a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Yield {
+    /// Which joint.
+    pub joint: usize,
+    /// Whether it opens at the intrados and at the extrados, beyond what slipping needs.
+    pub opens: [bool; 2],
+    /// The edge towards which the right block slips, if it does.
+    pub slips: Option<Edge>,
+}
+
+/// The push that starts a row whose joints may slip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionOnset {
+    /// Ground acceleration, without its sign, in units of gravity: the associated bound.
+    pub acceleration_g: f64,
+    /// What the joints of the mechanism do, from left to right.
+    pub yields: Vec<Yield>,
+}
+
+impl FrictionOnset {
+    /// Whether a joint of the mechanism slips.
+    #[must_use]
+    pub fn sliding_governs(&self) -> bool {
+        self.yields.iter().any(|joint| joint.slips.is_some())
+    }
+}
+
+/// Why there is no such push.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FrictionError {
+    /// No forces balance its weight.
+    #[error("with a coefficient of friction of {0:?} the row cannot carry its own weight")]
+    CannotStand(f64),
+    /// It falls with any coefficient.
+    #[error("the row cannot carry its own weight, whatever the friction")]
+    NeverStands,
+    /// The programme was not solved.
+    #[error("the limit analysis with friction was not solved ({0})")]
+    NotSolved(SolverStatus),
+}
+
+/// The largest horizontal push towards a side that a row bears, and the mechanism in which it then gives way; `None` where it
+/// bears any.
+///
+/// # Errors
+/// When the row does not stand with this coefficient, or the programme is not solved.
+pub fn onset(
+    row: &Row,
+    coefficient: f64,
+    sway: Sway,
+) -> Result<Option<FrictionOnset>, FrictionError> {
+    if !stands(row, coefficient)? {
+        return Err(FrictionError::CannotStand(coefficient));
+    }
+    let program = Program::new(row, coefficient, Goal::Push);
+    match program.solve(-sway.sign())? {
+        Answer::Found(solution) => Ok(Some(FrictionOnset {
+            acceleration_g: sway.sign() * solution.goal,
+            yields: solution.yields,
+        })),
+        Answer::Unbounded => Ok(None),
+        Answer::Infeasible => Err(FrictionError::CannotStand(coefficient)),
+    }
+}
+
+/// Whether a row carries its own weight with this coefficient.
+fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
+    match Program::new(row, coefficient, Goal::Shortage).solve(1.0)? {
+        Answer::Found(solution) => Ok(solution.goal <= LEAST_SHORTAGE),
+        Answer::Unbounded => Ok(true),
+        Answer::Infeasible => Err(FrictionError::NeverStands),
+    }
+}
+
+/// The least coefficient of friction with which a row carries its own weight, to within 1e-7.
+///
+/// # Errors
+/// When the row falls with any, or a programme is not solved.
+pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
+    let (mut low, mut high) = (0.0, LARGEST_COEFFICIENT);
+    if !stands(row, high)? {
+        return Err(FrictionError::NeverStands);
+    }
+    while high - low > COEFFICIENT_TOLERANCE {
+        let middle = 0.5 * (low + high);
+        if stands(row, middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok(high)
+}
+
+/// What a programme asks for.
+#[derive(Clone, Copy, PartialEq)]
+enum Goal {
+    /// The largest push, in units of gravity.
+    Push,
+    /// By how much friction has to exceed its bound at every joint, in units of the weight, for the row to stand.
+    Shortage,
+}
+
+/// The answer of a programme.
+enum Answer {
+    Found(Solution),
+    /// The goal has no bound.
+    Unbounded,
+    /// No forces balance the row.
+    Infeasible,
+}
+
+struct Solution {
+    goal: f64,
+    yields: Vec<Yield>,
+}
+
+/// Unknowns: the goal, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: the equilibrium of every
+/// block, then four conditions a joint.
+struct Program {
+    matrix: CscMatrix,
+    right: Vec<f64>,
+    blocks: usize,
+    joints: usize,
+}
+
+impl Program {
+    fn new(row: &Row, coefficient: f64, goal: Goal) -> Self {
+        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let (size_m, mass_kg) = (row.size_m(), row.mass_kg());
+        let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        let mut put = |row: usize, column: usize, value: f64| {
+            rows.push(row);
+            columns.push(column);
+            values.push(value);
+        };
+        let mut right = Vec::with_capacity(3 * blocks + 4 * joints);
+        for (index, block) in row.blocks().iter().enumerate() {
+            let weight = block.mass_kg / mass_kg;
+            if goal == Goal::Push {
+                put(3 * index, 0, weight);
+            }
+            right.extend([0.0, weight, 0.0]);
+        }
+        for (index, joint) in row.joints().iter().enumerate() {
+            let along = joint.along();
+            let normal = Vector2::new(-along.y, along.x) * row.handedness();
+            let forces = [
+                (joint.intrados_m, normal),
+                (joint.extrados_m, normal),
+                (joint.intrados_m, along),
+            ];
+            for (block, side) in [(index.checked_sub(1), -1.0), (Some(index), 1.0)] {
+                let Some((number, block)) =
+                    block.and_then(|number| Some((number, row.blocks().get(number)?)))
+                else {
+                    continue;
+                };
+                for (kind, (point_m, force)) in forces.iter().enumerate() {
+                    let moment = (point_m - block.centre_m).perp(force) / size_m;
+                    for (axis, value) in [force.x, force.y, moment].into_iter().enumerate() {
+                        put(3 * number + axis, 1 + 3 * index + kind, side * value);
+                    }
+                }
+            }
+            let [intrados, extrados, along] = [0, 1, 2].map(|kind| 1 + 3 * index + kind);
+            let first = 3 * blocks + 4 * index;
+            put(first, intrados, -1.0);
+            put(first + 1, extrados, -1.0);
+            for (slip, sign) in [(2, 1.0), (3, -1.0)] {
+                put(first + slip, intrados, -coefficient);
+                put(first + slip, extrados, -coefficient);
+                put(first + slip, along, sign);
+                if goal == Goal::Shortage {
+                    put(first + slip, 0, -1.0);
+                }
+            }
+            right.extend([0.0; 4]);
+        }
+        let (height, width) = (3 * blocks + 4 * joints, 1 + 3 * joints);
+        Self {
+            matrix: CscMatrix::new_from_triplets(height, width, rows, columns, values),
+            right,
+            blocks,
+            joints,
+        }
+    }
+
+    /// Makes so many times the goal least.
+    fn solve(&self, factor: f64) -> Result<Answer, FrictionError> {
+        let width = 1 + 3 * self.joints;
+        let mut objective = vec![0.0; width];
+        objective[0] = factor;
+        let settings = DefaultSettings {
+            verbose: false,
+            ..DefaultSettings::default()
+        };
+        let mut solver = DefaultSolver::new(
+            &CscMatrix::zeros((width, width)),
+            &objective,
+            &self.matrix,
+            &self.right,
+            &[
+                ZeroConeT(3 * self.blocks),
+                NonnegativeConeT(4 * self.joints),
+            ],
+            settings,
+        )
+        .expect("the dimensions fit and the settings are valid");
+        solver.solve();
+        let solution = &solver.solution;
+        match solution.status {
+            SolverStatus::Solved | SolverStatus::AlmostSolved => {}
+            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                return Ok(Answer::Infeasible);
+            }
+            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
+                return Ok(Answer::Unbounded);
+            }
+            status => return Err(FrictionError::NotSolved(status)),
+        }
+        let rates = &solution.z[3 * self.blocks..];
+        let largest = rates.iter().copied().fold(0.0, f64::max);
+        let moves = |rate: f64| rate > LEAST_RATE * largest;
+        let yields = rates.chunks(4).enumerate().map(|(joint, rates)| Yield {
+            joint,
+            opens: [moves(rates[0]), moves(rates[1])],
+            // Friction along the joint is bounded against the slip.
+            slips: match (moves(rates[2]), moves(rates[3])) {
+                (true, false) => Some(Edge::Intrados),
+                (false, true) => Some(Edge::Extrados),
+                _ => None,
+            },
+        });
+        Ok(Answer::Found(Solution {
+            goal: solution.x[0],
+            yields: yields
+                .filter(|joint| joint.opens != [false; 2] || joint.slips.is_some())
+                .collect(),
+        }))
+    }
+}
