@@ -27,7 +27,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
 };
-use common::{GRAVITY, Random, ring};
+use common::{GRAVITY, Random, random_history, random_row, ring};
 use nalgebra::Vector2;
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64) -> Row {
@@ -212,35 +212,6 @@ fn onset_by_linear_program(row: &Row, sway: Sway) -> Option<f64> {
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => Some(solver.solution.x[unknowns - 1]),
         _ => None,
-    }
-}
-
-/// Any arch or stack, of up to `most` blocks.
-fn random_row(random: &mut Random, most: usize) -> Row {
-    let count = 1 + (random.next() * most as f64) as usize;
-    if random.next() < 0.4 {
-        let mut width_m = 0.6 + random.next();
-        let drums: Vec<Drum> = (0..count)
-            .map(|_| {
-                let base_width_m = width_m;
-                width_m *= 0.85 + 0.2 * random.next();
-                let height_m = (0.3 + random.next()) * (6.0 / count as f64);
-                Drum {
-                    height_m,
-                    base_width_m,
-                    top_width_m: width_m,
-                }
-            })
-            .collect();
-        return Row::stack(&drums, 1.0, 2000.0).unwrap();
-    }
-    let embrace = (0.35 + 0.65 * random.next()) * std::f64::consts::PI;
-    let ring = Ring::new(0.11 + 0.15 * random.next(), embrace).unwrap();
-    let radius_m = 1.0 + 12.0 * random.next();
-    if random.next() < 0.5 || count < 3 {
-        Row::arch(&ring, count, radius_m, 0.7, 1900.0).unwrap()
-    } else {
-        Row::straight_sided_arch(&ring, count, radius_m, 0.7, 1900.0).unwrap()
     }
 }
 
@@ -627,40 +598,8 @@ fn what_does_not_move_says_so() {
     assert!(right.half_cycles[0].sway == Sway::Right && right.peaks_rad[0] > 0.0);
 }
 
-/// Broadband noise, with a vertical component of up to free fall.
-fn noise(random: &mut Random, peak_g: [f64; 2], length_s: f64) -> GroundMotion {
-    let count = (length_s / 0.02) as usize;
-    let mut record = |peak: f64| -> Vec<(f64, f64)> {
-        (0..count)
-            .map(|i| {
-                (
-                    0.02 * i as f64,
-                    (2.0 * random.next() - 1.0) * peak * GRAVITY,
-                )
-            })
-            .collect()
-    };
-    let (horizontal, vertical) = (record(peak_g[0]), record(peak_g[1]));
-    GroundMotion::record(&horizontal, &vertical, 0.0).unwrap()
-}
-
 fn torture(random: &mut Random, most: usize, length_s: f64) -> Result<Run, FreeHingeError> {
-    let row = loop {
-        let row = random_row(random, most);
-        if falls(&row).unwrap().is_none() {
-            break row;
-        }
-    };
-    let strength_g = 0.05 + 1.5 * random.next() * random.next();
-    let ground = if random.next() < 0.4 {
-        let kind = Pulse::ALL[(random.next() * Pulse::ALL.len() as f64) as usize];
-        let amplitude = Vector2::new(strength_g, random.next() - 0.5) * GRAVITY;
-        let duration_s = 0.05 + random.next();
-        GroundMotion::pulse_along(kind, amplitude, duration_s, 0.1, Default::default()).unwrap()
-    } else {
-        let vertical_g = random.next() * 1.0;
-        noise(random, [2.0 * strength_g, 2.0 * vertical_g], length_s)
-    };
+    let (row, ground) = random_history(random, most, length_s);
     let settings = Settings::coarse(&row, GRAVITY, length_s);
     simulate(&row, &ground, GRAVITY, &settings, None, &mut ())
 }

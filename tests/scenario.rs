@@ -1,7 +1,7 @@
 //! Scenario files: what is read, what is refused and where, and how it is written back.
 #![allow(clippy::unwrap_used)]
 
-use archrock::dynamics::free_hinges::Steps;
+use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::{
     Ground, Place, Quantity, Scenario, ScenarioErrors, Simulation, Structure,
 };
@@ -73,7 +73,7 @@ fn defaults() {
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
 
     let scenario = parse(&format!("{COLUMN}[free_hinges]\n")).unwrap();
-    assert_eq!(scenario.free_hinges, Some(Steps::default()));
+    assert_eq!(scenario.free_hinges, Some(RowOptions::default()));
     let Structure::Column(column) = &scenario.structure else {
         panic!("a column")
     };
@@ -83,11 +83,11 @@ fn defaults() {
     );
     assert_eq!(column.drum_heights_m(), [4.0]);
     assert_eq!([column.depth_m(), column.density_kg_m3()], [1.0, 2000.0]);
-    let none = Steps {
+    let none = RowOptions {
         longest_step_s: None,
         shortest_step_s: None,
     };
-    assert_eq!(Steps::default(), none);
+    assert_eq!(RowOptions::default(), none);
 }
 
 /// Every key of a row of blocks, as it is read and as it is written back.
@@ -99,7 +99,7 @@ fn every_key_of_a_row() {
          depth_m = 0.5\ndensity_kg_m3 = 2400\n",
     )
     .unwrap();
-    let steps = Steps {
+    let steps = RowOptions {
         longest_step_s: Some(3e-4),
         shortest_step_s: Some(1e-5),
     };

@@ -1,12 +1,22 @@
 //! Joints that slip: limit analysis, and the motion.
 
-use std::f64::consts::PI;
+#![expect(clippy::unwrap_used, reason = "tests")]
 
+mod common;
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+use archrock::dynamics::free_hinges::{
+    Outcome, Recorder, Run, Sample, Settings, Sliding, simulate,
+};
+use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::stability;
 use archrock::mechanics::sway::Sway;
+use common::{GRAVITY, Random, random_history};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64) -> Row {
     let ring = Ring::new(thickness_ratio, embrace_deg / 180.0 * PI).unwrap();
@@ -82,4 +92,313 @@ fn below_the_least_coefficient_nothing_stands() {
     // A column stands with any friction.
     let column = Row::tapered_stack(&[1.0, 1.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
     assert!(least_coefficient(&column).unwrap() <= 1e-6);
+}
+
+/// A rectangular pulse that pushes to the right.
+fn push(amplitude_g: f64, duration_s: f64) -> GroundMotion {
+    GroundMotion::pulse(Pulse::Rectangular, -amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
+}
+
+fn equal(step_s: f64, end_s: f64, coefficient: f64) -> Settings {
+    Settings {
+        longest_step_s: step_s,
+        shortest_step_s: step_s,
+        end_s,
+        output_step_s: None,
+        friction_coefficient: Some(coefficient),
+    }
+}
+
+fn run(row: &Row, ground: &GroundMotion, settings: &Settings) -> Run {
+    simulate(row, ground, GRAVITY, settings, None, &mut ()).unwrap()
+}
+
+fn slid(run: &Run) -> &Sliding {
+    run.sliding.as_ref().unwrap()
+}
+
+/// Newmark's block: under a rectangular pulse `a` of duration `t` it slips by `a t^2/2 (a/(mu g) - 1)` relative to the ground, and
+/// friction takes `mu m g` times that. Positions are those of a leapfrog whose kicks are exact; pulse and stop fall inside
+/// steps, which leaves an error of the order of the square of the step.
+#[test]
+fn a_flat_block_is_that_of_newmark() {
+    let row = Row::tapered_stack(&[0.8], 4.0, 4.0, 1.0, 2000.0).unwrap();
+    for coefficient in [0.2, 0.4] {
+        for (amplitude_g, duration_s) in [(0.5, 0.3), (-0.7, 0.11)] {
+            let run = run(
+                &row,
+                &push(amplitude_g, duration_s),
+                &equal(1e-4, 5.0, coefficient),
+            );
+            let strength = f64::abs(amplitude_g);
+            let slip_m =
+                0.5 * strength * GRAVITY * duration_s.powi(2) * (strength / coefficient - 1.0);
+            let slip_m = slip_m * amplitude_g.signum();
+            let ours_m = slid(&run).offsets_m[0];
+            assert!((ours_m / slip_m - 1.0).abs() < 1e-6, "{ours_m} {slip_m}");
+            let friction_j = coefficient * row.mass_kg() * GRAVITY * slip_m.abs();
+            assert!((slid(&run).friction_j / friction_j - 1.0).abs() < 1e-6);
+            assert!(
+                matches!(run.outcome, Outcome::Rest { .. }),
+                "{:?}",
+                run.outcome
+            );
+            assert!(run.peaks_rad[0] < 1e-12);
+        }
+    }
+}
+
+/// The shake has to exceed the bound of statics to start a motion, by any amount.
+#[test]
+fn motion_starts_at_the_associated_bound() {
+    let row = arch(157.5, 0.15, 7, 10.0);
+    for coefficient in [0.35, 0.4, 0.7] {
+        let bound = onset(&row, coefficient, Sway::Right).unwrap().unwrap();
+        for (factor, moves) in [(1.0 - 1e-4, false), (1.0 + 1e-4, true)] {
+            let ground = push(factor * bound.acceleration_g, 0.5);
+            let run = run(&row, &ground, &equal(1e-3, 0.4, coefficient));
+            let peak_rad = run.peaks_rad.iter().copied().fold(0.0, f64::max);
+            let slip_m = slid(&run)
+                .largest_offsets_m
+                .iter()
+                .copied()
+                .fold(0.0, f64::max);
+            assert_eq!(
+                peak_rad.max(slip_m) > 1e-6,
+                moves,
+                "{coefficient} {factor} {peak_rad} {slip_m}"
+            );
+        }
+    }
+}
+
+/// The least pulse that overturns, by another computation with fixed steps: printed with four digits, found with steps of 0.1 to
+/// 0.2 ms. Sliding may raise it.
+#[test]
+fn the_least_pulse_that_overturns_is_the_published_one() {
+    let (seven, fourteen) = (arch(157.5, 0.15, 7, 10.0), arch(157.5, 0.15, 14, 10.0));
+    let semicircle = arch(180.0, 0.15, 36, 5.0);
+    for (row, coefficient, threshold_g) in [
+        (&seven, 0.4, 0.9828),
+        (&seven, 0.5, 1.0616),
+        (&seven, 0.7, 1.0723),
+        (&fourteen, 0.5, 1.0399),
+        (&fourteen, 0.7, 1.0346),
+        (&semicircle, 0.5, 0.3167),
+        (&semicircle, 0.7, 0.3149),
+    ] {
+        for (factor, falls) in [(1.002, true), (0.998, false)] {
+            let ground = push(factor * threshold_g, 0.2);
+            let run = run(row, &ground, &equal(2e-4, 4.0, coefficient));
+            let overturned = matches!(run.outcome, Outcome::Overturned { .. });
+            assert_eq!(overturned, falls, "{coefficient} {threshold_g} {factor}");
+        }
+    }
+}
+
+/// With much friction the first half cycle is that of joints that do not slip.
+#[test]
+fn the_motion_with_much_friction_is_that_without_sliding() {
+    let row = arch(157.5, 0.15, 7, 10.0);
+    for amplitude_g in [0.45, 0.5336, 0.8] {
+        let ground = push(amplitude_g, 0.2);
+        let settings = Settings::fine(&row, GRAVITY, 6.0);
+        let without = run(&row, &ground, &settings).half_cycles[0].peak_rad;
+        let with = run(&row, &ground, &equal(5e-5, 6.0, 20.0)).half_cycles[0].peak_rad;
+        assert!(
+            (with / without - 1.0).abs() < 1e-4,
+            "{amplitude_g} {with} {without}"
+        );
+    }
+}
+
+/// Rotations and slip of a slender block from rest that slides on its toe while it rocks, by the classical Runge-Kutta method
+/// on its two equations of motion; it sticks where the toe comes to a stop, while friction suffices. Clockwise, to the right.
+fn sliding_toe(
+    alpha: f64,
+    half_diagonal_m: f64,
+    coefficient: f64,
+    push_m_s2: impl Fn(f64) -> f64,
+    times_s: &[f64],
+) -> Vec<[f64; 2]> {
+    let inertia = half_diagonal_m * half_diagonal_m / 3.0;
+    let r = half_diagonal_m;
+    // Per unit mass: acceleration of the toe and of the rotation, and T/N, in a mode (sign of the friction, or none: pinned).
+    let motion = |state: [f64; 4], push: f64, friction: Option<f64>| {
+        let (sin, cos) = (alpha - state[2]).sin_cos();
+        let w = state[3];
+        if let Some(ratio) = friction {
+            let lever = sin + cos * ratio;
+            let turn = -r * lever * (GRAVITY - r * cos * w * w) / (inertia + r * r * sin * lever);
+            let normal = GRAVITY + r * sin * turn - r * cos * w * w;
+            let slide = ratio * normal + push - r * cos * turn - r * sin * w * w;
+            (slide, turn, ratio)
+        } else {
+            let turn = (push * r * cos - GRAVITY * r * sin) / (inertia + r * r);
+            let normal = GRAVITY + r * sin * turn - r * cos * w * w;
+            let along = r * cos * turn + r * sin * w * w - push;
+            (0.0, turn, along / normal)
+        }
+    };
+    let h = 1e-5;
+    let mut state = [0.0; 4];
+    let mut time = 0.0;
+    let mut friction: Option<f64> = None;
+    let mut found = Vec::new();
+    for end in times_s {
+        while time < end - 0.5 * h {
+            let push = push_m_s2(time + 0.5 * h);
+            if friction.is_none() {
+                let (_, _, ratio) = motion(state, push, None);
+                if ratio.abs() > coefficient {
+                    friction = Some(coefficient * ratio.signum());
+                }
+            }
+            let slope = |s: [f64; 4]| {
+                let (slide, turn, _) = motion(s, push, friction);
+                [s[1], slide, s[3], turn]
+            };
+            let along =
+                |s: [f64; 4], k: [f64; 4], part: f64| [0, 1, 2, 3].map(|i| s[i] + part * k[i]);
+            let a = slope(state);
+            let b = slope(along(state, a, 0.5 * h));
+            let c = slope(along(state, b, 0.5 * h));
+            let d = slope(along(state, c, h));
+            let next =
+                [0, 1, 2, 3].map(|i| state[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+            // The toe stops when its velocity takes the sign of the friction.
+            let stops =
+                friction.is_some_and(|ratio| next[1] * ratio > 0.0 && state[1] * ratio <= 0.0);
+            state = next;
+            if stops {
+                state[1] = 0.0;
+                friction = None;
+            }
+            time += h;
+        }
+        found.push([state[2], state[0]]);
+    }
+    found
+}
+
+struct Course(Vec<[f64; 2]>);
+
+impl Recorder for Course {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.0.push([-sample.rotations_rad[0], sample.offsets_m[0]]);
+        ControlFlow::Continue(())
+    }
+}
+
+/// A block that slips on its toe as it rises, sticks, and rocks on. Our steps of 0.05 ms are of the first order where the mode
+/// changes.
+#[test]
+fn a_block_that_slides_and_rocks_follows_its_equations() {
+    let row = Row::tapered_stack(&[4.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
+    let alpha = 0.2_f64.atan();
+    let half_diagonal_m = 0.5 * 4.0_f64.hypot(0.8);
+    for (amplitude_g, coefficient) in [(1.0, 0.23), (1.5, 0.3), (0.4, 0.5)] {
+        let (duration_s, output_step_s) = (0.15, 0.05);
+        let settings = Settings {
+            output_step_s: Some(output_step_s),
+            ..equal(5e-5, 0.6, coefficient)
+        };
+        let mut course = Course(Vec::new());
+        let ground = push(amplitude_g, duration_s);
+        simulate(&row, &ground, GRAVITY, &settings, None, &mut course).unwrap();
+        let times_s: Vec<f64> = (0..13).map(|i| f64::from(i) * output_step_s).collect();
+        let pulse = |time: f64| {
+            if time < duration_s {
+                amplitude_g * GRAVITY
+            } else {
+                0.0
+            }
+        };
+        let judge = sliding_toe(alpha, half_diagonal_m, coefficient, pulse, &times_s);
+        let most = judge.iter().fold([0.0_f64; 2], |most, at| {
+            [most[0].max(at[0]), most[1].max(at[1].abs())]
+        });
+        assert!(
+            most[0] > 0.01 && (coefficient == 0.5 || most[1] > 1e-3),
+            "{most:?}"
+        );
+        assert_eq!(course.0.len(), judge.len());
+        for (ours, judge) in course.0.iter().zip(&judge) {
+            // Before it comes down again.
+            assert!(judge[0] >= 0.0);
+            assert!(
+                (ours[0] - judge[0]).abs() < 2e-4 * most[0],
+                "{ours:?} {judge:?}"
+            );
+            assert!(
+                (ours[1] - judge[1]).abs() < 2e-4 * most[1].max(1e-3),
+                "{ours:?} {judge:?}"
+            );
+        }
+    }
+}
+
+/// To the left everything is the mirror image; rounding differs, and impacts magnify it.
+#[test]
+fn mirror_images_move_alike() {
+    let row = arch(157.5, 0.15, 7, 10.0);
+    let settings = equal(2e-4, 0.5, 0.4);
+    let [right, left] =
+        [0.6, -0.6].map(|amplitude_g| run(&row, &push(amplitude_g, 0.2), &settings));
+    for (a, b) in right.peaks_rad.iter().zip(left.peaks_rad.iter().rev()) {
+        assert!(*a > 1e-4 && (a / b - 1.0).abs() < 1e-7, "{a} {b}");
+    }
+    let slips = slid(&right)
+        .offsets_m
+        .iter()
+        .zip(slid(&left).offsets_m.iter().rev());
+    let largest = slid(&right)
+        .offsets_m
+        .iter()
+        .fold(0.0_f64, |most, slip| most.max(slip.abs()));
+    assert!(largest > 0.01);
+    for (a, b) in slips {
+        assert!((a - b).abs() < 1e-7 * largest, "{a} {b}");
+    }
+}
+
+/// Any structure under any ground, with any friction: nothing fails, and no energy is created. `ARCHROCK_TORTURE` sets another number
+/// of histories than fifty, and makes them longer.
+#[test]
+fn random_histories_create_no_energy() {
+    let given = std::env::var("ARCHROCK_TORTURE")
+        .ok()
+        .and_then(|n| n.parse().ok());
+    let (histories, most, length_s) = given.map_or((50, 16, 1.0), |n: u64| (n, 60, 4.0));
+    let mut failures = Vec::new();
+    let (mut worst, mut unconverged, mut slipped, mut steps) = (0.0_f64, 0, 0, 0);
+    for seed in 0..histories {
+        let mut random = Random(seed * 104_729 + 7);
+        let (row, ground) = random_history(&mut random, most, length_s);
+        let coefficient = 0.2 + 1.8 * random.next();
+        if onset(&row, coefficient, Sway::Right).is_err() {
+            continue;
+        }
+        match simulate(
+            &row,
+            &ground,
+            GRAVITY,
+            &equal(1e-4, length_s, coefficient),
+            None,
+            &mut (),
+        ) {
+            Ok(run) => {
+                worst = worst.max(run.energy_defect_ratio);
+                unconverged += slid(&run).unconverged;
+                steps += run.cost.steps;
+                slipped += usize::from(slid(&run).friction_j > 0.0);
+                assert!(slid(&run).friction_j >= 0.0);
+            }
+            Err(error) => failures.push((seed, error)),
+        }
+    }
+    println!("{worst:e} created, {unconverged} of {steps} steps, {slipped} slip");
+    assert!(failures.is_empty(), "{failures:?}");
+    assert!(slipped > 10 && worst < 1e-6, "{slipped} {worst}");
+    assert!(unconverged * 100_000 <= steps, "{unconverged} of {steps}");
 }

@@ -235,9 +235,14 @@ impl<'a> Engine<'a> {
         let (mut taken, mut rubbed) = (0.0, 0.0);
         for (joint, impulse) in self.program.impulses().iter().enumerate() {
             let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
-            taken -= impulse.x * mean.x + impulse.y * mean.y;
-            rubbed -= impulse.z * mean.z;
+            taken -= impulse.dot(&mean);
+            // Friction of joints that stick does no work but that of an impact.
+            if let Along::Slip(_) = self.program.modes()[joint].along {
+                let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
+                rubbed -= impulse.z * rate;
+            }
         }
+        taken -= rubbed;
         self.course.run.energy_taken_j += taken;
         self.sliding.friction_j += rubbed;
         for (block, velocity) in self.velocities.iter_mut().enumerate() {
