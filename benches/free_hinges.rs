@@ -56,6 +56,7 @@ fn step_over_a_record(bencher: Bencher, voussoirs: usize) {
         shortest_step_s: 1e-4,
         end_s: 25.0,
         output_step_s: None,
+        friction_coefficient: None,
     };
     let steps = simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ())
         .map_or(1, |run| run.cost.steps);

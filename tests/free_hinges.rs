@@ -489,6 +489,7 @@ fn fall(row: &Row, linkage: &Linkage, step_s: f64) -> Kept {
         shortest_step_s: 1e-6,
         end_s: 0.7,
         output_step_s: Some(0.1),
+        friction_coefficient: None,
     };
     let mut kept = Kept::default();
     let initial = linkage.rotations(0.04);

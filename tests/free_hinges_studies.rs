@@ -119,7 +119,7 @@ fn a_cell_of_drums_is_the_history_of_their_column() {
         ..RowOptions::default()
     };
     let row = FreeHinges::of_column(&column).unwrap();
-    let row = row.with_options(options).unwrap();
+    let row = row.with_options(steps).unwrap();
     for index in 0..map.count() {
         let [duration_s, amplitude_g] = map.coordinates(index);
         assert_eq!(
@@ -160,7 +160,7 @@ fn the_spread_counts_outcomes_with_half_and_double_steps() {
                     shortest_step_s: Some(1e-2 * factor),
                     ..RowOptions::default()
                 };
-                let row = row.clone().with_options(options).unwrap();
+                let row = row.clone().with_options(steps).unwrap();
                 let summary = row.simulate(&ground, &request, None);
                 summary.ok().map(|summary| summary.outcome.name())
             })

@@ -86,6 +86,7 @@ fn defaults() {
     let none = RowOptions {
         longest_step_s: None,
         shortest_step_s: None,
+        friction_coefficient: None,
     };
     assert_eq!(RowOptions::default(), none);
 }
@@ -102,6 +103,7 @@ fn every_key_of_a_row() {
     let steps = RowOptions {
         longest_step_s: Some(3e-4),
         shortest_step_s: Some(1e-5),
+        friction_coefficient: None,
     };
     assert_eq!(scenario.free_hinges, Some(steps));
     let column = Column::new(2.0, 0.8)

@@ -38,52 +38,40 @@ pub fn limit(
         let arch = arch(&scenario, "--plot is")?;
         write_picture(plot, &pictures::limit(figure, arch.chain()))?;
     }
-    if let Structure::Masonry(masonry) = &scenario.structure {
-        return row_limit(&scenario, masonry.row(), format);
-    }
-    let model = model(&scenario)?;
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-    let options = scenario.free_hinges.unwrap_or_default();
-    let slipping = match options.friction_coefficient {
-        Some(coefficient) => {
-            let free_hinges = scenario.structure.free_hinges(options);
-            let free_hinges = free_hinges.map_err(|error| Failure::Input(error.to_string()))?;
-            Some((free_hinges, coefficient))
-        }
-        None => None,
+    let (mut json, mut text) = if let Structure::Masonry(masonry) = &scenario.structure {
+        row_limit(&scenario, masonry.row())?
+    } else {
+        let model = model(&scenario)?;
+        (
+            mechanisms::limit(&*model, gravity_m_s2),
+            limit_text(&*model, gravity_m_s2),
+        )
     };
+    let options = scenario.free_hinges.unwrap_or_default();
+    if let Some(coefficient) = options.friction_coefficient {
+        let model = scenario.structure.free_hinges(options);
+        let model = model.map_err(|error| Failure::Input(error.to_string()))?;
+        json["friction"] = mechanisms::friction(model.row(), coefficient)?;
+        text += &friction_text(model.row(), coefficient)?;
+    }
     match format {
-        Format::Json => {
-            let mut limit = mechanisms::limit(&*model, gravity_m_s2);
-            if let Some((free_hinges, coefficient)) = slipping {
-                limit["friction"] = mechanisms::friction(free_hinges.row(), coefficient)?;
-            }
-            print(&pretty(&limit))
-        }
-        Format::Text => {
-            let mut text = limit_text(&*model, gravity_m_s2);
-            if let Some((free_hinges, coefficient)) = slipping {
-                text += &friction_text(free_hinges.row(), coefficient)?;
-            }
-            print(&text)
-        }
+        Format::Json => print(&pretty(&json)),
+        Format::Text => print(&text),
     }
 }
 
-/// The push that starts a row, by the static programme, and what opens.
-fn row_limit(scenario: &Scenario, row: &Row, format: Format) -> Result<(), Failure> {
+/// The push that starts a row, by the static programme, and what opens: for programs and for people.
+fn row_limit(scenario: &Scenario, row: &Row) -> Result<(serde_json::Value, String), Failure> {
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
     let onset = |sway| onset(row, sway).map_err(|error| Failure::Input(error.to_string()));
     let onsets = [onset(Sway::Right)?, onset(Sway::Left)?];
     let four_links = scenario.structure.model(scenario.impact);
-    if let Format::Json = format {
-        let mut json = mechanisms::row_limit(row, &onsets, gravity_m_s2);
-        json["four_links"] = match &four_links {
-            Ok(model) => mechanisms::of_both_sides(&**model, gravity_m_s2),
-            Err(error) => json!({ "none_because": error.to_string() }),
-        };
-        return print(&pretty(&json));
-    }
+    let mut json = mechanisms::row_limit(row, &onsets, gravity_m_s2);
+    json["four_links"] = match &four_links {
+        Ok(model) => mechanisms::of_both_sides(&**model, gravity_m_s2),
+        Err(error) => json!({ "none_because": error.to_string() }),
+    };
     let mut text = String::new();
     for (sway, onset) in [Sway::Right, Sway::Left].into_iter().zip(&onsets) {
         let side = sway.name();
@@ -131,7 +119,9 @@ fn row_limit(scenario: &Scenario, row: &Row, format: Format) -> Result<(), Failu
             }
         }
     }
-    print(&text)
+    Ok((json, text))
+}
+
 impl From<FrictionError> for Failure {
     fn from(error: FrictionError) -> Self {
         match error {

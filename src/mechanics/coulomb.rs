@@ -7,14 +7,16 @@
 //! modes, from those of the step before; where it finds modes that confirm themselves, Coulomb's law holds exactly.
 //!
 //! Where it does not, the bounds of friction are held at those of the last impulses (Tresca). That program is convex, and solved by
-//! projected Newton steps on its dual; from its modes Newton's method starts again, else the bounds follow the impulses.
+//! projected Newton steps on its dual; from its modes Newton's method starts again, else the bounds follow the impulses. Bounds that do
+//! not settle, a case in a hundred thousand, are left to Lemke's method ([`crate::mechanics::complementarity`]).
 //! Whatever comes out never drives a slip and never pulls: an early stop makes a bound wrong, never the sign of the work.
 //!
 //! A small proximal term draws the impulses to those of the step before. It settles them where the row does not, as at rest.
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
 use super::blocks::Row;
+use super::complementarity;
 use super::slip::{Contact, Faces, Position};
 
 /// Weight of the proximal term, as part of the diagonal.
@@ -26,9 +28,13 @@ const SINGLE_PASSES: usize = 12;
 /// Steps of projected Newton on a program with given bounds.
 const BOUNDED_STEPS: usize = 60;
 /// How often bounds follow the impulses before the step counts as not converged.
-const BOUND_PASSES: usize = 120;
+const BOUND_PASSES: usize = 16;
 /// Bounds that change by less than this part of the largest one are found.
 const SAME_BOUND: f64 = 1e-10;
+/// Passes after which bounds that have not settled swing.
+const SWINGING: usize = 5;
+/// Joints up to which Coulomb's law is solved as a complementarity problem where bounds do not settle.
+const COMPLEMENTED: usize = 80;
 /// Part of the slope that a step along it has to achieve.
 const DESCENT: f64 = 1e-4;
 /// The shortest step of the search, as part of Newton's.
@@ -430,18 +436,22 @@ impl Program {
     /// Goes over programs with given bounds to modes that hold, or to bounds that agree with the impulses.
     fn bounded(&mut self, tolerance: f64, solution: &mut Solution) {
         self.impulses.copy_from_slice(&self.before);
+        for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
+            *bound = self.coefficient * (impulse.x.max(0.0) + impulse.y.max(0.0));
+        }
         for pass in 0..BOUND_PASSES {
-            self.set_bounds();
             self.descend(tolerance, &mut solution.passes);
             let error = self.bound_error();
             self.read_modes();
             self.kept.copy_from_slice(&self.impulses);
             if self.newton(PASSES, false, tolerance, &mut solution.passes) {
+                solution.bound_error = 0.0;
                 return;
             }
             self.impulses.copy_from_slice(&self.kept);
             self.read_modes();
             if pass % 4 == 0 && self.newton(SINGLE_PASSES, true, tolerance, &mut solution.passes) {
+                solution.bound_error = 0.0;
                 return;
             }
             self.impulses.copy_from_slice(&self.kept);
@@ -450,13 +460,100 @@ impl Program {
             if error <= SAME_BOUND {
                 return;
             }
+            self.move_bounds(pass);
+        }
+        if self.modes.len() <= COMPLEMENTED && self.complement() {
+            let modes = self.modes.clone();
+            if !self.newton(PASSES, false, tolerance, &mut solution.passes) {
+                // Modes on the edge to others do not confirm themselves, but the impulses are right.
+                self.impulses.copy_from_slice(&self.kept);
+                self.modes = modes;
+            }
+            solution.bound_error = 0.0;
+            return;
+        }
+        self.impulses.copy_from_slice(&self.kept);
+        self.read_modes();
+    }
+
+    /// Moves the bounds towards what the impulses allow: there, and halfway once that swings.
+    fn move_bounds(&mut self, pass: usize) {
+        let part = if pass < SWINGING { 1.0 } else { 0.5 };
+        for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
+            let allowed = self.coefficient * (impulse.x + impulse.y);
+            *bound = (*bound + part * (allowed - *bound)).max(0.0);
         }
     }
 
-    fn set_bounds(&mut self) {
-        for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
-            *bound = self.coefficient * (impulse.x.max(0.0) + impulse.y.max(0.0));
+    /// Modes from Coulomb's law as a complementarity problem: `N` against the rates of the ends, friction to either side against
+    /// the rate along the joint less a speed `g`, and `g` against what is left of the bound. False when Lemke's method fails.
+    fn complement(&mut self) -> bool {
+        const SIZE: usize = 5;
+        let joints = self.own.len();
+        let n = SIZE * joints;
+        // Row of the joint that an unknown belongs to, and its sign there; none for the speed.
+        let part = |unknown: usize| match unknown % SIZE {
+            row @ 0..=2 => Some((row, 1.0)),
+            3 => Some((2, -1.0)),
+            _ => None,
+        };
+        let root = |joint: usize, row: usize| self.own[joint][(row, row)].sqrt();
+        let mut matrix = DMatrix::zeros(n, n);
+        let mut constant = vec![0.0; n];
+        for joint in 0..joints {
+            for unknown in SIZE * joint..SIZE * (joint + 1) {
+                let Some((row, sign)) = part(unknown) else {
+                    let along = root(joint, 2);
+                    for end in 0..2 {
+                        matrix[(unknown, SIZE * joint + end)] =
+                            self.coefficient * along / root(joint, end);
+                    }
+                    for side in [2, 3] {
+                        matrix[(unknown, SIZE * joint + side)] = -1.0;
+                        matrix[(SIZE * joint + side, unknown)] = 1.0;
+                    }
+                    continue;
+                };
+                let proximal = PROXIMAL * self.own[joint][(row, row)] * self.before[joint][row];
+                constant[unknown] = sign * (self.drive[joint][row] - proximal) / root(joint, row);
+                let near = [
+                    joint
+                        .checked_sub(1)
+                        .map(|other| (other, self.next[other].transpose())),
+                    Some((joint, self.own[joint])),
+                    Some((joint + 1, self.next[joint])).filter(|(other, _)| *other < joints),
+                ];
+                for (other, compliance) in near.into_iter().flatten() {
+                    for column in SIZE * other..SIZE * (other + 1) {
+                        if let Some((other_row, other_sign)) = part(column) {
+                            let own = other == joint && other_row == row;
+                            let entry = compliance[(row, other_row)]
+                                * if own { 1.0 + PROXIMAL } else { 1.0 };
+                            matrix[(unknown, column)] = sign * other_sign * entry
+                                / (root(joint, row) * root(other, other_row));
+                        }
+                    }
+                }
+            }
         }
+        let Some(solution) = complementarity::solve(&matrix, &constant) else {
+            return false;
+        };
+        for (joint, found) in solution.chunks(SIZE).enumerate() {
+            let along = match (found[4] > 0.0, found[2] > found[3]) {
+                (false, _) => Along::Stick,
+                (true, true) => Along::Slip(1.0),
+                (true, false) => Along::Slip(-1.0),
+            };
+            self.modes[joint] = Mode {
+                pressed: [found[0] > 0.0, found[1] > 0.0],
+                along,
+            }
+            .settled();
+            let impulse = Vector3::new(found[0], found[1], found[2] - found[3]);
+            self.kept[joint] = impulse.component_div(&self.own[joint].diagonal().map(f64::sqrt));
+        }
+        true
     }
 
     /// Largest difference of a bound from what the impulses allow, as part of the largest bound.

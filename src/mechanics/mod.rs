@@ -6,6 +6,8 @@ pub mod chain;
 pub mod column;
 // The inside of rows of blocks, public for its tests.
 #[doc(hidden)]
+pub mod complementarity;
+#[doc(hidden)]
 pub mod contact;
 #[doc(hidden)]
 pub mod coulomb;

@@ -109,6 +109,7 @@ mod tests {
                     energy_ratio: None,
                     rotation_over_critical: None,
                     gaps_m: Vec::new(),
+                    offsets_m: Vec::new(),
                     eccentricity_ratios: Vec::new(),
                 });
             }

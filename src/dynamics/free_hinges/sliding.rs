@@ -71,6 +71,7 @@ pub(super) struct Engine<'a> {
     frames: Vec<Frame>,
     gaps: Vec<[f64; 2]>,
     offsets: Vec<f64>,
+    corners: Vec<[f64; 2]>,
     rotations: Vec<f64>,
     rates: Vec<f64>,
     shut: Vec<usize>,
@@ -141,6 +142,7 @@ impl<'a> Engine<'a> {
             frames: vec![nowhere; joints],
             gaps: placement.gaps_m().to_vec(),
             offsets: vec![0.0; joints],
+            corners: vec![[0.0; 2]; joints],
             rotations: vec![0.0; blocks],
             rates: vec![0.0; blocks],
             shut: Vec::with_capacity(joints),
@@ -397,12 +399,9 @@ impl<'a> Engine<'a> {
         }
         for (joint, contact) in self.contacts.iter().enumerate() {
             let pressed = self.program.modes()[joint].pressed;
-            for end in 0..2 {
-                self.gaps[joint][end] = if pressed[end] {
-                    0.0
-                } else {
-                    contact.coordinates_m[end].max(0.0)
-                };
+            let pressed = pressed.iter().zip(&contact.coordinates_m);
+            for (gap, (pressed, gap_m)) in self.gaps[joint].iter_mut().zip(pressed) {
+                *gap = if *pressed { 0.0 } else { gap_m.max(0.0) };
             }
             self.offsets[joint] = self.stuck[joint];
             self.frames[joint] = Frame {
@@ -441,6 +440,9 @@ impl<'a> Engine<'a> {
             *rate = self.auxiliary.velocity(block).z;
         }
         self.note_poses();
+        for (corner, impulse) in self.corners.iter_mut().zip(self.auxiliary.impulses()) {
+            *corner = [impulse.x, impulse.y];
+        }
         let slips = |mode: &&Mode| matches!(mode.along, Along::Slip(_));
         let flow = recorder.sample(&Sample {
             time_s: self.course.time,
@@ -454,6 +456,7 @@ impl<'a> Engine<'a> {
             slipping_joints: self.program.modes().iter().filter(slips).count(),
             friction_demand: self.friction_demand,
             least_normal_n: self.least_normal,
+            corner_impulses_n_s: &self.corners,
             kinetic_j,
             potential_j: self.course.potential,
         });
