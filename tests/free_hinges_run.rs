@@ -557,3 +557,96 @@ fn a_column_of_one_block_moves_as_housner_s() {
     let restitution = (1.0 - 1.5 * 0.04 / 1.04_f64).powi(2);
     assert!((kept(&impacts[1]) - restitution).abs() < 1e-9);
 }
+
+/// The bound of friction is far below what this pulse asks for: voussoirs slip, and stay so.
+#[test]
+fn joints_that_slip_are_told_of() {
+    let slipping = format!(
+        "{SEVEN}[free_hinges]\nfriction_coefficient = 0.4\n[simulation]\nduration_s = 12\n"
+    );
+    let results = Results::of(&slipping, &["--no-spread"]);
+    let summary = results.summary();
+    assert_eq!(summary["friction_coefficient"], 0.4);
+    assert_eq!(summary["unconverged_steps"], 0);
+    let slips_m: Vec<f64> = serde_json::from_value(summary["slips_m"].clone()).unwrap();
+    assert_eq!(slips_m.len(), 8);
+    let largest_m = slips_m
+        .iter()
+        .fold(0.0_f64, |most, slip| most.max(slip.abs()));
+    assert!(
+        largest_m > 0.05 && summary["friction_j"].as_f64().unwrap() > 1e4,
+        "{summary:#}"
+    );
+    assert_eq!(summary["outcome"], "rest");
+    // What is left of the slips is in the last row, what friction took in the impacts is not more than all of it.
+    let mut joints = csv::Reader::from_path(results.path("joints.csv")).unwrap();
+    let header = joints.headers().unwrap().clone();
+    assert_eq!(
+        header.iter().skip(17).collect::<Vec<_>>(),
+        (0..8)
+            .map(|joint| format!("slip_{joint}_m"))
+            .collect::<Vec<_>>()
+    );
+    let last = joints.records().last().unwrap().unwrap();
+    for (field, slip_m) in last.iter().skip(17).zip(&slips_m) {
+        assert!((field.parse::<f64>().unwrap() - slip_m).abs() < 1e-9);
+    }
+    let mut impacts = csv::Reader::from_path(results.path("impacts.csv")).unwrap();
+    assert_eq!(
+        impacts.headers().unwrap().iter().next_back(),
+        Some("friction_j")
+    );
+    let in_impacts_j: f64 = impacts
+        .records()
+        .map(|row| {
+            row.unwrap()
+                .iter()
+                .next_back()
+                .unwrap()
+                .parse::<f64>()
+                .unwrap()
+        })
+        .sum();
+    assert!(in_impacts_j >= 0.0 && in_impacts_j <= summary["friction_j"].as_f64().unwrap());
+    let picture = fs::read_to_string(results.path("history.svg")).unwrap();
+    assert!(picture.contains("Slip (mm)"));
+    let joint = slips_m
+        .iter()
+        .position(|slip| slip.abs() == largest_m)
+        .unwrap();
+    for words in [
+        &format!("joint {joint} slipped {:.3} mm", 1e3 * largest_m),
+        &format!(
+            "at rest, but not as it stood: joints are up to {:.3} mm off",
+            1e3 * largest_m
+        ),
+    ] {
+        assert!(results.said.contains(words), "{words}\n{}", results.said);
+    }
+    // Statics know that sliding governs.
+    let limit = archrock(
+        results.root.path(),
+        &["limit", "s.toml", "--format", "json"],
+    );
+    let limit: Value = serde_json::from_slice(&limit.stdout).unwrap();
+    let friction = &limit["friction"];
+    assert_eq!(friction["right"]["sliding_governs"], true);
+    let acceleration_g = friction["left"]["incipient_acceleration_g"]
+        .as_f64()
+        .unwrap();
+    assert!((acceleration_g - 0.26376).abs() < 1e-5);
+    let least = friction["least_coefficient"].as_f64().unwrap();
+    assert!(least > 0.1 && least < 0.3);
+
+    for (options, words) in [
+        ("friction_coefficient = 0", "friction_coefficient"),
+        (
+            "friction_coefficient = 0.7\nshortest_step_s = 1e-5",
+            "all steps are the longest",
+        ),
+        ("friction_coefficient = 0.1", "coefficient"),
+    ] {
+        let refused = refusal(&format!("{SEVEN}[free_hinges]\n{options}\n"), &[]);
+        assert!(refused.contains(words), "{options}\n{refused}");
+    }
+}

@@ -269,11 +269,12 @@ proptest! {
         let allowed = |step_s: f64| step_s > 0.0 && step_s <= 1e9;
         match FreeHinges::of_column(&column).unwrap().with_options(options) {
             Ok(_) => prop_assert!(longest_s >= shortest_s && allowed(shortest_s) && allowed(longest_s)),
-            Err(error) => match error.argument {
+            Err(FreeHingesError::Argument(error)) => match error.argument {
                 "longest_step_s" => prop_assert!(!allowed(longest_s) || longest_s < shortest_s),
                 "shortest_step_s" => prop_assert!(!allowed(shortest_s)),
                 _ => return Err(TestCaseError::fail(error.to_string())),
             },
+            Err(error) => return Err(TestCaseError::fail(error.to_string())),
         }
     }
 }

@@ -126,7 +126,7 @@ impl From<FrictionError> for Failure {
     fn from(error: FrictionError) -> Self {
         match error {
             FrictionError::CannotStand(_) | FrictionError::NeverStands => {
-                Self::Input(format!("{error}; give a larger friction_coefficient"))
+                Self::Input(error.to_string())
             }
             FrictionError::NotSolved(_) => Self::Work(error.to_string()),
         }

@@ -58,7 +58,9 @@ impl FrictionOnset {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FrictionError {
     /// No forces balance its weight.
-    #[error("with a coefficient of friction of {0:?} the row cannot carry its own weight")]
+    #[error(
+        "with a coefficient of friction of {0:?} the row cannot carry its own weight; give a larger friction_coefficient"
+    )]
     CannotStand(f64),
     /// It falls with any coefficient.
     #[error("the row cannot carry its own weight, whatever the friction")]
@@ -93,7 +95,10 @@ pub fn onset(
 }
 
 /// Whether a row carries its own weight with this coefficient.
-fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
+///
+/// # Errors
+/// When it falls with any, or the programme is not solved.
+pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
     match Program::new(row, coefficient, Goal::Shortage).solve(1.0)? {
         Answer::Found(solution) => Ok(solution.goal <= LEAST_SHORTAGE),
         Answer::Unbounded => Ok(true),

@@ -27,6 +27,8 @@ const JOINT_COLUMNS: usize = 800;
 pub struct RowTimeline {
     rotations_rad: Vec<Envelope>,
     energy: Envelope,
+    /// Slips in millimetres, where joints slip.
+    slips_mm: Vec<Envelope>,
     /// Whether energies are parts of a barrier; else J.
     in_barriers: bool,
     joints: OpenJoints,
@@ -44,6 +46,7 @@ impl RowTimeline {
         Self {
             rotations_rad: vec![Envelope::of_columns(columns); blocks],
             energy: Envelope::new(),
+            slips_mm: Vec::new(),
             in_barriers: false,
             joints: OpenJoints::new(row.joints().len()),
             edges: match row.supports() {
@@ -65,6 +68,14 @@ impl RowTimeline {
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
+        let joints = sample.offsets_m.len();
+        if self.slips_mm.is_empty() && joints > 0 {
+            let columns = (COLUMNS_OF_ALL / joints).clamp(LEAST_COLUMNS, COLUMNS);
+            self.slips_mm = vec![Envelope::of_columns(columns); joints];
+        }
+        for (envelope, offset_m) in self.slips_mm.iter_mut().zip(&sample.offsets_m) {
+            envelope.push(time_s, 1e3 * offset_m);
+        }
         self.joints.push(sample);
     }
 
@@ -127,6 +138,16 @@ impl RowTimeline {
                     .filter(|((_, bit), _)| self.joints.has(*bit))
                     .map(|((kind, _), text)| (text, Sign::Band(kind.fill, 1.0))),
             );
+        }
+        let slips: Vec<Curve> = self
+            .slips_mm
+            .iter()
+            .enumerate()
+            .map(|(joint, slip)| Curve::new(format!("slip {joint}"), slip.points(), BLOCK))
+            .filter(|slip| !slip.is_flat())
+            .collect();
+        if !slips.is_empty() {
+            panels.curves("Slip (mm)", 120.0, &slips, doing);
         }
         let energy = Curve::new("energy", self.energy.points(), MAIN);
         if !energy.is_flat() {

@@ -147,7 +147,7 @@ impl Structure {
             Self::Column(column) => FreeHinges::of_column(column)?,
             Self::Masonry(masonry) => FreeHinges::new(masonry.row().clone())?,
         };
-        Ok(model.with_options(options)?)
+        model.with_options(options)
     }
 }
 

@@ -22,6 +22,7 @@ use crate::mechanics::chain::{Demand, Hinge, Mechanism, MechanismChain};
 use crate::mechanics::column::Column;
 use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Pose as RowPose;
@@ -112,6 +113,9 @@ pub enum FreeHingesError {
     /// An argument is not allowed.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
+    /// It slides apart under its own weight.
+    #[error(transparent)]
+    Friction(#[from] FrictionError),
 }
 
 impl FreeHinges {
@@ -176,10 +180,15 @@ impl FreeHinges {
     /// The same with other options.
     ///
     /// # Errors
-    /// When a step or the coefficient is not positive and finite, the longest step is shorter than the shortest, or a
-    /// shortest step is given for joints that slip.
-    pub fn with_options(self, options: RowOptions) -> Result<Self, ArgumentError> {
+    /// When a step or the coefficient is not positive and finite, the longest step is shorter than the shortest, a
+    /// shortest step is given for joints that slip, or the row slides apart under its own weight.
+    pub fn with_options(self, options: RowOptions) -> Result<Self, FreeHingesError> {
         let options = options.checked()?;
+        if let Some(coefficient) = options.friction_coefficient
+            && !friction::stands(&self.row, coefficient)?
+        {
+            return Err(FrictionError::CannotStand(coefficient).into());
+        }
         Ok(Self { options, ..self })
     }
 
