@@ -10,7 +10,7 @@ use std::path::Path;
 
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::output::Figure;
-use archrock::output::map::draw;
+use archrock::output::map::{Look, draw};
 use archrock::scenario::{Changes, Hinges, Scenario, ScenarioErrors, Source};
 use archrock::studies::boundary::ImpactFreeBoundary;
 use archrock::studies::ending::Ending;
@@ -176,7 +176,8 @@ fn the_spread_counts_outcomes_with_half_and_double_steps() {
         .filter(|row| matches!(row.spread, Some(Ok(outcomes)) if outcomes > 1))
         .count();
     assert!(0 < doubtful && doubtful < rows.len() / 2, "{doubtful}");
-    let picture = draw(Figure::SCREEN, "Title", &map, &rows, &[]);
+    let look = Look::of(Figure::SCREEN);
+    let picture = draw("Title", &map, &rows, &[], look);
     assert!(picture.contains("outcome depends on the steps"));
     let hatch = picture.lines().find(|line| line.contains("\"spread\""));
     assert_eq!(hatch.unwrap().matches('L').count(), doubtful);
@@ -188,7 +189,7 @@ fn the_spread_counts_outcomes_with_half_and_double_steps() {
         let without = map.row(index);
         assert_eq!((&without.result, without.spread), (&with.result, None));
     }
-    assert!(!draw(Figure::SCREEN, "Title", &map, &rows, &[]).contains("depends on the steps"));
+    assert!(!draw("Title", &map, &rows, &[], look).contains("depends on the steps"));
 }
 
 // The program.

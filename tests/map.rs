@@ -750,7 +750,7 @@ fn faults_of_a_map_are_said_with_their_place_and_remedy() {
 }
 
 #[test]
-fn a_map_needs_a_pulse_and_a_column_has_no_radius() {
+fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
     let map = "[map]\nmean_radius_m = [1, 2]\namplitude_g = [1, 2]\n";
     let column =
         "[column]\nheight_m = 4\nwidth_m = 1\n[ground.ricker]\namplitude_g = 1\nduration_s = 1\n";
@@ -761,7 +761,7 @@ fn a_map_needs_a_pulse_and_a_column_has_no_radius() {
     );
     let errors = Scenario::parse(&format!("{SEMICIRCLE}{map}"), "s.toml").unwrap_err();
     assert!(
-        errors.to_string().contains("[map] needs a pulse"),
+        errors.to_string().contains("[map] needs a ground motion"),
         "{errors}"
     );
 

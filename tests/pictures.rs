@@ -573,7 +573,13 @@ fn the_map_shows_every_cell_and_the_boundaries() {
     let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
     let boundary = ImpactFreeBoundary::new(&cells).unwrap();
     let boundaries: Vec<_> = (0..3).map(|x| boundary.row(x)).collect();
-    let picture = map::draw(Figure::SCREEN, "a < b", &cells, &rows, &boundaries);
+    let picture = map::draw(
+        "a < b",
+        &cells,
+        &rows,
+        &boundaries,
+        map::Look::of(Figure::SCREEN),
+    );
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));
 

@@ -131,6 +131,7 @@ fn a_killed_run_leaves_complete_results_or_none() {
         "events.csv",
         "history.svg",
         "impacts.csv",
+        "report.html",
         "rotations.csv",
         "summary.json",
     ];

@@ -3,10 +3,12 @@
 use std::io::Write as _;
 
 use archrock::dynamics::history::Outcome;
-use archrock::output::{Figure, map as output, map_page};
+use archrock::output::map::{self as output, Look};
+use archrock::output::{Figure, map_page};
 use archrock::scenario::{Quantity, Scenario};
 use archrock::studies::boundary::{MapRow, MapWithBoundary};
 use archrock::studies::map::{CellResult, CellRow, OverturningMap};
+use clap::ValueEnum;
 
 use super::Failure;
 use super::figure::FigureOption;
@@ -20,6 +22,8 @@ pub struct Arguments {
     #[command(flatten)]
     boundary: BoundaryOption,
     #[command(flatten)]
+    look: LookOption,
+    #[command(flatten)]
     hinges: HingesOption,
     #[command(flatten)]
     figure: FigureOption,
@@ -31,6 +35,56 @@ pub struct BoundaryOption {
     /// Also write the least amplitude that overturns without impact, as no_impact.csv.
     #[arg(long)]
     no_impact: bool,
+}
+
+/// How the picture of a map looks.
+#[derive(clap::Args, Clone, Copy)]
+pub struct LookOption {
+    /// What the cells of a map that survive are coloured by.
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t)]
+    color: Color,
+    /// Draw a map over p t_p and a / A_L; its axes are duration_s and amplitude_g.
+    #[arg(long)]
+    dimensionless: bool,
+}
+
+/// What tells survivors apart.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum Color {
+    /// Their outcome.
+    #[default]
+    Outcome,
+    /// Their largest rotation over the critical one.
+    Peak,
+}
+
+impl LookOption {
+    /// For what is no map.
+    pub fn refuse(self) -> Result<(), Failure> {
+        if self.dimensionless || self.color != Color::Outcome {
+            let message = "--color and --dimensionless are about maps";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        Ok(())
+    }
+
+    fn look(self, scenario: &Scenario, figure: Figure) -> Result<Look, Failure> {
+        let by_peak = self.color == Color::Peak;
+        if by_peak && scenario.free_hinges.is_some() {
+            let message = "--color peak goes with four links and columns: free hinges have no critical rotation";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        let factors = self
+            .dimensionless
+            .then(|| Look::dimensionless(scenario))
+            .transpose()
+            .map_err(|wrong| Failure::Input(format!("--dimensionless {wrong}")))?;
+        Ok(Look {
+            figure,
+            by_peak,
+            factors,
+        })
+    }
 }
 
 const PICTURE: &str = "map.svg";
@@ -48,12 +102,12 @@ pub fn map(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let map = overturning_map(&scenario).map_err(|failure| input.about(failure))?;
     let study = MapWithBoundary::new(&map);
     arguments.boundary.check(&study)?;
+    let look = arguments.look.look(&scenario, arguments.figure.get())?;
     let place = options.results(&input)?;
     let Some((rows, part)) = options.compute(&study, &place, quiet)? else {
         return Ok(());
     };
-    let figure = arguments.figure.get();
-    finish(&map, rows, &place, arguments.boundary, figure, quiet)?;
+    finish(&map, rows, &place, (arguments.boundary, look), quiet)?;
     Ok(part.remove()?)
 }
 
@@ -62,13 +116,18 @@ fn overturning_map(scenario: &Scenario) -> Result<OverturningMap<'_>, Failure> {
         let message = "the histories of a map start from rest: leave [initial] out";
         return Err(Failure::Input(message.to_owned()));
     }
-    OverturningMap::new(scenario).ok_or_else(|| {
+    let map = OverturningMap::new(scenario).ok_or_else(|| {
         let message = "the scenario has no [map]: give it a table with two axes, such as\n\n\
                        [map]\n\
                        duration_s = { from = 0.05, to = 1.0, count = 40 }\n\
                        amplitude_g = { from = 0.1, to = 1.5, count = 40 }";
         Failure::Input(message.to_owned())
-    })
+    })?;
+    if let Some(fault) = map.fault() {
+        let message = format!("no cell of [map] has a scenario: {fault}");
+        return Err(Failure::Input(message));
+    }
+    Ok(map)
 }
 
 impl BoundaryOption {
@@ -99,14 +158,15 @@ pub fn merge(
     scenario: &str,
     rows: Vec<MapRow>,
     place: &Destination,
-    boundary: BoundaryOption,
+    (boundary, look): (BoundaryOption, LookOption),
     figure: Figure,
     quiet: bool,
 ) -> Result<(), Failure> {
     let scenario = Scenario::parse(scenario, "the scenario of the parts")?;
     let map = overturning_map(&scenario)?;
     boundary.check(&MapWithBoundary::new(&map))?;
-    finish(&map, rows, place, boundary, figure, quiet)
+    let look = look.look(&scenario, figure)?;
+    finish(&map, rows, place, (boundary, look), quiet)
 }
 
 /// Writes the results.
@@ -114,8 +174,7 @@ fn finish(
     map: &OverturningMap<'_>,
     rows: Vec<MapRow>,
     place: &Destination,
-    boundary: BoundaryOption,
-    figure: Figure,
+    (boundary, look): (BoundaryOption, Look),
     quiet: bool,
 ) -> Result<(), Failure> {
     let scenario = map.scenario();
@@ -131,12 +190,12 @@ fn finish(
         folder.forget(BOUNDARY);
     }
     let title = scenario.title.as_deref().unwrap_or("Overturning map");
-    let picture = output::draw(figure, title, map, &cells, &boundaries);
+    let picture = output::draw(title, map, &cells, &boundaries, look);
     folder
         .file(PICTURE)
         .write_all(picture.as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-    let page = map_page::page(title, map, &cells, &boundaries);
+    let page = map_page::page(title, map, &cells, &boundaries, look);
     folder
         .file(PAGE)
         .write_all(page.as_bytes())

@@ -10,7 +10,7 @@ use archrock::studies::suite::RecordSuite;
 
 use super::Failure;
 use super::figure::FigureOption;
-use super::map::{self, BoundaryOption};
+use super::map::{self, BoundaryOption, LookOption};
 use super::scenario_file::Destination;
 use super::spectrum;
 use super::suite;
@@ -27,6 +27,8 @@ pub struct Arguments {
     boundary: BoundaryOption,
     #[command(flatten)]
     figure: FigureOption,
+    #[command(flatten)]
+    look: LookOption,
 }
 
 pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
@@ -42,18 +44,20 @@ pub fn merge(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
                 &header.scenario,
                 rows,
                 &place,
-                arguments.boundary,
+                (arguments.boundary, arguments.look),
                 figure,
                 quiet,
             )
         }
         OverturningSpectrum::NAME => {
             arguments.boundary.refuse()?;
+            arguments.look.refuse()?;
             let (header, rows) = part::merge(parts)?;
             spectrum::merge(&header.scenario, &rows, &place, figure, quiet)
         }
         RecordSuite::NAME => {
             arguments.boundary.refuse()?;
+            arguments.look.refuse()?;
             let (header, rows) = part::merge(parts)?;
             suite::merge(&header.scenario, rows, &place, figure, quiet)
         }

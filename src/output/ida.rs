@@ -18,13 +18,16 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     let mut drawing = Drawing::new(figure);
     let mut top = drawing.title(heading.title());
     let records = records(results);
-    if records.len() <= NAMED {
+    let all = format!("a curve for each of {} records", records.len());
+    let keys: Vec<Key<'_>> = if records.len() <= NAMED {
         let named = records.iter().zip(CURVES);
-        let keys: Vec<Key<'_>> = named
+        named
             .map(|(cases, stroke)| (cases[0].record.as_str(), Sign::Line(stroke)))
-            .collect();
-        top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
-    }
+            .collect()
+    } else {
+        vec![(all.as_str(), Sign::Line(MANY))]
+    };
+    top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let over_critical = results
         .cases
         .iter()

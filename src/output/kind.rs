@@ -22,11 +22,33 @@ const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Ki
     Kind { name, label, fill }
 }
 
+/// What survives, by its largest rotation over the critical one: the darker, the closer it was.
+const SURVIVED: [Kind; 6] = [
+    kind("survived-0", "survives, peak below 20 %", "#e3eef9"),
+    kind("survived-20", "below 40 %", "#c1d9ed"),
+    kind("survived-40", "below 60 %", "#8fc1de"),
+    kind("survived-60", "below 80 %", "#539dcc"),
+    kind("survived-80", "below 100 %", "#2171b5"),
+    kind("survived-100", "beyond the critical rotation", "#08306b"),
+];
+
 impl Kind {
+    /// That of what survived with this largest rotation over the critical one.
+    pub(super) fn survived(peak_over_critical: f64) -> Self {
+        let bounds = [0.2, 0.4, 0.6, 0.8, 1.0];
+        SURVIVED[bounds.partition_point(|bound| *bound <= peak_over_critical)]
+    }
+
     /// In the order of the legend.
-    pub(super) const ALL: [Self; 12] = [
+    pub(super) const ALL: [Self; 18] = [
         kind("never_moved", "never moves", "#e4e4e4"),
         kind("rest", "comes to rest", "#bcdcf0"),
+        SURVIVED[0],
+        SURVIVED[1],
+        SURVIVED[2],
+        SURVIVED[3],
+        SURVIVED[4],
+        SURVIVED[5],
         kind("still_rocking", "still rocking", "#6f8ba0"),
         kind("overturned-0", "overturns without impact", color::VERMILION),
         kind("overturned-1", "overturns after 1 impact", color::ORANGE),

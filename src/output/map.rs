@@ -3,11 +3,14 @@
 use std::fmt::Write as _;
 use std::io::Write;
 
+use super::caption::caption;
 use super::ending::{self, Failed};
 use super::kind::{self, CANNOT_STAND, Kind, NOT_FOUR_LINKS};
+use super::rotations::Scales;
 use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use super::{OutputError, finite};
-use crate::scenario::{Axis, Quantity, Spacing};
+use crate::dynamics::history::Outcome;
+use crate::scenario::{Axis, Quantity, Scenario, Spacing};
 use crate::studies::boundary::{Boundary, BoundaryRow};
 use crate::studies::map::{CellResult, CellRow, OverturningMap};
 
@@ -42,7 +45,7 @@ pub fn failures(
     cells: &[CellRow],
     boundaries: &[BoundaryRow],
 ) -> Vec<Failed> {
-    let [x_name, y_name] = map.axes().map(|axis| axis.quantity.name());
+    let [x_name, y_name] = map.axes().map(|axis| axis.key.as_str());
     let mut failures = Vec::new();
     for cell in cells {
         let case = || format!("{x_name} {:?}, {y_name} {:?}", cell.x, cell.y);
@@ -73,9 +76,10 @@ pub fn write_table(
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the table";
     let mut csv = csv::Writer::from_writer(writer);
-    let axes = map.axes().map(|axis| axis.quantity.name());
+    let axes = map.axes().map(|axis| axis.key.as_str());
     let free_hinges = map.has_free_hinges();
-    let columns = axes.into_iter().chain(ending::columns(free_hinges));
+    let columns = ending::columns(free_hinges).map(|column| -> &str { column });
+    let columns = axes.into_iter().chain(columns);
     csv.write_record(columns.chain(map.has_spread().then_some(SPREAD)))
         .map_err(OutputError::csv(WHAT))?;
     for row in rows {
@@ -109,7 +113,7 @@ pub fn write_boundaries(
     const WHAT: &str = "cannot write the boundary";
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record([
-        x_axis.quantity.name(),
+        x_axis.key.as_str(),
         "incipient_acceleration_g",
         "no_impact_amplitude_g",
     ])
@@ -133,8 +137,58 @@ fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
     rows.filter_map(|row| Some((row.x, row.result.as_ref().ok().copied()??)))
 }
 
+/// How a map is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Its width, and the size of its text.
+    pub figure: Figure,
+    /// Whether what survives is coloured by its largest rotation over the critical one, where that is known.
+    pub by_peak: bool,
+    /// What the axes, pulse duration and amplitude, are multiplied by to have no dimension; `None`: as they are.
+    pub factors: Option<[f64; 2]>,
+}
+
+impl Look {
+    /// A map coloured by outcome, its axes as they are.
+    #[must_use]
+    pub const fn of(figure: Figure) -> Self {
+        Self {
+            figure,
+            by_peak: false,
+            factors: None,
+        }
+    }
+
+    /// The factors that make p t_p of durations, and a / A_L of amplitudes.
+    ///
+    /// # Errors
+    /// Says what a map needs for that.
+    pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
+        let map = scenario.map.as_ref().ok_or("there is no map")?;
+        if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
+            return Err("needs the axes `duration_s` and `amplitude_g`");
+        }
+        if scenario.free_hinges.is_some() {
+            return Err("goes with four links and columns: free hinges have no p");
+        }
+        let model = scenario.structure.model(scenario.impact);
+        let scales = model
+            .ok()
+            .and_then(|model| Scales::new(&*model, scenario.simulation.gravity_m_s2))
+            .ok_or("needs a mechanism that has an unstable equilibrium")?;
+        let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+        Ok([scales.frequency_rad_s, gravity_m_s2 / scales.incipient_m_s2])
+    }
+}
+
 /// What a cell is coloured by.
-pub(super) fn kind_of(result: &CellResult) -> Kind {
+pub(super) fn kind_of(result: &CellResult, look: Look) -> Kind {
+    if let (true, CellResult::Ended(ending)) = (look.by_peak, result)
+        && let (Outcome::Rest | Outcome::StillRocking, Some(peak)) =
+            (ending.outcome, ending.peak.over_critical())
+    {
+        return Kind::survived(peak);
+    }
     let impacts = match result {
         CellResult::Ended(ending) => ending.impacts_of_all_hinges(),
         _ => None,
@@ -142,8 +196,8 @@ pub(super) fn kind_of(result: &CellResult) -> Kind {
     Kind::of(outcome(result), impacts)
 }
 
-pub(super) const fn label(quantity: Quantity) -> &'static str {
-    match quantity {
+pub(super) fn label(axis: &Axis) -> &str {
+    match axis.quantity {
         Quantity::Duration => "pulse duration (s)",
         Quantity::Frequency => "pulse frequency (Hz)",
         Quantity::MeanRadius => "mean radius R (m)",
@@ -151,12 +205,16 @@ pub(super) const fn label(quantity: Quantity) -> &'static str {
         Quantity::Embrace => "embrace angle (deg)",
         Quantity::Restitution => "restitution coefficient r",
         Quantity::Amplitude => "pulse amplitude (g)",
+        Quantity::Scale => "factor on the record",
+        Quantity::PeakG => "peak ground acceleration (g)",
+        Quantity::Other => &axis.key,
     }
 }
 
-/// The scale of an axis and the edges of the cells along it, halfway between their values.
-fn scale(axis: &Axis, figure: Figure) -> (Scale, Vec<f64>) {
-    let values = axis.sequence.values();
+/// The scale of an axis and the edges of the cells along it, halfway between their values, which are multiplied.
+fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
+    let values: Vec<f64> = axis.sequence.values();
+    let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
     let logarithmic =
         axis.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
     let to = |value: f64| if logarithmic { value.ln() } else { value };
@@ -202,13 +260,13 @@ fn scale(axis: &Axis, figure: Figure) -> (Scale, Vec<f64>) {
 /// Draws the map. Boundaries are of maps whose y is the amplitude.
 #[must_use]
 pub fn draw(
-    figure: Figure,
     title: &str,
     map: &OverturningMap<'_>,
     rows: &[CellRow],
     boundaries: &[BoundaryRow],
+    look: Look,
 ) -> String {
-    drawn(figure, title, map, rows, boundaries).picture
+    drawn(title, map, rows, boundaries, look).picture
 }
 
 /// The picture of a map, and where its cells are.
@@ -221,18 +279,23 @@ pub(super) struct Drawn {
 
 /// As [`draw`].
 pub(super) fn drawn(
-    figure: Figure,
     title: &str,
     map: &OverturningMap<'_>,
     rows: &[CellRow],
     boundaries: &[BoundaryRow],
+    look: Look,
 ) -> Drawn {
     let boundaries: Vec<_> = found(boundaries).collect();
+    let figure = look.figure;
     let mut drawing = Drawing::new(figure);
     let top = drawing.title(title);
-    let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result)).collect();
-    let [(x, x_edges), (y, y_edges)] = map.axes().map(|axis| scale(axis, figure));
-    let keys = legend(map, &kinds, &boundaries, &y);
+    let top = drawing.caption(top + 11.0, &caption(map.scenario(), &map.axes()));
+    let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result, look)).collect();
+    let factors = look.factors.unwrap_or([1.0; 2]);
+    let [x_axis, y_axis] = map.axes();
+    let (x, x_edges) = scale(x_axis, factors[0], figure);
+    let (y, y_edges) = scale(y_axis, factors[1], figure);
+    let keys = legend(map, &kinds, &boundaries, factors[1], &y);
     let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let axes = Axes {
         frame: figure.plot(top, figure.height_px(560.0)),
@@ -264,7 +327,10 @@ pub(super) fn drawn(
         }
     }
     hatch(&mut drawing, &axes, [&x_edges, &y_edges], rows);
-    let [x_label, y_label] = map.axes().map(|axis| label(axis.quantity));
+    let [x_label, y_label] = match look.factors {
+        Some(_) => ["p t_p", "a / A_L"],
+        None => map.axes().map(label),
+    };
     axes.draw(&mut drawing, Some(x_label), y_label);
     let signs: Vec<f64> = [1.0, -1.0]
         .into_iter()
@@ -275,7 +341,7 @@ pub(super) fn drawn(
             let mut curve = |name, stroke, value: fn(&Boundary) -> Option<f64>| {
                 let points = boundaries.iter().filter_map(|(x, boundary)| {
                     let value = sign * value(boundary)?;
-                    Some(axes.place(*x, value))
+                    Some(axes.place(factors[0] * x, factors[1] * value))
                 });
                 drawing.curve(name, points, stroke);
             };
@@ -328,6 +394,7 @@ fn legend(
     map: &OverturningMap<'_>,
     kinds: &[Kind],
     boundaries: &[(f64, Boundary)],
+    factor: f64,
     y: &Scale,
 ) -> Vec<Key<'static>> {
     let mut keys = kind::keys(kinds);
@@ -338,7 +405,7 @@ fn legend(
     let shown = |value: fn(&Boundary) -> Option<f64>| {
         let mut values = boundaries
             .iter()
-            .filter_map(|(_, boundary)| value(boundary));
+            .filter_map(|(_, boundary)| Some(factor * value(boundary)?));
         values.any(|value| (y.low..=y.high).contains(&value) || (y.low..=y.high).contains(&-value))
     };
     if shown(|boundary| Some(boundary.incipient_g)) {

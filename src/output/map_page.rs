@@ -1,11 +1,13 @@
 //! `map.html`: a map with a cursor that tells the numbers of a cell, and the command that runs it.
 
+use std::fmt::Write as _;
+
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
 use super::kind::Kind;
-use super::map::{self, Drawn};
+use super::map::{self, Drawn, Look};
 use super::page::{escaped, filled, script_safe};
 use super::svg::Figure;
 use crate::scenario::{Ground, Quantity, toml_text};
@@ -19,9 +21,14 @@ pub fn page(
     map: &OverturningMap<'_>,
     rows: &[CellRow],
     boundaries: &[BoundaryRow],
+    look: Look,
 ) -> String {
-    let drawn = map::drawn(Figure::SCREEN, title, map, rows, boundaries);
-    let data = data(map, rows, &drawn);
+    let look = Look {
+        figure: Figure::SCREEN,
+        ..look
+    };
+    let drawn = map::drawn(title, map, rows, boundaries, look);
+    let data = data(map, rows, &drawn, look);
     let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
     filled(
         include_str!("map_page/page.html"),
@@ -36,8 +43,9 @@ pub fn page(
     )
 }
 
-fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn) -> Value {
-    let kinds: Vec<Kind> = rows.iter().map(|row| map::kind_of(&row.result)).collect();
+fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -> Value {
+    let kinds = rows.iter().map(|row| map::kind_of(&row.result, look));
+    let kinds: Vec<Kind> = kinds.collect();
     let index = |kind: &Kind| {
         Kind::ALL
             .iter()
@@ -73,7 +81,7 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn) -> Value {
     let values = map.values();
     let axis = |i: usize| {
         json!({
-            "label": map::label(axes[i].quantity),
+            "label": map::label(axes[i]),
             "values": values[i],
             "edges_px": drawn.edges_px[i],
         })
@@ -99,6 +107,7 @@ fn command(map: &OverturningMap<'_>) -> String {
         }
     }
     let mut places = Vec::new();
+    let mut set = String::new();
     for (axis, place) in map.axes().into_iter().zip(["cell.x", "cell.y"]) {
         let (outer, key, place) = match axis.quantity {
             Quantity::Duration => ("ground", "duration_s", place.to_owned()),
@@ -108,12 +117,27 @@ fn command(map: &OverturningMap<'_>) -> String {
             Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace => {
                 ("arch", axis.quantity.name(), place.to_owned())
             }
+            Quantity::Scale => ("ground", "scale", place.to_owned()),
+            Quantity::PeakG => ("ground", "peak_g", place.to_owned()),
+            Quantity::Other => {
+                let _ = write!(set, " --set {}={{{place}}}", axis.key);
+                continue;
+            }
         };
         let mut inner = &mut table[outer];
         if let Some(Ground::Pulse(pulse)) = &scenario.ground
             && outer == "ground"
         {
             inner = &mut inner[pulse.kind.name()];
+        }
+        if let Some(Ground::Record(_)) = &scenario.ground
+            && outer == "ground"
+        {
+            inner = &mut inner["record"];
+            if let Some(record) = inner.as_object_mut() {
+                record.shift_remove("scale");
+                record.shift_remove("peak_g");
+            }
         }
         let place = format!("{{{place}}}");
         inner[key] = Value::String(place.clone());
@@ -124,5 +148,5 @@ fn command(map: &OverturningMap<'_>) -> String {
         // Numbers have no quotation marks.
         text = text.replace(&format!("= \"{place}\""), &format!("= {place}"));
     }
-    format!("archrock run - --out cell <<'END'\n{text}END\n")
+    format!("archrock run -{set} --out cell <<'END'\n{text}END\n")
 }

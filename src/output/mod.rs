@@ -3,6 +3,7 @@
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
 pub mod capacity;
+pub mod caption;
 pub mod chart;
 pub mod ending;
 mod envelope;

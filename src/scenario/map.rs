@@ -6,13 +6,17 @@
 //! amplitude_g = { from = 0.15, to = 1.5, count = 80, spacing = "logarithmic" }
 //! ```
 //!
-//! Two quantities of the scenario vary; all else stays as it is. With free hinges, `spread = true` computes
+//! Two quantities of the scenario vary; all else stays as it is. Under a record, its strength varies as `scale` or
+//! `peak_g`. A number of any other table is named by table and key, `"column.width_m" = [0.6, 0.8]`. With free hinges, `spread = true` computes
 //! every cell with half and with double steps as well, to see whether its outcome depends on them.
+
+use std::ops::Bound::{Included, Unbounded};
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
 use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ};
 use super::impact::RESTITUTION;
+use super::record::PEAK_G;
 use super::sequence::Sequence;
 use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::table::{Number, Reading, Switch, Table};
@@ -23,6 +27,8 @@ use crate::mechanics::four_link::impact::ImpactModel;
 named! {
     /// What may vary over a map, by its key in `[map]`. Of two, the first in this order goes along x.
     pub enum Quantity {
+        /// A number of another table of the scenario, by its table and key.
+        Other = "table.key",
         /// Duration of the pulse.
         Duration = "duration_s",
         /// Its inverse.
@@ -37,6 +43,10 @@ named! {
         Restitution = "restitution",
         /// Peak acceleration of the pulse.
         Amplitude = "amplitude_g",
+        /// Factor on the horizontal record, or the only one.
+        Scale = "scale",
+        /// Horizontal peak that the record is scaled to.
+        PeakG = "peak_g",
     }
 }
 
@@ -51,15 +61,39 @@ impl Quantity {
             Self::Embrace => &EMBRACE_DEG,
             Self::Restitution => &RESTITUTION,
             Self::Amplitude => &AMPLITUDE_G,
+            Self::Scale => &SCALE,
+            Self::PeakG => &PEAK_G,
+            Self::Other => &ANY,
+        }
+    }
+
+    /// Whether it says how strong the ground moves.
+    #[must_use]
+    pub const fn is_strength(self) -> bool {
+        matches!(self, Self::Amplitude | Self::Scale | Self::PeakG)
+    }
+
+    /// Whether it is of records, or of pulses; `None`: of neither.
+    const fn is_of_records(self) -> Option<bool> {
+        match self {
+            Self::Scale | Self::PeakG => Some(true),
+            Self::Duration | Self::Frequency | Self::Amplitude => Some(false),
+            _ => None,
         }
     }
 }
+
+/// What the key of another table allows is asked of that table.
+const ANY: Number = Number(Unbounded, Unbounded);
+const SCALE: Number = Number(Included(-1e6), Included(1e6));
 
 /// One direction of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// What varies.
     pub quantity: Quantity,
+    /// Its key, in `[map]` or, of another table, after the name of that.
+    pub key: String,
     /// Its values.
     pub sequence: Sequence,
 }
@@ -89,23 +123,44 @@ impl Map {
         simulation: Option<&Simulation>,
     ) -> Reading<Self> {
         let spread = read_spread(table, free_hinges);
-        let read: Vec<_> = Quantity::ALL
+        let read = Quantity::ALL
             .iter()
+            .filter(|quantity| **quantity != Quantity::Other)
             .map(|&quantity| {
                 let sequence = Sequence::read(table, quantity.name(), quantity.range())?;
                 if sequence.is_some() {
                     suits(table, quantity, structure, free_hinges, impact)?;
+                    check_ground(table, quantity, ground)?;
                 }
-                Ok(sequence.map(|sequence| Axis { quantity, sequence }))
-            })
-            .collect();
+                let key = quantity.name().to_owned();
+                Ok(sequence.map(|sequence| Axis {
+                    quantity,
+                    key,
+                    sequence,
+                }))
+            });
+        let mut read: Vec<_> = read.collect();
+        let others = table.keys_of_other_tables();
+        let others = others.into_iter().map(|key| {
+            let quantity = Quantity::Other;
+            let sequence = Sequence::read(table, &key, quantity.range())?;
+            Ok(sequence.map(|sequence| Axis {
+                quantity,
+                key,
+                sequence,
+            }))
+        });
+        let others: Vec<_> = others.collect();
+        read.splice(0..0, others);
         let axes: Vec<_> = read.into_iter().collect::<Reading<Vec<_>>>()?;
         let mut axes = axes.into_iter().flatten();
         let (Some(x), Some(y), None) = (axes.next(), axes.next(), axes.next()) else {
-            let keys: Vec<_> = Quantity::ALL.iter().map(|one| one.name()).collect();
-            return Err(
-                table.wrong_itself(format!("needs exactly two of the keys {}", keys.join(", ")))
-            );
+            let keys = Quantity::ALL.iter().skip(1);
+            let keys: Vec<_> = keys.map(|one| one.name()).collect();
+            return Err(table.wrong_itself(format!(
+                "needs exactly two of the keys {}, or of other tables, such as \"arch.depth_m\"",
+                keys.join(", ")
+            )));
         };
         if (x.quantity, y.quantity) == (Quantity::Duration, Quantity::Frequency) {
             let wrong = "cannot be combined with `duration_s`, its inverse; give one of them";
@@ -117,22 +172,33 @@ impl Map {
                 "has {cells} cells; at most {MAX_CELLS} are allowed"
             )));
         }
-        Ground::check_pulse(table, ground)?;
+        if let Some(None) = ground {
+            return Err(table.wrong_itself(
+                "needs a ground motion: give a table [ground.<kind>], such as [ground.rectangular], or [ground.record]",
+            ));
+        }
         let spread = spread?;
         let map = Self { x, y, spread };
-        if let (Some(Some(Ground::Pulse(pulse))), Some(simulation)) = (ground, simulation) {
-            map.check_end(table, pulse, simulation)?;
+        if let (Some(Some(ground)), Some(simulation)) = (ground, simulation) {
+            map.check_end(table, ground, simulation)?;
         }
         Ok(map)
     }
 
-    /// Checks that no pulse is cut off.
+    /// Checks that no ground motion is cut off.
     fn check_end(
         &self,
         table: &mut Table<'_>,
-        pulse: &PulseGround,
+        ground: &Ground,
         simulation: &Simulation,
     ) -> Reading<()> {
+        let pulse = match ground {
+            Ground::Pulse(pulse) => pulse,
+            Ground::Record(record) => {
+                let end_s = record.end_s();
+                return self.check_end_s(table, "a record that lasts", end_s, simulation);
+            }
+        };
         let longest_s = [&self.x, &self.y].into_iter().find_map(|axis| {
             let values = axis.sequence.values();
             match axis.quantity {
@@ -146,11 +212,21 @@ impl Map {
             ..pulse.clone()
         };
         let end_s = longest.motion(1.0).end_s();
+        self.check_end_s(table, "pulses that last", end_s, simulation)
+    }
+
+    fn check_end_s(
+        &self,
+        table: &mut Table<'_>,
+        what: &str,
+        end_s: f64,
+        simulation: &Simulation,
+    ) -> Reading<()> {
         if end_s <= simulation.duration_s {
             return Ok(());
         }
         Err(table.wrong_itself(format!(
-            "has pulses that last until {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
+            "has {what} until {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
             plain(end_s),
             plain(simulation.duration_s)
         )))
@@ -162,13 +238,31 @@ impl Serialize for Map {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for axis in [&self.x, &self.y] {
-            map.serialize_entry(axis.quantity.name(), &axis.sequence)?;
+            map.serialize_entry(&axis.key, &axis.sequence)?;
         }
         if self.spread {
             map.serialize_entry(SPREAD, &true)?;
         }
         map.end()
     }
+}
+
+/// Refuses a quantity of pulses where there is a record, and the other way round.
+fn check_ground(
+    table: &mut Table<'_>,
+    quantity: Quantity,
+    ground: Option<&Option<Ground>>,
+) -> Reading<()> {
+    let wrong = match (quantity.is_of_records(), ground) {
+        (Some(true), Some(Some(Ground::Pulse(_)))) => {
+            "goes with a record: of a pulse the axis is `amplitude_g`"
+        }
+        (Some(false), Some(Some(Ground::Record(_)))) => {
+            "goes with a pulse: of a record the axes are `scale` and `peak_g`"
+        }
+        _ => return Ok(()),
+    };
+    Err(table.wrong(quantity.name(), wrong))
 }
 
 const SPREAD: &str = "spread";

@@ -44,6 +44,7 @@ mod suite;
 mod table;
 mod toml_text;
 mod unlikely;
+mod variant;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -96,11 +96,7 @@ impl Sequence {
     }
 
     /// The numbers of a key, if given; each must follow `rule`.
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        key: &'static str,
-        rule: &Number,
-    ) -> Reading<Option<Self>> {
+    pub(super) fn read(table: &mut Table<'_>, key: &str, rule: &Number) -> Reading<Option<Self>> {
         if table.gives_table(key) {
             return table.table(key, |table| Self::read_range(table, rule));
         }

@@ -166,7 +166,7 @@ pub(super) struct Table<'a> {
     offset: usize,
     entries: &'a DeTable<'a>,
     legible: &'a Legible,
-    known: Vec<&'static str>,
+    known: Vec<String>,
     faults: Vec<Fault>,
 }
 
@@ -177,7 +177,7 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key that must be given.
-    pub(super) fn required<R: Rule>(&mut self, key: &'static str, rule: &R) -> Reading<R::Value> {
+    pub(super) fn required<R: Rule>(&mut self, key: &str, rule: &R) -> Reading<R::Value> {
         match self.optional(key, rule)? {
             Some(value) => Ok(value),
             None => {
@@ -190,7 +190,7 @@ impl<'a> Table<'a> {
     /// The value of a key that can be left out, which means `default`.
     pub(super) fn or<R: Rule>(
         &mut self,
-        key: &'static str,
+        key: &str,
         rule: &R,
         default: R::Value,
     ) -> Reading<R::Value> {
@@ -198,11 +198,7 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key that can be left out.
-    pub(super) fn optional<R: Rule>(
-        &mut self,
-        key: &'static str,
-        rule: &R,
-    ) -> Reading<Option<R::Value>> {
+    pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Reading<Option<R::Value>> {
         let Some(entry) = self.entry(key)? else {
             return Ok(None);
         };
@@ -215,7 +211,7 @@ impl<'a> Table<'a> {
     /// The table of that name, read by `read`, if given.
     pub(super) fn table<T>(
         &mut self,
-        key: &'static str,
+        key: &str,
         read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
     ) -> Reading<Option<T>> {
         let Some(entry) = self.entry(key)? else {
@@ -232,7 +228,7 @@ impl<'a> Table<'a> {
     /// The tables of an array `[[key]]`, each read by `read`; none if it is not given.
     pub(super) fn tables<T>(
         &mut self,
-        key: &'static str,
+        key: &str,
         read: impl Fn(&mut Table<'_>) -> Reading<T>,
     ) -> Reading<Vec<T>> {
         let Some(entry) = self.entry(key)? else {
@@ -261,7 +257,7 @@ impl<'a> Table<'a> {
     /// The table of that name, read by `read`, or what `read` makes of an empty one.
     pub(super) fn table_or_defaults<T>(
         &mut self,
-        key: &'static str,
+        key: &str,
         read: impl Fn(&mut Table<'_>) -> Reading<T>,
     ) -> Reading<T> {
         match self.table(key, &read)? {
@@ -306,6 +302,13 @@ impl<'a> Table<'a> {
             .ok_or(Reported)
     }
 
+    /// The keys that name a value of another table, such as `"arch.depth_m"`, in the order of the file.
+    pub(super) fn keys_of_other_tables(&self) -> Vec<String> {
+        let keys = self.entries.keys().map(|key| key.get_ref().as_ref());
+        let keys = keys.filter(|key: &&str| key.contains('.'));
+        keys.map(str::to_owned).collect()
+    }
+
     /// Whether the file gives a table for the key.
     pub(super) fn gives_table(&self, key: &str) -> bool {
         let entry = self.entries.get(key);
@@ -318,7 +321,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the value which the file gives for `key` is wrong: `message` follows the two.
-    pub(super) fn wrong(&mut self, key: &'static str, message: impl fmt::Display) -> Reported {
+    pub(super) fn wrong(&mut self, key: &str, message: impl fmt::Display) -> Reported {
         self.wrong_entry(self.entries.get(key), key, message)
     }
 
@@ -326,7 +329,7 @@ impl<'a> Table<'a> {
     pub(super) fn wrong_in(
         &mut self,
         table: &str,
-        key: &'static str,
+        key: &str,
         message: impl fmt::Display,
     ) -> Reported {
         let inner = self.entries.get(table).map(Spanned::get_ref);
@@ -339,7 +342,7 @@ impl<'a> Table<'a> {
     pub(super) fn wrong_within(
         &mut self,
         tables: &[&str],
-        key: &'static str,
+        key: &str,
         message: impl fmt::Display,
     ) -> Reported {
         let mut entries = Some(self.entries);
@@ -365,7 +368,7 @@ impl<'a> Table<'a> {
     fn wrong_entry(
         &mut self,
         entry: Option<&Spanned<DeValue<'_>>>,
-        key: &'static str,
+        key: &str,
         message: impl fmt::Display,
     ) -> Reported {
         let Some(entry) = entry else {
@@ -386,7 +389,7 @@ impl<'a> Table<'a> {
     /// value that is not an array stands for its only element.
     pub(super) fn wrong_element(
         &mut self,
-        key: &'static str,
+        key: &str,
         index: usize,
         message: impl fmt::Display,
     ) -> Reported {
@@ -409,9 +412,9 @@ impl<'a> Table<'a> {
         Reported
     }
 
-    fn entry(&mut self, key: &'static str) -> Reading<Option<&'a Spanned<DeValue<'a>>>> {
-        if !self.known.contains(&key) {
-            self.known.push(key);
+    fn entry(&mut self, key: &str) -> Reading<Option<&'a Spanned<DeValue<'a>>>> {
+        if !self.known.iter().any(|known| known == key) {
+            self.known.push(key.to_owned());
         }
         match self.entries.get(key) {
             None if self.legible.unread.contains(key) => Err(Reported),
@@ -446,7 +449,7 @@ impl<'a> Table<'a> {
     fn reject_unknown_keys(&mut self) {
         for key in self.entries.keys() {
             let (name, offset) = (key.get_ref().as_ref(), key.span().start);
-            if !self.known.contains(&name) {
+            if !self.known.iter().any(|known| known == name) {
                 let message = format!(
                     "unknown key `{}` in {}{}; known keys: {}",
                     excerpt(name),
@@ -667,13 +670,14 @@ fn kind_of(value: &DeValue<'_>) -> &'static str {
 }
 
 /// Suggests the known name nearest to `name`; empty when none is near.
-fn did_you_mean(name: &str, known: &[&str]) -> String {
+fn did_you_mean(name: &str, known: &[impl AsRef<str>]) -> String {
     // Half a name in common: enough for a forgotten unit or prefix, too much for a chance match.
     const NEAR: f64 = 0.5;
     let name = excerpt(name);
     known
         .iter()
-        .map(|known| (strsim::normalized_damerau_levenshtein(&name, known), known))
+        .map(AsRef::as_ref)
+        .map(|known: &str| (strsim::normalized_damerau_levenshtein(&name, known), known))
         .filter(|(likeness, _)| *likeness > NEAR)
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
         .map(|(_, known)| format!(" (did you mean `{known}`?)"))

@@ -22,7 +22,7 @@ fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
         *text += &format!("[{name}]\n");
     }
     for (key, value) in keys {
-        *text += &format!("{key} = {}\n", inline(value));
+        *text += &format!("{} = {}\n", bare(key), inline(value));
     }
     for (key, value) in tables {
         let name = match name {
@@ -52,6 +52,15 @@ fn inline(value: &Value) -> String {
             format!("{:?}", number.as_f64().unwrap_or(f64::NAN))
         }
         Value::Null | Value::Bool(_) | Value::Number(_) => value.to_string(),
+    }
+}
+
+/// A key, between marks where it has a point in it.
+fn bare(key: &str) -> String {
+    if key.contains('.') {
+        quoted(key)
+    } else {
+        key.to_owned()
     }
 }
 

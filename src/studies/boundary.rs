@@ -48,22 +48,15 @@ impl<'m> ImpactFreeBoundary<'m> {
         let index = x * amplitudes_g.len();
         let model = match self.map.mechanism_model(index) {
             Ok(model) => model,
-            Err(error) => {
-                return match CellResult::from(error) {
-                    CellResult::Failed(reason) => Err(reason),
-                    _ => Ok(None),
-                };
-            }
+            Err(CellResult::Failed(reason)) => return Err(reason),
+            Err(_) => return Ok(None),
         };
-        let Some(model) = model else {
+        let (Some((model, request)), Some(pulse)) = (model, self.map.pulse(index)) else {
             return Ok(None);
         };
-        let request = self.map.scenario().request_from_rest();
         // The cells' amplitudes are tried too, so that no cell contradicts the boundary.
         let tried_g: Vec<f64> = amplitudes_g.iter().map(|value| value.abs()).collect();
-        let found = self
-            .map
-            .pulse(index)
+        let found = pulse
             .minimum_without_impact(&*model, &request, &tried_g)
             .map_err(|error| error.to_string())?;
         let incipient_g = model
@@ -161,6 +154,10 @@ impl Study for MapWithBoundary<'_> {
 
     fn scenario(&self) -> String {
         Study::scenario(self.map)
+    }
+
+    fn inputs(&self) -> Vec<String> {
+        self.map.inputs()
     }
 
     fn count(&self) -> usize {

@@ -12,14 +12,16 @@ use crate::dynamics::free_hinges::spread::REPETITIONS;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Outcome;
-use crate::dynamics::model::{MechanismModel, Model};
+use crate::dynamics::model::{MechanismModel, Model, Request};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::limit::LimitError;
 use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::stability::StabilityError;
-use crate::scenario::{Axis, Ground, ModelError, PulseGround, Quantity, Scenario, Structure};
+use crate::scenario::{
+    Axis, Ground, ModelError, PulseGround, Quantity, Scaling, Scenario, Structure,
+};
 
 /// What became of a cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,12 +52,6 @@ impl From<ModelError> for CellResult {
     }
 }
 
-impl From<Result<Ending, String>> for CellResult {
-    fn from(ending: Result<Ending, String>) -> Self {
-        ending.map_or_else(Self::Failed, Self::Ended)
-    }
-}
-
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellRow {
@@ -76,7 +72,6 @@ pub struct CellRow {
 #[derive(Debug)]
 pub struct OverturningMap<'a> {
     scenario: &'a Scenario,
-    pulse: &'a PulseGround,
     axes: [&'a Axis; 2],
     values: [Vec<f64>; 2],
     /// Whether each cell tells how many outcomes it has with other steps.
@@ -84,6 +79,9 @@ pub struct OverturningMap<'a> {
     /// The structures and pulses that serve more than one cell.
     structures: Shared<Result<Standing, ModelError>>,
     pulses: Shared<ScalablePulse>,
+    /// The scenario, and those that keys of other tables make of it.
+    base: Arc<Scenario>,
+    variants: Option<Shared<Result<Arc<Scenario>, String>>>,
 }
 
 /// What stands in cells: of any size, but for a row of blocks.
@@ -137,10 +135,10 @@ impl<T: Clone> Shared<T> {
 }
 
 impl<'a> OverturningMap<'a> {
-    /// The cells of a scenario's map; `None` if it has no map or no pulse.
+    /// The cells of a scenario's map; `None` if it has no map or no ground motion.
     #[must_use]
     pub fn new(scenario: &'a Scenario) -> Option<Self> {
-        let (Some(map), Some(Ground::Pulse(pulse))) = (&scenario.map, &scenario.ground) else {
+        let (Some(map), Some(_)) = (&scenario.map, &scenario.ground) else {
             return None;
         };
         let axes = [&map.x, &map.y];
@@ -151,6 +149,7 @@ impl<'a> OverturningMap<'a> {
             Quantity::ThicknessRatio,
             Quantity::Embrace,
             Quantity::Restitution,
+            Quantity::Other,
         ];
         let mut structures = depends(&shapes);
         if scenario.free_hinges.is_some() {
@@ -158,14 +157,18 @@ impl<'a> OverturningMap<'a> {
                 *depends |= of_size;
             }
         }
-        let durations = [Quantity::Duration, Quantity::Frequency];
+        let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
+        let variants = depends(&[Quantity::Other]);
         Some(Self {
             scenario,
-            pulse,
             axes,
             spread: map.spread,
             structures: Shared::new(counts, structures),
             pulses: Shared::new(counts, depends(&durations)),
+            base: Arc::new(scenario.clone()),
+            variants: variants
+                .contains(&true)
+                .then(|| Shared::new(counts, variants)),
             values,
         })
     }
@@ -203,7 +206,35 @@ impl<'a> OverturningMap<'a> {
     /// Whether the ground moves vertically too.
     #[must_use]
     pub fn moves_vertically(&self) -> bool {
-        self.pulse.vertical_amplitude_g != 0.0
+        self.scenario.ground_motion().has_vertical()
+    }
+
+    /// The scenario of a cell, but for what the keys of `[map]` itself say.
+    fn variant(&self, index: usize) -> Result<Arc<Scenario>, String> {
+        let Some(variants) = &self.variants else {
+            return Ok(Arc::clone(&self.base));
+        };
+        variants.get(self.place(index), || {
+            let coordinates = self.coordinates(index);
+            let values = self.axes.iter().zip(coordinates);
+            let values: Vec<_> = values
+                .filter(|(axis, _)| axis.quantity == Quantity::Other)
+                .map(|(axis, value)| (axis.key.as_str(), value))
+                .collect();
+            self.scenario.with_values(&values).map(Arc::new)
+        })
+    }
+
+    /// Why no cell has a scenario, where that is so: keys of other tables that there are not, or numbers that they do
+    /// not allow.
+    #[must_use]
+    pub fn fault(&self) -> Option<String> {
+        let mut first = None;
+        for index in 0..self.count() {
+            let fault = self.variant(index).err()?;
+            first.get_or_insert(fault);
+        }
+        first
     }
 
     /// Indices along x and y.
@@ -229,13 +260,15 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// What stands in a cell.
-    fn standing(&self, index: usize) -> Result<Standing, ModelError> {
-        let make = || match self.scenario.free_hinges {
+    fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
+        let make = || match scenario.free_hinges {
             Some(steps) => {
-                let structure = self.structure(index).map_err(FreeHingesError::from)?;
+                let structure = self
+                    .structure(index, scenario)
+                    .map_err(FreeHingesError::from)?;
                 Ok(Standing::Row(Arc::new(structure.free_hinges(steps)?)))
             }
-            None => Ok(self.mechanisms(index)?),
+            None => self.mechanisms(index, scenario),
         };
         let standing = self.structures.get(self.place(index), make)?;
         Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
@@ -247,22 +280,22 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// The model of what stands in a cell, where it has one degree of freedom at a time.
-    pub(super) fn mechanism_model(
-        &self,
-        index: usize,
-    ) -> Result<Option<Box<dyn MechanismModel>>, ModelError> {
-        Ok(match self.standing(index)? {
-            Standing::Arch(arch) => Some(Box::new(arch)),
-            Standing::Column(column) => Some(Box::new(column)),
-            Standing::FourLinkRow(row) => Some(Box::new((*row).clone())),
-            Standing::Row(_) => None,
-        })
+    /// The model of what stands in a cell, where it has one degree of freedom at a time, and what asks it for a motion;
+    /// or what becomes of the cell without it.
+    pub(super) fn mechanism_model(&self, index: usize) -> Result<Option<Asked>, CellResult> {
+        let scenario = self.variant(index).map_err(CellResult::Failed)?;
+        let model: Box<dyn MechanismModel> = match self.standing(index, &scenario)? {
+            Standing::Arch(arch) => Box::new(arch),
+            Standing::Column(column) => Box::new(column),
+            Standing::FourLinkRow(row) => Box::new((*row).clone()),
+            Standing::Row(_) => return Ok(None),
+        };
+        Ok(Some((model, scenario.request_from_rest())))
     }
 
     /// The structure of a cell.
-    fn structure(&self, index: usize) -> Result<Structure, ArgumentError> {
-        let arch = match &self.scenario.structure {
+    fn structure(&self, index: usize, scenario: &Scenario) -> Result<Structure, ArgumentError> {
+        let arch = match &scenario.structure {
             Structure::Arch(arch) => arch,
             other @ (Structure::Column(_) | Structure::Masonry(_)) => return Ok(other.clone()),
         };
@@ -281,8 +314,8 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// The mechanisms of the structure of a cell.
-    fn mechanisms(&self, index: usize) -> Result<Standing, FourLinkError> {
-        let model = match self.scenario.impact.model {
+    fn mechanisms(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
+        let model = match scenario.impact.model {
             ImpactModel::Prescribed { restitution } => ImpactModel::Prescribed {
                 restitution: self
                     .value(index, Quantity::Restitution)
@@ -292,76 +325,97 @@ impl<'a> OverturningMap<'a> {
         };
         let impact = ImpactLaw {
             model,
-            ..self.scenario.impact
+            ..scenario.impact
         };
-        Ok(match self.structure(index)? {
+        let structure = self
+            .structure(index, scenario)
+            .map_err(FourLinkError::from)?;
+        Ok(match structure {
             Structure::Arch(arch) => Standing::Arch(FourLinkArch::new(arch, impact)?),
-            Structure::Column(column) => Standing::Column(RockingColumn::new(&column, impact)?),
+            Structure::Column(column) => {
+                Standing::Column(RockingColumn::new(&column, impact).map_err(FourLinkError::from)?)
+            }
             Structure::Masonry(masonry) => {
                 Standing::FourLinkRow(Arc::new(FourLinkRow::new(masonry.row(), impact)?))
             }
         })
     }
 
-    /// The pulse of a cell, of any amplitude.
-    pub(super) fn pulse(&self, index: usize) -> ScalablePulse {
-        self.pulses.get(self.place(index), || {
+    /// The pulse of a cell, of any amplitude; `None` under a record, or where the cell has no scenario.
+    pub(super) fn pulse(&self, index: usize) -> Option<ScalablePulse> {
+        let scenario = self.variant(index).ok()?;
+        let Some(Ground::Pulse(pulse)) = &scenario.ground else {
+            return None;
+        };
+        Some(self.pulses.get(self.place(index), || {
             let duration_s = match self.value(index, Quantity::Frequency) {
                 Some(frequency_hz) => 1.0 / frequency_hz,
                 None => {
                     let value = self.value(index, Quantity::Duration);
-                    value.unwrap_or(self.pulse.duration_s)
+                    value.unwrap_or(pulse.duration_s)
                 }
             };
             let pulse = PulseGround {
                 duration_s,
-                ..self.pulse.clone()
+                ..pulse.clone()
             };
-            ScalablePulse::new(pulse, self.scenario.simulation.gravity_m_s2)
-        })
+            ScalablePulse::new(pulse, scenario.simulation.gravity_m_s2)
+        }))
+    }
+
+    /// The ground motion of a cell, or why there is none.
+    fn motion(&self, index: usize, scenario: &Scenario) -> Result<GroundMotion, String> {
+        if let (Some(Ground::Pulse(pulse)), Some(scalable)) = (&scenario.ground, self.pulse(index))
+        {
+            let amplitude_g = self.value(index, Quantity::Amplitude);
+            return Ok(scalable.motion(amplitude_g.unwrap_or(pulse.amplitude_g)));
+        }
+        let factor = self.value(index, Quantity::Scale).map(Scaling::Factor);
+        let scaling = factor.or(self.value(index, Quantity::PeakG).map(Scaling::PeakG));
+        match (&scenario.ground, scaling) {
+            (Some(Ground::Record(record)), Some(scaling)) => {
+                record.rescaled(scaling, scenario.simulation.gravity_m_s2)
+            }
+            _ => Ok(scenario.ground_motion().clone()),
+        }
     }
 
     /// What becomes of a cell, and how many outcomes it has with other steps.
-    fn result(&self, index: usize) -> (CellResult, Option<Result<usize, String>>) {
-        let standing = match self.standing(index) {
-            Ok(standing) => standing,
-            Err(error) => return (error.into(), None),
-        };
-        let amplitude_g = self.value(index, Quantity::Amplitude);
-        let ground = self
-            .pulse(index)
-            .motion(amplitude_g.unwrap_or(self.pulse.amplitude_g));
-        let request = self.scenario.request_from_rest();
-        let ending = Ending::of(standing.model(), &ground, &request);
-        let spread = match (&standing, &ending) {
-            (Standing::Row(row), Ok(own)) if self.spread => {
-                Some(self.outcomes(row, &ground, own.outcome))
+    fn result(&self, index: usize) -> Result<(Ending, Option<Outcomes>), CellResult> {
+        let scenario = self.variant(index).map_err(CellResult::Failed)?;
+        let standing = self.standing(index, &scenario)?;
+        let ground = self.motion(index, &scenario).map_err(CellResult::Failed)?;
+        let request = scenario.request_from_rest();
+        let ending = Ending::of(standing.model(), &ground, &request).map_err(CellResult::Failed)?;
+        let outcomes = match &standing {
+            Standing::Row(row) if self.spread => {
+                Some(outcomes(row, &ground, &request, ending.outcome))
             }
             _ => None,
         };
-        (ending.into(), spread)
+        Ok((ending, outcomes))
     }
+}
 
-    /// How many outcomes a row of blocks has with its own steps, half of them and double.
-    fn outcomes(
-        &self,
-        row: &FreeHinges,
-        ground: &GroundMotion,
-        own: Outcome,
-    ) -> Result<usize, String> {
-        let request = self.scenario.request_from_rest();
-        let mut names = vec![own.name()];
-        for factor in REPETITIONS {
-            let row = row.with_coarse_steps_times(factor, &request);
-            let ending = Ending::of(&row, ground, &request)
-                .map_err(|error| format!("with {factor} times the steps: {error}"))?;
-            let other = ending.outcome.name();
-            if !names.contains(&other) {
-                names.push(other);
-            }
+/// The model of a cell, and what asks it for a motion.
+pub(super) type Asked = (Box<dyn MechanismModel>, Request);
+
+/// How many outcomes a cell has with several steps, or why that is not known.
+type Outcomes = Result<usize, String>;
+
+/// How many outcomes a row of blocks has with its own steps, half of them and double.
+fn outcomes(row: &FreeHinges, ground: &GroundMotion, request: &Request, own: Outcome) -> Outcomes {
+    let mut names = vec![own.name()];
+    for factor in REPETITIONS {
+        let row = row.with_coarse_steps_times(factor, request);
+        let ending = Ending::of(&row, ground, request)
+            .map_err(|error| format!("with {factor} times the steps: {error}"))?;
+        let other = ending.outcome.name();
+        if !names.contains(&other) {
+            names.push(other);
         }
-        Ok(names.len())
     }
+    Ok(names.len())
 }
 
 impl Study for OverturningMap<'_> {
@@ -373,13 +427,28 @@ impl Study for OverturningMap<'_> {
         self.scenario.to_toml()
     }
 
+    fn inputs(&self) -> Vec<String> {
+        match &self.scenario.ground {
+            Some(Ground::Record(record)) => {
+                let series = record.series();
+                series
+                    .map(|series| format!("{} {:08x}", series.file, series.checksum()))
+                    .collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
     fn count(&self) -> usize {
         self.values[0].len() * self.values[1].len()
     }
 
     fn row(&self, index: usize) -> CellRow {
         let [x, y] = self.coordinates(index);
-        let (result, spread) = self.result(index);
+        let (result, spread) = match self.result(index) {
+            Ok((ending, spread)) => (CellResult::Ended(ending), spread),
+            Err(other) => (other, None),
+        };
         CellRow {
             x,
             y,

@@ -137,6 +137,29 @@ impl Record {
         [&self.main].into_iter().chain(&self.vertical)
     }
 
+    /// The ground motion with the horizontal record, or the only one, scaled otherwise; the other stays as it is.
+    pub(crate) fn rescaled(
+        &self,
+        scaling: Scaling,
+        gravity_m_s2: f64,
+    ) -> Result<GroundMotion, String> {
+        if self.main.peak() == 0.0 {
+            return Err("the record is zero throughout".to_owned());
+        }
+        let rescaled = Self {
+            main: self.main.scaled(scaling),
+            ..self.clone()
+        };
+        rescaled.main.check_strength(gravity_m_s2)?;
+        Ok(rescaled.motion(gravity_m_s2))
+    }
+
+    /// When the last of its records ends.
+    pub(super) fn end_s(&self) -> f64 {
+        let ends = self.series().map(Series::last_s);
+        self.start_s + ends.fold(0.0, f64::max)
+    }
+
     /// The ground motion under the given gravity.
     pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let main = self.main.accelerations_m_s2(gravity_m_s2);

@@ -1,0 +1,93 @@
+//! What a picture was computed of, in a line: the structure, the ground and the model of motion.
+
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::scenario::{Axis, Ground, Quantity, Scenario, Structure};
+
+/// The line. What varies along the axes is left out.
+#[must_use]
+pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
+    let varies = |quantities: &[Quantity], key: &str| {
+        axes.iter()
+            .any(|axis| quantities.contains(&axis.quantity) || axis.key == key)
+    };
+    let mut parts = structure(scenario, &varies);
+    match &scenario.ground {
+        Some(Ground::Pulse(pulse)) => {
+            let kind = pulse.kind.name();
+            let mut part = format!("{} pulse", kind.replace('_', " "));
+            let durations = [Quantity::Duration, Quantity::Frequency];
+            if !varies(&durations, &format!("ground.{kind}.duration_s")) {
+                part += &format!(" of {} s", pulse.duration_s);
+            }
+            let key = format!("ground.{kind}.amplitude_g");
+            if !varies(&[Quantity::Amplitude], &key) {
+                part += &format!(", {} g", pulse.amplitude_g);
+            }
+            parts.push(part);
+        }
+        Some(Ground::Record(record)) => {
+            let files: Vec<_> = record.series().map(|series| series.file.as_str()).collect();
+            parts.push(format!("record {}", files.join(" and ")));
+        }
+        None => {}
+    }
+    parts.push(model(scenario, &varies));
+    parts.join("; ")
+}
+
+fn structure(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Vec<String> {
+    let mut words = Vec::new();
+    match &scenario.structure {
+        Structure::Arch(arch) => {
+            if !varies(&[Quantity::MeanRadius], "arch.mean_radius_m") {
+                words.push(format!("R {} m", short(arch.mean_radius_m())));
+            }
+            if !varies(&[Quantity::ThicknessRatio], "arch.thickness_ratio") {
+                words.push(format!("t/R {}", short(arch.thickness_ratio())));
+            }
+            if !varies(&[Quantity::Embrace], "arch.embrace_deg") {
+                words.push(format!("{} degrees", short(arch.embrace_deg())));
+            }
+            match arch.voussoirs() {
+                _ if varies(&[], "arch.voussoirs") => {}
+                Some(voussoirs) => words.push(format!("{voussoirs} voussoirs")),
+                None => words.push("hinges anywhere".to_owned()),
+            }
+            vec![format!("arch: {}", words.join(", "))]
+        }
+        Structure::Column(column) => {
+            if !varies(&[], "column.height_m") {
+                words.push(format!("{} m high", short(column.height_m())));
+            }
+            if !varies(&[], "column.width_m") {
+                words.push(format!("{} m wide", short(column.width_m())));
+            }
+            vec![format!("column: {}", words.join(", "))]
+        }
+        Structure::Masonry(_) => vec!["blocks".to_owned()],
+    }
+}
+
+/// Four digits are enough to know it by.
+fn short(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+fn model(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> String {
+    if scenario.free_hinges.is_some() {
+        return "free hinges".to_owned();
+    }
+    let name = match scenario.structure {
+        Structure::Column(_) => "Housner's block",
+        Structure::Arch(_) | Structure::Masonry(_) => "four links",
+    };
+    match scenario.impact.model {
+        ImpactModel::Prescribed { .. }
+            if varies(&[Quantity::Restitution], "impact.restitution") =>
+        {
+            format!("{name}, restitution prescribed")
+        }
+        ImpactModel::Prescribed { restitution } => format!("{name}, restitution {restitution}"),
+        model => format!("{name}, impact {}", model.name().replace('_', " ")),
+    }
+}

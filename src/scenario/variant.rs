@@ -1,0 +1,66 @@
+//! A scenario with other values than those in its text.
+
+use serde_json::Value;
+
+use super::toml_text::toml_text;
+use super::{Assignment, Changes, Ground, Scenario, Source};
+use std::sync::Arc;
+
+/// Tables whose keys are of a study, not of what it studies.
+const STUDIES: [&str; 3] = ["map", "spectrum", "suite"];
+
+impl Scenario {
+    /// The scenario with other numbers for some keys, each as `table.key`, without its studies. A record stays as it is.
+    ///
+    /// # Errors
+    /// Says what is wrong with the keys or with what the numbers make of the scenario.
+    pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
+        let set = values
+            .iter()
+            .map(|(key, value)| assignment(key, *value))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut table = self.to_json();
+        let record = match &self.ground {
+            Some(Ground::Record(record)) => Some(record.clone()),
+            Some(Ground::Pulse(_)) | None => None,
+        };
+        if let Value::Object(table) = &mut table {
+            for study in STUDIES {
+                table.shift_remove(study);
+            }
+            if record.is_some() {
+                table.shift_remove("ground");
+            }
+        }
+        let text = table.as_object().map_or(String::new(), toml_text);
+        let changes = Changes {
+            hinges: None,
+            set: &set,
+        };
+        let mut changed = Self::of(&Source::of_text(&text, ""), &changes)
+            .map_err(|errors| errors.as_slice()[0].message.clone())?;
+        if let Some(record) = record {
+            changed.motion = Arc::new(record.motion(changed.simulation.gravity_m_s2));
+            changed.ground = Some(Ground::Record(record));
+        }
+        Ok(changed)
+    }
+}
+
+/// A number for a key of a table; whole numbers may stand for counts.
+fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
+    let is_study = key
+        .split('.')
+        .next()
+        .is_some_and(|table| STUDIES.contains(&table.trim()));
+    if is_study || !key.contains('.') {
+        return Err("names no number of another table, as \"arch.depth_m\" does".to_owned());
+    }
+    let whole = value.fract() == 0.0 && value.abs() < 1e15;
+    let text = if whole {
+        format!("{key}={value:.0}")
+    } else {
+        format!("{key}={value:?}")
+    };
+    text.parse()
+}
