@@ -3,7 +3,7 @@
 
 use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::{
-    Ground, Place, Quantity, Scenario, ScenarioErrors, Simulation, Structure,
+    Ground, Place, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
 };
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
@@ -702,6 +702,31 @@ fn any_arch() -> impl Strategy<Value = String> {
             )
         })
         .prop_filter("stands", |arch| parse(arch).is_ok())
+}
+
+/// A ground motion read by itself, and put under a structure read without it, is that of the scenario with both.
+#[test]
+fn a_ground_may_be_read_by_itself_and_put_under_a_structure() {
+    let simulation = "[simulation]\ngravity_m_s2 = 3.7\n";
+    let shaken = |ground: &str| parse(&format!("{ARCH}{simulation}{ground}")).unwrap();
+    let alone = |ground: &str| Ground::of(&Source::of_text(ground, "g.toml"), 9.81);
+    let pulse = "[ground.half_sine]\namplitude_g = 0.4\nduration_s = 0.5\n";
+    let record = "[ground.record]\nfile = \"scenarios/synthetic.at2\"\nscale = 2.0\n";
+    let studied = parse(&format!(
+        "{ARCH}{simulation}{pulse}[map]\nduration_s = [0.1]\namplitude_g = [0.2]\n"
+    ));
+    let studied = studied.unwrap();
+    for ground in [pulse, record] {
+        let moved = studied.with_ground(Some(alone(ground).unwrap()));
+        assert_eq!(moved, shaken(ground));
+    }
+    assert_eq!(studied.with_ground(None), shaken(""));
+
+    let message = |ground: &str| alone(ground).unwrap_err().to_string();
+    let wrong = message(&pulse.replace("0.4", "-4e5"));
+    assert!(wrong.starts_with("g.toml:2:15: `amplitude_g"), "{wrong}");
+    assert!(message("").contains("lacks a ground motion"));
+    assert!(message(&format!("{pulse}{ARCH}")).contains("arch"));
 }
 
 fn any_ground() -> impl Strategy<Value = String> {

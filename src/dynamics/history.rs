@@ -277,8 +277,8 @@ pub struct Samples {
     pub rotations_rad: Vec<f64>,
     /// Rotation rates, by body.
     pub rates_rad_s: Vec<f64>,
-    /// Poses in metres, by body.
-    pub poses: Vec<Pose>,
+    /// Poses by body: rotation in radians and displacement in metres, to the right and upwards; see [`Pose`].
+    pub poses: Vec<[f64; 3]>,
     /// Open hinges: those of sample `i` are from `first_hinge[i]` up to `first_hinge[i + 1]`, or the end.
     pub hinges: Vec<OpenHinge>,
     /// Where the hinges of each sample begin.
@@ -320,7 +320,9 @@ impl Samples {
         self.state.push(sample.state);
         self.rotations_rad.extend(&sample.rotations_rad);
         self.rates_rad_s.extend(&sample.rates_rad_s);
-        self.poses.extend(&sample.poses);
+        let poses = sample.poses.iter();
+        self.poses
+            .extend(poses.map(|pose| [pose.rotation_rad, pose.translation.x, pose.translation.y]));
         self.first_hinge.push(self.hinges.len());
         self.hinges.extend(&sample.hinges);
         self.demand.push(sample.demand);
@@ -352,7 +354,7 @@ impl Samples {
             state: *self.state.get(index)?,
             rotations_rad: self.rotations_rad.get(by_body.clone())?.to_vec(),
             rates_rad_s: self.rates_rad_s.get(by_body.clone())?.to_vec(),
-            poses: self.poses.get(by_body)?.to_vec(),
+            poses: self.poses.get(by_body)?.iter().map(pose).collect(),
             hinges: self.hinges.get(hinges)?.to_vec(),
             demand: *self.demand.get(index)?,
             energy_j: *self.energy_j.get(index)?,
@@ -367,6 +369,14 @@ impl Samples {
     /// The samples, one after another.
     pub fn iter(&self) -> impl Iterator<Item = Sample> {
         (0..self.len()).map_while(|index| self.get(index))
+    }
+}
+
+/// The pose of an entry of [`Samples::poses`].
+fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
+    Pose {
+        rotation_rad,
+        translation: Vector2::new(x_m, y_m),
     }
 }
 

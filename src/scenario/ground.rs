@@ -6,8 +6,9 @@ use std::path::Path;
 use nalgebra::Vector2;
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::Record;
-use super::table::{Number, Reading, Table};
+use super::source::Source;
+use super::table::{self, Number, Reading, Table};
+use super::{Record, ScenarioErrors};
 use crate::argument::plain;
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 
@@ -38,6 +39,35 @@ pub enum Ground {
 }
 
 impl Ground {
+    /// Reads a ground motion by itself: a text with the table `[ground.<kind>]` of a scenario, and nothing else.
+    /// Whether it is too strong is judged under this gravity.
+    ///
+    /// # Errors
+    /// All that is wrong with the text and with its records.
+    pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
+        table::read_text(&source.text, &[], |table| {
+            let ground = table.table("ground", |table| {
+                Self::read(table, &source.folder, Ok(gravity_m_s2))
+            })?;
+            match ground {
+                Some((ground, _)) => Ok(ground),
+                None => Err(table.wrong_itself(
+                    "lacks a ground motion: give a table [ground.<kind>], such as [ground.rectangular]",
+                )),
+            }
+        })
+        .map_err(|faults| ScenarioErrors::placed(source, &[], faults))
+    }
+
+    /// The motion under the given gravity.
+    #[must_use]
+    pub fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+        match self {
+            Self::Pulse(pulse) => pulse.motion(gravity_m_s2),
+            Self::Record(record) => record.motion(gravity_m_s2),
+        }
+    }
+
     /// Reads `[ground]`, which holds one table, named by its kind (an inner key for the kind would not keep the
     /// keys of different kinds apart), and builds the motion.
     pub(super) fn read(

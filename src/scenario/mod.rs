@@ -229,6 +229,23 @@ impl Scenario {
         })
     }
 
+    /// The same structure, simulated in the same way, on ground that moves like this; without the tables of studies,
+    /// which go with the ground that they were read with.
+    #[must_use]
+    pub fn with_ground(&self, ground: Option<Ground>) -> Self {
+        let motion = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
+            ground.motion(self.simulation.gravity_m_s2)
+        });
+        Self {
+            ground,
+            map: None,
+            spectrum: None,
+            suite: None,
+            motion: Arc::new(motion),
+            ..self.clone()
+        }
+    }
+
     /// The model of motion that the scenario chooses.
     ///
     /// # Errors
