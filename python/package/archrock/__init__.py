@@ -1,0 +1,73 @@
+"""Rocking of masonry arches, and of free-standing columns, under ground motion.
+
+>>> from archrock import Arch, Pulse, simulate
+>>> arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
+>>> history = simulate(arch, Pulse.rectangular(amplitude_g=-0.30, duration_s=0.20))
+>>> history
+<History: came to rest at 3.3656 s after 78 impacts; 675 samples>
+>>> history.rotations.shape
+(675, 3)
+
+Everything is computed by the Rust library of that name, to the same bits as by its program. Lengths are in metres,
+times in seconds, accelerations of the ground in units of gravity where names end in ``_g``; x is to the right,
+rotations are positive anticlockwise. What is not allowed is a ``ValueError`` in the library's words.
+"""
+
+from importlib.metadata import version as _version
+
+from ._ground import Ground, Pulse, Record
+from ._hinge import ChainLink, Hinge, Limit, Mechanism, Onset
+from ._history import Event, History, Impact
+from ._scenario import Scenario, simulate
+from ._structure import Arch, Column, Structure
+from ._studies import (
+    OverturningMap,
+    Results,
+    Spectrum,
+    Suite,
+    Threshold,
+    compute_part,
+    map_scenario,
+    merge,
+    overturning_map,
+    span,
+    spectrum,
+    suite,
+    suite_scenario,
+    threshold,
+)
+
+__all__ = [
+    "Arch",
+    "ChainLink",
+    "Column",
+    "Event",
+    "Ground",
+    "Hinge",
+    "History",
+    "Impact",
+    "Limit",
+    "Mechanism",
+    "Onset",
+    "OverturningMap",
+    "Pulse",
+    "Record",
+    "Results",
+    "Scenario",
+    "Spectrum",
+    "Structure",
+    "Suite",
+    "Threshold",
+    "compute_part",
+    "map_scenario",
+    "merge",
+    "overturning_map",
+    "simulate",
+    "span",
+    "spectrum",
+    "suite",
+    "suite_scenario",
+    "threshold",
+]
+
+__version__ = _version("archrock")

@@ -1,0 +1,70 @@
+"""What is described by tables of a scenario, and by files that these name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from ._tables import Tables, plain, to_toml
+
+Self = TypeVar("Self", bound="Described")
+
+
+class Described:
+    """Tables of a scenario with the contents of the files that they name.
+
+    Such objects do not change. They are equal if they say the same, and can be pickled, with their files.
+    """
+
+    __slots__ = ("_files", "_tables", "_text")
+
+    _tables: Tables
+    _files: dict[str, bytes]
+    _text: str
+
+    def _describe(self, tables: Mapping[str, Any], files: Mapping[str, bytes]) -> None:
+        self._tables = plain(tables)
+        self._files = dict(files)
+        self._text = to_toml(self._tables)
+
+    @property
+    def tables(self) -> Tables:
+        """What it says, every default resolved, with the keys of a scenario (a copy)."""
+        copy: Tables = plain(self._tables)
+        return copy
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """The files that the tables name and that are held in memory, by their names (a copy)."""
+        return dict(self._files)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Described) or type(other) is not type(self):
+            return NotImplemented
+        return self._tables == other._tables and self._files == other._files
+
+    def __hash__(self) -> int:
+        return hash((type(self), self._text))
+
+    @classmethod
+    def _restored(cls: type[Self], tables: Tables, files: dict[str, bytes]) -> Self:
+        described = cls.__new__(cls)
+        described._read(tables, files)
+        return described
+
+    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+        """Reads what was described before."""
+        raise NotImplementedError
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self)._restored, (self._tables, self._files)
+
+
+def read_file(path: str | Path) -> bytes:
+    """The contents of a file.
+
+    Raises:
+        OSError: when it cannot be read.
+    """
+    return Path(path).read_bytes()

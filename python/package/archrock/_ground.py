@@ -1,0 +1,427 @@
+"""How the ground moves."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from ._described import Described, read_file
+from ._native import Ground as NativeGround
+from ._tables import Tables, arguments, to_toml
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+Unit = Literal["g", "m/s2", "cm/s2"]
+
+
+class Ground(Described):
+    """A ground motion: a :class:`Pulse` or a :class:`Record`."""
+
+    __slots__ = ("_native",)
+
+    _native: NativeGround
+
+    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+        self._native = NativeGround(to_toml({"ground": tables}), files)
+        self._describe(json.loads(self._native.to_json()), files)
+
+    @property
+    def kind(self) -> str:
+        """Its kind, as a scenario calls it."""
+        return next(iter(self._tables))
+
+
+class Pulse(Ground):
+    """A ground acceleration by formula, positive to the right. Each kind has a constructor.
+
+    Amplitudes are peak accelerations in units of gravity; ``duration_s`` is the length of the part of the pulse that
+    its kind names (see the program's documentation); it begins at ``start_s``. ``vertical_amplitude_g`` is that of a
+    vertical acceleration of the same shape, positive upwards.
+
+    >>> Pulse.half_sine(amplitude_g=0.3, duration_s=0.5)
+    Pulse.half_sine(amplitude_g=0.3, vertical_amplitude_g=0.0, duration_s=0.5, start_s=0.0)
+    """
+
+    __slots__ = ()
+
+    def __init__(self, kind: str, **keys: Any) -> None:
+        """The pulse of a kind with these keys of its table.
+
+        Raises:
+            ValueError: when a key or number is not allowed, in the library's words.
+        """
+        self._read({kind: keys}, {})
+
+    @classmethod
+    def _of(
+        cls,
+        kind: str,
+        amplitude_g: float,
+        duration_s: float,
+        start_s: float,
+        vertical_amplitude_g: float,
+        **keys: float,
+    ) -> Pulse:
+        return cls(
+            kind,
+            amplitude_g=amplitude_g,
+            duration_s=duration_s,
+            start_s=start_s,
+            vertical_amplitude_g=vertical_amplitude_g,
+            **keys,
+        )
+
+    def _value(self, key: str) -> float:
+        value: float = self._tables[self.kind][key]
+        return value
+
+    @property
+    def amplitude_g(self) -> float:
+        """Peak acceleration, positive to the right."""
+        return self._value("amplitude_g")
+
+    @property
+    def vertical_amplitude_g(self) -> float:
+        """Peak of the vertical acceleration, positive upwards."""
+        return self._value("vertical_amplitude_g")
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the part of the pulse that its kind names."""
+        return self._value("duration_s")
+
+    @property
+    def start_s(self) -> float:
+        """When it starts."""
+        return self._value("start_s")
+
+    def __repr__(self) -> str:
+        return f"Pulse.{self.kind}({arguments(self._tables[self.kind])})"
+
+    @classmethod
+    def rectangular(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """``a`` for the whole ``duration_s``."""
+        return cls._of("rectangular", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def step_pair(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """``a`` for ``duration_s``, then ``-a/2`` for twice as long: no velocity is left."""
+        return cls._of("step_pair", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def half_sine(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """Half a sine of ``duration_s``."""
+        return cls._of("half_sine", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def one_sine(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """A whole sine of ``duration_s``."""
+        return cls._of("one_sine", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def one_cosine(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """A whole cosine of ``duration_s``, from its peak."""
+        return cls._of("one_cosine", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def triangular(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """Up to ``a`` at half of ``duration_s`` and back, in straight lines."""
+        return cls._of("triangular", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def ricker(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """Symmetric Ricker wavelet; ``duration_s`` is the period of its central frequency."""
+        return cls._of("ricker", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def antisymmetric_ricker(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """Antisymmetric Ricker wavelet; ``duration_s`` is the period of its central frequency."""
+        return cls._of("antisymmetric_ricker", amplitude_g, duration_s, start_s, vertical_amplitude_g)
+
+    @classmethod
+    def mavroeidis_papageorgiou(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        gamma: float = 2.0,
+        phase_deg: float = 0.0,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """Pulse of Mavroeidis and Papageorgiou (2003); ``duration_s`` is its period and ``gamma`` its length in periods."""
+        return cls._of(
+            "mavroeidis_papageorgiou",
+            amplitude_g,
+            duration_s,
+            start_s,
+            vertical_amplitude_g,
+            gamma=gamma,
+            phase_deg=phase_deg,
+        )
+
+    @classmethod
+    def gabor(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        gamma: float = 2.0,
+        phase_deg: float = 0.0,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """Gabor wavelet; ``duration_s`` is its period and ``gamma`` its length in periods."""
+        return cls._of(
+            "gabor",
+            amplitude_g,
+            duration_s,
+            start_s,
+            vertical_amplitude_g,
+            gamma=gamma,
+            phase_deg=phase_deg,
+        )
+
+    @classmethod
+    def windowed_sine(
+        cls,
+        amplitude_g: float,
+        duration_s: float,
+        *,
+        cycles: float = 2.0,
+        phase_deg: float = 0.0,
+        start_s: float = 0.0,
+        vertical_amplitude_g: float = 0.0,
+    ) -> Pulse:
+        """Sine in a Hann window; ``duration_s`` is its period and ``cycles`` its length in periods."""
+        return cls._of(
+            "windowed_sine",
+            amplitude_g,
+            duration_s,
+            start_s,
+            vertical_amplitude_g,
+            cycles=cycles,
+            phase_deg=phase_deg,
+        )
+
+
+class Record(Ground):
+    """A recorded ground motion: straight lines between samples, zero outside them.
+
+    Args:
+        time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
+            array.
+        acceleration: accelerations in ``unit``, shape ``(samples,)``.
+        unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``.
+        name: what it is called in results and messages.
+        scale: factor on the accelerations; or give ``peak_g``.
+        peak_g: peak acceleration to scale to, in units of gravity.
+        start_s: time of the simulation at the record's time zero.
+        component: where the accelerations point, ``"horizontal"`` (positive to the right) or ``"vertical"``
+            (upwards).
+        vertical: a record of the vertical component beside this one, scaled on its own, on the same clock.
+
+    Raises:
+        ValueError: when samples are not like that, in the library's words; the line of a sample is its number.
+        TypeError: when they are no numbers.
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        time: npt.ArrayLike,
+        acceleration: npt.ArrayLike,
+        *,
+        unit: Unit,
+        name: str = "record",
+        scale: float | None = None,
+        peak_g: float | None = None,
+        start_s: float | None = None,
+        component: Literal["horizontal", "vertical"] | None = None,
+        vertical: Record | None = None,
+    ) -> None:
+        if not isinstance(name, str):
+            raise TypeError(f"`name` must be a text, not {type(name).__name__}")
+        if not isinstance(vertical, (Record, type(None))):
+            raise TypeError(f"`vertical` must be a Record, not {type(vertical).__name__}")
+        table: Tables = {"file": name, "format": "csv", "unit": unit, "scale": scale, "peak_g": peak_g}
+        files = {name: _csv(time, acceleration)}
+        if vertical is not None:
+            table["vertical"], held = vertical._as_vertical(name)
+            files.update(held)
+        self._read({"record": {**table, "start_s": start_s, "component": component}}, files)
+
+    def _as_vertical(self, beside: str) -> tuple[Tables, dict[str, bytes]]:
+        table: Tables = dict(self._tables["record"])
+        if "vertical" in table:
+            raise ValueError("`vertical` has a vertical record itself: give one record per direction")
+        # It is on the clock of the horizontal record, and its direction is told by its place.
+        table.pop("start_s", None)
+        table.pop("component", None)
+        name = table["file"]
+        if name == beside:
+            table["file"] = f"vertical-{name}"
+        return table, {table["file"]: self._files[name]}
+
+    @classmethod
+    def read(
+        cls,
+        path: str | Path,
+        *,
+        vertical: Record | None = None,
+        **keys: Any,
+    ) -> Record:
+        """Reads a record from a file, as ``[ground.record]`` of a scenario does.
+
+        Args:
+            path: the file; its contents are kept.
+            vertical: a record of the vertical component beside this one.
+            keys: keys of ``[ground.record]``: of tables at least ``unit``, perhaps ``time_column`` and
+                ``acceleration_column``; ``format``, where the ending does not tell it; ``scale`` or ``peak_g``,
+                ``start_s``, ``component``.
+
+        Raises:
+            OSError: when the file cannot be read.
+            ValueError: when it is faulty, with the line.
+        """
+        name = Path(path).name
+        files = {name: read_file(path)}
+        table: Tables = {"file": name, **keys}
+        if vertical is not None:
+            table["vertical"], held = vertical._as_vertical(name)
+            files.update(held)
+        return cls._restored({"record": table}, files)
+
+    @classmethod
+    def from_obspy(cls, trace: Any, *, unit: Unit, **keys: Any) -> Record:
+        """The record of a trace of ObsPy, or of anything with its ``data``, ``stats.delta`` and ``id``.
+
+        Times count from the first sample. A trace does not say its unit: remove the response of the instrument first.
+
+        Args:
+            trace: the trace.
+            unit: unit of its data.
+            keys: further arguments of :class:`Record`.
+
+        Raises:
+            ValueError: as of :class:`Record`.
+        """
+        data = np.ma.filled(trace.data, np.nan)
+        time = np.arange(len(data)) * float(trace.stats.delta)
+        return cls(time, data, unit=unit, **{"name": str(trace.id), **keys})
+
+    @property
+    def name(self) -> str:
+        """What it is called in results and messages."""
+        name: str = self._tables["record"]["file"]
+        return name
+
+    @property
+    def unit(self) -> str:
+        """Unit of :attr:`acceleration`."""
+        unit: str = self._tables["record"].get("unit", "g")
+        return unit
+
+    def _samples(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        samples = self._native.samples()
+        assert samples is not None, "a record has samples"
+        return samples
+
+    @property
+    def time(self) -> npt.NDArray[np.float64]:
+        """Times of the samples in s, on the record's own clock, shape ``(samples,)``."""
+        return self._samples()[0]
+
+    @property
+    def acceleration(self) -> npt.NDArray[np.float64]:
+        """Accelerations in :attr:`unit`, not scaled, shape ``(samples,)``."""
+        return self._samples()[1]
+
+    def __repr__(self) -> str:
+        count, last_s = len(self.time), self.time[-1]
+        return f"<Record {self.name!r}: {count} samples in {self.unit} until {last_s:g} s>"
+
+
+def _csv(time: npt.ArrayLike, acceleration: npt.ArrayLike) -> bytes:
+    """A table of samples, a line each: what the library reads, with the digits of every number."""
+    times, accelerations = _column("time", time), _column("acceleration", acceleration)
+    if len(times) != len(accelerations):
+        raise ValueError(
+            f"`time` has {len(times)} samples and `acceleration` {len(accelerations)}: give one for each"
+        )
+    rows = zip(times.tolist(), accelerations.tolist())
+    return "".join(f"{t!r},{a!r}\n" for t, a in rows).encode()
+
+
+def _column(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "fiub":
+            raise TypeError
+        array = array.astype(np.float64, casting="unsafe")
+    except (TypeError, ValueError):
+        raise TypeError(f"`{name}` is no array of real numbers: {type(values).__name__}") from None
+    if array.ndim != 1:
+        raise ValueError(f"`{name}` has shape {array.shape}: it must be (samples,)")
+    return array

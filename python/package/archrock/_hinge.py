@@ -1,0 +1,97 @@
+"""Hinges, and what opens them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """Where one part of a structure turns against another, or against the ground.
+
+    Attributes:
+        angle_deg: section of an arch, in degrees from the left springing.
+        edge: ``"intrados"`` or ``"extrados"``; of a joint ``None`` where both edges open.
+        toe: of a column the side of the toe, ``"left"`` or ``"right"``.
+        joint: of a row of blocks the joint, from 0 at the left springing or the base.
+    """
+
+    angle_deg: float | None = None
+    edge: str | None = None
+    toe: str | None = None
+    joint: int | None = None
+
+    @classmethod
+    def _all(cls, hinges: list[dict[str, Any]]) -> tuple[Hinge, ...]:
+        known = cls.__dataclass_fields__
+        return tuple(
+            cls(**{key: value for key, value in hinge.items() if key in known}) for hinge in hinges
+        )
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """A mechanism of a structure: to which side it sways, and its hinges from left to right."""
+
+    sway: str
+    hinges: tuple[Hinge, ...]
+
+    @classmethod
+    def _of(cls, told: Mapping[str, Any]) -> Mechanism:
+        return cls(told["sway"], Hinge._all(told["hinges"]))
+
+
+@dataclass(frozen=True)
+class ChainLink:
+    """An impact in the chain of mechanisms that impacts lead through.
+
+    Attributes:
+        index: number of the impact, from 1.
+        restitution: kinetic energy after the impact over that before.
+        before: the mechanism that closes.
+        after: the mechanism that opens.
+    """
+
+    index: int
+    restitution: float
+    before: Mechanism
+    after: Mechanism
+
+
+@dataclass(frozen=True)
+class Onset:
+    """A push that starts a structure to one side.
+
+    Attributes:
+        acceleration_g: horizontal acceleration of the ground at which it starts, in units of gravity; ``None`` if no
+            push does.
+        hinges: what opens, from left to right.
+    """
+
+    acceleration_g: float | None
+    hinges: tuple[Hinge, ...]
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Onset of rocking by limit analysis, as ``archrock limit`` tells it.
+
+    Attributes:
+        right: the push to the right.
+        left: the push to the left.
+        details: all that ``archrock limit --format json`` says.
+    """
+
+    right: Onset
+    left: Onset
+    details: dict[str, Any] = field(repr=False, compare=False)
+
+    @classmethod
+    def _of(cls, told: dict[str, Any]) -> Limit:
+        def onset(side: str) -> Onset:
+            hinges = told["mechanism"][side] or []
+            return Onset(told["incipient_acceleration_g"][side], Hinge._all(hinges))
+
+        return cls(onset("right"), onset("left"), told)

@@ -1,0 +1,426 @@
+"""Histories: samples as arrays, events, summary, pictures."""
+
+from __future__ import annotations
+
+import html
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _native
+from ._hinge import Hinge
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas
+    from matplotlib.figure import Figure
+
+    from ._scenario import Scenario
+
+    Floats = npt.NDArray[np.float64]
+    Whole = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What an impact did.
+
+    Attributes:
+        time_s: when.
+        sway_before: sway of the mechanism that closed, ``"right"`` or ``"left"``.
+        sway_after: sway of the mechanism that opened.
+        restitution: kinetic energy after over that before.
+        energy_before_j: kinetic energy before.
+        energy_after_j: kinetic energy after.
+        rates_before_rad_s: rotation rates of the bodies just before.
+        rates_after_rad_s: rotation rates of the bodies just after.
+        closed: the hinges that closed, from left to right.
+        opened: the hinges that opened, from left to right.
+        impulses_n_s: impulses ``(x, y)`` at the hinges that opened, where they are known.
+    """
+
+    time_s: float
+    sway_before: str
+    sway_after: str
+    restitution: float
+    energy_before_j: float
+    energy_after_j: float
+    rates_before_rad_s: tuple[float, ...]
+    rates_after_rad_s: tuple[float, ...]
+    closed: tuple[Hinge, ...]
+    opened: tuple[Hinge, ...]
+    impulses_n_s: tuple[tuple[float, float], ...]
+
+    @classmethod
+    def _of(cls, told: dict[str, Any]) -> Impact:
+        return cls(
+            **{
+                **told,
+                "rates_before_rad_s": tuple(told["rates_before_rad_s"]),
+                "rates_after_rad_s": tuple(told["rates_after_rad_s"]),
+                "closed": Hinge._all(told["closed"]),
+                "opened": Hinge._all(told["opened"]),
+                "impulses_n_s": tuple((x, y) for x, y in told["impulses_n_s"]),
+            }
+        )
+
+
+@dataclass(frozen=True)
+class Event:
+    """An event of a history, and the state just after.
+
+    Attributes:
+        time_s: when.
+        kind: ``"uplift"``, ``"impact"``, ``"rest"`` or ``"overturned"``.
+        state: what the structure does from here on: ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``.
+        mechanism: impacts since uplift, which is the index of its mechanism; ``None`` at rest.
+        rotations_rad: rotations of the bodies.
+        rates_rad_s: rotation rates of the bodies just after.
+        energy_j: kinetic and potential energy just after.
+        hinges: hinges of its mechanism from left to right; none at rest, and none of a row of blocks.
+        impact: the impact, where the event is one.
+    """
+
+    time_s: float
+    kind: str
+    state: str
+    mechanism: int | None
+    rotations_rad: tuple[float, ...]
+    rates_rad_s: tuple[float, ...]
+    energy_j: float
+    hinges: tuple[Hinge, ...]
+    impact: Impact | None
+
+    @classmethod
+    def _of(cls, told: dict[str, Any]) -> Event:
+        impact = told["impact"]
+        return cls(
+            **{
+                **told,
+                "rotations_rad": tuple(told["rotations_rad"]),
+                "rates_rad_s": tuple(told["rates_rad_s"]),
+                "hinges": Hinge._all(told["hinges"]),
+                "impact": None if impact is None else Impact._of(impact),
+            }
+        )
+
+
+class History:
+    """The motion of a structure: samples as arrays, events, and a summary.
+
+    Arrays are the memory of the history itself, not copies, and cannot be written to: copy what is to be changed.
+    ``samples`` is their number, ``bodies`` that of the names in :attr:`bodies`. Rotations are positive anticlockwise,
+    x to the right, y upwards.
+    """
+
+    __slots__ = ("_cache", "_native", "_origin", "_folder")
+
+    def __init__(self, native: _native.History, origin: Any, folder: str | None) -> None:
+        self._native: _native.History | None = native
+        # What the scenario's files are taken from.
+        self._origin = origin
+        self._folder = folder
+        self._cache: dict[str, Any] | None = None
+
+    # Samples
+
+    def _column(self, name: str) -> npt.NDArray[Any]:
+        if self._native is not None:
+            return self._native.column(name)
+        column: npt.NDArray[Any] = self._kept["columns"][name]
+        return column
+
+    @property
+    def _kept(self) -> dict[str, Any]:
+        if self._cache is None:
+            self._cache = {}
+        return self._cache
+
+    @property
+    def time(self) -> Floats:
+        """Times in s, shape ``(samples,)``."""
+        return self._column("time_s")
+
+    @property
+    def ground_acceleration_m_s2(self) -> Floats:
+        """Ground accelerations, positive to the right, shape ``(samples,)``."""
+        return self._column("ground_acceleration_m_s2")
+
+    @property
+    def vertical_acceleration_m_s2(self) -> Floats:
+        """Vertical ground accelerations, positive upwards, shape ``(samples,)``."""
+        return self._column("vertical_acceleration_m_s2")
+
+    @property
+    def phase(self) -> Whole:
+        """Events so far, shape ``(samples,)``."""
+        return self._column("phase")
+
+    @property
+    def state(self) -> npt.NDArray[np.str_]:
+        """What the structure is doing, ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``, shape ``(samples,)``."""
+        names: npt.NDArray[np.str_] = np.array(_native.History.STATES)[self._column("state")]
+        return names
+
+    @property
+    def rotations(self) -> Floats:
+        """Rotations of the bodies in rad, shape ``(samples, bodies)``."""
+        return self._column("rotations_rad")
+
+    @property
+    def rates(self) -> Floats:
+        """Rotation rates of the bodies in rad/s, shape ``(samples, bodies)``."""
+        return self._column("rates_rad_s")
+
+    @property
+    def poses(self) -> Floats:
+        """Rotation in rad and displacement ``x``, ``y`` in m of every body, shape ``(samples, bodies, 3)``.
+
+        A point of the undeformed structure is turned about the origin, then moved. The origin is the centre of a
+        circular arch, or the middle of a column's base.
+        """
+        return self._column("poses")
+
+    @property
+    def gaps(self) -> Floats:
+        """Gaps of the joints of a row of blocks at intrados and extrados in m, shape ``(samples, joints, 2)``.
+
+        No joints with four links or Housner's column.
+        """
+        return self._column("gaps_m")
+
+    @property
+    def open_hinges(self) -> Whole:
+        """Number of open hinges, shape ``(samples,)``."""
+        return self._column("open_hinges")
+
+    @property
+    def thrust_excess_ratio(self) -> Floats:
+        """How far the line of thrust leaves the structure, over the thickness, shape ``(samples,)``."""
+        return self._column("thrust_excess_ratio")
+
+    @property
+    def friction_demand(self) -> Floats:
+        """Friction coefficient needed to prevent sliding, shape ``(samples,)``."""
+        return self._column("friction_demand")
+
+    @property
+    def energy_j(self) -> Floats:
+        """Kinetic and potential energy, shape ``(samples,)``."""
+        return self._column("energy_j")
+
+    @property
+    def energy_ratio(self) -> Floats:
+        """Energy over the barrier of the mechanism that moves, shape ``(samples,)``; NaN where that is not known."""
+        return self._column("energy_ratio")
+
+    def __len__(self) -> int:
+        """Number of samples."""
+        return len(self.time)
+
+    # What happened
+
+    def _once(self, name: str, make: Any) -> Any:
+        kept = self._kept
+        if name not in kept:
+            kept[name] = make(self._native)
+        return kept[name]
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of the bodies, from left to right or from the base up; a single body has an empty name."""
+        bodies: tuple[str, ...] = self._once("bodies", lambda native: tuple(native.bodies()))
+        return bodies
+
+    @property
+    def outcome(self) -> str:
+        """How it ended: ``"never_moved"``, ``"rest"``, ``"overturned"`` or ``"still_rocking"``."""
+        outcome: str = self._once("outcome", lambda native: native.outcome())
+        return outcome
+
+    @property
+    def overturning_sway(self) -> str | None:
+        """To which side it overturned, ``"right"`` or ``"left"``; ``None`` if it did not."""
+        sway: str | None = self._once("overturning_sway", lambda native: native.overturning_sway())
+        return sway
+
+    @property
+    def outcome_time_s(self) -> float:
+        """When: the last outward passage of the unstable equilibrium, the last time it came to rest, or the end."""
+        time_s: float = self._once("outcome_time_s", lambda native: native.outcome_time_s())
+        return time_s
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """All events: the phase that follows the ``i``-th is ``i + 1``."""
+
+        def make(native: _native.History) -> tuple[Event, ...]:
+            return tuple(map(Event._of, json.loads(native.events_json())))
+
+        events: tuple[Event, ...] = self._once("events", make)
+        return events
+
+    @property
+    def impacts(self) -> tuple[Impact, ...]:
+        """The events that are impacts."""
+        return tuple(event.impact for event in self.events if event.impact is not None)
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What ``summary.json`` of the program has (a copy); see :meth:`spread`."""
+
+        def make(native: _native.History) -> str:
+            return native.summary_json(False)
+
+        summary: dict[str, Any] = json.loads(self._once("summary", make))
+        return summary
+
+    def spread(self) -> dict[str, Any] | None:
+        """How a history with free hinges depends on its steps, as ``spread`` of ``summary.json``; ``None`` of others.
+
+        Simulates it with half and with double steps.
+
+        Raises:
+            ValueError: when one of these cannot be computed.
+        """
+        native = self._native or self.scenario.run()._native
+        assert native is not None, "a history that was run is there"
+        spread: dict[str, Any] | None = json.loads(native.summary_json(True)).get("spread")
+        return spread
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario: to be run again, or as a file of the program."""
+        from ._scenario import Scenario
+
+        def make(native: _native.History) -> Scenario:
+            scenario = Scenario.__new__(Scenario)
+            origin = self._origin
+            files = origin if isinstance(origin, dict) else {**origin[0]._files, **origin[1]._files}
+            scenario._take(native.scenario(), files, self._folder, None)
+            return scenario
+
+        scenario: Scenario = self._once("scenario", make)
+        return scenario
+
+    # Elsewhere
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The samples as a table with the columns of ``rotations.csv``, and energies. Needs pandas."""
+        import pandas
+
+        columns: dict[str, Any] = {
+            "time_s": self.time,
+            "ground_acceleration_m_s2": self.ground_acceleration_m_s2,
+            "vertical_acceleration_m_s2": self.vertical_acceleration_m_s2,
+            "phase": self.phase,
+            "state": self.state,
+        }
+        for quantity, unit, values in (
+            ("rotation", "rad", self.rotations),
+            ("rate", "rad_s", self.rates),
+        ):
+            for index, body in enumerate(self.bodies):
+                name = "_".join(filter(None, (quantity, body, unit)))
+                columns[name] = values[:, index]
+        columns["friction_demand"] = self.friction_demand
+        columns["energy_j"] = self.energy_j
+        table: pandas.DataFrame = pandas.DataFrame(columns)
+        return table
+
+    def plot(self) -> Figure:
+        """Ground acceleration and rotations over time. Needs matplotlib."""
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+        ground, rotations = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
+        gravity_m_s2 = self.summary["scenario"]["simulation"]["gravity_m_s2"]
+        ground.plot(self.time, self.ground_acceleration_m_s2 / gravity_m_s2, color="0.3")
+        ground.set_ylabel("ground acceleration (g)")
+        few = len(self.bodies) <= 6
+        for index, body in enumerate(self.bodies):
+            rotations.plot(self.time, self.rotations[:, index], label=body, lw=1.2 if few else 0.6)
+        if few and len(self.bodies) > 1:
+            rotations.legend()
+        rotations.axhline(0.0, color="0.8", lw=0.8, zorder=0)
+        rotations.set_ylabel("rotation (rad)")
+        rotations.set_xlabel("time (s)")
+        ground.set_title(self._words())
+        return figure
+
+    def report_html(self) -> str:
+        """The page ``report.html`` of the program: the structure in motion, with curves. Needs no network."""
+
+        def make(native: _native.History) -> str:
+            return native.report(self._words())
+
+        return make(self._native) if self._native else self.scenario.run().report_html()
+
+    def save_report(self, path: str | Path) -> None:
+        """Writes :meth:`report_html` to a file.
+
+        Raises:
+            OSError: when it cannot be written.
+        """
+        Path(path).write_text(self.report_html(), encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.report_html(), quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 760px; border: 0"></iframe>'
+
+    def _words(self) -> str:
+        impacts = self.summary["impacts"]
+        after = "without impact" if impacts == 0 else f"after {impacts} impact{'s'[: impacts > 1]}"
+        at = f"at {self.outcome_time_s:.4f} s {after}"
+        return {
+            "never_moved": "never moved",
+            "rest": f"came to rest {at}",
+            "overturned": f"overturned to the {self.overturning_sway} {at}",
+            "still_rocking": f"still rocking {at}",
+        }[self.outcome]
+
+    def __repr__(self) -> str:
+        return f"<History: {self._words()}; {len(self)} samples>"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, History):
+            return NotImplemented
+        columns = _native.History.COLUMNS
+        return (
+            self.scenario == other.scenario
+            and self.summary == other.summary
+            and all(
+                np.array_equal(self._column(name), other._column(name), equal_nan=True)
+                for name in columns
+            )
+            and self.events == other.events
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        kept = {
+            "columns": {name: self._column(name) for name in _native.History.COLUMNS},
+            "bodies": self.bodies,
+            "outcome": self.outcome,
+            "overturning_sway": self.overturning_sway,
+            "outcome_time_s": self.outcome_time_s,
+            "events": self.events,
+            "summary": json.dumps(self.summary),
+            "scenario": self.scenario,
+        }
+        return _restored, (kept,)
+
+
+def _restored(kept: dict[str, Any]) -> History:
+    for column in kept["columns"].values():
+        column.flags.writeable = False
+    history = History.__new__(History)
+    history._native = None
+    history._origin = None
+    history._folder = None
+    history._cache = kept
+    return history

@@ -1,0 +1,310 @@
+"""Scenarios, and their simulation."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path, PurePosixPath
+from typing import Any, Literal
+
+from ._described import Described
+from ._ground import Ground
+from ._hinge import Limit
+from ._history import History
+from ._native import Scenario as NativeScenario
+from ._settings import Settings
+from ._structure import Structure
+from ._tables import Tables, to_toml
+
+Model = Literal["four_links", "free_hinges"]
+
+
+class Scenario(Described):
+    """What is to be simulated, every default resolved: all that a TOML file of the program can say.
+
+    Args:
+        tables: the tables of a scenario, such as ``{"arch": {...}, "ground": {"half_sine": {...}}}``.
+        files: contents of the files that the tables name. Without any, files are read from the working folder.
+        model: the model of motion; ``None``: the one that the tables choose.
+
+    Raises:
+        ValueError: all that is wrong with it, in the library's words.
+
+    Scenarios are pickled with the contents of the files that they name, unless these lie outside of the scenario's
+    own folder: such files must be there where the scenario is used again.
+    """
+
+    __slots__ = ("_folder", "_model", "_native")
+
+    _native: NativeScenario
+    _folder: str | None
+    _model: str | None
+
+    def __init__(
+        self,
+        tables: Mapping[str, Any],
+        *,
+        files: Mapping[str, bytes] | None = None,
+        model: Model | None = None,
+    ) -> None:
+        held = dict(files or {})
+        self._take(NativeScenario(to_toml(tables), None, held, model, ()), held, None, model)
+
+    def _take(
+        self,
+        native: NativeScenario,
+        files: dict[str, bytes],
+        folder: str | None,
+        model: str | None,
+    ) -> None:
+        self._native = native
+        self._folder = folder
+        self._model = model
+        self._describe(json.loads(native.to_json()), files)
+
+    @classmethod
+    def read(
+        cls,
+        path: str | Path,
+        *,
+        model: Model | None = None,
+        changes: Sequence[str] = (),
+    ) -> Scenario:
+        """Reads a scenario file.
+
+        Args:
+            path: the file; records are read from files relative to its folder.
+            model: the model of motion, whatever the file chooses.
+            changes: values that take the place of those in the file, as of the program's ``--set``:
+                ``"arch.thickness_ratio=0.12"``.
+
+        Raises:
+            OSError: when the file cannot be read.
+            ValueError: all that is wrong with it, each with line and column.
+        """
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        return cls.parse(text, str(path), model=model, changes=changes)
+
+    @classmethod
+    def parse(
+        cls,
+        text: str,
+        name: str = "scenario.toml",
+        *,
+        model: Model | None = None,
+        changes: Sequence[str] = (),
+    ) -> Scenario:
+        """Reads the TOML text of a scenario; ``name`` stands for its file, to whose folder records are relative.
+
+        Raises:
+            ValueError: all that is wrong with it, each with line and column.
+        """
+        scenario = cls.__new__(cls)
+        native = NativeScenario(text, name, {}, model, list(changes))
+        scenario._take(native, {}, str(Path(name).absolute().parent), model)
+        return scenario
+
+    @classmethod
+    def of(
+        cls,
+        structure: Structure,
+        ground: Ground | None = None,
+        *,
+        title: str | None = None,
+        map: Mapping[str, Any] | None = None,
+        spectrum: Mapping[str, Any] | None = None,
+        suite: Mapping[str, Any] | None = None,
+        files: Mapping[str, bytes] | None = None,
+        **settings: Any,
+    ) -> Scenario:
+        """The scenario of a structure on a ground.
+
+        Args:
+            structure: what stands.
+            ground: how the ground moves.
+            title: free text for the results.
+            map: table ``[map]``: two axes.
+            spectrum: table ``[spectrum]``.
+            suite: table ``[suite]``.
+            files: contents of files that the tables name.
+            settings: how it is simulated, as of :func:`simulate`.
+
+        Raises:
+            ValueError: all that is wrong with it, in the library's words.
+        """
+        if not isinstance(structure, Structure):
+            raise _not_a_structure(structure)
+        if not isinstance(ground, (Ground, type(None))):
+            raise _not_a_ground(ground)
+        chosen = Settings(**settings)
+        tables: Tables = {"title": title, **structure._tables, **chosen.tables()}
+        held = {**structure._files, **(files or {})}
+        if ground is not None:
+            tables["ground"] = ground._tables
+            held.update(ground._files)
+        tables.update(map=map, spectrum=spectrum, suite=suite)
+        return cls(tables, files=held, model=_model(chosen.model))
+
+    def run(self) -> History:
+        """Its history.
+
+        Raises:
+            ValueError: when nothing moves the structure, or the motion cannot be computed.
+            KeyboardInterrupt: on Ctrl-C, within a second.
+        """
+        return History(self._native.run(None), self._files, self._folder)
+
+    def limit(self) -> Limit:
+        """The push that starts the structure to either side, by limit analysis, as ``archrock limit``.
+
+        Raises:
+            ValueError: when it has no such onset that the library could tell.
+        """
+        return Limit._of(json.loads(self._native.limit_json()))
+
+    def to_toml(self) -> str:
+        """The scenario as the text of a file of the program, every default written out."""
+        return self._native.to_toml()
+
+    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+        raise NotImplementedError("scenarios are restored with their folder")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        files = self._files or _contents(self._tables, self._folder)
+        return _restored, (self._tables, files, self._folder, self._model)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scenario):
+            return NotImplemented
+        return self._native == other._native
+
+    def __hash__(self) -> int:
+        return hash(self._text)
+
+    def __repr__(self) -> str:
+        title = self._tables.get("title")
+        stands = ", ".join(key for key in self._tables if key not in ("title", "simulation", "impact"))
+        return f"<Scenario {title!r}: {stands}>" if title else f"<Scenario: {stands}>"
+
+
+def _restored(
+    tables: Tables, files: dict[str, bytes], folder: str | None, model: str | None
+) -> Scenario:
+    scenario = Scenario.__new__(Scenario)
+    name = None if files or folder is None else str(Path(folder) / "scenario.toml")
+    # The tables are resolved: they choose the model themselves.
+    native = NativeScenario(to_toml(tables), name, files, None, ())
+    scenario._take(native, files, folder, model)
+    return scenario
+
+
+def _names(tables: Tables) -> list[str]:
+    """The files that the tables of a scenario name."""
+    record = tables.get("ground", {}).get("record", {})
+    blocks = tables.get("blocks", {})
+    names = [record.get("file"), record.get("vertical", {}).get("file")]
+    names += [blocks.get("joints"), blocks.get("outlines")]
+    names += tables.get("suite", {}).get("records", [])
+    return [name for name in names if name is not None]
+
+
+def _contents(tables: Tables, folder: str | None) -> dict[str, bytes]:
+    """The contents of all files that the tables name; none where some are outside of the folder."""
+    names = _names(tables)
+    if any(".." in PurePosixPath(name).parts or Path(name).is_absolute() for name in names):
+        return {}
+    return {name: (Path(folder or ".") / name).read_bytes() for name in names}
+
+
+def _model(name: object) -> Model:
+    if name == "four_links":
+        return "four_links"
+    if name == "free_hinges":
+        return "free_hinges"
+    raise ValueError(f"`model = {name!r}` is not one of 'four_links' and 'free_hinges'")
+
+
+def _not_a_structure(given: object) -> TypeError:
+    name = type(given).__name__
+    return TypeError(f"`structure` must be an Arch, a Column or a Structure, not {name}")
+
+
+def _not_a_ground(given: object) -> TypeError:
+    return TypeError(f"`ground` must be a Pulse or a Record, not {type(given).__name__}")
+
+
+def simulate(
+    structure: Structure,
+    ground: Ground | None = None,
+    *,
+    model: Model = "four_links",
+    impact: str = "max_restitution",
+    restitution: float | None = None,
+    initial_sway: Literal["right", "left"] | None = None,
+    initial_rotation_rad: float | None = None,
+    longest_step_s: float | None = None,
+    shortest_step_s: float | None = None,
+    duration_s: float = 10.0,
+    output_step_s: float = 0.005,
+    relative_tolerance: float = 1e-9,
+    rest_energy_ratio: float = 1e-8,
+    gravity_m_s2: float = 9.81,
+) -> History:
+    """The history of a structure on moving ground, to the same bits as of the program.
+
+    The interpreter's lock is free meanwhile: histories on several threads are computed on several processors. A
+    structure keeps what does not depend on the ground, so that many histories of one structure are fastest with one
+    object and the same settings.
+
+    Args:
+        structure: what stands.
+        ground: how the ground moves; ``None`` for a release from a rotated position.
+        model: ``"four_links"`` (or Housner's column), or ``"free_hinges"``: blocks whose joints open and shut anywhere.
+        impact: impact model of four links: ``"max_restitution"``, ``"same_sections"``, ``"mirrored"`` or
+            ``"prescribed"``.
+        restitution: energy after over before an impact, with ``"prescribed"``.
+        initial_sway: side to which it is released from a rotated position, ``"right"`` or ``"left"``.
+        initial_rotation_rad: magnitude of that rotation, of the body that carries the coordinate.
+        longest_step_s: longest step, with free hinges.
+        shortest_step_s: landings within this time are one, with free hinges.
+        duration_s: longest time to simulate.
+        output_step_s: time between samples.
+        relative_tolerance: error that the integrator of four links may make in a step.
+        rest_energy_ratio: energy over energy barrier below which the structure is at rest.
+        gravity_m_s2: acceleration of gravity.
+
+    Returns:
+        The history.
+
+    Raises:
+        ValueError: when an argument is not allowed, or the motion cannot be computed, in the library's words.
+        TypeError: when an argument is of another type.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    key = (
+        model,
+        impact,
+        restitution,
+        initial_sway,
+        initial_rotation_rad,
+        longest_step_s,
+        shortest_step_s,
+        duration_s,
+        output_step_s,
+        relative_tolerance,
+        rest_energy_ratio,
+        gravity_m_s2,
+    )
+    try:
+        base = structure._bases[key]
+    except (KeyError, TypeError, AttributeError):
+        if not isinstance(structure, Structure):
+            raise _not_a_structure(structure) from None
+        _model(model)
+        base = structure._base(key)
+    if ground is None:
+        return History(base.run(None), structure._files, None)
+    if not isinstance(ground, Ground):
+        raise _not_a_ground(ground)
+    return History(base.run(ground._native), (structure, ground), None)

@@ -1,0 +1,201 @@
+"""What stands on the ground."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ._described import Described, read_file
+from ._hinge import ChainLink, Limit, Mechanism
+from ._native import Scenario as NativeScenario
+from ._settings import Settings
+from ._tables import Tables, arguments, plain_table, to_toml
+
+_MOST_BASES = 64
+
+
+class Structure(Described):
+    """What stands on the ground, of any shape that a scenario knows: its tables as keyword arguments.
+
+    For circular arches and free-standing columns there are :class:`Arch` and :class:`Column`.
+
+    >>> pointed = Structure(
+    ...     pointed_arch={"span_m": 4.0, "rise_m": 3.0, "thickness_m": 0.6, "voussoirs": 20},
+    ...     piers={"height_m": 2.0, "width_m": 1.2},
+    ... )
+
+    Args:
+        tables: tables such as ``arch``, ``column``, ``pointed_arch``, ``elliptic_arch``, ``basket_arch``, ``blocks``,
+            ``piers``, ``fill`` and ``load`` (a list), with their keys; ``blocks`` may name files, which are read now.
+
+    Raises:
+        ValueError: when it is no structure that stands; all that is wrong is said at once.
+        OSError: when a file cannot be read.
+    """
+
+    __slots__ = ("_bases", "_native")
+
+    _native: NativeScenario
+    _bases: dict[Any, NativeScenario]
+
+    def __init__(self, **tables: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> None:
+        read = plain_table(tables)
+        files: dict[str, bytes] = {}
+        blocks = read.get("blocks")
+        if isinstance(blocks, dict):
+            for key in ("joints", "outlines"):
+                if isinstance(blocks.get(key), str):
+                    path = Path(blocks[key])
+                    blocks[key] = path.name
+                    files[path.name] = read_file(path)
+        self._read(read, files)
+
+    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+        arch = tables.get("arch")
+        whole = set(tables) == {"arch"} and isinstance(arch, dict)
+        # Where hinges open anywhere, there are no blocks.
+        four = whole and isinstance(arch, dict) and not {"voussoirs", "joints_deg"} & set(arch)
+        model = "four_links" if four else "free_hinges"
+        self._native = NativeScenario(to_toml(tables), None, files, model, ())
+        self._bases = {}
+        self._describe(json.loads(self._native.structure_json()), files)
+
+    def _base(self, key: tuple[Any, ...]) -> NativeScenario:
+        """The structure with these settings, on still ground."""
+        settings = Settings(*key)
+        tables = {**self._tables, **settings.tables()}
+        base = NativeScenario(to_toml(tables), None, self._files, settings.model, ())
+        if len(self._bases) >= _MOST_BASES:
+            self._bases.clear()
+        self._bases[key] = base
+        return base
+
+    def limit(self) -> Limit:
+        """The push that starts it to either side, by limit analysis, as ``archrock limit``.
+
+        Raises:
+            ValueError: when it has no such onset that the library could tell.
+        """
+        return Limit._of(json.loads(self._native.limit_json()))
+
+    def chain(self, count: int = 5) -> list[ChainLink]:
+        """The mechanisms that the first ``count`` impacts after a sway to the right lead through.
+
+        They do not depend on the ground motion. The impacts are by the model ``max_restitution``; fewer are told when
+        one of them stops the structure.
+
+        Raises:
+            ValueError: when it does not rock as a mechanism of one degree of freedom at a time.
+        """
+        if not 0 <= count <= 65535:
+            raise ValueError(f"`count = {count}` is not allowed: it must be from 0 to 65535")
+        return [
+            ChainLink(
+                link["index"],
+                link["restitution"],
+                Mechanism._of(link["before"]),
+                Mechanism._of(link["after"]),
+            )
+            for link in json.loads(self._native.chain_json(count))
+        ]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({arguments(self._tables)})"
+
+
+class Arch(Structure):
+    """A circular masonry arch of constant thickness.
+
+    Args:
+        mean_radius_m: radius of its middle line.
+        thickness_ratio: thickness over mean radius; or give ``thickness_m``.
+        embrace_deg: angle from springing to springing, 180 for a semicircle.
+        thickness_m: thickness, instead of ``thickness_ratio``.
+        voussoirs: number of equal voussoirs, at whose joints hinges open; ``None``: anywhere.
+        depth_m: length out of plane; ``None``: that of the program, 1.
+        density_kg_m3: density; ``None``: that of the program, 2000.
+        others: further keys of ``[arch]``.
+
+    Raises:
+        ValueError: when a number is not allowed, or the arch cannot stand, in the library's words.
+
+    >>> arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
+    >>> round(arch.limit().right.acceleration_g, 8)
+    0.14432644
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        mean_radius_m: float | None = None,
+        thickness_ratio: float | None = None,
+        embrace_deg: float | None = None,
+        *,
+        thickness_m: float | None = None,
+        voussoirs: int | None = None,
+        depth_m: float | None = None,
+        density_kg_m3: float | None = None,
+        **others: Any,
+    ) -> None:
+        arch = {
+            "mean_radius_m": mean_radius_m,
+            "thickness_ratio": thickness_ratio,
+            "thickness_m": thickness_m,
+            "embrace_deg": embrace_deg,
+            "depth_m": depth_m,
+            "density_kg_m3": density_kg_m3,
+            "voussoirs": voussoirs,
+            **others,
+        }
+        super().__init__(arch=arch)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({arguments(self._tables['arch'])})"
+
+
+class Column(Structure):
+    """A free-standing column: Housner's block, or a stack of drums.
+
+    Args:
+        height_m: height.
+        width_m: width in the plane of the motion.
+        drums: number of equal drums; or give ``drum_heights_m``. Drums and a taper go with free hinges only.
+        drum_heights_m: heights of drums from the base up, shape ``(drums,)``.
+        top_width_m: width at the top, where it tapers.
+        depth_m: length out of plane; ``None``: that of the program, 1.
+        density_kg_m3: density; ``None``: that of the program, 2000.
+
+    Raises:
+        ValueError: when a number is not allowed, in the library's words.
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        height_m: float,
+        width_m: float,
+        *,
+        drums: int | None = None,
+        drum_heights_m: Any = None,
+        top_width_m: float | None = None,
+        depth_m: float | None = None,
+        density_kg_m3: float | None = None,
+    ) -> None:
+        super().__init__(
+            column={
+                "height_m": height_m,
+                "width_m": width_m,
+                "drums": drums,
+                "drum_heights_m": drum_heights_m,
+                "top_width_m": top_width_m,
+                "depth_m": depth_m,
+                "density_kg_m3": density_kg_m3,
+            }
+        )
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({arguments(self._tables['column'])})"

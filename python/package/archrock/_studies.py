@@ -1,0 +1,513 @@
+"""Studies: many histories evaluated together, on all processors, or in parts on several machines."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from . import _native
+from ._ground import Ground, Pulse, Record, _csv
+from ._scenario import Scenario
+from ._structure import Structure
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import pandas
+
+Progress = Callable[[int, int], object]
+"""Called with the number of cases that are done and of all; what it raises ends the work."""
+
+Values = Any
+"""Increasing numbers, anything like an array, or a :func:`span`."""
+
+Study = Literal["map", "spectrum", "suite"]
+
+
+def span(
+    start: float,
+    end: float,
+    count: int,
+    spacing: Literal["linear", "logarithmic"] = "linear",
+) -> dict[str, Any]:
+    """Numbers from ``start`` to ``end``, both included, to the bits of the program's ``{ from, to, count, spacing }``."""
+    return {"from": start, "to": end, "count": count, "spacing": spacing}
+
+
+class Results:
+    """Results of a study: the files that the program writes, held in memory."""
+
+    __slots__ = ("_files",)
+
+    _picture: str
+    _table: str
+    _json: str
+
+    def __init__(self, files: Iterable[tuple[str, bytes]]) -> None:
+        self._files = tuple((name, bytes(contents)) for name, contents in files)
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """The files by their names, to the bytes of those that the program writes."""
+        return dict(self._files)
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes the files into a folder, all of them or none.
+
+        Raises:
+            OSError: when they cannot be written.
+        """
+        _native.save(folder, self._files)
+
+    def columns(self, file: str | None = None) -> dict[str, npt.NDArray[Any]]:
+        """The columns of a table, by default the study's main one; empty cells of numbers are NaN."""
+        rows = list(csv.reader(io.StringIO(self.files[file or self._table].decode())))
+        return {
+            name: _column([row[index] for row in rows[1:]]) for index, name in enumerate(rows[0])
+        }
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """The JSON file of the study: scenario as resolved, numbers, what failed."""
+        summary: dict[str, Any] = json.loads(self.files[self._json])
+        return summary
+
+    def to_pandas(self, file: str | None = None) -> pandas.DataFrame:
+        """A table of the study, by default its main one. Needs pandas."""
+        import pandas
+
+        table: pandas.DataFrame = pandas.DataFrame(self.columns(file))
+        return table
+
+    def _repr_svg_(self) -> str:
+        return self.files[self._picture].decode()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Results):
+            return NotImplemented
+        return self._files == other._files
+
+    def __hash__(self) -> int:
+        return hash(self._files)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._files,)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {', '.join(self.files)}>"
+
+
+def _column(cells: list[str]) -> npt.NDArray[Any]:
+    try:
+        return np.array([float(cell) if cell else np.nan for cell in cells])
+    except ValueError:
+        return np.array(cells)
+
+
+class OverturningMap(Results):
+    """An overturning map: a history for every cell of a plane of two quantities."""
+
+    __slots__ = ()
+
+    _picture = "map.svg"
+    _table = "map.csv"
+    _json = "map.json"
+
+    @property
+    def axes(self) -> tuple[str, str]:
+        """What varies along x and y, by its key in ``[map]``."""
+        x, y, *_ = self.columns()
+        return x, y
+
+    def _plane(self, name: str) -> npt.NDArray[Any]:
+        columns = self.columns()
+        cells: npt.NDArray[Any] = columns[name].reshape(len(self.x), len(self.y))
+        return cells
+
+    @property
+    def x(self) -> npt.NDArray[np.float64]:
+        """Values along x."""
+        values = self.columns()[self.axes[0]]
+        first: npt.NDArray[np.float64] = values[:: len(self.y)]
+        return first
+
+    @property
+    def y(self) -> npt.NDArray[np.float64]:
+        """Values along y."""
+        columns = self.columns()
+        x, y = self.axes
+        of_first: npt.NDArray[np.float64] = columns[y][columns[x] == columns[x][0]]
+        return of_first
+
+    @property
+    def outcome(self) -> npt.NDArray[np.str_]:
+        """What became of each cell, as in ``map.csv``, shape ``(len(x), len(y))``."""
+        return self._plane("outcome")
+
+    @property
+    def impacts(self) -> npt.NDArray[np.float64]:
+        """Number of impacts of each cell, NaN where there is no history, shape ``(len(x), len(y))``."""
+        return self._plane("impacts")
+
+    @property
+    def boundary(self) -> dict[str, npt.NDArray[Any]] | None:
+        """Least amplitudes that start and that overturn without impact, over x; ``None`` where the map has none."""
+        return self.columns("no_impact.csv") if "no_impact.csv" in self.files else None
+
+
+class Spectrum(Results):
+    """An overturning spectrum: how strong a pulse must be, over size."""
+
+    __slots__ = ()
+
+    _picture = "spectrum.svg"
+    _table = "spectrum.csv"
+    _json = "spectrum.json"
+
+
+class Suite(Results):
+    """A suite of records, and the fragility curve that its cases add up to."""
+
+    __slots__ = ()
+
+    _picture = "suite.svg"
+    _table = "suite.csv"
+    _json = "fragility.json"
+
+    @property
+    def fragility(self) -> dict[str, npt.NDArray[Any]]:
+        """By intensity: cases, how many overturned, and the curve with its 95 % band, as ``fragility.csv``."""
+        return self.columns("fragility.csv")
+
+
+class Threshold(Results):
+    """Factors on a ground motion that overturn a structure: bands with safe gaps between them."""
+
+    __slots__ = ()
+
+    _picture = "threshold.svg"
+    _table = "threshold.csv"
+    _json = "threshold.json"
+
+    def _model(self) -> dict[str, Any]:
+        model: dict[str, Any] = self.summary["models"][0]
+        return model
+
+    @property
+    def lowest_factor(self) -> float | None:
+        """The least factor at which it overturns; ``None`` if it never does."""
+        factor: float | None = self._model()["lowest_factor"]
+        return factor
+
+    @property
+    def bands(self) -> list[dict[str, Any]]:
+        """The ranges of factors that overturn, ascending, as in ``threshold.json``."""
+        bands: list[dict[str, Any]] = self._model()["bands"]
+        return bands
+
+    @property
+    def gaps(self) -> list[dict[str, Any]]:
+        """The safe ranges between bands, ascending, as in ``threshold.json``."""
+        gaps: list[dict[str, Any]] = self._model()["gaps"]
+        return gaps
+
+
+_KINDS: dict[str, type[Results]] = {"map": OverturningMap, "spectrum": Spectrum, "suite": Suite}
+
+
+def _study(
+    kind: str, scenario: Scenario, threads: int | None, progress: Progress | None
+) -> list[tuple[str, bytes]]:
+    if progress is not None and not callable(progress):
+        raise TypeError("`progress` must be a function of two numbers")
+    return _native.study(scenario._native, kind, threads, progress)
+
+
+def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
+    """Whether what is given is a scenario, beside which nothing else goes."""
+    if isinstance(of, Structure):
+        return False
+    if not isinstance(of, Scenario):
+        raise TypeError(f"give a structure or a scenario, not {type(of).__name__}")
+    given = [name for name, value in others.items() if value is not None]
+    if given:
+        raise ValueError(
+            f"a scenario says everything itself: leave {', '.join(given)} out, or give a structure"
+        )
+    return True
+
+
+def map_scenario(
+    structure: Structure,
+    ground: Pulse,
+    axes: Mapping[str, Values],
+    *,
+    spread: bool = False,
+    **settings: Any,
+) -> Scenario:
+    """The scenario of an overturning map: what :func:`overturning_map` computes, to be computed in parts.
+
+    Raises:
+        ValueError: as of :func:`overturning_map`.
+    """
+    table = {**axes, "spread": True} if spread else axes
+    return Scenario.of(structure, ground, map=table, **settings)
+
+
+def overturning_map(
+    of: Structure | Scenario,
+    ground: Pulse | None = None,
+    axes: Mapping[str, Values] | None = None,
+    *,
+    spread: bool | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> OverturningMap:
+    """Which pulses overturn a structure, over two quantities.
+
+    >>> found = overturning_map(
+    ...     Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0),
+    ...     Pulse.one_cosine(amplitude_g=0.5, duration_s=0.8),
+    ...     {"duration_s": span(0.1, 1.6, 16), "amplitude_g": span(0.12, 3.0, 16, "logarithmic")},
+    ...     duration_s=30.0,
+    ... )
+
+    Args:
+        of: what stands, or a scenario with a table ``[map]``, which says everything itself.
+        ground: the pulse whose shape, and values that do not vary, are used.
+        axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``mean_radius_m``,
+            ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``.
+        spread: with free hinges, whether every cell is computed with half and with double steps as well.
+        threads: how many threads work; ``None``: as many as there are processors.
+        progress: called on this thread with the numbers of cells that are done and of all.
+        settings: as of :func:`simulate`.
+
+    Raises:
+        ValueError: when the scenario is none of a map, in the library's words.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    if _whole(of, {"ground": ground, "axes": axes, "spread": spread, **settings}):
+        assert isinstance(of, Scenario)
+        return OverturningMap(_study("map", of, threads, progress))
+    assert isinstance(of, Structure)
+    if ground is None or axes is None:
+        raise ValueError("a map needs a pulse and two axes")
+    scenario = map_scenario(of, ground, axes, spread=bool(spread), **settings)
+    return OverturningMap(_study("map", scenario, threads, progress))
+
+
+def spectrum(
+    of: Structure | Scenario,
+    ground: Pulse | None = None,
+    *,
+    p_t: Values = None,
+    acceleration_over_incipient: Values = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Spectrum:
+    """How strong a pulse must be to overturn a structure, over its size.
+
+    Args:
+        of: what stands, or a scenario, which says everything itself.
+        ground: the pulse, whose shape and side are used.
+        p_t: increasing sizes, frequency parameter times duration; ``None``: those of the program.
+        acceleration_over_incipient: increasing peak accelerations over that which starts the structure; ``None``: those
+            of the program.
+        threads: as of :func:`overturning_map`.
+        progress: as of :func:`overturning_map`.
+        settings: as of :func:`simulate`.
+
+    Raises:
+        ValueError: when there is no such spectrum, in the library's words.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    table = {"p_t": p_t, "acceleration_over_incipient": acceleration_over_incipient}
+    if _whole(of, {"ground": ground, **table, **settings}):
+        assert isinstance(of, Scenario)
+        return Spectrum(_study("spectrum", of, threads, progress))
+    assert isinstance(of, Structure)
+    scenario = Scenario.of(of, ground, spectrum=table, **settings)
+    return Spectrum(_study("spectrum", scenario, threads, progress))
+
+
+def suite_scenario(
+    structure: Structure,
+    records: Sequence[Record],
+    *,
+    peaks_g: Values = None,
+    scales: Values = None,
+    both_signs: bool = True,
+    **settings: Any,
+) -> Scenario:
+    """The scenario of a suite of records: what :func:`suite` computes, to be computed in parts.
+
+    Raises:
+        ValueError: as of :func:`suite`.
+    """
+    for record in records:
+        if not isinstance(record, Record):
+            raise TypeError(f"`records` are Records, not {type(record).__name__}")
+    units = {record.unit for record in records}
+    if len(units) > 1:
+        raise ValueError(f"the records of a suite must be in one unit, not in {sorted(units)}")
+    files: dict[str, bytes] = {}
+    for record in records:
+        told = record._tables["record"]
+        if "vertical" in told or told.get("component") == "vertical":
+            raise ValueError(f"{record.name!r}: the records of a suite are horizontal")
+        if told.get("scale") != 1.0:
+            raise ValueError(
+                f"{record.name!r} is scaled itself: leave `scale` and `peak_g` out, the suite has its own levels"
+            )
+        if record.name in files:
+            raise ValueError(f"{record.name!r} is the name of two records: give each its own")
+        files[record.name] = _csv(record.time, record.acceleration)
+    table = {
+        "records": sorted(files),
+        "format": "csv",
+        "unit": next(iter(units), "g"),
+        "peaks_g": peaks_g,
+        "scales": scales,
+        "both_signs": both_signs,
+    }
+    return Scenario.of(structure, suite=table, files=files, **settings)
+
+
+def suite(
+    of: Structure | Scenario,
+    records: Sequence[Record] | None = None,
+    *,
+    peaks_g: Values = None,
+    scales: Values = None,
+    both_signs: bool | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Suite:
+    """How likely records of some strength overturn a structure: a history for every record at every level.
+
+    Args:
+        of: what stands, or a scenario with a table ``[suite]``, which says everything itself.
+        records: the records, in one unit, each with a name of its own.
+        peaks_g: increasing peak accelerations that each record is scaled to; or give ``scales``.
+        scales: increasing factors on each record.
+        both_signs: whether every record is also run mirrored; ``None``: it is.
+        threads: as of :func:`overturning_map`.
+        progress: as of :func:`overturning_map`.
+        settings: as of :func:`simulate`.
+
+    Raises:
+        ValueError: when there is no such suite, in the library's words.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    others = {"records": records, "peaks_g": peaks_g, "scales": scales, "both_signs": both_signs}
+    if _whole(of, {**others, **settings}):
+        assert isinstance(of, Scenario)
+        return Suite(_study("suite", of, threads, progress))
+    assert isinstance(of, Structure)
+    scenario = suite_scenario(
+        of,
+        records or (),
+        peaks_g=peaks_g,
+        scales=scales,
+        both_signs=both_signs is not False,
+        **settings,
+    )
+    return Suite(_study("suite", scenario, threads, progress))
+
+
+def threshold(
+    of: Structure | Scenario,
+    ground: Ground | None = None,
+    *,
+    from_factor: float = 0.1,
+    to_factor: float = 10.0,
+    stride: float = 0.02,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Threshold:
+    """By which factors a ground motion overturns a structure.
+
+    Args:
+        of: what stands, or a scenario, which says structure, ground and settings itself.
+        ground: the ground motion to be scaled.
+        from_factor: smallest factor.
+        to_factor: largest factor.
+        stride: relative step from one factor to the next; narrower bands and gaps may be missed.
+        threads: as of :func:`overturning_map`.
+        progress: as of :func:`overturning_map`; first of all factors, then of the edges as well.
+        settings: as of :func:`simulate`.
+
+    Raises:
+        ValueError: when an argument is not allowed, in the library's words.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    if _whole(of, {"ground": ground, **settings}):
+        assert isinstance(of, Scenario)
+        scenario = of
+    else:
+        assert isinstance(of, Structure)
+        scenario = Scenario.of(of, ground, **settings)
+    factors = (from_factor, to_factor, stride)
+    return Threshold(_native.threshold(scenario._native, factors, threads, progress))
+
+
+def compute_part(
+    scenario: Scenario,
+    study: Study,
+    shard: tuple[int, int],
+    folder: str | os.PathLike[str],
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Path:
+    """Computes one part of a study into a file, or goes on with one that was interrupted.
+
+    The parts may be computed anywhere, in any order and several times; :func:`merge` joins them, and so does the
+    program's ``merge``, to the bytes that one process writes.
+
+    Args:
+        scenario: the scenario with the table of the study.
+        study: ``"map"``, ``"spectrum"`` or ``"suite"``.
+        shard: which part of how many, from 1: ``(2, 4)``.
+        folder: where the file goes; made if need be.
+        threads: as of :func:`overturning_map`.
+        progress: as of :func:`overturning_map`.
+
+    Returns:
+        The path of the file.
+
+    Raises:
+        ValueError: when the scenario has no such study, or the file is that of another.
+        OSError: when the file cannot be written.
+        KeyboardInterrupt: on Ctrl-C, within a second; what is done is kept.
+    """
+    if not isinstance(scenario, Scenario):
+        raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
+    index, count = shard
+    path = _native.compute_part(
+        scenario._native, study, f"{index}/{count}", folder, threads, progress
+    )
+    return Path(path)
+
+
+def merge(parts: Iterable[str | os.PathLike[str]]) -> OverturningMap | Spectrum | Suite:
+    """Joins all parts of one study.
+
+    Raises:
+        ValueError: when they are not all there, or not of one study.
+        OSError: when one cannot be read.
+    """
+    study, files = _native.merge(list(parts))
+    results = _KINDS[study](files)
+    assert isinstance(results, (OverturningMap, Spectrum, Suite))
+    return results

@@ -1,0 +1,64 @@
+//! Errors of the library as exceptions of Python.
+
+use std::any::Any;
+use std::fmt::Display;
+
+use archrock::output::OutputError;
+use archrock::scenario::ScenarioErrors;
+use archrock::studies::part::PartError;
+use archrock::studies::runner::RunnerError;
+use pyo3::PyErr;
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+
+/// What the library refuses, in its words.
+pub fn refused(error: impl Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// What is wrong with a scenario: with places, where a person wrote its text; else the messages alone.
+pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
+    if placed {
+        return errors.to_string();
+    }
+    let messages = errors.as_slice().iter().map(|one| one.message.as_str());
+    messages.collect::<Vec<_>>().join("\n")
+}
+
+/// What the runner of studies says.
+pub fn not_run(error: RunnerError) -> PyErr {
+    match error {
+        RunnerError::Part(error) => unusable(error),
+        RunnerError::Folder { .. } => PyOSError::new_err(error.to_string()),
+        RunnerError::Cancelled(_) | RunnerError::Threads(_) => {
+            PyRuntimeError::new_err(error.to_string())
+        }
+    }
+}
+
+/// Why a part cannot be used.
+pub fn unusable(error: PartError) -> PyErr {
+    match error {
+        PartError::Io { .. } => PyOSError::new_err(error.to_string()),
+        _ => refused(error),
+    }
+}
+
+/// Why results could not be written.
+pub fn not_written(error: OutputError) -> PyErr {
+    match error {
+        OutputError::Io { .. } => PyOSError::new_err(error.to_string()),
+        OutputError::NotFinite { .. } => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// A defect of the library, which must not end the interpreter.
+pub fn panicked(panic: &(dyn Any + Send)) -> PyErr {
+    let words = panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no reason given");
+    PyRuntimeError::new_err(format!(
+        "a defect of archrock, please report the scenario: {words}"
+    ))
+}

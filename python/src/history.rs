@@ -1,0 +1,441 @@
+//! Histories: simulated with the interpreter's lock free, their columns moved out as arrays.
+
+use std::mem;
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use archrock::dynamics::free_hinges::spread::{REPETITIONS, Spread};
+use archrock::dynamics::history::{Samples, Summary};
+use archrock::mechanics::chain::Demand;
+use archrock::output::report::Report;
+use archrock::output::scene::Scene;
+use archrock::output::{free_hinges, mechanisms, results};
+use archrock::{Event, GroundMotion, Impact, Outcome, Recorder, Sample, SimulationError, State};
+use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use serde_json::{Value, json};
+
+use crate::error::{not_written, panicked, refused};
+use crate::scenario::{Ground, Scenario, Standing};
+
+/// How often a history looks for signals.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Lets Ctrl-C end a history.
+struct Signals {
+    asked: Instant,
+    /// What a signal raised.
+    raised: Option<PyErr>,
+}
+
+impl Signals {
+    fn new() -> Self {
+        Self {
+            asked: Instant::now(),
+            raised: None,
+        }
+    }
+
+    /// Whether to go on.
+    fn go_on(&mut self) -> ControlFlow<()> {
+        if self.asked.elapsed() < TICK {
+            return ControlFlow::Continue(());
+        }
+        self.raised = Python::attach(|py| py.check_signals()).err();
+        self.asked = Instant::now();
+        match self.raised {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Collects samples and events.
+struct Recording {
+    samples: Samples,
+    events: Vec<Event>,
+    signals: Signals,
+}
+
+impl Recorder for Recording {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.samples.push(sample);
+        self.signals.go_on()
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.events.push(event.clone());
+        self.signals.go_on()
+    }
+}
+
+/// Collects what a page shows.
+struct Filming {
+    report: Report,
+    signals: Signals,
+}
+
+impl Recorder for Filming {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.report.push(sample);
+        self.signals.go_on()
+    }
+
+    fn wants_thrust_line(&self) -> bool {
+        true
+    }
+}
+
+/// Columns of samples, by their names.
+const COLUMNS: [&str; 14] = [
+    "time_s",
+    "ground_acceleration_m_s2",
+    "vertical_acceleration_m_s2",
+    "phase",
+    "state",
+    "rotations_rad",
+    "rates_rad_s",
+    "poses",
+    "gaps_m",
+    "open_hinges",
+    "thrust_excess_ratio",
+    "friction_demand",
+    "energy_j",
+    "energy_ratio",
+];
+
+/// A history.
+#[pyclass(frozen, module = "archrock._native")]
+pub struct History {
+    scenario: Arc<archrock::Scenario>,
+    /// The ground, where it is not the scenario's own.
+    ground: Option<archrock::scenario::Ground>,
+    standing: Standing,
+    summary: Summary,
+    events: Vec<Event>,
+    /// Number of samples, of bodies and of joints with gaps.
+    counts: [usize; 3],
+    /// What was not yet asked for.
+    samples: Mutex<Samples>,
+    arrays: [PyOnceLock<Py<PyAny>>; COLUMNS.len()],
+}
+
+/// Simulates with the interpreter's lock free. A panic is an error, and so is what a signal raises.
+fn simulate<R: Recorder + Send>(
+    py: Python<'_>,
+    standing: &Standing,
+    scenario: &archrock::Scenario,
+    ground: &GroundMotion,
+    recorder: &mut R,
+    raised: impl FnOnce(&mut R) -> Option<PyErr>,
+) -> PyResult<Summary> {
+    let request = scenario.request();
+    let simulated = py.detach(|| {
+        catch_unwind(AssertUnwindSafe(|| {
+            let model = standing.model();
+            model.simulate(ground, &request, Some(&mut *recorder))
+        }))
+    });
+    if let Some(error) = raised(recorder) {
+        return Err(error);
+    }
+    let simulated: Result<Summary, SimulationError> =
+        simulated.map_err(|panic| panicked(&*panic))?;
+    simulated.map_err(refused)
+}
+
+impl History {
+    /// The history of a scenario, on other ground than its own if that is given.
+    pub fn of(py: Python<'_>, scenario: &Scenario, ground: Option<&Ground>) -> PyResult<Self> {
+        let inner = &scenario.inner;
+        let other = ground.map(|ground| ground.motion(inner.simulation.gravity_m_s2));
+        let motion = match &other {
+            Some(motion) => motion,
+            None => {
+                inner.check_for_run().map_err(refused)?;
+                inner.ground_motion()
+            }
+        };
+        let standing = scenario.standing(py)?;
+        let mut recording = Recording {
+            samples: Samples::default(),
+            events: Vec::new(),
+            signals: Signals::new(),
+        };
+        let summary = simulate(py, standing, inner, motion, &mut recording, |recording| {
+            recording.signals.raised.take()
+        })?;
+        let Recording {
+            samples, events, ..
+        } = recording;
+        let count = samples.len();
+        let each = |all: usize| all.checked_div(count).unwrap_or(0);
+        Ok(Self {
+            scenario: Arc::clone(inner),
+            ground: ground.map(|ground| ground.inner.clone()),
+            standing: standing.clone(),
+            summary,
+            events,
+            counts: [
+                count,
+                each(samples.rotations_rad.len()),
+                each(samples.gaps_m.len()),
+            ],
+            samples: Mutex::new(samples),
+            arrays: [const { PyOnceLock::new() }; COLUMNS.len()],
+        })
+    }
+
+    /// Takes a column out of the samples, as an array of its shape.
+    fn take<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let [count, bodies, joints] = self.counts;
+        let taken = |take: &mut dyn FnMut(&mut Samples) -> Vec<f64>, shape: &[usize]| {
+            let values = take(&mut self.samples.lock().unwrap_or_else(PoisonError::into_inner));
+            array(py, values, shape)
+        };
+        let demand = |of: fn(&Demand) -> f64| {
+            let samples = self.samples.lock().unwrap_or_else(PoisonError::into_inner);
+            samples.demand.iter().map(of).collect::<Vec<f64>>()
+        };
+        match name {
+            "time_s" => taken(&mut |all| mem::take(&mut all.time_s), &[count]),
+            "ground_acceleration_m_s2" => taken(
+                &mut |all| mem::take(&mut all.ground_acceleration_m_s2),
+                &[count],
+            ),
+            "vertical_acceleration_m_s2" => taken(
+                &mut |all| mem::take(&mut all.vertical_acceleration_m_s2),
+                &[count],
+            ),
+            "rotations_rad" => taken(
+                &mut |all| mem::take(&mut all.rotations_rad),
+                &[count, bodies],
+            ),
+            "rates_rad_s" => taken(&mut |all| mem::take(&mut all.rates_rad_s), &[count, bodies]),
+            "poses" => taken(
+                &mut |all| mem::take(&mut all.poses).into_flattened(),
+                &[count, bodies, 3],
+            ),
+            "gaps_m" => taken(
+                &mut |all| mem::take(&mut all.gaps_m).into_flattened(),
+                &[count, joints, 2],
+            ),
+            "energy_j" => taken(&mut |all| mem::take(&mut all.energy_j), &[count]),
+            "energy_ratio" => taken(
+                &mut |all| {
+                    let known = mem::take(&mut all.energy_ratio);
+                    known
+                        .into_iter()
+                        .map(|one| one.unwrap_or(f64::NAN))
+                        .collect()
+                },
+                &[count],
+            ),
+            "thrust_excess_ratio" => array(py, demand(|one| one.excess_ratio), &[count]),
+            "friction_demand" => array(py, demand(|one| one.friction), &[count]),
+            "phase" => array(py, self.whole(|all| mem::take(&mut all.phase)), &[count]),
+            "open_hinges" => {
+                let open = self.whole(|all| {
+                    let ends = all.first_hinge.iter().skip(1).copied();
+                    let ends = ends.chain([all.hinges.len()]);
+                    let first = all.first_hinge.iter();
+                    first.zip(ends).map(|(first, end)| end - first).collect()
+                });
+                array(py, open, &[count])
+            }
+            "state" => {
+                let codes = self.whole(|all| {
+                    let states = mem::take(&mut all.state);
+                    states.into_iter().map(code).collect()
+                });
+                array(py, codes, &[count])
+            }
+            _ => Err(PyKeyError::new_err(name.to_owned())),
+        }
+    }
+
+    fn whole(&self, take: impl FnOnce(&mut Samples) -> Vec<usize>) -> Vec<i64> {
+        let values = take(&mut self.samples.lock().unwrap_or_else(PoisonError::into_inner));
+        // Counts of what is in memory are far below the largest of these.
+        values.into_iter().map(|one| one as i64).collect()
+    }
+
+    /// The scenario, on the ground that it was simulated on.
+    fn shaken(&self) -> Arc<archrock::Scenario> {
+        match &self.ground {
+            Some(ground) => Arc::new(self.scenario.with_ground(Some(ground.clone()))),
+            None => Arc::clone(&self.scenario),
+        }
+    }
+}
+
+/// Names of states, each at its code.
+const STATES: [&str; 4] = ["rest", "right", "left", "overturned"];
+
+fn code(state: State) -> usize {
+    let name = state.name();
+    STATES.iter().position(|one| *one == name).unwrap_or(0)
+}
+
+/// Values as an array that cannot be written to. It takes them over; nothing is copied.
+fn array<'py, T: Element>(
+    py: Python<'py>,
+    values: Vec<T>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = PyArray1::from_vec(py, values).reshape(shape)?;
+    array.readwrite().make_nonwriteable();
+    debug_assert_eq!(array.shape(), shape);
+    Ok(array.into_any())
+}
+
+fn event(event: &Event) -> Value {
+    json!({
+        "time_s": event.time_s,
+        "kind": event.kind.name(),
+        "state": event.state.name(),
+        "mechanism": event.mechanism,
+        "rotations_rad": event.rotations_rad,
+        "rates_rad_s": event.rates_rad_s,
+        "energy_j": event.energy_j,
+        "hinges": mechanisms::hinges(&event.hinges),
+        "impact": event.impact.as_ref().map(|impact| self::impact(event.time_s, impact)),
+    })
+}
+
+fn impact(time_s: f64, impact: &Impact) -> Value {
+    let impulses = impact.impulses_n_s.iter();
+    json!({
+        "time_s": time_s,
+        "sway_before": impact.sway_before.name(),
+        "sway_after": impact.sway_after().name(),
+        "restitution": impact.restitution,
+        "energy_before_j": impact.energy_before_j,
+        "energy_after_j": impact.energy_after_j,
+        "rates_before_rad_s": impact.rates_before_rad_s,
+        "rates_after_rad_s": impact.rates_after_rad_s,
+        "closed": mechanisms::hinges(&impact.closed),
+        "opened": mechanisms::hinges(&impact.opened),
+        "impulses_n_s": impulses.map(|one| [one.x, one.y]).collect::<Vec<_>>(),
+    })
+}
+
+#[pymethods]
+impl History {
+    /// Names of the states, each at its code in the column `state`.
+    #[classattr]
+    const STATES: [&'static str; 4] = STATES;
+
+    /// A column of the samples; the same array every time.
+    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let index = COLUMNS.iter().position(|column| *column == name);
+        let index = index.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+        let array =
+            self.arrays[index].get_or_try_init(py, || self.take(py, name).map(Bound::unbind))?;
+        Ok(array.bind(py).clone())
+    }
+
+    /// Names of the columns.
+    #[classattr]
+    const COLUMNS: [&'static str; COLUMNS.len()] = COLUMNS;
+
+    /// Names of the bodies.
+    fn bodies(&self) -> Vec<String> {
+        self.standing.model().bodies()
+    }
+
+    /// How it ended.
+    fn outcome(&self) -> &'static str {
+        self.summary.outcome.name()
+    }
+
+    /// To which side it overturned.
+    fn overturning_sway(&self) -> Option<&'static str> {
+        match self.summary.outcome {
+            Outcome::Overturned(sway) => Some(sway.name()),
+            _ => None,
+        }
+    }
+
+    /// When.
+    fn outcome_time_s(&self) -> f64 {
+        self.summary.outcome_time_s
+    }
+
+    /// Number of impacts.
+    fn impact_count(&self) -> usize {
+        self.summary.impacts
+    }
+
+    /// Number of samples.
+    fn __len__(&self) -> usize {
+        self.counts[0]
+    }
+
+    /// The events as JSON.
+    fn events_json(&self) -> String {
+        let events: Vec<Value> = self.events.iter().map(event).collect();
+        json!(events).to_string()
+    }
+
+    /// The scenario, on the ground that it was simulated on.
+    fn scenario(&self) -> Scenario {
+        Scenario::new(self.shaken())
+    }
+
+    /// `summary.json` of the program; with `spread`, a row of blocks is simulated with half and with double steps.
+    fn summary_json(&self, py: Python<'_>, spread: bool) -> PyResult<String> {
+        let scenario = self.shaken();
+        let motion = scenario.ground_motion();
+        let summary = match &self.standing {
+            Standing::Mechanisms(model) => {
+                results::summary(&scenario, &**model, motion, &self.summary)
+            }
+            Standing::Row(row) => {
+                let repeated = spread.then(|| {
+                    let request = scenario.request();
+                    py.detach(|| REPETITIONS.map(|factor| row.repeated(factor, motion, &request)))
+                });
+                let spread = match repeated {
+                    Some([half, double]) => Some(Spread::new(
+                        &self.summary,
+                        &half.map_err(refused)?,
+                        &double.map_err(refused)?,
+                    )),
+                    None => None,
+                };
+                let spread = spread.as_ref().map(Ok);
+                free_hinges::summary(&scenario, row, &self.summary, spread)
+            }
+        };
+        Ok(summary.map_err(not_written)?.to_string())
+    }
+
+    /// `report.html`, with these words on it. Simulates it again, with the line of thrust.
+    fn report(&self, py: Python<'_>, words: &str) -> PyResult<String> {
+        let scenario = self.shaken();
+        let scene = match &self.standing {
+            Standing::Mechanisms(_) => Scene::new(&scenario.structure),
+            Standing::Row(row) => Scene::of_row(row.row()),
+        };
+        let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+        let mut filming = Filming {
+            report: Report::new(scene, &self.bodies(), gravity_m_s2),
+            signals: Signals::new(),
+        };
+        let motion = scenario.ground_motion();
+        simulate(
+            py,
+            &self.standing,
+            &scenario,
+            motion,
+            &mut filming,
+            |filming| filming.signals.raised.take(),
+        )?;
+        Ok(py.detach(|| filming.report.page(&scenario, motion, words)))
+    }
+}

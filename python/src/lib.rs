@@ -1,0 +1,25 @@
+//! The native part of the Python package `archrock`: the library's own types behind handles, text and arrays.
+//!
+//! It computes nothing itself. Structures, ground motions and scenarios come in as the TOML text of a scenario, so that
+//! the library's reader checks them and its words say what is wrong; what is small goes out as the JSON of the program's
+//! results, tables as the program's files, and histories as arrays, which are moved out of Rust and not copied.
+//! The classes that people use are in `package/archrock`.
+
+mod error;
+mod history;
+mod scenario;
+mod studies;
+mod watched;
+
+use pyo3::prelude::*;
+
+/// The module `archrock._native`.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::history::History;
+    #[pymodule_export]
+    use crate::scenario::{Ground, Scenario};
+    #[pymodule_export]
+    use crate::studies::{compute_part, merge, save, study, threshold};
+}

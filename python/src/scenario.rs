@@ -1,0 +1,305 @@
+//! Scenarios and ground motions, read from text.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::mechanics::stability::onset;
+use archrock::output::{impact, mechanisms};
+use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source, Structure};
+use archrock::{GroundMotion, MechanismModel, Model, Sway};
+use numpy::{PyArray1, PyArrayMethods as _};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde_json::json;
+use tempfile::TempDir;
+
+use crate::error::{in_words, refused};
+use crate::history::History;
+
+/// Files of a scenario that are held in memory, by their names in it.
+pub type Files = BTreeMap<String, Vec<u8>>;
+
+/// The text of a scenario, and what it reads its files from.
+struct Text {
+    source: Source,
+    /// Holds the files that came with the text, as long as it is read.
+    folder: Option<TempDir>,
+    /// Whether a person wrote the text, who can look for a line in it.
+    placed: bool,
+}
+
+impl Text {
+    /// A text; `name` stands for its file. With files of its own, it reads no others.
+    fn new(text: &str, name: Option<&str>, files: &Files) -> PyResult<Self> {
+        let placed = name.is_some();
+        let name = name.unwrap_or("the arguments");
+        if files.is_empty() {
+            return Ok(Self {
+                source: Source::of_text(text, name),
+                folder: None,
+                placed,
+            });
+        }
+        let folder = tempfile::tempdir()?;
+        for (file, contents) in files {
+            let plain = Path::new(file)
+                .components()
+                .all(|part| matches!(part, Component::Normal(_)));
+            if file.is_empty() || !plain {
+                return Err(PyValueError::new_err(format!(
+                    "{file:?} is no name of a file in a folder: leave out `..` and what makes it absolute"
+                )));
+            }
+            let path = folder.path().join(file);
+            if let Some(parent) = path.parent() {
+                fs::create_dir_all(parent)?;
+            }
+            fs::write(path, contents)?;
+        }
+        let name = folder.path().join(name).display().to_string();
+        Ok(Self {
+            source: Source::of_text(text, &name),
+            folder: Some(folder),
+            placed,
+        })
+    }
+
+    /// Reads it with the library's reader.
+    fn read<T>(self, read: impl FnOnce(&Source) -> Result<T, ScenarioErrors>) -> PyResult<T> {
+        read(&self.source).map_err(|errors| {
+            let words = in_words(&errors, self.placed);
+            refused(match &self.folder {
+                // Where the files lie for a moment is nobody's business.
+                Some(folder) => words.replace(&format!("{}/", folder.path().display()), ""),
+                None => words,
+            })
+        })
+    }
+}
+
+/// What stands, as a model of motion.
+#[derive(Clone)]
+pub enum Standing {
+    /// Mechanisms of one degree of freedom.
+    Mechanisms(Arc<dyn MechanismModel>),
+    /// A row of blocks.
+    Row(Arc<FreeHinges>),
+}
+
+impl Standing {
+    fn of(scenario: &archrock::Scenario) -> Result<Self, String> {
+        let structure = &scenario.structure;
+        match scenario.free_hinges {
+            Some(options) => match structure.free_hinges(options) {
+                Ok(row) => Ok(Self::Row(Arc::new(row))),
+                Err(error) => Err(error.to_string()),
+            },
+            None => match structure.model(scenario.impact) {
+                Ok(model) => Ok(Self::Mechanisms(model.into())),
+                Err(error) => Err(error.to_string()),
+            },
+        }
+    }
+
+    /// As any model of motion.
+    pub fn model(&self) -> &dyn Model {
+        match self {
+            Self::Mechanisms(model) => &**model,
+            Self::Row(row) => &**row,
+        }
+    }
+}
+
+/// A scenario, every default resolved.
+#[pyclass(frozen, module = "archrock._native")]
+pub struct Scenario {
+    pub inner: Arc<archrock::Scenario>,
+    /// Built when first asked for.
+    standing: OnceLock<Result<Standing, String>>,
+}
+
+impl Scenario {
+    pub fn new(inner: Arc<archrock::Scenario>) -> Self {
+        Self {
+            inner,
+            standing: OnceLock::new(),
+        }
+    }
+
+    /// Its model of motion.
+    pub fn standing(&self, py: Python<'_>) -> PyResult<&Standing> {
+        let standing = match self.standing.get() {
+            Some(standing) => standing,
+            None => py.detach(|| self.standing.get_or_init(|| Standing::of(&self.inner))),
+        };
+        standing.as_ref().map_err(refused)
+    }
+
+    /// As mechanisms, whatever the scenario chooses.
+    fn mechanisms(&self, py: Python<'_>) -> PyResult<Arc<dyn MechanismModel>> {
+        if let (None, Standing::Mechanisms(model)) = (self.inner.free_hinges, self.standing(py)?) {
+            return Ok(Arc::clone(model));
+        }
+        let model = py.detach(|| self.inner.structure.model(self.inner.impact));
+        Ok(model.map_err(refused)?.into())
+    }
+}
+
+fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
+    match model {
+        None => Ok(None),
+        Some("four_links") => Ok(Some(Hinges::Four)),
+        Some("free_hinges") => Ok(Some(Hinges::Free)),
+        Some(other) => Err(PyValueError::new_err(format!(
+            "`model = {other:?}` is not one of \"four_links\" and \"free_hinges\""
+        ))),
+    }
+}
+
+#[pymethods]
+impl Scenario {
+    /// Reads the text of a scenario, with the files that it names or, without any, from the folder of `name`.
+    #[new]
+    #[pyo3(signature = (text, name, files, model, changes))]
+    fn read(
+        py: Python<'_>,
+        text: &str,
+        name: Option<&str>,
+        files: Files,
+        model: Option<&str>,
+        changes: Vec<String>,
+    ) -> PyResult<Self> {
+        let hinges = hinges(model)?;
+        let set = changes
+            .iter()
+            .map(|change| change.parse::<Assignment>())
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(refused)?;
+        let text = Text::new(text, name, &files)?;
+        py.detach(|| {
+            text.read(|source| archrock::Scenario::of(source, &Changes { hinges, set: &set }))
+        })
+        .map(|scenario| Self::new(Arc::new(scenario)))
+    }
+
+    /// The scenario as TOML text.
+    fn to_toml(&self) -> String {
+        self.inner.to_toml()
+    }
+
+    /// The scenario as JSON.
+    fn to_json(&self) -> String {
+        self.inner.to_json().to_string()
+    }
+
+    /// What stands on the ground, as JSON.
+    fn structure_json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.inner.structure).map_err(refused)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.inner == other.inner
+    }
+
+    /// Simulates it, on other ground than its own if that is given.
+    fn run(&self, py: Python<'_>, ground: Option<&Ground>) -> PyResult<History> {
+        History::of(py, self, ground)
+    }
+
+    /// The push that starts it to either side, as `archrock limit --format json`.
+    fn limit_json(&self, py: Python<'_>) -> PyResult<String> {
+        let gravity_m_s2 = self.inner.simulation.gravity_m_s2;
+        if let Structure::Masonry(masonry) = &self.inner.structure {
+            let row = masonry.row();
+            let [right, left] =
+                py.detach(|| [Sway::Right, Sway::Left].map(|sway| onset(row, sway)));
+            let onsets = [right.map_err(refused)?, left.map_err(refused)?];
+            return Ok(mechanisms::row_limit(row, &onsets, gravity_m_s2).to_string());
+        }
+        let model = self.mechanisms(py)?;
+        Ok(mechanisms::limit(&*model, gravity_m_s2).to_string())
+    }
+
+    /// The mechanisms that impacts lead through, as `archrock impact --format json`.
+    fn chain_json(&self, py: Python<'_>, count: usize) -> PyResult<String> {
+        let model = self.mechanisms(py)?;
+        let impacts = py.detach(|| impact::chain(&*model, count));
+        Ok(json!(impacts).to_string())
+    }
+
+    /// Names of the bodies.
+    fn bodies(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        Ok(self.standing(py)?.model().bodies())
+    }
+}
+
+/// A ground motion.
+#[pyclass(frozen, module = "archrock._native")]
+pub struct Ground {
+    pub inner: archrock::scenario::Ground,
+    /// Its motion under the gravity of the latest use.
+    latest: Mutex<Option<(f64, Arc<GroundMotion>)>>,
+}
+
+impl Ground {
+    /// The motion under the given gravity.
+    pub fn motion(&self, gravity_m_s2: f64) -> Arc<GroundMotion> {
+        let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*latest {
+            Some((of, motion)) if *of == gravity_m_s2 => Arc::clone(motion),
+            _ => {
+                let motion = Arc::new(self.inner.motion(gravity_m_s2));
+                *latest = Some((gravity_m_s2, Arc::clone(&motion)));
+                motion
+            }
+        }
+    }
+}
+
+/// Gravity under which a ground motion by itself is read.
+const GRAVITY_M_S2: f64 = 9.81;
+
+/// Times in s and accelerations, in the unit of their file.
+type TimesAndAccelerations<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
+#[pymethods]
+impl Ground {
+    /// Reads the tables of `[ground]`.
+    #[new]
+    fn read(py: Python<'_>, text: &str, files: Files) -> PyResult<Self> {
+        let text = Text::new(text, None, &files)?;
+        let inner =
+            py.detach(|| text.read(|source| archrock::scenario::Ground::of(source, GRAVITY_M_S2)))?;
+        Ok(Self {
+            inner,
+            latest: Mutex::default(),
+        })
+    }
+
+    /// The tables of `[ground]` as JSON.
+    fn to_json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.inner).map_err(refused)
+    }
+
+    /// Times and accelerations of a record as in its file; `None` of a pulse.
+    fn samples<'py>(&self, py: Python<'py>) -> Option<TimesAndAccelerations<'py>> {
+        let archrock::scenario::Ground::Record(record) = &self.inner else {
+            return None;
+        };
+        let column = |which: fn(&(f64, f64)) -> f64| {
+            let values: Vec<f64> = record.main.samples.iter().map(which).collect();
+            PyArray1::from_vec(py, values)
+        };
+        let columns = (column(|sample| sample.0), column(|sample| sample.1));
+        columns.0.readwrite().make_nonwriteable();
+        columns.1.readwrite().make_nonwriteable();
+        Some(columns)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.inner == other.inner
+    }
+}

@@ -1,0 +1,92 @@
+//! Long work beside the interpreter: its lock is free, progress is told, and Ctrl-C ends it at once.
+
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use archrock::studies::runner::Progress;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::error::panicked;
+
+/// How often signals are looked for and progress is told.
+const TICK: Duration = Duration::from_millis(50);
+/// How long a cancelled study may take to close its files. Cases under way may take longer: they are finished behind the
+/// caller's back, and thrown away.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What the work asks ten times a second: whether to go on.
+pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// Does the work on a thread of its own while this one waits for signals, and calls `progress(done, all)` on this one.
+/// An exception of `progress`, or a signal, cancels the work.
+pub fn watched<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&mut Watch<'_>) -> PyResult<T> + Send + 'static,
+) -> PyResult<T> {
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let latest: Arc<Mutex<Option<Progress>>> = Arc::default();
+    let (sender, receiver) = mpsc::channel();
+    let receiver = Mutex::new(receiver);
+    let of_work = (Arc::clone(&cancelled), Arc::clone(&latest));
+    let working = thread::Builder::new().spawn(move || {
+        let (cancelled, latest) = of_work;
+        let mut watch = |progress: Progress| {
+            *latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(progress);
+            if cancelled.load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let done = catch_unwind(AssertUnwindSafe(|| work(&mut watch)));
+        // Nobody listens to cancelled work.
+        let _ = sender.send(done);
+    });
+    working.map_err(|error| {
+        PyRuntimeError::new_err(format!("cannot start a thread to work on: {error}"))
+    })?;
+    let wait = |time: Duration| {
+        py.detach(|| {
+            let receiver = receiver.lock().unwrap_or_else(PoisonError::into_inner);
+            receiver.recv_timeout(time)
+        })
+    };
+    let mut told = None;
+    let mut tell = || {
+        let now = *latest.lock().unwrap_or_else(PoisonError::into_inner);
+        if let (Some(progress), Some(Progress { done, all })) = (&progress, now)
+            && told != now
+        {
+            told = now;
+            progress.call1(py, (done, all))?;
+        }
+        py.check_signals()
+    };
+    loop {
+        match wait(TICK) {
+            Ok(Ok(done)) => {
+                let done = done?;
+                tell()?;
+                return Ok(done);
+            }
+            Ok(Err(panic)) => return Err(panicked(&*panic)),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(PyRuntimeError::new_err("the work ended without a result"));
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                if let Err(error) = tell() {
+                    cancelled.store(true, Ordering::Relaxed);
+                    let _ = wait(PATIENCE);
+                    return Err(error);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,280 @@
+"""Structures, grounds, scenarios and histories as objects: natural use, words of errors, copies and comparison."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import archrock
+from archrock import Arch, Column, Event, Pulse, Record, Scenario, Structure, simulate
+
+from .conftest import ROOT, Program
+
+SCENARIOS = ROOT / "scenarios"
+
+
+def test_the_arch_of_the_paper(arch: Arch, pulse: Pulse) -> None:
+    limit = arch.limit()
+    assert limit.right.acceleration_g == pytest.approx(0.14432644, abs=1e-8)
+    assert [round(h.angle_deg or 0.0, 3) for h in limit.right.hinges] == [24.014, 81.787, 139.561, 180.0]
+    assert [h.edge for h in limit.right.hinges] == ["intrados", "extrados", "intrados", "extrados"]
+    assert arch.chain(2)[0].restitution == pytest.approx(0.681186, abs=1e-6)
+
+    history = simulate(arch, pulse)
+    assert (history.outcome, history.overturning_sway) == ("rest", None)
+    assert history.impacts[0].time_s == pytest.approx(1.0279, abs=1e-4)
+    assert len(history.impacts) == history.summary["impacts"] == 78
+    assert history.events[0].kind == "uplift" and isinstance(history.events[0], Event)
+    assert history.bodies == ("left", "middle", "right")
+    assert history.rotations.shape == history.rates.shape == (675, 3)
+    assert history.poses.shape == (675, 3, 3) and history.gaps.shape == (675, 0, 2)
+    assert np.array_equal(history.poses[:, :, 0], history.rotations)
+    assert history.time[1] == 0.005 and len(history) == 675
+    assert set(history.state) == {"right", "left", "rest"}
+    assert history.phase[-1] == len(history.events)
+    assert repr(history) == "<History: came to rest at 3.3656 s after 78 impacts; 675 samples>"
+
+
+def test_overturning_tells_the_side(arch: Arch) -> None:
+    history = simulate(arch, Pulse.one_cosine(amplitude_g=0.6, duration_s=0.8))
+    assert history.outcome == "overturned" and history.overturning_sway in ("left", "right")
+    assert str(history.overturning_sway) in repr(history)
+
+
+def test_free_hinges_and_columns_of_drums(pulse: Pulse) -> None:
+    arch = Arch(5.0, 0.15, 180.0, voussoirs=12)
+    history = simulate(arch, pulse, model="free_hinges", duration_s=0.5)
+    assert history.rotations.shape[1] == len(history.bodies) == 12
+    assert history.gaps.shape[1:] == (13, 2)
+    drums = Column(4.0, 0.8, drum_heights_m=np.array([1.0, 1.0, 2.0]))
+    half_sine = Pulse.half_sine(amplitude_g=0.4, duration_s=0.5)
+    assert simulate(drums, half_sine, model="free_hinges", duration_s=0.5).rotations.shape[1] == 3
+    released = simulate(arch, model="free_hinges", initial_sway="left", initial_rotation_rad=0.01, duration_s=0.1)
+    assert released.rotations[0].any()
+
+
+def test_other_shapes_by_their_tables(tmp_path: Path) -> None:
+    pointed = {"span_m": 4.0, "rise_m": 3.0, "thickness_m": 0.5, "voussoirs": 10}
+    on_piers = Structure(pointed_arch=pointed, piers={"height_m": 1.0, "width_m": 1.0, "blocks": 1})
+    assert on_piers.limit().right.acceleration_g
+    assert "piers" in on_piers.tables
+    history = simulate(on_piers, Pulse.half_sine(0.3, 0.3), model="free_hinges", duration_s=0.3)
+    assert history.rotations.shape[1] == len(history.bodies) > 10
+    # Blocks from a file, which is kept: the structure goes anywhere.
+    angles = np.linspace(np.pi, 0.0, 9)
+    corners = [(r * np.cos(a), r * np.sin(a)) for a in angles for r in (4.6, 5.4)]
+    joints = tmp_path / "joints.csv"
+    joints.write_text("".join(f"{i[0]!r},{i[1]!r},{e[0]!r},{e[1]!r}\n" for i, e in zip(
+        [tuple(map(float, c)) for c in corners[::2]], [tuple(map(float, c)) for c in corners[1::2]]
+    )))
+    blocks = Structure(blocks={"joints": str(joints)})
+    joints.unlink()
+    again = pickle.loads(pickle.dumps(blocks))
+    assert again == blocks and again.limit() == blocks.limit()
+
+
+@pytest.mark.parametrize("path", sorted(SCENARIOS.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_scenario_file_is_read_printed_and_sent(path: Path, program: Program) -> None:
+    scenario = Scenario.read(path)
+    assert scenario.to_toml() == program("check", path).stdout
+    sent = pickle.loads(pickle.dumps(scenario))
+    assert sent == scenario and hash(sent) == hash(scenario)
+    assert sent.to_toml() == scenario.to_toml()
+    assert Scenario(scenario.tables, files=sent.files) == scenario
+
+
+def test_scenarios_change_as_by_the_program() -> None:
+    path = SCENARIOS / "semicircle-pulse.toml"
+    changed = Scenario.read(path, changes=["arch.thickness_ratio=0.12", "impact.model=mirrored"])
+    assert changed.tables["arch"]["thickness_ratio"] == 0.12
+    assert changed != Scenario.read(path)
+    free = Scenario.read(path, model="free_hinges", changes=["arch.voussoirs=12"])
+    assert "free_hinges" in free.tables and pickle.loads(pickle.dumps(free)) == free
+
+
+def test_what_is_sent_does_not_need_its_files(tmp_path: Path) -> None:
+    """Pickles hold the files; what is read back on a machine without them is simulated to the same bits."""
+    (tmp_path / "r.at2").write_bytes((SCENARIOS / "synthetic.at2").read_bytes())
+    text = '[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.record]\nfile = "r.at2"\npeak_g = 0.5\n'
+    (tmp_path / "s.toml").write_text(text)
+    scenario = Scenario.read(tmp_path / "s.toml")
+    history = scenario.run()
+    data = pickle.dumps((scenario, history))
+    (tmp_path / "r.at2").unlink()
+    sent, told = pickle.loads(data)
+    assert sent == scenario and told == history and sent.run() == history
+    assert told.report_html() == history.report_html()
+
+
+@pytest.mark.parametrize(
+    "described",
+    [
+        Arch(5.0, 0.15, 180.0, voussoirs=7),
+        Column(4.0, 0.8, drums=3),
+        Pulse.gabor(0.5, 0.4, gamma=3.0, phase_deg=30.0),
+        Record([0.0, 0.1, 0.2], [0.0, 1.0, 0.0], unit="m/s2", name="three", start_s=0.5),
+    ],
+    ids=lambda described: type(described).__name__,
+)
+def test_descriptions_are_values(described: Any) -> None:
+    for same in (pickle.loads(pickle.dumps(described)), copy.copy(described), copy.deepcopy(described)):
+        assert same == described and hash(same) == hash(described) and repr(same) == repr(described)
+    tables = described.tables
+    tables.clear()
+    assert described.tables, "what is handed out is a copy"
+    assert described != 3 and described is not None
+
+
+def test_reprs_say_how_to_make_them(arch: Arch, pulse: Pulse) -> None:
+    for one in (arch, Column(4.0, 0.8, drums=2), pulse):
+        assert eval(repr(one), vars(archrock)) == one
+
+
+def test_different_things_differ(arch: Arch, pulse: Pulse) -> None:
+    assert arch != Arch(5.0, 0.16, 180.0) and pulse != Pulse.rectangular(-0.30, 0.21)
+    assert simulate(arch, pulse, duration_s=1.0) != simulate(arch, pulse, duration_s=1.1)
+    record = Record([0.0, 1.0], [1.0, 2.0], unit="g")
+    assert record != Record([0.0, 1.0], [1.0, 2.5], unit="g")
+    assert arch != Structure(arch={"mean_radius_m": 5.0, "thickness_ratio": 0.15, "embrace_deg": 180.0})
+
+
+def test_histories_are_sent_whole(arch: Arch, pulse: Pulse) -> None:
+    history = simulate(arch, pulse)
+    told = pickle.loads(pickle.dumps(history))
+    assert told == history and repr(told) == repr(history)
+    assert told.rotations.tobytes() == history.rotations.tobytes() and not told.rotations.flags.writeable
+    assert told.events == history.events and told.scenario.run() == history
+    assert told.to_pandas().equals(history.to_pandas())
+
+
+def test_a_trace_of_obspy_is_a_record() -> None:
+    """A stand-in with what is used of a trace: ObsPy itself is no dependency."""
+    data = np.ma.masked_array(np.array([0.0, 0.1, -0.2, 0.0], dtype=np.float32), mask=False)
+    trace = SimpleNamespace(data=data, stats=SimpleNamespace(delta=0.02), id="IT.MZAR..HGE")
+    record = Record.from_obspy(trace, unit="m/s2", peak_g=0.4)
+    assert record.name == "IT.MZAR..HGE" and record.unit == "m/s2"
+    assert record.time.tolist() == [0.0, 0.02, 0.04, 0.06]
+    assert record.acceleration.tolist() == [float(np.float32(one)) for one in (0.0, 0.1, -0.2, 0.0)]
+    data[2] = np.ma.masked
+    with pytest.raises(ValueError, match="3: `nan` is not a finite number"):
+        Record.from_obspy(trace, unit="m/s2")
+
+
+def test_records_are_read_as_by_the_program() -> None:
+    record = Record.read(SCENARIOS / "records" / "wave-1.at2", scale=2.0)
+    assert record.unit == "g" and record.name == "wave-1.at2"
+    assert len(record.time) == len(record.acceleration) > 100
+    same = Record(record.time, record.acceleration, unit="g", scale=2.0)
+    column = Column(4.0, 0.8)
+    assert simulate(column, same).rotations.tobytes() == simulate(column, record).rotations.tobytes()
+
+
+WRONG: list[tuple[Any, str]] = [
+    (lambda: Arch(5.0, 0.01, 180.0), "`thickness_ratio = 0.01` makes an arch that cannot carry its own weight"),
+    (lambda: Arch(float("nan"), 0.15, 180.0), "`mean_radius_m = nan` is not finite"),
+    (lambda: Arch(5.0, 0.15, 180.0, foo=1), "unknown key `foo` in [arch]"),
+    (lambda: Arch(5.0, 0.15), "[arch] lacks `embrace_deg`"),
+    (lambda: Arch(5.0, 0.15, 180.0, voussoirs=2), "`voussoirs = 2` is out of range"),
+    (lambda: Column(4.0, 0.8, drums=3, drum_heights_m=[4.0]), "cannot be combined with `drums`"),
+    (lambda: Pulse("half_cosine", amplitude_g=1.0, duration_s=1.0), "half_cosine"),
+    (lambda: Pulse.half_sine(2000.0, 1.0), "`amplitude_g = 2000.0` is out of range"),
+    (lambda: Pulse.half_sine(0.1, 1.0, vertical_amplitude_g=-1.5), "fall as fast as a free body"),
+    (lambda: Record([0.0, 0.0], [1.0, 2.0], unit="g"), "the time does not increase"),
+    (lambda: Record([0.0], [1.0], unit="g"), "record"),
+    (lambda: Record([0.0, 1.0], [1.0, 2.0], unit="ft/s2"), '`unit = "ft/s2"` is unknown'),  # type: ignore[arg-type]
+    (lambda: Record([0.0, 1.0], [[1.0, 2.0]], unit="g"), "shape (1, 2)"),
+    (lambda: Record([0.0, 1.0], [1.0], unit="g"), "2 samples"),
+    (lambda: Record([0.0, 1.0], [1.0, 2.0], unit="g", name="../x"), "no name of a file"),
+    (lambda: Structure(), "exactly one"),
+]
+
+
+@pytest.mark.parametrize(("make", "words"), WRONG, ids=lambda one: one if isinstance(one, str) else "")
+def test_what_is_not_allowed_is_said_in_the_words_of_the_library(make: Any, words: str) -> None:
+    with pytest.raises(ValueError) as caught:
+        make()
+    assert words in str(caught.value)
+    assert "/tmp" not in str(caught.value) and "the arguments" not in str(caught.value)
+
+
+def test_numbers_of_numpy_are_numbers(arch: Arch, pulse: Pulse) -> None:
+    told = simulate(arch, pulse, duration_s=np.float64(1.0), output_step_s=np.float32(0.25))
+    assert told == simulate(arch, pulse, duration_s=1.0, output_step_s=0.25)
+    assert Arch(np.int64(5), np.float64(0.15), 180) == arch
+
+
+def test_settings_that_are_not_allowed(arch: Arch, pulse: Pulse) -> None:
+    drums = Column(4.0, 0.8, drums=3)
+    wrong: list[tuple[Any, str]] = [
+        (lambda: simulate(arch, pulse, duration_s=-1.0), "`duration_s = -1.0` is out of range"),
+        (lambda: simulate(arch, pulse, output_step_s=20.0), "longer than the run"),
+        (lambda: simulate(arch, pulse, output_step_s=1e-6, duration_s=1e3), "rows of output"),
+        (lambda: simulate(arch, pulse, model="rigid"), "`model = 'rigid'`"),  # type: ignore[arg-type]
+        (lambda: simulate(arch, pulse, model="free_hinges"), "lacks `voussoirs`"),
+        (lambda: simulate(arch, pulse, impact="elastic"), "elastic"),
+        (lambda: simulate(arch, pulse, restitution=0.5), "prescribed"),
+        (lambda: simulate(arch, pulse, longest_step_s=1e-4), "longest_step_s"),
+        (lambda: simulate(drums, pulse, model="free_hinges", restitution=0.5), "free hinges"),
+        (lambda: simulate(drums, pulse), "[free_hinges]"),
+        (lambda: simulate(arch), "nothing moves the structure"),
+        (lambda: simulate(arch, initial_sway="right"), "rotation_rad"),
+        (lambda: simulate(arch, initial_sway="right", initial_rotation_rad=3.0), "limit position"),
+    ]
+    for make, words in wrong:
+        with pytest.raises(ValueError) as caught:
+            make()
+        assert words in str(caught.value), str(caught.value)
+    for make in (lambda: simulate(3, pulse), lambda: simulate(arch, "pulse"), lambda: simulate(arch, pulse, duration_s={})):  # type: ignore[arg-type]
+        with pytest.raises((TypeError, ValueError)):
+            make()
+
+
+def test_errors_in_files_have_their_places(program: Program, tmp_path: Path) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text("[arch]\nmean_radius_m = -5.0\nthicknes_ratio = 0.15\n[ground.half_sine]\namplitude_g = 1e9\n")
+    with pytest.raises(ValueError) as caught:
+        Scenario.read(path)
+    words = str(caught.value)
+    assert f"{path}:2:17: `mean_radius_m = -5.0`" in words and len(words.splitlines()) >= 4
+    for line in words.splitlines():
+        assert line in program("check", path).stderr
+    with pytest.raises(OSError):
+        Scenario.read(tmp_path / "none.toml")
+    with pytest.raises(OSError):
+        Record.read(tmp_path / "none.at2")
+
+
+def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
+    history = simulate(arch, pulse, duration_s=1.0)
+    figure = history.plot()
+    ground, rotations = figure.axes
+    assert [line.get_label() for line in rotations.get_lines()[:3]] == ["left", "middle", "right"]
+    assert np.array_equal(rotations.get_lines()[2].get_ydata(), history.rotations[:, 2])
+    assert ground.get_title() == "still rocking at 1.0000 s without impact"
+    figure.savefig(tmp_path / "history.png")
+    page = history.report_html()
+    assert page.startswith("<!DOCTYPE html>") or page.lower().startswith("<!doctype html>")
+    assert "still rocking at 1.0000 s without impact" in page
+    html = history._repr_html_()
+    assert html.startswith("<iframe srcdoc=") and html.count("<iframe") == 1 and "<script" not in html
+    history.save_report(tmp_path / "report.html")
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == page
+
+
+def test_tables_for_pandas(arch: Arch, pulse: Pulse) -> None:
+    table = simulate(arch, pulse, duration_s=0.5).to_pandas()
+    assert list(table.columns)[5:11] == [
+        "rotation_left_rad",
+        "rotation_middle_rad",
+        "rotation_right_rad",
+        "rate_left_rad_s",
+        "rate_middle_rad_s",
+        "rate_right_rad_s",
+    ]
+    assert "rotation_rad" in simulate(Column(4.0, 0.8), Pulse.half_sine(0.5, 0.5), duration_s=0.5).to_pandas()

@@ -1,0 +1,216 @@
+"""Studies: files to the bytes of the program's, parts, progress, results as arrays."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from archrock import (
+    Arch,
+    Column,
+    OverturningMap,
+    Pulse,
+    Record,
+    Results,
+    Scenario,
+    compute_part,
+    map_scenario,
+    merge,
+    overturning_map,
+    span,
+    spectrum,
+    suite,
+    threshold,
+)
+
+from .conftest import ROOT, Program
+
+RECORDS = ROOT / "scenarios" / "records"
+COSINE = Pulse.one_cosine(amplitude_g=0.5, duration_s=0.8)
+AXES: dict[str, Any] = {
+    "duration_s": span(0.4, 1.2, 5),
+    "amplitude_g": span(0.12, 2.0, 6, "logarithmic"),
+}
+
+
+def assert_files(results: Results, folder: Path) -> None:
+    files = results.files
+    assert files
+    for name, contents in files.items():
+        assert (folder / name).read_bytes() == contents, name
+
+
+def by_program(program: Program, folder: Path, command: str, text: str, *options: object) -> Path:
+    """The folder of results of a scenario, its records beside it."""
+    folder.mkdir(exist_ok=True)
+    (folder / "s.toml").write_text(text)
+    ran = program(command, folder / "s.toml", "--out", folder / "out", *options)
+    assert ran.returncode == 0, ran.stderr
+    return folder / "out"
+
+
+def test_a_map_is_that_of_the_program(program: Program, tmp_path: Path, arch: Arch) -> None:
+    found = overturning_map(arch, COSINE, AXES, duration_s=20.0)
+    scenario = map_scenario(arch, COSINE, AXES, duration_s=20.0)
+    assert overturning_map(scenario) == found
+    assert_files(found, by_program(program, tmp_path, "map", scenario.to_toml(), "--no-impact"))
+
+    assert found.axes == ("duration_s", "amplitude_g")
+    assert found.x.tolist() == pytest.approx([0.4, 0.6, 0.8, 1.0, 1.2])
+    assert len(found.y) == 6 and found.outcome.shape == found.impacts.shape == (5, 6)
+    assert set(found.outcome.ravel()) == {"never_moved", "rest", "overturned"}
+    assert found.boundary is not None and len(found.boundary["duration_s"]) == 5
+    assert found._repr_svg_().startswith("<svg") or "<svg" in found._repr_svg_()
+    assert pickle.loads(pickle.dumps(found)) == found
+    table = found.to_pandas()
+    assert len(table) == 30 and list(table["outcome"]) == found.outcome.ravel().tolist()
+    found.save(tmp_path / "saved")
+    assert_files(found, tmp_path / "saved")
+
+
+def test_axes_are_anything_like_an_array() -> None:
+    column = Column(4.0, 0.8)
+    values = np.array([0.3, 0.6], dtype=np.float32)
+    found = overturning_map(column, COSINE, {"duration_s": (0.5, 1.0), "amplitude_g": values})
+    assert found.y.tolist() == values.astype(float).tolist()
+    with pytest.raises(ValueError, match="does not ascend"):
+        overturning_map(column, COSINE, {"duration_s": [1.0, 0.5], "amplitude_g": values})
+    with pytest.raises(ValueError, match="exactly two"):
+        overturning_map(column, COSINE, {"amplitude_g": values})
+
+
+def test_a_spectrum_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+    column, pulse = Column(4.0, 0.8), Pulse.one_sine(0.5, 0.5)
+    tried: dict[str, Any] = {
+        "p_t": [1.0, 3.0],
+        "acceleration_over_incipient": span(1.0, 6.0, 20, "logarithmic"),
+    }
+    found = spectrum(column, pulse, **tried)
+    scenario = Scenario.of(column, pulse, spectrum=tried)
+    assert spectrum(scenario) == found
+    assert_files(found, by_program(program, tmp_path, "spectrum", scenario.to_toml()))
+    assert found.columns()["p_t"].tolist() == [1.0, 3.0]
+
+
+def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+    """Records that are held in memory, against the same files."""
+    column = Column(4.0, 0.8)
+    records = [Record.read(path) for path in sorted(RECORDS.glob("wave-*.at2"))[:4]]
+    levels = span(0.3, 3.0, 6, "logarithmic")
+    found = suite(column, records, peaks_g=levels, duration_s=30.0)
+    names = ", ".join(f'"{record.name}"' for record in records)
+    for record in records:
+        (tmp_path / record.name).write_bytes((RECORDS / record.name).read_bytes())
+    text = (
+        "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n"
+        f"[suite]\nrecords = [{names}]\n"
+        'peaks_g = { from = 0.3, to = 3.0, count = 6, spacing = "logarithmic" }\n'
+    )
+    folder = by_program(program, tmp_path, "suite", text)
+    assert (folder / "suite.csv").read_bytes() == found.files["suite.csv"]
+    assert (folder / "fragility.csv").read_bytes() == found.files["fragility.csv"]
+    assert (folder / "suite.svg").read_bytes() == found.files["suite.svg"]
+    assert found.fragility["overturned"].max() == 4
+    assert found.summary["median"] > 0.0
+    assert len(found.columns()["record"]) == 4 * 6 * 2
+
+    given = Record.read(RECORDS / records[0].name, peak_g=1.0)
+    wrong: list[tuple[Any, str]] = [
+        ([given], "is scaled itself"),
+        ([records[0], records[0]], "the name of two records"),
+        ([records[0], Record([0.0, 1.0], [0.0, 1.0], unit="m/s2")], "in one unit"),
+        ([], "records"),
+    ]
+    for some, words in wrong:
+        with pytest.raises(ValueError, match=words):
+            suite(column, some, peaks_g=levels)
+
+
+def test_a_threshold_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+    column, pulse = Column(1.0, 0.2), Pulse.one_cosine(0.3, 0.5)
+    found = threshold(column, pulse, from_factor=0.5, to_factor=6.0, stride=0.1)
+    scenario = Scenario.of(column, pulse)
+    assert threshold(scenario, from_factor=0.5, to_factor=6.0, stride=0.1) == found
+    options = ("--from", 0.5, "--to", 6.0, "--stride", 0.1)
+    assert_files(found, by_program(program, tmp_path, "threshold", scenario.to_toml(), *options))
+    assert found.lowest_factor == found.bands[0]["from"] and found.gaps == found.summary["models"][0]["gaps"]
+    with pytest.raises(ValueError, match="`stride = 0.0`"):
+        threshold(column, pulse, stride=0.0)
+
+
+def test_parts_join_to_the_bytes_of_the_whole(program: Program, tmp_path: Path, arch: Arch) -> None:
+    scenario = map_scenario(arch, COSINE, AXES, duration_s=20.0)
+    whole = overturning_map(scenario)
+    parts = [compute_part(scenario, "map", (index, 3), tmp_path) for index in (3, 1, 2)]
+    # A part that is there is not computed again.
+    before = parts[0].read_bytes()
+    assert compute_part(scenario, "map", (3, 3), tmp_path) == parts[0]
+    assert parts[0].read_bytes() == before
+    merged = merge(parts)
+    assert isinstance(merged, OverturningMap) and merged == whole
+    ran = program("merge", *parts, "--out", tmp_path / "out", "--no-impact")
+    assert ran.returncode == 0, ran.stderr
+    assert_files(whole, tmp_path / "out")
+
+    with pytest.raises(ValueError, match="1 of 3 parts missing"):
+        merge(parts[:2])
+    with pytest.raises(ValueError, match="no parts"):
+        merge([])
+    with pytest.raises(ValueError, match="is not a part"):
+        compute_part(scenario, "map", (4, 3), tmp_path)
+    other = map_scenario(arch, COSINE, AXES, duration_s=21.0)
+    with pytest.raises(ValueError, match="another study"):
+        compute_part(other, "map", (3, 3), tmp_path)
+
+
+def test_progress_is_told_and_may_end_the_work(arch: Arch) -> None:
+    told: list[tuple[int, int]] = []
+    overturning_map(arch, COSINE, AXES, duration_s=20.0, progress=lambda *at: told.append(at))
+    assert told[-1] == (35, 35) and told == sorted(told)
+
+    def stop(done: int, of_all: int) -> None:
+        raise LookupError(f"enough at {done} of {of_all}")
+
+    many = {**AXES, "duration_s": span(0.4, 1.2, 500)}
+    with pytest.raises(LookupError, match="enough at"):
+        overturning_map(arch, COSINE, many, duration_s=20.0, progress=stop)
+
+
+def test_threads_do_not_change_results(arch: Arch) -> None:
+    one = overturning_map(arch, COSINE, AXES, duration_s=20.0, threads=1)
+    assert one == overturning_map(arch, COSINE, AXES, duration_s=20.0, threads=4)
+    for threads in (0, 100_000):
+        with pytest.raises(ValueError, match="`threads ="):
+            overturning_map(arch, COSINE, AXES, threads=threads)
+
+
+def test_studies_that_are_none(arch: Arch, pulse: Pulse) -> None:
+    plain = Scenario.of(arch, pulse)
+    wrong: list[tuple[Any, str]] = [
+        (lambda: overturning_map(plain), "no [map]"),
+        (lambda: suite(plain), "no [suite]"),
+        (lambda: overturning_map(plain, pulse), "leave ground out"),
+        (lambda: overturning_map(arch, pulse), "two axes"),
+        (lambda: spectrum(arch), "needs a pulse"),
+        (lambda: threshold(arch), "needs a ground motion"),
+        (lambda: compute_part(plain, "maps", (1, 1), "/nowhere"), "is no study"),  # type: ignore[arg-type]
+    ]
+    for make, words in wrong:
+        with pytest.raises(ValueError) as caught:
+            make()
+        assert words in str(caught.value)
+    with pytest.raises(TypeError):
+        overturning_map("arch")  # type: ignore[arg-type]
+
+
+def test_results_are_saved_whole_or_not_at_all(tmp_path: Path, arch: Arch) -> None:
+    found = overturning_map(arch, COSINE, {"duration_s": [0.5], "amplitude_g": [0.5]})
+    taken = tmp_path / "file"
+    taken.write_text("taken")
+    with pytest.raises(OSError):
+        found.save(taken)
+    assert taken.read_text() == "taken"
