@@ -91,7 +91,7 @@ impl Recorder for Filming {
 }
 
 /// Columns of samples, by their names.
-const COLUMNS: [&str; 14] = [
+const COLUMNS: [&str; 15] = [
     "time_s",
     "ground_acceleration_m_s2",
     "vertical_acceleration_m_s2",
@@ -101,6 +101,7 @@ const COLUMNS: [&str; 14] = [
     "rates_rad_s",
     "poses",
     "gaps_m",
+    "offsets_m",
     "open_hinges",
     "thrust_excess_ratio",
     "friction_demand",
@@ -117,8 +118,8 @@ pub struct History {
     standing: Standing,
     summary: Summary,
     events: Vec<Event>,
-    /// Number of samples, of bodies and of joints with gaps.
-    counts: [usize; 3],
+    /// Number of samples, of bodies, of joints with gaps and of joints that slip.
+    counts: [usize; 4],
     /// What was not yet asked for.
     samples: Mutex<Samples>,
     arrays: [PyOnceLock<Py<PyAny>>; COLUMNS.len()],
@@ -184,6 +185,7 @@ impl History {
                 count,
                 each(samples.rotations_rad.len()),
                 each(samples.gaps_m.len()),
+                each(samples.offsets_m.len()),
             ],
             samples: Mutex::new(samples),
             arrays: [const { PyOnceLock::new() }; COLUMNS.len()],
@@ -192,7 +194,7 @@ impl History {
 
     /// Takes a column out of the samples, as an array of its shape.
     fn take<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let [count, bodies, joints] = self.counts;
+        let [count, bodies, joints, slipping] = self.counts;
         let taken = |take: &mut dyn FnMut(&mut Samples) -> Vec<f64>, shape: &[usize]| {
             let values = take(&mut self.samples.lock().unwrap_or_else(PoisonError::into_inner));
             array(py, values, shape)
@@ -223,6 +225,10 @@ impl History {
             "gaps_m" => taken(
                 &mut |all| mem::take(&mut all.gaps_m).into_flattened(),
                 &[count, joints, 2],
+            ),
+            "offsets_m" => taken(
+                &mut |all| mem::take(&mut all.offsets_m),
+                &[count, slipping],
             ),
             "energy_j" => taken(&mut |all| mem::take(&mut all.energy_j), &[count]),
             "energy_ratio" => taken(

@@ -223,10 +223,16 @@ impl Scenario {
         Ok(mechanisms::limit(&*model, gravity_m_s2).to_string())
     }
 
-    /// The mechanisms that impacts lead through, as `archrock impact --format json`.
-    fn chain_json(&self, py: Python<'_>, count: usize) -> PyResult<String> {
+    /// The mechanisms that impacts lead through after a first sway to a side, as `archrock impact --format json`.
+    fn chain_json(&self, py: Python<'_>, sway: &str, count: usize) -> PyResult<String> {
+        let first = Sway::ALL.iter().copied().find(|one| one.name() == sway);
+        let first = first.ok_or_else(|| {
+            refused(format!(
+                "`sway = {sway:?}` is not one of \"right\" and \"left\""
+            ))
+        })?;
         let model = self.mechanisms(py)?;
-        let impacts = py.detach(|| impact::chain(&*model, count));
+        let impacts = py.detach(|| impact::chain(&*model, first, count));
         Ok(json!(impacts).to_string())
     }
 

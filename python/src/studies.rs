@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use archrock::output::suite::Heading;
-use archrock::output::{self, Folder};
+use archrock::output::{self, Figure, Folder};
 use archrock::scenario::Structure;
 use archrock::studies::boundary::{MapRow, MapWithBoundary};
 use archrock::studies::map::OverturningMap;
@@ -140,7 +140,11 @@ fn lacks(table: &str) -> PyErr {
 }
 
 fn map_of(scenario: &archrock::Scenario) -> PyResult<OverturningMap<'_>> {
-    OverturningMap::new(scenario).ok_or_else(|| lacks("[map]"))
+    let map = OverturningMap::new(scenario).ok_or_else(|| lacks("[map]"))?;
+    match map.fault() {
+        None => Ok(map),
+        Some(fault) => Err(refused(format!("no cell of [map] has a scenario: {fault}"))),
+    }
 }
 
 fn pretty(value: &Value) -> Vec<u8> {
@@ -152,7 +156,8 @@ fn map_files(map: &OverturningMap<'_>, rows: Vec<MapRow>) -> PyResult<Files> {
     let scenario = map.scenario();
     let (cells, boundaries) = MapRow::sorted(rows);
     let title = scenario.title.as_deref().unwrap_or("Overturning map");
-    let picture = written::draw(title, map, &cells, &boundaries);
+    let look = written::Look::of(Figure::SCREEN);
+    let picture = written::draw(title, map, &cells, &boundaries, look);
     let failures = written::failures(map, &cells, &boundaries);
     let summary = output::results::study_summary(scenario, cells.len(), &failures);
     let mut files = Vec::new();
@@ -164,8 +169,10 @@ fn map_files(map: &OverturningMap<'_>, rows: Vec<MapRow>) -> PyResult<Files> {
     }
     let mut table = Vec::new();
     written::write_table(&mut table, map, &cells).map_err(not_written)?;
+    let page = output::map_page::page(title, map, &cells, &boundaries, look);
     files.extend([
         ("map.svg", picture.into_bytes()),
+        ("map.html", page.into_bytes()),
         ("map.json", pretty(&summary)),
         ("map.csv", table),
     ]);
@@ -179,7 +186,7 @@ fn spectrum_files(
 ) -> PyResult<Files> {
     use output::spectrum as written;
     let title = scenario.title.as_deref().unwrap_or("Overturning spectrum");
-    let picture = written::draw(title, spectrum, rows);
+    let picture = written::draw(Figure::SCREEN, title, spectrum, rows);
     let failures = written::failures(rows);
     let summary = output::results::study_summary(scenario, rows.len(), &failures);
     let mut table = Vec::new();
@@ -197,11 +204,13 @@ fn suite_files(heading: &Heading, rows: Vec<CaseRow>) -> PyResult<Files> {
     let mut levels = Vec::new();
     written::write_fragility(&mut levels, &results).map_err(not_written)?;
     let json = written::to_json(heading, &results).map_err(not_written)?;
-    let picture = written::draw(heading, &results);
+    let picture = written::draw(Figure::SCREEN, heading, &results);
+    let curves = output::ida::draw(Figure::SCREEN, heading, &results);
     let mut table = Vec::new();
     written::write_table(&mut table, heading, &results.cases).map_err(not_written)?;
     Ok(vec![
         ("suite.svg", picture.into_bytes()),
+        ("ida.svg", curves.into_bytes()),
         ("fragility.csv", levels),
         ("fragility.json", pretty(&json)),
         ("suite.csv", table),
@@ -353,7 +362,7 @@ pub fn threshold<'py>(
             .as_deref()
             .unwrap_or("Threshold of overturning");
         let peak_g = written::peak_g(&scenario, ground);
-        let picture = written::draw(title, peak_g, &factors, &found);
+        let picture = written::draw(Figure::SCREEN, title, peak_g, &factors, &found);
         let mut table = Vec::new();
         written::write_table(&mut table, &found).map_err(not_written)?;
         Ok(vec![

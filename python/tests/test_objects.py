@@ -55,6 +55,9 @@ def test_free_hinges_and_columns_of_drums(pulse: Pulse) -> None:
     drums = Column(4.0, 0.8, drum_heights_m=np.array([1.0, 1.0, 2.0]))
     half_sine = Pulse.half_sine(amplitude_g=0.4, duration_s=0.5)
     assert simulate(drums, half_sine, model="free_hinges", duration_s=0.5).rotations.shape[1] == 3
+    assert history.offsets.shape == (len(history), 0), "its joints do not slip"
+    slips = simulate(drums, half_sine, model="free_hinges", duration_s=0.5, friction_coefficient=0.15)
+    assert slips.offsets.shape == (len(slips), 3) and slips.offsets.any()
     released = simulate(arch, model="free_hinges", initial_sway="left", initial_rotation_rad=0.01, duration_s=0.1)
     assert released.rotations[0].any()
 

@@ -96,6 +96,8 @@ def any_case(rng: random.Random, free: bool) -> tuple[Structure, Ground | None, 
         settings["model"] = "free_hinges"
         if rng.random() < 0.3:
             settings["longest_step_s"] = 2e-4
+        if rng.random() < 0.3:
+            settings["friction_coefficient"] = rng.uniform(0.5, 0.8)
     else:
         settings["relative_tolerance"] = rng.choice((1e-9, 1e-7))
         impact = rng.choice(("max_restitution", "same_sections", "mirrored", "prescribed"))
@@ -227,6 +229,7 @@ def test_limit_and_chain_are_those_of_the_program(program: Program, tmp_path: Pa
         assert [hinge.angle_deg for hinge in link.after.hinges] == [
             hinge["angle_deg"] for hinge in one["after"]["hinges"]
         ]
+    assert arch.chain(3, "left")[0].before.sway == "left"
 
 
 def test_defaults_are_those_of_the_program(arch: Arch, pulse: Pulse) -> None:

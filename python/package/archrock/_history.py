@@ -193,6 +193,14 @@ class History:
         return self._column("gaps_m")
 
     @property
+    def offsets(self) -> Floats:
+        """Offsets of joints that slip in m, the right face towards the extrados, shape ``(samples, joints)``.
+
+        No joints where they do not slip.
+        """
+        return self._column("offsets_m")
+
+    @property
     def open_hinges(self) -> Whole:
         """Number of open hinges, shape ``(samples,)``."""
         return self._column("open_hinges")

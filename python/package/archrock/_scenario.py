@@ -245,6 +245,7 @@ def simulate(
     initial_rotation_rad: float | None = None,
     longest_step_s: float | None = None,
     shortest_step_s: float | None = None,
+    friction_coefficient: float | None = None,
     duration_s: float = 10.0,
     output_step_s: float = 0.005,
     relative_tolerance: float = 1e-9,
@@ -268,6 +269,7 @@ def simulate(
         initial_rotation_rad: magnitude of that rotation, of the body that carries the coordinate.
         longest_step_s: longest step, with free hinges.
         shortest_step_s: landings within this time are one, with free hinges.
+        friction_coefficient: Coulomb's coefficient at every joint, with free hinges; ``None``: joints do not slip.
         duration_s: longest time to simulate.
         output_step_s: time between samples.
         relative_tolerance: error that the integrator of four links may make in a step.
@@ -290,6 +292,7 @@ def simulate(
         initial_rotation_rad,
         longest_step_s,
         shortest_step_s,
+        friction_coefficient,
         duration_s,
         output_step_s,
         relative_tolerance,

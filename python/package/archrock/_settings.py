@@ -17,6 +17,7 @@ class Settings(NamedTuple):
     initial_rotation_rad: float | None = None
     longest_step_s: float | None = None
     shortest_step_s: float | None = None
+    friction_coefficient: float | None = None
     duration_s: float = 10.0
     output_step_s: float = 0.005
     relative_tolerance: float = 1e-9
@@ -40,19 +41,20 @@ class Settings(NamedTuple):
             tables["initial"] = _given(
                 sway=self.initial_sway, rotation_rad=self.initial_rotation_rad
             )
-        steps = _given(
-            longest_step_s=self.longest_step_s, shortest_step_s=self.shortest_step_s
+        free_hinges = _given(
+            longest_step_s=self.longest_step_s,
+            shortest_step_s=self.shortest_step_s,
+            friction_coefficient=self.friction_coefficient,
         )
         if self.model == "free_hinges":
             if "impact" in tables:
                 raise ValueError(
                     "`impact` and `restitution` go with four links: with free hinges impacts follow from the blocks"
                 )
-            tables["free_hinges"] = steps
-        elif steps:
-            raise ValueError(
-                f"{' and '.join(map(repr, steps))} go with model=\"free_hinges\": four links have no such steps"
-            )
+            tables["free_hinges"] = free_hinges
+        elif free_hinges:
+            names = " and ".join(f"`{name}`" for name in free_hinges)
+            raise ValueError(f"{names}: of free hinges only; give model=\"free_hinges\", or leave it out")
         return tables
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from ._described import Described, read_file
 from ._hinge import ChainLink, Limit, Mechanism
@@ -80,8 +80,8 @@ class Structure(Described):
         """
         return Limit._of(json.loads(self._native.limit_json()))
 
-    def chain(self, count: int = 5) -> list[ChainLink]:
-        """The mechanisms that the first ``count`` impacts after a sway to the right lead through.
+    def chain(self, count: int = 5, sway: Literal["right", "left"] = "right") -> list[ChainLink]:
+        """The mechanisms that the first ``count`` impacts after a sway to the side lead through.
 
         They do not depend on the ground motion. The impacts are by the model ``max_restitution``; fewer are told when
         one of them stops the structure.
@@ -98,7 +98,7 @@ class Structure(Described):
                 Mechanism._of(link["before"]),
                 Mechanism._of(link["after"]),
             )
-            for link in json.loads(self._native.chain_json(count))
+            for link in json.loads(self._native.chain_json(sway, count))
         ]
 
     def __repr__(self) -> str:

@@ -245,7 +245,7 @@ def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
 
 def map_scenario(
     structure: Structure,
-    ground: Pulse,
+    ground: Ground,
     axes: Mapping[str, Values],
     *,
     spread: bool = False,
@@ -262,7 +262,7 @@ def map_scenario(
 
 def overturning_map(
     of: Structure | Scenario,
-    ground: Pulse | None = None,
+    ground: Ground | None = None,
     axes: Mapping[str, Values] | None = None,
     *,
     spread: bool | None = None,
@@ -270,7 +270,7 @@ def overturning_map(
     progress: Progress | None = None,
     **settings: Any,
 ) -> OverturningMap:
-    """Which pulses overturn a structure, over two quantities.
+    """Which ground motions overturn a structure, over two quantities.
 
     >>> found = overturning_map(
     ...     Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0),
@@ -281,9 +281,10 @@ def overturning_map(
 
     Args:
         of: what stands, or a scenario with a table ``[map]``, which says everything itself.
-        ground: the pulse whose shape, and values that do not vary, are used.
+        ground: the ground motion; what does not vary of it stays.
         axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``mean_radius_m``,
-            ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``.
+            ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``, of a record ``scale`` or ``peak_g``,
+            or any number of the scenario by its table and key, such as ``column.width_m``.
         spread: with free hinges, whether every cell is computed with half and with double steps as well.
         threads: how many threads work; ``None``: as many as there are processors.
         progress: called on this thread with the numbers of cells that are done and of all.
@@ -298,7 +299,7 @@ def overturning_map(
         return OverturningMap(_study("map", of, threads, progress))
     assert isinstance(of, Structure)
     if ground is None or axes is None:
-        raise ValueError("a map needs a pulse and two axes")
+        raise ValueError("a map needs a ground motion and two axes")
     scenario = map_scenario(of, ground, axes, spread=bool(spread), **settings)
     return OverturningMap(_study("map", scenario, threads, progress))
 
