@@ -39,14 +39,14 @@ def shards(count: int) -> list[tuple[int, int]]:
     return [(index, count) for index in range(1, count + 1)]
 
 
-def joined(parts: Iterable[tuple[str, bytes]]) -> Results:
-    """The results of all parts."""
+def joined(parts: Iterable[tuple[str, bytes]], scenario: Scenario) -> Results:
+    """The results of all parts of the map of a scenario."""
     with tempfile.TemporaryDirectory() as folder:
         paths = []
         for name, contents in parts:
             paths.append(Path(folder, name))
             paths[-1].write_bytes(contents)
-        return merge(paths)
+        return merge(paths, scenario)
 
 
 def compute(client: Client, scenario: Scenario, count: int) -> Results:
@@ -57,7 +57,7 @@ def compute(client: Client, scenario: Scenario, count: int) -> Results:
     for done in as_completed(tasks):
         parts.append(done.result())
         print(f"{len(parts)} of {count} parts", file=sys.stderr)
-    return joined(parts)
+    return joined(parts, scenario)
 
 
 def main(address: str | None) -> None:

@@ -226,10 +226,7 @@ impl History {
                 &mut |all| mem::take(&mut all.gaps_m).into_flattened(),
                 &[count, joints, 2],
             ),
-            "offsets_m" => taken(
-                &mut |all| mem::take(&mut all.offsets_m),
-                &[count, slipping],
-            ),
+            "offsets_m" => taken(&mut |all| mem::take(&mut all.offsets_m), &[count, slipping]),
             "energy_j" => taken(&mut |all| mem::take(&mut all.energy_j), &[count]),
             "energy_ratio" => taken(
                 &mut |all| {

@@ -281,20 +281,33 @@ pub fn compute_part(
     }
 }
 
-/// Joins the parts of a study: its name and the files of its results.
+/// Joins the parts of a study: its name and the files of its results. The scenario need only be given where its records
+/// are not found from here.
 #[pyfunction]
-pub fn merge(py: Python<'_>, parts: Vec<PathBuf>) -> PyResult<(String, PyFiles<'_>)> {
-    let (study, files) = watched(py, None, move |_| merged(&parts))?;
+pub fn merge<'py>(
+    py: Python<'py>,
+    parts: Vec<PathBuf>,
+    scenario: Option<&Scenario>,
+) -> PyResult<(String, PyFiles<'py>)> {
+    let scenario = scenario.map(|scenario| Arc::clone(&scenario.inner));
+    let (study, files) = watched(py, None, move |_| merged(&parts, scenario))?;
     Ok((study, to_python(py, files)))
 }
 
-fn merged(parts: &[PathBuf]) -> PyResult<(String, Files)> {
+fn merged(parts: &[PathBuf], given: Option<Arc<archrock::Scenario>>) -> PyResult<(String, Files)> {
     let Some(first) = parts.first() else {
         return Err(PyValueError::new_err("no parts given"));
     };
     let study = part::read_header(first).map_err(unusable)?.study;
-    let read =
-        |text: &str| archrock::Scenario::parse(text, "the scenario of the parts").map_err(refused);
+    let read = |text: &str| match &given {
+        None => archrock::Scenario::parse(text, "the scenario of the parts")
+            .map(Arc::new)
+            .map_err(refused),
+        Some(given) if given.to_toml() == text => Ok(Arc::clone(given)),
+        Some(_) => Err(refused(
+            "the parts are of another scenario than the one given",
+        )),
+    };
     let files = match Kind::of(&study)? {
         Kind::Map => {
             let (header, rows) = part::merge(parts).map_err(unusable)?;

@@ -44,7 +44,7 @@ def test_a_map_of_a_cluster_that_loses_a_worker_is_that_of_one_process(monkeypat
         assert victim not in {worker["pid"] for worker in _workers(client).values()}
         # The parts that it had are lost with it, and were computed again by others.
         assert victim not in computed_by and len(computed_by) >= 1
-        merged = example.joined(part for part, _ in done)
+        merged = example.joined((part for part, _ in done), scenario)
         again = example.compute(client, scenario, 5)
     whole = overturning_map(scenario)
     assert merged.files == whole.files

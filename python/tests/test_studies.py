@@ -167,6 +167,20 @@ def test_parts_join_to_the_bytes_of_the_whole(program: Program, tmp_path: Path, 
         compute_part(other, "map", (3, 3), tmp_path)
 
 
+def test_parts_of_a_map_under_a_record_join_where_its_file_is_not(tmp_path: Path) -> None:
+    record = Record.read(RECORDS / "wave-1.at2")
+    axes = {"column.width_m": [0.6, 0.8], "peak_g": [0.3, 0.9]}
+    column = Column(4.0, 0.8)
+    scenario = map_scenario(column, record, axes, duration_s=30.0)
+    parts = [compute_part(scenario, "map", (index, 2), tmp_path) for index in (1, 2)]
+    joined = merge(parts, scenario)
+    assert joined == overturning_map(column, record, axes, duration_s=30.0)
+    with pytest.raises(ValueError, match="another scenario"):
+        merge(parts, map_scenario(column, record, axes, duration_s=31.0))
+    with pytest.raises(ValueError, match="wave-1.at2"):
+        merge(parts)
+
+
 def test_progress_is_told_and_may_end_the_work(arch: Arch) -> None:
     told: list[tuple[int, int]] = []
     overturning_map(arch, COSINE, AXES, duration_s=20.0, progress=lambda *at: told.append(at))

@@ -293,7 +293,8 @@ pub struct Samples {
     pub rotation_over_critical: Vec<Option<f64>>,
     /// Gaps of the joints of a row of blocks at intrados and extrados, in m, joint by joint; else none.
     pub gaps_m: Vec<[f64; 2]>,
-    offsets_m: Vec<f64>,
+    /// Offsets of the joints of a row whose joints slip, in m, joint by joint; else none.
+    pub offsets_m: Vec<f64>,
 }
 
 impl Samples {

@@ -62,7 +62,7 @@ def compute_part(
     progress: Progress | None,
 ) -> str: ...
 def merge(
-    parts: Sequence[str | os.PathLike[str]],
+    parts: Sequence[str | os.PathLike[str]], scenario: Scenario | None
 ) -> tuple[str, list[tuple[str, bytes]]]: ...
 def threshold(
     scenario: Scenario,

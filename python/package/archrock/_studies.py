@@ -501,14 +501,23 @@ def compute_part(
     return Path(path)
 
 
-def merge(parts: Iterable[str | os.PathLike[str]]) -> OverturningMap | Spectrum | Suite:
+def merge(
+    parts: Iterable[str | os.PathLike[str]], scenario: Scenario | None = None
+) -> OverturningMap | Spectrum | Suite:
     """Joins all parts of one study.
 
+    Args:
+        parts: their paths.
+        scenario: that of the parts; needed for maps under records that are not in the working folder.
+
     Raises:
-        ValueError: when they are not all there, or not of one study.
+        ValueError: when they are not all there, or not of one study, or of another scenario.
         OSError: when one cannot be read.
     """
-    study, files = _native.merge(list(parts))
+    if not isinstance(scenario, (Scenario, type(None))):
+        raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
+    native = None if scenario is None else scenario._native
+    study, files = _native.merge(list(parts), native)
     results = _KINDS[study](files)
     assert isinstance(results, (OverturningMap, Spectrum, Suite))
     return results
