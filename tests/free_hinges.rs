@@ -641,6 +641,13 @@ fn random_histories_do_not_fail() {
     );
 }
 
+/// At rest a corner of this row closes by rounding, and depends on others none of which gives way.
+#[test]
+fn a_corner_that_closes_by_rounding_does_not_stop_a_history() {
+    let run = torture(&mut Random(511 * 7919 + 1), 60, 8.0).unwrap();
+    assert!(run.end_s > 1.0, "{run:?}");
+}
+
 /// Where blocks are flung about, the displacement that brings the ends of an arch together shuts corners of small gaps.
 #[test]
 fn the_ends_of_an_arch_meet_where_corners_shut_on_the_way() {

@@ -350,9 +350,7 @@ impl Program {
         );
         loop {
             if effort.iterations > patience * (effort.relaxed + 1) {
-                tolerance *= 10.0;
-                effort.relaxed += 1;
-                if tolerance > LARGEST_RATE_TOLERANCE {
+                if !relax(&mut tolerance, &mut effort) {
                     let iterations = effort.iterations;
                     return Err(ContactError { iterations });
                 }
@@ -369,8 +367,14 @@ impl Program {
             };
             let cap = patience * (effort.relaxed + 1);
             if !self.stop(frames, pin, edge, &mut effort.iterations, cap) {
-                let iterations = effort.iterations;
-                return Err(ContactError { iterations });
+                // It depends on corners none of which gives way: its closing is rounding.
+                if !relax(&mut tolerance, &mut effort) {
+                    let iterations = effort.iterations;
+                    return Err(ContactError { iterations });
+                }
+                self.factor(frames);
+                self.answer_load(frames, None);
+                effort.iterations += 1;
             }
         }
         self.set_velocities();
@@ -959,6 +963,13 @@ impl Program {
         self.answer = answer;
         true
     }
+}
+
+/// Takes corners that close up to ten times as fast for standing still; false when that would be too fast.
+fn relax(tolerance: &mut f64, effort: &mut Effort) -> bool {
+    *tolerance *= 10.0;
+    effort.relaxed += 1;
+    *tolerance <= LARGEST_RATE_TOLERANCE
 }
 
 /// False also for a pivot that is not a number.
