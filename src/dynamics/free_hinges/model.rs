@@ -514,7 +514,9 @@ impl RowRecorder for Relay<'_, '_> {
         {
             let corners = sample.corner_impulses_n_s.iter();
             next.eccentricity_ratios
-                .extend(corners.map(|[intrados, extrados]| {
+                .extend(corners.map(|corner_impulses| {
+                    // The solver takes a pull below its tolerance for none.
+                    let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));
                     let normal = intrados + extrados;
                     (normal > 0.0).then(|| 0.5 * (extrados - intrados) / normal)
                 }));
