@@ -349,11 +349,11 @@ impl Program {
             &mut effort.iterations,
         );
         loop {
-            if effort.iterations > patience * (effort.relaxed + 1) {
-                if !relax(&mut tolerance, &mut effort) {
-                    let iterations = effort.iterations;
-                    return Err(ContactError { iterations });
-                }
+            if effort.iterations > patience * (effort.relaxed + 1)
+                && !relax(&mut tolerance, &mut effort)
+            {
+                let iterations = effort.iterations;
+                return Err(ContactError { iterations });
             }
             if self.release() {
                 self.factor(frames);

@@ -241,7 +241,8 @@ impl<'a> Engine<'a> {
             // Friction of joints that stick does no work but that of an impact.
             if let Along::Slip(_) = self.program.modes()[joint].along {
                 let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
-                rubbed -= impulse.z * rate;
+                // Below the tolerance of the rates its sign is rounding.
+                rubbed += (-impulse.z * rate).max(0.0);
             }
         }
         taken -= rubbed;
