@@ -161,7 +161,9 @@ fn tables_of_a_row_fit_together() {
         "impact",
         "time_s",
         "joints_shut",
+        "edges_shut",
         "joints_opened",
+        "edges_opened",
         "energy_before_j",
         "energy_after_j",
         "energy_taken_j",
@@ -179,6 +181,12 @@ fn tables_of_a_row_fit_together() {
         assert!(impacts.number(row, "energy_after_j") <= impacts.number(row, "energy_before_j"));
         for column in ["joints_shut", "joints_opened"] {
             let joints = impacts.text(row, column).split_whitespace();
+            let edges = column.replace("joints", "edges");
+            let edges: Vec<&str> = impacts.text(row, &edges).split_whitespace().collect();
+            assert_eq!(edges.len(), joints.clone().count());
+            for edge in edges {
+                assert!(["intrados", "extrados", "both"].contains(&edge), "{edge}");
+            }
             assert!(
                 joints
                     .map(|joint| joint.parse::<usize>().unwrap())

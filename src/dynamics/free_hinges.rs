@@ -18,6 +18,7 @@ pub use model::{FreeHinges, FreeHingesError, RowOptions};
 use self::engine::Engine;
 use super::ground::GroundMotion;
 use crate::mechanics::blocks::Row;
+use crate::mechanics::chain::Hinge;
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::joints::{Frame, Pose};
 use crate::mechanics::sway::Sway;
@@ -183,10 +184,11 @@ pub struct Sample<'a> {
 pub struct Impact<'a> {
     /// Time in seconds.
     pub time_s: f64,
-    /// Joints that shut, also where they open again at once.
-    pub shut: &'a [usize],
+    /// Joints that shut, also where they open again at once, with the edge that landed; both, where none is named.
+    pub shut: &'a [Hinge],
     /// Joints that open at once; those among them that shut go on about their other edge.
-    pub opened: &'a [usize],
+    /// The edge is that about which they turn; none where they part.
+    pub opened: &'a [Hinge],
     /// Kinetic energy before, in joules.
     pub energy_before_j: f64,
     /// Kinetic energy taken, also by friction, in joules.

@@ -11,6 +11,7 @@ use crate::dynamics::free_hinges::spread::Spread;
 use crate::dynamics::history::{Impact, Sample, Summary};
 use crate::dynamics::model::Model as _;
 use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
@@ -70,7 +71,8 @@ impl<W: Write> JointsWriter<W> {
 }
 
 /// Writes the landings, a row per impact: `impact` (from 1), `time_s`, `joints_shut` and `joints_opened` (numbers with
-/// spaces between), `energy_before_j`, `energy_after_j` and `energy_taken_j`, kinetic energies, and where joints slip `friction_j`, the
+/// spaces between), each with its edges in the same order (`edges_shut`: which landed, `edges_opened`: about which they turn; `both`
+/// where both landed or the joint parts), `energy_before_j`, `energy_after_j` and `energy_taken_j`, kinetic energies, and where joints slip `friction_j`, the
 /// part that friction took.
 pub struct LandingsWriter<W: Write> {
     csv: csv::Writer<W>,
@@ -90,7 +92,9 @@ impl<W: Write> LandingsWriter<W> {
             "impact",
             "time_s",
             "joints_shut",
+            "edges_shut",
             "joints_opened",
+            "edges_opened",
             "energy_before_j",
             "energy_after_j",
             "energy_taken_j",
@@ -114,7 +118,9 @@ impl<W: Write> LandingsWriter<W> {
                 self.rows,
                 time_s,
                 joints(&impact.closed),
+                edges(&impact.closed),
                 joints(&impact.opened),
+                edges(&impact.opened),
                 before_j,
                 after_j,
                 before_j - after_j,
@@ -130,6 +136,15 @@ impl<W: Write> LandingsWriter<W> {
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.csv.flush().map_err(OutputError::io(Self::WHAT))
     }
+}
+
+/// Edges of the joints that hinges are at, with spaces between.
+fn edges(hinges: &[Hinge]) -> String {
+    let names = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Joint { edge, .. } => Some(edge.map_or("both", Edge::name)),
+        Hinge::Section { .. } | Hinge::Toe(_) => None,
+    });
+    names.collect::<Vec<_>>().join(" ")
 }
 
 /// Numbers of the joints that hinges are at, with spaces between.

@@ -13,11 +13,12 @@ mod observation;
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
-pub(super) use self::observation::{rise, sway};
+pub(super) use self::observation::{only, rise, sway};
 use super::course::{Course, Stepper, equal_step};
 use super::{FreeHingeError, Recorder, Run, Settings, fallen_energy_j};
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::chain::Hinge;
 use crate::mechanics::contact::{Corners, Load, Program};
 use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::ring::Edge;
@@ -85,8 +86,8 @@ pub(super) struct Engine<'a> {
     touching: Vec<Corners>,
     change: Vec<[f64; 2]>,
     shares: Vec<[f64; 2]>,
-    shut: Vec<usize>,
-    opened: Vec<usize>,
+    shut: Vec<Hinge>,
+    opened: Vec<Hinge>,
     /// Corners that touched at the beginning of the step.
     closed: Vec<Corners>,
     /// Where the joints were pressed in the step that ended at an impact.

@@ -537,15 +537,6 @@ impl RowRecorder for Relay<'_, '_> {
         let Some(recorder) = &mut self.recorder else {
             return ControlFlow::Continue(());
         };
-        let hinges = |joints: &[usize]| {
-            let joints = joints.iter();
-            joints
-                .map(|joint| Hinge::Joint {
-                    joint: *joint,
-                    edge: None,
-                })
-                .collect()
-        };
         let energy_after_j = (landing.energy_before_j - landing.energy_taken_j).max(0.0);
         let restitution = if landing.energy_before_j > 0.0 {
             energy_after_j / landing.energy_before_j
@@ -570,8 +561,8 @@ impl RowRecorder for Relay<'_, '_> {
                 friction_j: landing.friction_j,
                 rates_before_rad_s: Vec::new(),
                 rates_after_rad_s: landing.rates_after_rad_s.to_vec(),
-                closed: hinges(landing.shut),
-                opened: hinges(landing.opened),
+                closed: landing.shut.to_vec(),
+                opened: landing.opened.to_vec(),
                 impulses_n_s: Vec::new(),
             }),
         })

@@ -10,10 +10,11 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::course::{Course, Stepper, equal_step};
-use super::engine::{rise, sway};
+use super::engine::{only, rise, sway};
 use super::{FreeHingeError, Impact, Recorder, Run, Sample, Settings, Sliding, fallen_energy_j};
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::mechanics::blocks::Row;
+use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode, Program};
 use crate::mechanics::joints::{Frame, Placement, Pose};
 use crate::mechanics::slip::{Contact, Faces, Position};
@@ -74,8 +75,8 @@ pub(super) struct Engine<'a> {
     corners: Vec<[f64; 2]>,
     rotations: Vec<f64>,
     rates: Vec<f64>,
-    shut: Vec<usize>,
-    opened: Vec<usize>,
+    shut: Vec<Hinge>,
+    opened: Vec<Hinge>,
 }
 
 impl<'a> Engine<'a> {
@@ -310,9 +311,11 @@ impl<'a> Engine<'a> {
                 (0..2).any(|end| mode.pressed[end] && !before.pressed[end] && gaps[end] > least);
             landed |= lands;
             if lands && mode.pressed == [true; 2] {
-                self.shut.push(joint);
+                let edge = only(before.pressed.map(|pressed| !pressed));
+                self.shut.push(Hinge::Joint { joint, edge });
             } else if before.pressed == [true; 2] && mode.pressed != [true; 2] {
-                self.opened.push(joint);
+                let edge = only(mode.pressed);
+                self.opened.push(Hinge::Joint { joint, edge });
             }
         }
         landed

@@ -5,7 +5,9 @@ use nalgebra::Vector2;
 use super::{Engine, Piece};
 use crate::dynamics::free_hinges::{FreeHingeError, Impact, Recorder, Sample};
 use crate::mechanics::blocks::Row;
+use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::field::Twist;
+use crate::mechanics::geometry::ring::Edge;
 
 /// At rest, kinetic and potential energy are below this part of weight times size.
 const REST_ENERGY_RATIO: f64 = 1e-9;
@@ -21,6 +23,15 @@ pub(super) fn kinetic(pieces: &[Piece]) -> f64 {
 
 pub(super) fn momentum(pieces: &[Piece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
+}
+
+/// The edge of the only one of two corners of a joint, intrados and extrados.
+pub(in crate::dynamics::free_hinges) fn only(corners: [bool; 2]) -> Option<Edge> {
+    match corners {
+        [true, false] => Some(Edge::Intrados),
+        [false, true] => Some(Edge::Extrados),
+        _ => None,
+    }
 }
 
 /// Rise of the blocks with their centres at the given places, times their masses.
@@ -76,7 +87,8 @@ impl Engine<'_> {
         self.opened.clear();
         for joint in 0..self.touching.len() {
             if self.closed[joint] != [true; 2] && self.placement.is_shut(joint) {
-                self.shut.push(joint);
+                let edge = only(self.closed[joint].map(|closed| !closed));
+                self.shut.push(Hinge::Joint { joint, edge });
             }
         }
         let fastest = self
@@ -88,7 +100,8 @@ impl Engine<'_> {
             let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
             let was_shut = self.closed[joint] == [true; 2] || self.placement.is_shut(joint);
             if was_shut && opens {
-                self.opened.push(joint);
+                let edge = only(self.program.active()[joint]);
+                self.opened.push(Hinge::Joint { joint, edge });
             }
         }
         self.note_rotations();
