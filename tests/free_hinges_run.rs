@@ -652,7 +652,10 @@ fn joints_that_slip_are_told_of() {
             "friction_coefficient = 0.7\nshortest_step_s = 1e-5",
             "all steps are the longest",
         ),
-        ("friction_coefficient = 0.1", "coefficient"),
+        (
+            "friction_coefficient = 0.1",
+            ":11:24: `friction_coefficient = 0.1` does not carry the weight of the structure; must be at least 0.2063",
+        ),
     ] {
         let refused = refusal(&format!("{SEVEN}[free_hinges]\n{options}\n"), &[]);
         assert!(refused.contains(words), "{options}\n{refused}");

@@ -2,8 +2,11 @@
 
 use std::ops::Bound::Included;
 
+use super::structure::Structure;
 use super::table::{Number, Reading, Table};
+use crate::argument::{plain, rounded_up};
 use crate::dynamics::free_hinges::RowOptions;
+use crate::mechanics::friction;
 
 /// With shorter steps a run takes forever; longer ones miss the motion.
 const STEP_S: Number = Number(Included(1e-9), Included(1.0));
@@ -23,4 +26,34 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
     options
         .checked()
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
+}
+
+/// Refuses friction that does not carry the weight of the structure.
+pub(super) fn carries(
+    table: &mut Table<'_>,
+    structure: &Structure,
+    options: RowOptions,
+) -> Reading<()> {
+    let Some(coefficient) = options.friction_coefficient else {
+        return Ok(());
+    };
+    // Whatever else is wrong with the row is told where it is used.
+    let without = RowOptions {
+        friction_coefficient: None,
+        ..options
+    };
+    let Ok(model) = structure.free_hinges(without) else {
+        return Ok(());
+    };
+    if friction::stands(model.row(), coefficient) != Ok(false) {
+        return Ok(());
+    }
+    let wrong = match friction::least_coefficient(model.row()) {
+        Ok(least) => format!(
+            "does not carry the weight of the structure; must be at least {}",
+            plain(rounded_up(least))
+        ),
+        Err(error) => error.to_string(),
+    };
+    Err(table.wrong_in("free_hinges", "friction_coefficient", wrong))
 }

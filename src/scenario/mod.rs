@@ -213,10 +213,13 @@ impl Scenario {
         let suite = table.table("suite", |table| {
             Suite::read(table, folder, simulation.as_ref().ok())
         });
-        let steps = steps?;
+        let (steps, structure) = (steps?, structure?);
+        if let Some(options) = steps.filter(|_| free) {
+            free_hinges::carries(table, &structure, options)?;
+        }
         Ok(Self {
             title: title?,
-            structure: structure?,
+            structure,
             free_hinges: free.then(|| steps.unwrap_or_default()),
             ground: ground?,
             impact: impact?,
