@@ -50,7 +50,7 @@ fn data(page: &str) -> Value {
 }
 
 /// The page of a scenario in a browser: every frame that is compared is one of its frames, so that nothing is blended.
-fn check(scenario: &str, names: &[&str], least_hinges: usize, has_thrust: bool, settings: &[&str]) {
+fn check(scenario: &str, names: &[&str], least_hinges: usize, settings: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let page = run(folder.path(), scenario);
     assert!(page.len() < 500_000, "{} bytes", page.len());
@@ -99,7 +99,6 @@ fn check(scenario: &str, names: &[&str], least_hinges: usize, has_thrust: bool, 
         "peak_s": rotations.number(peak, "time_s"),
         "end_s": rotations.number(last, "time_s"),
         "least_hinges": least_hinges,
-        "has_thrust": has_thrust,
     });
     let script = include_str!("browser/report.js");
     let page = folder.path().join("report.html");
@@ -113,20 +112,20 @@ fn key(quantity: &str, body: &str, unit: &str) -> String {
 #[test]
 fn four_links_in_a_browser() {
     let bodies = ["left", "middle", "right"];
-    check("semicircle-pulse.toml", &bodies, 4, true, &[]);
+    check("semicircle-pulse.toml", &bodies, 4, &[]);
 }
 
 #[test]
 fn a_column_in_a_browser_with_reduced_motion() {
     let settings = ["--force-prefers-reduced-motion"];
-    check("column-pulse.toml", &[""], 1, false, &settings);
+    check("column-pulse.toml", &[""], 1, &settings);
 }
 
 #[test]
 fn free_hinges_in_a_dark_browser() {
     let blocks: Vec<String> = (1..=36).map(|block| block.to_string()).collect();
     let names: Vec<&str> = blocks.iter().map(String::as_str).collect();
-    check("free-hinges.toml", &names, 4, true, &["--force-dark-mode"]);
+    check("free-hinges.toml", &names, 4, &["--force-dark-mode"]);
 }
 
 #[test]

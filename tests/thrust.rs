@@ -13,7 +13,10 @@ use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
 use archrock::mechanics::four_link::thrust::ThrustLine;
 use archrock::mechanics::geometry::ring::Edge;
-use archrock::{Arch, FourLinkArch, GroundMotion, History, Model, Pulse, Sample, State, Sway};
+use archrock::{
+    Arch, Column, FourLinkArch, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
+    Sample, State, Sway,
+};
 use common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoirs};
 use nalgebra::{SMatrix, SVector, Vector2};
 
@@ -547,4 +550,41 @@ fn lines_of_thrust_of_free_hinges_stay_inside() {
             .iter()
             .all(|sample| sample.eccentricity_ratios.is_empty())
     );
+}
+
+/// A column presses the ground at the toe about which it turns; what the mirrored ground does to it is the mirror image.
+#[test]
+fn lines_of_thrust_of_a_column_pass_through_its_toe() {
+    let column = Column::new(4.0, 0.8).unwrap();
+    let model = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
+    let run = |amplitude: f64| {
+        let ground = GroundMotion::pulse(Pulse::OneSine, amplitude * GRAVITY, 0.8, 0.1).unwrap();
+        lines(&model, &ground)
+    };
+    let (samples, mirrored) = (run(0.35), run(-0.35));
+    assert_eq!(samples.len(), mirrored.len());
+    let mut swayed = [0, 0, 0];
+    for (sample, other) in samples.iter().zip(&mirrored) {
+        let ratios = &sample.eccentricity_ratios;
+        assert_eq!(ratios.len(), column.thrust_sections_m().len());
+        for (ratio, other) in ratios.iter().zip(&other.eccentricity_ratios) {
+            assert!((ratio.unwrap() + other.unwrap()).abs() < 1e-9);
+        }
+        let base = ratios[0].unwrap();
+        let due = match sample.state.sway() {
+            Some(Sway::Right) => 0.5,
+            Some(Sway::Left) => -0.5,
+            // Height times push over width, halved: the centre is half way up.
+            None => -0.5 * 5.0 * sample.ground_acceleration_m_s2 / GRAVITY,
+        };
+        assert!((base - due).abs() < 1e-9, "{} {base}", sample.time_s);
+        // Above there is less and less that leans and is pushed.
+        assert!(ratios[20].unwrap().abs() < 0.1, "{:?}", ratios[20]);
+        swayed[match sample.state.sway() {
+            Some(Sway::Right) => 0,
+            Some(Sway::Left) => 1,
+            None => 2,
+        }] += 1;
+    }
+    assert!(swayed.iter().all(|count| *count > 5), "{swayed:?}");
 }

@@ -169,12 +169,17 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// The same at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
     /// The line of thrust of one of its mechanisms in motion, where it is known section by section: how far it lies
-    /// outwards from the axis over the thickness, from left to right in the mechanism's frame; `None` where a section is
-    /// not pressed.
+    /// outwards from the axis over the thickness, from left to right in the mechanism's frame, or from the base up to the
+    /// right; `None` where a section is not pressed.
     fn eccentricity_ratios(&self, _: &Self::Mechanism, _: &Motion) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// The same at rest.
+    /// That line seen in a mirror: its sections from the other end; of a column, whose sections stay, on the other side.
+    fn mirrored(&self, mut eccentricity_ratios: Vec<Option<f64>>) -> Vec<Option<f64>> {
+        eccentricity_ratios.reverse();
+        eccentricity_ratios
+    }
+    /// The line of thrust at rest.
     fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
         Vec::new()
     }

@@ -17,7 +17,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-use nalgebra::Vector2;
+use nalgebra::{Rotation2, Vector2};
 use serde::Serialize;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
@@ -26,6 +26,7 @@ use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain,
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::resultant::SectionResultant;
+use crate::mechanics::four_link::thrust::Load;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::MassMoments;
@@ -230,6 +231,13 @@ impl Column {
         self.width_m
     }
 
+    /// Sections at which the line of thrust of one block is told, in metres above the base: 21 from there to the top.
+    #[must_use]
+    pub fn thrust_sections_m(&self) -> Vec<f64> {
+        let parts = thrust_section_parts();
+        parts.map(|part| part * self.height_m).collect()
+    }
+
     /// Length out of plane, in metres.
     #[must_use]
     pub const fn depth_m(&self) -> f64 {
@@ -337,6 +345,36 @@ fn rate_ratio(sin: f64, cos: f64) -> f64 {
     opening.power(&closing) / opening.power(&opening.momentum(&moments))
 }
 
+/// Sections at which the line of thrust is told, in parts of the height.
+fn thrust_section_parts() -> impl Iterator<Item = f64> {
+    (0..=20_u8).map(|section| f64::from(section) / 20.0)
+}
+
+impl Tilting {
+    /// Where the resultant of a load on what is above a section normal to the axis crosses it, to the right over the width,
+    /// section by section from the base up; `None` where the part below would have to pull.
+    ///
+    /// Nothing is above the last section: there it is the limit, to which the inertia of a turning slice contributes.
+    fn eccentricity_ratios(&self, load: &Load) -> Vec<Option<f64>> {
+        let (width, height) = (2.0 * self.sin, 2.0 * self.cos);
+        let crossing = |part: f64| {
+            let section = Vector2::new(0.0, part * height);
+            let above = height * (1.0 - part);
+            let centre = section + Vector2::new(0.0, 0.5 * above);
+            // Per mass, which cancels.
+            let resultant = load.resultant(&MassMoments {
+                mass: 1.0,
+                first: centre,
+                polar: (width * width + above * above) / 12.0 + centre.norm_squared(),
+            });
+            let normal = -resultant.linear.y;
+            let eccentricity_ratio = -resultant.about(section) / (normal * width);
+            (normal > 0.0).then_some(eccentricity_ratio)
+        };
+        thrust_section_parts().map(crossing).collect()
+    }
+}
+
 /// What the reaction of the ground, per weight, with its moment about the middle of the base, asks of it.
 fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Demand {
     let width = 2.0 * mechanism.sin;
@@ -380,6 +418,24 @@ impl MechanismChain for RockingColumn {
         let mechanism = &self.first.mechanism;
         let moment = body_force_g.x * mechanism.cos;
         base_demand(mechanism, -body_force_g, moment)
+    }
+
+    fn eccentricity_ratios(&self, mechanism: &Tilting, motion: &Motion) -> Vec<Option<f64>> {
+        let toe = Vector2::new(mechanism.sin, 0.0);
+        // In the frame of the block, which has turned clockwise.
+        let body_force_g = Rotation2::new(motion.q_rad) * motion.body_force_g;
+        let turning = (-motion.acceleration, motion.rate * motion.rate);
+        mechanism.eccentricity_ratios(&Load::of_body(toe, body_force_g, turning))
+    }
+
+    fn mirrored(&self, eccentricity_ratios: Vec<Option<f64>>) -> Vec<Option<f64>> {
+        let ratios = eccentricity_ratios.into_iter();
+        ratios.map(|ratio| ratio.map(|ratio| -ratio)).collect()
+    }
+
+    fn eccentricity_ratios_at_rest(&self, body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
+        let load = Load::uniform(body_force_g);
+        self.first.mechanism.eccentricity_ratios(&load)
     }
 
     fn link_from(&self, _: Sway, impacts: usize) -> Option<&Link<Tilting>> {
@@ -485,6 +541,85 @@ mod tests {
             body_force_g: Vector2::new(0.0, -1.0),
         };
         assert!(column.demand(&column.first.mechanism, &fast).excess_ratio > 0.0);
+    }
+
+    proptest! {
+        /// Forces summed over thin slices of the block, each with the acceleration of its own centre by the second derivative
+        /// of where it is, and with the moment that turns it.
+        #[test]
+        fn the_line_of_thrust_is_that_of_slices(
+            slenderness_rad in 0.05_f64..0.8,
+            part in 0.0_f64..1.2,
+            rate in -0.5_f64..0.5,
+            push_g in -0.5_f64..0.5,
+            lift_g in -0.3_f64..0.3,
+        ) {
+            let column = column(slenderness_rad, ImpactModel::MaxRestitution);
+            let mechanism = column.first.mechanism;
+            let (half, height) = (slenderness_rad.sin(), 2.0 * slenderness_rad.cos());
+            let q_rad = part * slenderness_rad;
+            let body_force_g = Vector2::new(push_g, -1.0 + lift_g);
+            let Coefficients { inertia, s_x, s_y, .. } = mechanism.coefficients(q_rad);
+            let acceleration = (body_force_g.x * s_x + body_force_g.y * s_y) / inertia;
+            let motion = Motion { q_rad, rate, acceleration, body_force_g };
+            let ratios = column.eccentricity_ratios(&mechanism, &motion);
+            prop_assert_eq!(ratios.len(), 21);
+
+            // Where a point of the axis is at a time, in the frame of the ground, and its second derivative.
+            let axis = |y: f64, time: f64| {
+                let q = q_rad + rate * time + 0.5 * acceleration * time * time;
+                let (sin, cos) = q.sin_cos();
+                Vector2::new(half - half * cos + y * sin, half * sin + y * cos)
+            };
+            let step = 1e-4;
+            let slices = 4000;
+            let thin = height / f64::from(slices);
+            let up = axis(1.0, 0.0) - axis(0.0, 0.0);
+            for (index, ratio) in ratios.iter().enumerate().take(20) {
+                let from = height * index as f64 / 20.0;
+                let section = axis(from, 0.0);
+                let (mut force, mut moment) = (Vector2::zeros(), 0.0);
+                for slice in (index as i32 * slices / 20)..slices {
+                    let y = (f64::from(slice) + 0.5) * thin;
+                    let acceleration_g = (axis(y, step) - 2.0 * axis(y, 0.0) + axis(y, -step)) / (step * step);
+                    let on_slice = acceleration_g - body_force_g;
+                    force += on_slice * thin;
+                    let turning = -acceleration * (2.0 * half).powi(2) / 12.0;
+                    moment += ((axis(y, 0.0) - section).perp(&on_slice) + turning) * thin;
+                }
+                let normal = force.dot(&up);
+                let due = moment / (normal * 2.0 * half);
+                match ratio {
+                    Some(ratio) => prop_assert!((ratio - due).abs() < 1e-4 * (1.0 + due.abs()) / normal.min(1.0)),
+                    None => prop_assert!(normal < 1e-6),
+                }
+            }
+            // About its toe it presses the ground there, whatever else it does.
+            if let Some(base) = ratios[0] {
+                prop_assert!((base - 0.5).abs() < 1e-12 / -body_force_g.y.min(-1e-2));
+            }
+            let mirrored = column.mirrored(ratios.clone());
+            prop_assert!(mirrored.iter().zip(&ratios).all(|(a, b)| *a == b.map(|b| -b)));
+        }
+
+        /// At rest it is straight, from where the demand has it at the base to the middle of the top.
+        #[test]
+        fn the_line_of_thrust_at_rest_is_straight(slenderness_rad in 0.05_f64..0.8, push_g in -2.0_f64..2.0) {
+            let column = column(slenderness_rad, ImpactModel::MaxRestitution);
+            let body_force_g = Vector2::new(push_g, -0.9);
+            let ratios = column.eccentricity_ratios_at_rest(body_force_g);
+            let base = ratios[0].unwrap();
+            let excess = (base.abs() - 0.5).max(0.0);
+            let demand = column.demand_at_rest(body_force_g);
+            prop_assert!((excess - demand.excess_ratio).abs() < 1e-12 * (1.0 + excess));
+            prop_assert!(base == 0.0 || base.signum() == push_g.signum());
+            for (index, ratio) in ratios.iter().enumerate() {
+                let due = base * (1.0 - index as f64 / 20.0);
+                prop_assert!((ratio.unwrap() - due).abs() < 1e-12 * (1.0 + base.abs()));
+            }
+            let flies = column.eccentricity_ratios_at_rest(Vector2::new(push_g, 0.1));
+            prop_assert!(flies.iter().all(Option::is_none));
+        }
     }
 
     #[test]

@@ -42,7 +42,7 @@ enum Shape {
 pub struct Section {
     /// Its middle.
     pub middle_m: Vector2<f64>,
-    /// From its end at the intrados to that at the extrados.
+    /// From its end at the intrados to that at the extrados; of a column from left to right.
     pub across_m: Vector2<f64>,
     /// In an arch that is cut at its hinges: where it is, in radians from the left springing.
     angle_rad: Option<f64>,
@@ -137,11 +137,18 @@ impl Scene {
             (half_m, height_m),
             (half_m, 0.0),
         ];
+        let heights_m = column.thrust_sections_m().into_iter();
         Self {
+            sections: heights_m
+                .map(|height_m| Section {
+                    middle_m: Vector2::new(0.0, height_m),
+                    across_m: Vector2::new(column.width_m(), 0.0),
+                    angle_rad: None,
+                })
+                .collect(),
             shape: Shape::Block {
                 outline_m: corners.map(|(x, y)| Vector2::new(x, y)).to_vec(),
             },
-            sections: Vec::new(),
         }
     }
 
@@ -168,7 +175,7 @@ impl Scene {
         }
     }
 
-    /// The sections where the line of thrust is told; none where it is not known.
+    /// The sections where the line of thrust is told.
     #[must_use]
     pub fn sections(&self) -> &[Section] {
         &self.sections
@@ -327,10 +334,13 @@ impl Scene {
         sections
             .map(|(index, section)| match section.angle_rad {
                 Some(angle_rad) => link(&hinges_rad, angle_rad),
-                None if matches!(self.shape, Shape::Row { linked: true, .. }) => {
-                    linked_body(hinges, index)
-                }
-                None => self.joint(index).and_then(|[corner, _]| corner.body),
+                None => match self.shape {
+                    Shape::Block { .. } => Some(0),
+                    Shape::Row { linked: true, .. } => linked_body(hinges, index),
+                    Shape::Row { linked: false, .. } | Shape::Ring { .. } => {
+                        self.joint(index).and_then(|[corner, _]| corner.body)
+                    }
+                },
             })
             .collect()
     }

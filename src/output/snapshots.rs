@@ -86,12 +86,8 @@ impl Snapshots {
         } else {
             format!("displacements times {}", self.exaggeration)
         };
-        let thrust = if self.scene.sections().is_empty() {
-            ""
-        } else {
-            "; blue: thrust line"
-        };
-        let caption = format!("{exaggeration}; dashed: at rest; circles: open hinges{thrust}");
+        let caption =
+            format!("{exaggeration}; dashed: at rest; circles: open hinges; blue: thrust line");
         let end = drawing.caption(top, &caption);
         drawing.finish(end + 8.0)
     }

@@ -240,11 +240,11 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
                 self.chain.eccentricity_ratios_at_rest(body_force_g)
             }
             Some((sway, mechanism, motion)) => {
-                let mut ratios = self.chain.eccentricity_ratios(mechanism, &motion);
-                if sway == Sway::Left {
-                    ratios.reverse();
+                let ratios = self.chain.eccentricity_ratios(mechanism, &motion);
+                match sway {
+                    Sway::Right => ratios,
+                    Sway::Left => self.chain.mirrored(ratios),
                 }
-                ratios
             }
         }
     }
