@@ -194,14 +194,24 @@ fn tables_of_a_row_fit_together() {
             );
         }
     }
-    // Every impact is an event, and after the last one it rests.
+    // It starts; every impact is an event, and after the last one it rests.
     let events = Table::read(&results.path("events.csv"));
-    assert_eq!(events.rows.len(), impacts.rows.len() + 1);
+    assert_eq!(events.rows.len(), impacts.rows.len() + 2);
+    assert_eq!(events.text(0, "kind"), "uplift");
     assert_eq!(events.text(events.rows.len() - 1, "kind"), "rest");
     assert_eq!(events.text(0, "mechanism"), "");
     assert_eq!(
         events.header,
-        ["time_s", "phase", "kind", "sway", "mechanism", "energy_j"]
+        [
+            "time_s",
+            "phase",
+            "kind",
+            "sway",
+            "mechanism",
+            "energy_j",
+            "joints_open",
+            "edges_open"
+        ]
     );
 
     // Peaks are those of the half cycles, and at least those of the rows.
@@ -246,6 +256,189 @@ fn tables_of_a_row_fit_together() {
     for name in names {
         let text = fs::read_to_string(results.path(name)).unwrap();
         assert!(!text.contains("NaN") && !text.contains(",inf"), "{name}");
+    }
+}
+
+/// Joints and edges of a row of a table, by their columns.
+fn hinges(table: &Table, row: usize, what: &str) -> Vec<(usize, String)> {
+    let joints = table
+        .text(row, &format!("joints_{what}"))
+        .split_whitespace();
+    let edges = table.text(row, &format!("edges_{what}"));
+    let edges: Vec<&str> = edges.split_whitespace().collect();
+    let joints: Vec<usize> = joints.map(|joint| joint.parse().unwrap()).collect();
+    assert_eq!(joints.len(), edges.len());
+    joints
+        .into_iter()
+        .zip(edges.into_iter().map(str::to_owned))
+        .collect()
+}
+
+/// The ground reaches the incipient acceleration of limit analysis at a known instant of its sine, and the hinges of that
+/// mechanism open there; a column starts about a toe.
+#[test]
+fn it_starts_when_and_where_limit_analysis_says() {
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 12\n";
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+    let shaken = |structure: &str, amplitude_g: f64| {
+        format!(
+            "{structure}[ground.one_sine]\namplitude_g = {amplitude_g}\nduration_s = 2.0\n[simulation]\nduration_s = 1.0\n"
+        )
+    };
+    let limit = |structure: &str| -> Value {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join("s.toml"), structure).unwrap();
+        let output = archrock(root.path(), &["limit", "s.toml", "--format", "json"]);
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    for (amplitude_g, side) in [(-0.2, "right"), (0.2, "left")] {
+        let limit = limit(arch);
+        let incipient_g = limit["incipient_acceleration_g"][side].as_f64().unwrap();
+        let due_s = (incipient_g / 0.2).asin() / std::f64::consts::PI;
+        let mechanism = limit["mechanism"][side].as_array().unwrap().iter();
+        let due: Vec<(usize, String)> = mechanism
+            .map(|hinge| {
+                let joint = hinge["angle_deg"].as_f64().unwrap() / 15.0;
+                (
+                    joint.round() as usize,
+                    hinge["edge"].as_str().unwrap().to_owned(),
+                )
+            })
+            .collect();
+        for options in ["", "friction_coefficient = 1.5\n"] {
+            let scenario = free(&shaken(arch, amplitude_g)) + options;
+            let results = Results::of(&scenario, &["--no-spread", "--no-report"]);
+            let events = Table::read(&results.path("events.csv"));
+            assert_eq!(events.text(0, "kind"), "uplift");
+            assert_eq!(events.text(0, "phase"), "1");
+            assert_eq!(events.text(0, "sway"), side);
+            assert_eq!(hinges(&events, 0, "open"), due);
+            // Steps are 0.24 ms long. The push grows slowly, and gaps with the cube of the time since: those that slip count
+            // from 1e-9 of the thickness on, which takes some 2 ms, the others from 1e-12 on.
+            let miss_s = events.number(0, "time_s") - due_s;
+            let late_s = if options.is_empty() { 5e-4 } else { 3e-3 };
+            assert!((-3e-4..late_s).contains(&miss_s), "{miss_s}");
+            assert!(events.number(0, "energy_j").abs() < 1e-3);
+        }
+    }
+    for (amplitude_g, side, edge) in [(-0.3, "right", "extrados"), (0.3, "left", "intrados")] {
+        let scenario = free(&shaken(column, amplitude_g));
+        let results = Results::of(&scenario, &["--no-spread", "--no-report"]);
+        let events = Table::read(&results.path("events.csv"));
+        let due_s = (0.2_f64 / 0.3).asin() / std::f64::consts::PI;
+        assert!((events.number(0, "time_s") - due_s).abs() < 3e-4);
+        assert_eq!(events.text(0, "sway"), side);
+        assert_eq!(hinges(&events, 0, "open"), [(0, edge.to_owned())]);
+    }
+    // What is released moves already.
+    let released = free(column) + "[initial]\nsway = \"right\"\nrotation_rad = 0.02\n";
+    let results = Results::of(&released, &["--no-spread", "--no-report"]);
+    let events = Table::read(&results.path("events.csv"));
+    assert_eq!(events.text(0, "kind"), "impact");
+    // It lands flat, and goes on to the other side, about the other toe.
+    for row in 0..events.rows.len() - 1 {
+        let (side, edge) = [("left", "intrados"), ("right", "extrados")][row % 2];
+        assert_eq!(events.text(row, "sway"), side);
+        assert_eq!(hinges(&events, row, "open"), [(0, edge.to_owned())]);
+    }
+}
+
+/// Joints that are open at an event stay open until the next one, and what is far open was named: by `joints.csv`. Those
+/// that an impact opens are among them too, some for less than a step, and those that it shuts only where they open again.
+#[test]
+fn events_name_the_joints_that_are_open() {
+    for options in ["", "friction_coefficient = 0.7\n"] {
+        let scenario =
+            free(SEVEN) + options + "[simulation]\noutput_step_s = 0.0005\nduration_s = 1.0\n";
+        let results = Results::of(&scenario, &["--no-spread", "--no-report"]);
+        let events = Table::read(&results.path("events.csv"));
+        let impacts = Table::read(&results.path("impacts.csv"));
+        let joints = Table::read(&results.path("joints.csv"));
+        let rotations = Table::read(&results.path("rotations.csv"));
+        let of = |rows: std::ops::Range<usize>, table: &Table, what: &str| -> Vec<_> {
+            rows.map(|row| hinges(table, row, what)).collect()
+        };
+        let open = of(0..events.rows.len(), &events, "open");
+        let opened = of(0..impacts.rows.len(), &impacts, "opened");
+        let shut = of(0..impacts.rows.len(), &impacts, "shut");
+        let impact_events =
+            (0..events.rows.len()).filter(|row| events.text(*row, "kind") == "impact");
+        let impact_of: std::collections::HashMap<usize, usize> = impact_events
+            .enumerate()
+            .map(|(impact, event)| (event, impact))
+            .collect();
+        assert_eq!(impact_of.len(), impacts.rows.len());
+        for (event, impact) in &impact_of {
+            assert!(
+                opened[*impact]
+                    .iter()
+                    .all(|hinge| open[*event].contains(hinge))
+            );
+            let parts = |joint: &usize| opened[*impact].iter().any(|(other, _)| other == joint);
+            for (joint, _) in &shut[*impact] {
+                let is_open = open[*event].iter().any(|(other, _)| other == joint);
+                assert!(
+                    !is_open || parts(joint) || !options.is_empty(),
+                    "joint {joint}"
+                );
+            }
+        }
+        let (mut stay, mut shuts, mut far) = (0, 0, 0);
+        for row in 0..rotations.rows.len() {
+            let phase = rotations.number(row, "phase") as usize;
+            let Some(event) = phase.checked_sub(1) else {
+                continue;
+            };
+            // What has just opened needs a step.
+            if rotations.number(row, "time_s") <= events.number(event, "time_s") {
+                continue;
+            }
+            let gaps_m = |joint: usize| {
+                ["intrados", "extrados"]
+                    .map(|edge| joints.number(row, &format!("gap_{joint}_{edge}_m")))
+            };
+            let by_impact = impact_of.get(&event).map(|impact| &opened[*impact]);
+            for hinge in &open[event] {
+                if by_impact.is_none_or(|opened| !opened.contains(hinge)) {
+                    let [intrados_m, extrados_m] = gaps_m(hinge.0);
+                    let is_open = match hinge.1.as_str() {
+                        "intrados" => extrados_m > 0.0,
+                        "extrados" => intrados_m > 0.0,
+                        _ => intrados_m.max(extrados_m) > 0.0,
+                    };
+                    // Corners that are hardly apart shut without an impact where joints slip.
+                    assert!(
+                        is_open || !options.is_empty(),
+                        "joint {hinge:?} in row {row}"
+                    );
+                    stay += usize::from(is_open);
+                    shuts += usize::from(!is_open);
+                }
+            }
+            // Gaps do not grow by so much between two rows.
+            let is_first = rotations.text(row, "phase") != rotations.text(row - 1, "phase");
+            for joint in 0..8 {
+                let [intrados_m, extrados_m] = gaps_m(joint);
+                if is_first && intrados_m.max(extrados_m) > 2e-3 {
+                    let named = open[event].iter().find(|(other, _)| *other == joint);
+                    let edge = if extrados_m > intrados_m {
+                        "intrados"
+                    } else {
+                        "extrados"
+                    };
+                    assert_eq!(
+                        named.map(|(_, edge)| edge.as_str()),
+                        Some(edge),
+                        "row {row}"
+                    );
+                    far += 1;
+                }
+            }
+        }
+        assert!(
+            stay > 2000 && shuts < stay / 50 && far > 50,
+            "{stay} {shuts} {far}"
+        );
     }
 }
 

@@ -8,6 +8,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
+use archrock::mechanics::four_link::arch::FourLinkArch;
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::{Arch, GroundMotion, Initial, Model as _, Request, Sway};
 use program::{archrock, scenarios, stderr};
 use serde_json::Value;
 
@@ -202,4 +207,136 @@ fn a_suite_says_a_line_per_record_and_draws_how_far_each_goes() {
     assert_eq!(marks("survived"), 40 - overturned);
     // Mirrored records do the same to the other side, and need no line of their own.
     assert!(!said.contains("mirrored"), "{said}");
+}
+
+/// Potential energy of a block that has turned by so much over that at its unstable equilibrium, by Housner's diagonal.
+fn potential_ratio(slenderness_rad: f64, rotation_rad: f64) -> f64 {
+    ((slenderness_rad - rotation_rad).cos() - slenderness_rad.cos()) / (1.0 - slenderness_rad.cos())
+}
+
+#[test]
+fn a_block_with_free_hinges_is_as_close_as_its_peak_rotation_says() {
+    let slenderness_rad = 0.2_f64.atan();
+    for (amplitude_g, overturns) in [(0.25, false), (0.35, false), (0.5, true)] {
+        let folder = tempfile::tempdir().unwrap();
+        let scenario = format!(
+            "{COLUMN}[free_hinges]\n[ground.one_sine]\namplitude_g = {amplitude_g}\nduration_s = 0.8\n"
+        );
+        fs::write(folder.path().join("s.toml"), scenario).unwrap();
+        let arguments = ["run", "s.toml", "--out", "o", "--no-spread"];
+        let said = stdout(&archrock(folder.path(), &arguments));
+        let summary = json(&folder.path().join("o/summary.json"));
+        assert_eq!(summary["outcome"] == "overturned", overturns);
+        let peak_rad = summary["peak_rotation_1_rad"].as_f64().unwrap();
+        let due = if overturns {
+            1.0
+        } else {
+            potential_ratio(slenderness_rad, peak_rad)
+        };
+        let ratio = summary["peak_potential_over_barrier"].as_f64().unwrap();
+        assert!((ratio - due).abs() < 1e-7, "{ratio} {due}");
+        let tenths = if overturns {
+            1000.0
+        } else {
+            (1e3 * due).floor()
+        };
+        let words = format!(
+            "  reached {:.1} % of the potential energy at which its first mechanism overturns\n",
+            tenths / 10.0
+        );
+        assert!(said.contains(&words), "{said}");
+    }
+}
+
+/// What is released at rest and not shaken is never higher than it was released.
+#[test]
+fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
+    let arch = Arch::new(5.0, 0.15, 180.0)
+        .unwrap()
+        .with_voussoirs(12)
+        .unwrap();
+    let links = FourLinkArch::new(arch.clone(), ImpactModel::MaxRestitution).unwrap();
+    let link = links.link(0).unwrap();
+    let free = FreeHinges::of_arch(&arch).unwrap();
+    for (part, sway) in [(0.3, Sway::Right), (0.9, Sway::Left)] {
+        let rotation_rad = part * link.critical_rad;
+        let request = Request {
+            end_s: 0.5,
+            initial: Some(Initial { sway, rotation_rad }),
+            ..Request::default()
+        };
+        let summary = free
+            .simulate(&GroundMotion::still(), &request, None)
+            .unwrap();
+        let due = link.mechanism.displacement(rotation_rad).y / link.barrier;
+        let ratio = summary.peak_potential_over_barrier.unwrap();
+        assert!((ratio / due - 1.0).abs() < 1e-9, "{ratio} {due}");
+    }
+    // Of two drums no barrier is known.
+    let folder = tempfile::tempdir().unwrap();
+    let drums = COLUMN.replace("width_m", "drums = 2\nwidth_m");
+    let scenario =
+        format!("{drums}[free_hinges]\n[ground.one_sine]\namplitude_g = 0.25\nduration_s = 0.8\n");
+    fs::write(folder.path().join("s.toml"), scenario).unwrap();
+    let said = stdout(&archrock(
+        folder.path(),
+        &["run", "s.toml", "--out", "o", "--no-spread"],
+    ));
+    assert!(!said.contains("first mechanism"), "{said}");
+    let summary = json(&folder.path().join("o/summary.json"));
+    assert_eq!(
+        summary.get("peak_potential_over_barrier"),
+        Some(&Value::Null)
+    );
+}
+
+/// The line in the panel of the energy is at 1: the energies of a block that rocks freely before and after its first impact
+/// give the scale. What hardly moves has none.
+#[test]
+fn the_picture_marks_the_barrier() {
+    let folder = tempfile::tempdir().unwrap();
+    let slenderness_rad = 0.2_f64.atan();
+    let curves = |part: f64| {
+        let scenario = format!(
+            "{COLUMN}[free_hinges]\n[initial]\nsway = 'right'\nrotation_rad = {}\n",
+            part * slenderness_rad
+        );
+        fs::write(folder.path().join("s.toml"), scenario).unwrap();
+        stdout(&archrock(
+            folder.path(),
+            &["run", "s.toml", "--out", "o", "--no-spread"],
+        ));
+        let picture = fs::read_to_string(folder.path().join("o/history.svg")).unwrap();
+        let picture = roxmltree::Document::parse(&picture).unwrap();
+        ["energy", "barrier"].map(|name| -> Vec<f64> {
+            let mut nodes = picture.descendants();
+            let node = nodes.find(|node| node.attribute("data-name") == Some(name));
+            let points = node.map_or("", |node| {
+                node.attribute("points")
+                    .or(node.attribute("d"))
+                    .unwrap()
+                    .trim_start_matches('M')
+            });
+            points
+                .split(['L', ' ', ','])
+                .filter(|text| !text.is_empty())
+                .skip(1)
+                .step_by(2)
+                .map(|y| y.parse().unwrap())
+                .collect()
+        })
+    };
+    let [energy, barrier] = curves(0.7);
+    let released = potential_ratio(slenderness_rad, 0.7 * slenderness_rad);
+    let restitution = (1.0 - 1.5 * slenderness_rad.sin().powi(2)).powi(2);
+    // On the sheet y points downwards; the first level is the highest.
+    let second = energy.iter().find(|y| **y > energy[0] + 2.0).unwrap();
+    let scale = (second - energy[0]) / (released * (1.0 - restitution));
+    assert_eq!(barrier.len(), 2);
+    for y in barrier {
+        let level = released + (energy[0] - y) / scale;
+        assert!((level - 1.0).abs() < 0.02, "{level}");
+    }
+    let [_, barrier] = curves(0.1);
+    assert!(barrier.is_empty());
 }

@@ -221,6 +221,7 @@ impl Model for Rule {
             impacts: 0,
             peak_rotations_rad: vec![0.0],
             peak_over_critical: None,
+            peak_potential_over_barrier: None,
             energy_defect_ratio: 0.0,
             thrust: None,
             cost: Cost::default(),

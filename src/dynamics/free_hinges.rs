@@ -179,11 +179,31 @@ pub struct Sample<'a> {
     pub potential_j: f64,
 }
 
+/// Joints open where all were shut.
+#[derive(Clone, Copy, Debug)]
+pub struct Uplift<'a> {
+    /// Time in seconds, to within a step: when they were shut last.
+    pub time_s: f64,
+    /// Joints that open, with the edge about which they turn; none where they part.
+    pub opened: &'a [Hinge],
+    /// To which side the centre of gravity goes.
+    pub sway: Sway,
+    /// Rotations of the blocks in radians; not zero only where joints have slipped.
+    pub rotations_rad: &'a [f64],
+    /// Their rates in rad/s, as the rotations.
+    pub rates_rad_s: &'a [f64],
+    /// Kinetic energy, and potential energy above the undeformed row, in joules.
+    pub energy_j: f64,
+}
+
 /// One or more corners land.
 #[derive(Clone, Copy, Debug)]
 pub struct Impact<'a> {
     /// Time in seconds.
     pub time_s: f64,
+    /// To which side the row sways after the impact: the side of its centre of gravity or, where that is at its undeformed
+    /// place, the one to which it goes; `None` at rest.
+    pub sway: Option<Sway>,
     /// Joints that shut, also where they open again at once, with the edge that landed; both, where none is named.
     pub shut: &'a [Hinge],
     /// Joints that open at once; those among them that shut go on about their other edge.
@@ -199,16 +219,20 @@ pub struct Impact<'a> {
     pub rotations_rad: &'a [f64],
     /// Rotation rates of the blocks after the impact, in rad/s.
     pub rates_after_rad_s: &'a [f64],
+    /// Gaps of the joints at intrados and extrados in metres.
+    pub gaps_m: &'a [[f64; 2]],
     /// Potential energy above the undeformed row in joules.
     pub potential_j: f64,
-    /// Placements of the blocks.
-    pub poses: &'a [Pose],
 }
 
 /// Who listens to a motion.
 pub trait Recorder {
     /// At every output time, and at the end. To break ends the motion.
     fn sample(&mut self, _: &Sample) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// Whenever it starts to move from rest. To break ends the motion.
+    fn uplift(&mut self, _: &Uplift) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
     /// At every impact. To break ends the motion.
@@ -299,6 +323,8 @@ pub struct Run {
     pub end_s: f64,
     /// Largest rotation of every block, in radians.
     pub peaks_rad: Vec<f64>,
+    /// Largest potential energy above the undeformed row, in joules.
+    pub peak_potential_j: f64,
     /// Half cycles.
     pub half_cycles: Vec<HalfCycle>,
     /// Least normal force at a joint outside impacts, in newtons.

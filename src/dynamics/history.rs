@@ -153,7 +153,8 @@ pub struct Event {
     pub rates_rad_s: Vec<f64>,
     /// Kinetic and potential energy just after, in J.
     pub energy_j: f64,
-    /// Hinges of its mechanism from left to right; none at rest, and none of a row of blocks, whose samples have them.
+    /// Hinges of its mechanism from left to right; none at rest. Of a row of blocks, the joints that are open or open at
+    /// once, also those that are left open at rest.
     pub hinges: Vec<Hinge>,
     /// The impact, where the event is one, also one that leads to rest.
     pub impact: Option<Impact>,
@@ -212,6 +213,9 @@ pub struct Summary {
     /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity
     /// alone overturns. `None` where it is not known.
     pub peak_over_critical: Option<f64>,
+    /// Of a row of blocks, its largest potential energy over the barrier of its first mechanism, which may not be the one that
+    /// it overturns by. `None` where no barrier is known.
+    pub peak_potential_over_barrier: Option<f64>,
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus the losses at impacts, over the energy barrier of the first mechanism.
     pub energy_defect_ratio: f64,

@@ -4,14 +4,12 @@ use std::io::Write;
 
 use serde_json::{Value, json};
 
-use super::results::beginning;
+use super::results::{beginning, edges, joints};
 use super::{OutputError, finite};
 use crate::dynamics::free_hinges::FreeHinges;
 use crate::dynamics::free_hinges::spread::Spread;
 use crate::dynamics::history::{Impact, Sample, Summary};
 use crate::dynamics::model::Model as _;
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
@@ -138,27 +136,10 @@ impl<W: Write> LandingsWriter<W> {
     }
 }
 
-/// Edges of the joints that hinges are at, with spaces between.
-fn edges(hinges: &[Hinge]) -> String {
-    let names = hinges.iter().filter_map(|hinge| match hinge {
-        Hinge::Joint { edge, .. } => Some(edge.map_or("both", Edge::name)),
-        Hinge::Section { .. } | Hinge::Toe(_) => None,
-    });
-    names.collect::<Vec<_>>().join(" ")
-}
-
-/// Numbers of the joints that hinges are at, with spaces between.
-fn joints(hinges: &[Hinge]) -> String {
-    let numbers = hinges.iter().filter_map(|hinge| match hinge {
-        Hinge::Joint { joint, .. } => Some(joint.to_string()),
-        Hinge::Section { .. } | Hinge::Toe(_) => None,
-    });
-    numbers.collect::<Vec<_>>().join(" ")
-}
-
 /// The summary of a run with free hinges as JSON.
 ///
-/// Normal forces and friction are those outside impacts; `largest_friction_demand` is that of the samples, as in
+/// `peak_potential_over_barrier` is the largest potential energy over that at which the first mechanism overturns, where that
+/// is known. Normal forces and friction are those outside impacts; `largest_friction_demand` is that of the samples, as in
 /// `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the diagonal of
 /// a column). Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and what did
 /// not converge. `spread` is left out where the run was not repeated; where a repetition failed it says why, as `failed`.
@@ -177,6 +158,9 @@ pub fn summary(
     let incipient_g = |sway| model.incipient_acceleration_g(sway);
     let largest_rad = history.largest_rotation_rad();
     put("largest_peak_rotation_rad", json!(largest_rad));
+    let over_barrier = history.peak_potential_over_barrier;
+    finite("peak_potential_over_barrier", over_barrier.as_slice())?;
+    put("peak_potential_over_barrier", json!(over_barrier));
     put(
         "incipient_acceleration_g",
         json!({ "right": incipient_g(Sway::Right), "left": incipient_g(Sway::Left) }),

@@ -11,6 +11,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Event, Outcome, Summary, impacts};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{Ground, Scenario};
 
@@ -26,8 +27,9 @@ use crate::scenario::{Ground, Scenario};
 /// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
 /// | `energy_j` | kinetic and potential, just after |
 /// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`write_impacts`]; empty at rest |
+/// | `joints_open`, `edges_open` | of a row of blocks: joints that are open or open now, and the edge about which each turns (`both`: it parts), with spaces between |
 ///
-/// A column and a row of blocks have no columns for hinges. A structure that is released starts in the first mechanism
+/// A column has no columns for hinges. A structure that is released starts in the first mechanism
 /// without a row: its hinges are in `impacts.csv`, as those that close first.
 ///
 /// Rows of blocks have thousands of impacts, and bodies by the hundred: without names of bodies their columns are left
@@ -35,8 +37,8 @@ use crate::scenario::{Ground, Scenario};
 pub struct EventsWriter<W: Write> {
     csv: csv::Writer<W>,
     rows: usize,
-    /// Whether there are columns by body.
-    by_body: bool,
+    /// Whether there are columns of open joints, and none by body.
+    of_row: bool,
     /// Hinges that have columns.
     sections: usize,
 }
@@ -49,7 +51,7 @@ impl<W: Write> EventsWriter<W> {
     /// # Errors
     /// When the system refuses.
     pub fn of_mechanisms(writer: W, model: &dyn MechanismModel) -> Result<Self, OutputError> {
-        Self::new(writer, &model.bodies(), sections(model))
+        Self::new(writer, Some(&model.bodies()), sections(model))
     }
 
     /// Starts with the header for a row of blocks.
@@ -57,24 +59,29 @@ impl<W: Write> EventsWriter<W> {
     /// # Errors
     /// When the system refuses.
     pub fn of_row(writer: W) -> Result<Self, OutputError> {
-        Self::new(writer, &[], 0)
+        Self::new(writer, None, 0)
     }
 
-    fn new(writer: W, bodies: &[String], sections: usize) -> Result<Self, OutputError> {
+    /// Without names of bodies, of a row.
+    fn new(writer: W, bodies: Option<&[String]>, sections: usize) -> Result<Self, OutputError> {
         let mut csv = csv::Writer::from_writer(writer);
         let mut header: Vec<String> = ["time_s", "phase", "kind", "sway", "mechanism"]
             .map(str::to_owned)
             .to_vec();
-        header.extend(columns(bodies, "rotation", "rad"));
-        header.extend(columns(bodies, "rate", "rad_s"));
+        for (quantity, unit) in [("rotation", "rad"), ("rate", "rad_s")] {
+            header.extend(columns(bodies.unwrap_or_default(), quantity, unit));
+        }
         header.push("energy_j".to_owned());
         header.extend(hinge_columns("hinge", sections));
+        if bodies.is_none() {
+            header.extend(["joints_open", "edges_open"].map(str::to_owned));
+        }
         csv.write_record(header)
             .map_err(OutputError::csv(Self::WHAT))?;
         Ok(Self {
             csv,
             rows: 0,
-            by_body: !bodies.is_empty(),
+            of_row: bodies.is_none(),
             sections,
         })
     }
@@ -84,11 +91,14 @@ impl<W: Write> EventsWriter<W> {
     /// # Errors
     /// When the system refuses, or a value is not finite.
     pub fn write(&mut self, event: &Event) -> Result<(), OutputError> {
-        let (rotations, rates) = if self.by_body {
-            (&event.rotations_rad[..], &event.rates_rad_s[..])
-        } else {
+        let (rotations, rates) = if self.of_row {
             (&[][..], &[][..])
+        } else {
+            (&event.rotations_rad[..], &event.rates_rad_s[..])
         };
+        let open = self
+            .of_row
+            .then(|| [joints(&event.hinges), edges(&event.hinges)]);
         finite("of a row of events.csv", &[event.time_s, event.energy_j])?;
         finite("of a row of events.csv", rotations)?;
         finite("of a row of events.csv", rates)?;
@@ -104,6 +114,7 @@ impl<W: Write> EventsWriter<W> {
                 rates,
                 event.energy_j,
                 hinge_cells(&event.hinges, self.sections),
+                open.as_slice(),
             ))
             .map_err(OutputError::csv(Self::WHAT))
     }
@@ -226,6 +237,24 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
     let mut cells: Vec<_> = sections.collect();
     cells.resize(cells.len().max(least), (None, None));
     cells
+}
+
+/// Numbers of the joints that hinges are at, with spaces between.
+pub(super) fn joints(hinges: &[Hinge]) -> String {
+    let numbers = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Joint { joint, .. } => Some(joint.to_string()),
+        Hinge::Section { .. } | Hinge::Toe(_) => None,
+    });
+    numbers.collect::<Vec<_>>().join(" ")
+}
+
+/// Edges of these joints, with spaces between.
+pub(super) fn edges(hinges: &[Hinge]) -> String {
+    let names = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Joint { edge, .. } => Some(edge.map_or("both", Edge::name)),
+        Hinge::Section { .. } | Hinge::Toe(_) => None,
+    });
+    names.collect::<Vec<_>>().join(" ")
 }
 
 /// What a study was of: program, version, scenario as resolved, number of cases; and `failures`, where there are any.

@@ -7,6 +7,7 @@ use super::panels::{
     Curve, Doing, MAIN, OVERTURNS, Panels, Subject, around, draw_curves, mark_overturning,
 };
 use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
+use super::timeline::FAR;
 use crate::dynamics::free_hinges::HalfCycle;
 use crate::dynamics::history::{Outcome, Sample, State, Summary};
 use crate::mechanics::blocks::{Row, Supports};
@@ -156,7 +157,18 @@ impl RowTimeline {
             } else {
                 "Energy (J)"
             };
-            panels.curves(label, 120.0, &[energy], doing);
+            let mut curves = vec![energy];
+            // Far above the curve it would hide that.
+            let over_barrier = summary.peak_potential_over_barrier;
+            if over_barrier.is_some_and(|peak| peak >= FAR) {
+                let ends = [(0.0, 1.0), (self.end_s, 1.0)];
+                curves.push(Curve::new("barrier", ends, BARRIER));
+                keys.push((
+                    "gravity alone overturns the first mechanism",
+                    Sign::Line(BARRIER),
+                ));
+            }
+            panels.curves(label, 120.0, &curves, doing);
         }
         if overturned_s.is_some() {
             keys.push(OVERTURNS);
@@ -184,6 +196,7 @@ fn doing(summary: &Summary) -> Doing {
     }
 }
 
+const BARRIER: Stroke = Stroke::new(color::VERMILION, 1.0, "1 3");
 const LARGEST: Stroke = Stroke::new(color::BLUE, 1.8, "");
 const BLOCK: Stroke = Stroke::new(color::BLACK, 0.5, "");
 

@@ -25,8 +25,8 @@ struct FarCycle {
     unstable_rad: f64,
 }
 
-/// Part of the unstable rotation from which on a half cycle is far.
-const FAR: f64 = 0.25;
+/// Part of what gravity alone overturns beyond, of the unstable rotation or the barrier, from which on a motion goes far.
+pub(super) const FAR: f64 = 0.25;
 
 /// The look of the unstable rotation of a body: in the colour of its curve.
 const fn unstable(body: usize) -> Stroke {

@@ -321,6 +321,18 @@ fn words(
                 peaks.len()
             );
         }
+        if let Some(peak) = history.peak_potential_over_barrier {
+            // What stands has not reached what the rounded number may say.
+            let tenths = match history.outcome {
+                Outcome::Overturned(_) => (1e3 * peak).round(),
+                _ => (1e3 * peak).floor(),
+            };
+            let _ = writeln!(
+                text,
+                "  reached {:.1} % of the potential energy at which its first mechanism overturns",
+                tenths / 10.0
+            );
+        }
         let _ = writeln!(
             text,
             "  energy defect {:.1e} of weight times size, {} steps, {} iterations",

@@ -73,11 +73,7 @@ pub(super) fn run(
         let outcome = if course.stopped {
             Some(Outcome::Rocking)
         } else if course.fallen_apart || course.potential < course.fallen {
-            let sway = if engine.sway() > 0.0 {
-                Sway::Right
-            } else {
-                Sway::Left
-            };
+            let sway = towards(engine.sway());
             let time_s = course.highest_s;
             Some(Outcome::Overturned { sway, time_s })
         } else if time >= quiet_s
@@ -110,6 +106,17 @@ pub(super) fn run(
     Ok(engine.finish())
 }
 
+/// The side of what is positive to the right.
+fn towards(value: f64) -> Sway {
+    if value > 0.0 { Sway::Right } else { Sway::Left }
+}
+
+/// The side to which a row that moves sways, by the displacement of its centre of gravity; where that is none the one to which
+/// it goes, by its momentum to the right.
+pub(super) fn heading(sway: f64, momentum: f64) -> Sway {
+    towards(if sway == 0.0 { momentum } else { sway })
+}
+
 /// Length of the next step of a leapfrog: equal steps up to the given time.
 pub(super) fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
     let left = until - time;
@@ -135,6 +142,7 @@ impl Course {
                 outcome: Outcome::Rocking,
                 end_s: 0.0,
                 peaks_rad: vec![0.0; row.blocks().len()],
+                peak_potential_j: 0.0,
                 half_cycles: Vec::new(),
                 least_normal_n: f64::INFINITY,
                 friction_demand: 0.0,
@@ -150,6 +158,7 @@ impl Course {
     /// The row is released at rest, with this potential energy.
     pub(super) fn released(&mut self, potential: f64, moved: bool) {
         self.potential = potential;
+        self.run.peak_potential_j = potential.max(0.0);
         self.moved = moved;
         self.rising = true;
     }
@@ -176,9 +185,10 @@ impl Course {
             self.highest_s = self.time;
         }
         self.potential = potential;
+        self.run.peak_potential_j = self.run.peak_potential_j.max(potential);
         let least = SWAY_RATIO * self.energy_unit / self.gravity;
         if sway.abs() > least {
-            let side = if sway > 0.0 { Sway::Right } else { Sway::Left };
+            let side = towards(sway);
             if self.cycle.is_none_or(|cycle| cycle.sway != side) {
                 self.end_cycle(Some(kinetic + potential));
                 self.cycle = Some(HalfCycle {

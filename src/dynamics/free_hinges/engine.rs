@@ -90,6 +90,8 @@ pub(super) struct Engine<'a> {
     opened: Vec<Hinge>,
     /// Corners that touched at the beginning of the step.
     closed: Vec<Corners>,
+    /// Whether all joints are shut and stay so.
+    stands: bool,
     /// Where the joints were pressed in the step that ended at an impact.
     pressed: Vec<Corners>,
     rotations: Vec<f64>,
@@ -136,6 +138,7 @@ impl<'a> Engine<'a> {
             shut: Vec::with_capacity(joints),
             opened: Vec::with_capacity(joints),
             closed: vec![[true; 2]; joints],
+            stands: true,
             pressed: vec![[true; 2]; joints],
             rotations: vec![0.0; blocks],
             rates: vec![0.0; blocks],
@@ -199,6 +202,7 @@ impl<'a> Engine<'a> {
         }
         self.weigh_pieces();
         self.start_energy = self.height_energy();
+        self.stands = open == 0;
         self.course.released(self.start_energy, open > 0);
         Ok(())
     }
@@ -210,6 +214,7 @@ impl<'a> Engine<'a> {
         let before = self.momentum();
         self.touch_shut();
         self.closed.copy_from_slice(&self.touching);
+        let from_s = self.course.time;
         let taken_before = self.course.run.energy_taken_j;
         self.landing.fill([0.0; 2]);
         let shortest = self.settings.shortest_step_s.min(step);
@@ -259,6 +264,8 @@ impl<'a> Engine<'a> {
         if self.has_landed() {
             self.impact()?;
             self.report(taken_before, recorder);
+        } else if self.stands {
+            self.report_uplift(from_s, recorder);
         }
         let cost = &mut self.course.run.cost;
         cost.steps += 1;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{
     Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder, Sample as RowSample,
-    Settings,
+    Settings, Uplift,
 };
 use crate::argument::{ArgumentError, above};
 use crate::dynamics::ground::GroundMotion;
@@ -354,10 +354,11 @@ impl Model for FreeHinges {
             .initial
             .map(|initial| self.released(initial))
             .transpose()?;
+        let barrier_j = self.barrier_j(request.gravity_m_s2);
         let mut relay = Relay {
             model: self,
             ground,
-            barrier_j: self.barrier_j(request.gravity_m_s2),
+            barrier_j,
             fallen_j: super::fallen_energy_j(
                 &self.row,
                 request.gravity_m_s2,
@@ -390,6 +391,8 @@ impl Model for FreeHinges {
             impacts: run.cost.impacts,
             peak_rotations_rad: run.peaks_rad.clone(),
             peak_over_critical: None,
+            peak_potential_over_barrier: barrier_j
+                .map(|barrier_j| run.peak_potential_j / barrier_j),
             energy_defect_ratio: run.energy_defect_ratio,
             thrust: relay.recorder.is_some().then_some(relay.thrust),
             cost: Cost {
@@ -426,6 +429,11 @@ impl Relay<'_, '_> {
             .map(|(block, pose)| block.mass_kg * (pose.of(block.centre_m) - block.centre_m).x)
             .sum();
         let sway = if shift > 0.0 { Sway::Right } else { Sway::Left };
+        self.swaying(sway, potential_j)
+    }
+
+    /// What a row does that moves, swayed to a side.
+    fn swaying(&self, sway: Sway, potential_j: f64) -> State {
         if potential_j < self.fallen_j {
             State::Overturned(sway)
         } else {
@@ -450,10 +458,20 @@ impl Relay<'_, '_> {
                 rotations_rad: self.sample.rotations_rad.clone(),
                 rates_rad_s: self.sample.rates_rad_s.clone(),
                 energy_j: self.sample.energy_j,
-                hinges: Vec::new(),
+                hinges: self.sample.hinges.iter().map(|open| open.hinge).collect(),
                 impact: None,
             });
         }
+    }
+}
+
+/// How a joint with these gaps is open: the edge about which it turns, `None` where both are open; nothing where it is shut.
+fn opening(gaps_m: &[f64; 2]) -> Option<Option<Edge>> {
+    match gaps_m {
+        [0.0, 0.0] => None,
+        [0.0, _] => Some(Some(Edge::Intrados)),
+        [_, 0.0] => Some(Some(Edge::Extrados)),
+        _ => Some(None),
     }
 }
 
@@ -490,11 +508,8 @@ impl RowRecorder for Relay<'_, '_> {
         }));
         next.hinges.clear();
         for (joint, (gaps, frame)) in sample.gaps_m.iter().zip(sample.frames).enumerate() {
-            let edge = match gaps {
-                [0.0, 0.0] => continue,
-                [0.0, _] => Some(Edge::Intrados),
-                [_, 0.0] => Some(Edge::Extrados),
-                _ => None,
+            let Some(edge) = opening(gaps) else {
+                continue;
             };
             next.hinges.push(OpenHinge {
                 hinge: Hinge::Joint { joint, edge },
@@ -531,19 +546,52 @@ impl RowRecorder for Relay<'_, '_> {
         }
     }
 
-    fn impact(&mut self, landing: &Landing<'_>) -> ControlFlow<()> {
+    fn uplift(&mut self, uplift: &Uplift<'_>) -> ControlFlow<()> {
         self.phase += 1;
-        let state = self.doing(landing.poses, landing.potential_j);
         let Some(recorder) = &mut self.recorder else {
             return ControlFlow::Continue(());
         };
+        recorder.event(&Event {
+            time_s: uplift.time_s,
+            kind: EventKind::Uplift,
+            state: State::Rocking(uplift.sway),
+            mechanism: None,
+            rotations_rad: uplift.rotations_rad.to_vec(),
+            rates_rad_s: uplift.rates_rad_s.to_vec(),
+            energy_j: uplift.energy_j,
+            hinges: uplift.opened.to_vec(),
+            impact: None,
+        })
+    }
+
+    fn impact(&mut self, landing: &Landing<'_>) -> ControlFlow<()> {
+        self.phase += 1;
+        let state = landing
+            .sway
+            .map_or(State::Rest, |sway| self.swaying(sway, landing.potential_j));
+        let Some(recorder) = &mut self.recorder else {
+            return ControlFlow::Continue(());
+        };
+        let opens_at_once = |joint: usize| {
+            let mut opened = landing.opened.iter().copied();
+            opened
+                .find(|hinge| matches!(hinge, Hinge::Joint { joint: opens, .. } if *opens == joint))
+        };
+        let hinge = |(joint, gaps_m)| {
+            let open = || opening(gaps_m).map(|edge| Hinge::Joint { joint, edge });
+            opens_at_once(joint).or_else(open)
+        };
+        let hinges = landing.gaps_m.iter().enumerate().filter_map(hinge);
         let energy_after_j = (landing.energy_before_j - landing.energy_taken_j).max(0.0);
         let restitution = if landing.energy_before_j > 0.0 {
             energy_after_j / landing.energy_before_j
         } else {
             0.0
         };
-        let sway = state.sway().unwrap_or(Sway::Right);
+        // What lands undeformed came from the other side.
+        let undeformed = landing.rotations_rad.iter().all(|angle| *angle == 0.0);
+        let sway = landing.sway.unwrap_or(Sway::Right);
+        let sway_before = if undeformed { sway.opposite() } else { sway };
         recorder.event(&Event {
             time_s: landing.time_s,
             kind: EventKind::Impact,
@@ -552,9 +600,9 @@ impl RowRecorder for Relay<'_, '_> {
             rotations_rad: landing.rotations_rad.to_vec(),
             rates_rad_s: landing.rates_after_rad_s.to_vec(),
             energy_j: energy_after_j + landing.potential_j,
-            hinges: Vec::new(),
+            hinges: hinges.collect(),
             impact: Some(Impact {
-                sway_before: sway,
+                sway_before,
                 restitution,
                 energy_before_j: landing.energy_before_j,
                 energy_after_j,

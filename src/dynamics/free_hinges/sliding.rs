@@ -9,9 +9,11 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::course::{Course, Stepper, equal_step};
+use super::course::{Course, Stepper, equal_step, heading};
 use super::engine::{only, rise, sway};
-use super::{FreeHingeError, Impact, Recorder, Run, Sample, Settings, Sliding, fallen_energy_j};
+use super::{
+    FreeHingeError, Impact, Recorder, Run, Sample, Settings, Sliding, Uplift, fallen_energy_j,
+};
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
@@ -59,6 +61,8 @@ pub(super) struct Engine<'a> {
     /// For what must not touch the modes.
     auxiliary: Program,
     modes_before: Vec<Mode>,
+    /// Whether no joint is open.
+    stands: bool,
     sliding: Sliding,
     ground_work: f64,
     /// The least energy so far, without what the ground did.
@@ -113,7 +117,8 @@ impl<'a> Engine<'a> {
         };
         let mut course = Course::new(row, gravity, fallen_energy_j(row, gravity, true));
         let start_energy = gravity * rise(row, placement.centres_m());
-        if placement.shut_corners() < 2 * joints {
+        let stands = placement.shut_corners() == 2 * joints;
+        if !stands {
             course.released(start_energy, true);
         }
         Self {
@@ -131,6 +136,7 @@ impl<'a> Engine<'a> {
             auxiliary: program.clone(),
             program,
             modes_before: vec![Mode::WHOLE; joints],
+            stands,
             sliding: still,
             ground_work: 0.0,
             least_energy: start_energy,
@@ -207,6 +213,10 @@ impl<'a> Engine<'a> {
         let to_s = self.course.time + 0.5 * step;
         let (kick, ground) = self.kick(to_s);
         let momentum = self.momentum();
+        let stood = self.stands.then(|| {
+            self.note_motion();
+            (self.course.time, self.kinetic() + self.course.potential)
+        });
         self.program
             .place(&self.faces, &self.contacts, &self.positions);
         self.modes_before.copy_from_slice(self.program.modes());
@@ -260,6 +270,12 @@ impl<'a> Engine<'a> {
         self.drift(step);
         if landed {
             self.report(taken, rubbed, recorder);
+        }
+        if let Some((from_s, energy_j)) = stood {
+            self.report_uplift(from_s, energy_j, recorder);
+        } else {
+            let mut modes = self.program.modes().iter();
+            self.stands = modes.all(|mode| mode.pressed == [true; 2]);
         }
         self.steps_since_audit += 1;
         if self.steps_since_audit >= AUDIT_STEPS {
@@ -417,14 +433,51 @@ impl<'a> Engine<'a> {
         }
     }
 
-    fn report(&mut self, taken: f64, rubbed: f64, recorder: &mut impl Recorder) {
-        self.note_poses();
-        for (rate, velocity) in self.rates.iter_mut().zip(&self.velocities) {
+    /// Notes rotations and rates.
+    fn note_motion(&mut self) {
+        let moving = self.positions.iter().zip(&self.velocities);
+        let noted = self.rotations.iter_mut().zip(&mut self.rates);
+        for ((rotation, rate), (position, velocity)) in noted.zip(moving) {
+            *rotation = position.rotation_rad;
             *rate = velocity.z;
         }
+    }
+
+    /// Tells of joints that opened in a step from this time on, with this energy, before which none was open.
+    fn report_uplift(&mut self, from_s: f64, energy_j: f64, recorder: &mut impl Recorder) {
+        self.opened.clear();
+        for (joint, mode) in self.program.modes().iter().enumerate() {
+            if mode.pressed != [true; 2] {
+                let edge = only(mode.pressed);
+                self.opened.push(Hinge::Joint { joint, edge });
+            }
+            let gaps = &self.contacts[joint].coordinates_m;
+            let least = APART_RATIO * self.faces[joint].thickness_m;
+            let is_open = (0..2).any(|end| !mode.pressed[end] && gaps[end] > least);
+            self.stands &= !is_open;
+        }
+        if self.stands {
+            return;
+        }
+        let flow = recorder.uplift(&Uplift {
+            time_s: from_s,
+            opened: &self.opened,
+            sway: heading(self.sway(), self.momentum().x),
+            rotations_rad: &self.rotations,
+            rates_rad_s: &self.rates,
+            energy_j,
+        });
+        self.course.stopped |= flow.is_break();
+    }
+
+    fn report(&mut self, taken: f64, rubbed: f64, recorder: &mut impl Recorder) {
+        self.note_poses();
+        self.note_motion();
         self.course.run.cost.impacts += 1;
+        let moves = self.program.modes().iter().any(|mode| *mode != Mode::WHOLE);
         let flow = recorder.impact(&Impact {
             time_s: self.course.time,
+            sway: moves.then(|| heading(self.sway(), self.momentum().x)),
             shut: &self.shut,
             opened: &self.opened,
             energy_before_j: self.kinetic() + taken + rubbed,
@@ -432,8 +485,8 @@ impl<'a> Engine<'a> {
             friction_j: Some(rubbed),
             rotations_rad: &self.rotations,
             rates_after_rad_s: &self.rates,
+            gaps_m: &self.gaps,
             potential_j: self.course.potential,
-            poses: &self.poses,
         });
         self.course.stopped |= flow.is_break();
     }

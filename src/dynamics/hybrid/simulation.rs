@@ -93,6 +93,7 @@ impl<C: MechanismChain> Model for C {
             impacts: tally.impacts,
             peak_rotations_rad: tally.peak_rotations_rad.as_ref().to_vec(),
             peak_over_critical: Some(tally.peak_over_critical),
+            peak_potential_over_barrier: None,
             energy_defect_ratio: tally.largest_defect / rocking.barrier(),
             thrust: sampler.map(|sampler| match outcome {
                 Outcome::Overturned(_) => sampler.thrust_before_critical,

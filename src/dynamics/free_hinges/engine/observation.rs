@@ -3,7 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{Engine, Piece};
-use crate::dynamics::free_hinges::{FreeHingeError, Impact, Recorder, Sample};
+use crate::dynamics::free_hinges::course::{Stepper as _, heading};
+use crate::dynamics::free_hinges::{FreeHingeError, Impact, Recorder, Sample, Uplift};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::field::Twist;
@@ -109,8 +110,11 @@ impl Engine<'_> {
             *rate = twist.rate;
         }
         let energy_taken_j = self.course.run.energy_taken_j - taken_before;
+        let gaps_m = self.placement.gaps_m();
+        self.stands = self.opened.is_empty() && gaps_m.iter().all(|gaps| *gaps == [0.0; 2]);
         let flow = recorder.impact(&Impact {
             time_s: self.course.time,
+            sway: (!self.stands).then(|| heading(self.sway(), self.momentum().x)),
             shut: &self.shut,
             opened: &self.opened,
             energy_before_j: kinetic(&self.pieces) + energy_taken_j,
@@ -118,8 +122,35 @@ impl Engine<'_> {
             friction_j: None,
             rotations_rad: &self.rotations,
             rates_after_rad_s: &self.rates,
+            gaps_m,
             potential_j: self.course.potential,
-            poses: self.placement.poses(),
+        });
+        self.course.stopped |= flow.is_break();
+    }
+
+    /// Tells of joints that opened in a step from this time on, before which all were shut.
+    pub(super) fn report_uplift(&mut self, from_s: f64, recorder: &mut impl Recorder) {
+        self.opened.clear();
+        for (joint, gaps) in self.placement.gaps_m().iter().enumerate() {
+            if *gaps != [0.0; 2] {
+                let edge = only(gaps.map(|gap| gap == 0.0));
+                self.opened.push(Hinge::Joint { joint, edge });
+            }
+        }
+        self.stands = self.opened.is_empty();
+        if self.stands {
+            return;
+        }
+        // With all joints shut the row stood undeformed, and still.
+        self.rotations.fill(0.0);
+        self.rates.fill(0.0);
+        let flow = recorder.uplift(&Uplift {
+            time_s: from_s,
+            opened: &self.opened,
+            sway: heading(self.sway(), self.momentum().x),
+            rotations_rad: &self.rotations,
+            rates_rad_s: &self.rates,
+            energy_j: 0.0,
         });
         self.course.stopped |= flow.is_break();
     }
