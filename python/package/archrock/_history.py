@@ -80,7 +80,8 @@ class Event:
         rotations_rad: rotations of the bodies.
         rates_rad_s: rotation rates of the bodies just after.
         energy_j: kinetic and potential energy just after.
-        hinges: hinges of its mechanism from left to right; none at rest, and none of a row of blocks.
+        hinges: hinges of its mechanism from left to right, none at rest; of a row of blocks the joints that are open
+            from then on.
         impact: the impact, where the event is one.
     """
 
