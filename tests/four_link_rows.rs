@@ -6,7 +6,6 @@ use archrock::mechanics::blocks::{Block, Row, Supports};
 use archrock::mechanics::chain::{Hinge, Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::certificate::project;
 use archrock::mechanics::four_link::impact::closing_field;
-use archrock::mechanics::geometry::profile::{JointedProfile, Profile as _};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{
     BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, Masonry, Material, Pier,
@@ -361,7 +360,7 @@ fn the_certificate_bounds_the_impact_of_a_row() {
     for first in SIDES {
         let chain = model.chain(first);
         let closing = &chain.link(0).unwrap().mechanism;
-        let profile: &JointedProfile = chain.profile(1);
+        let profile = chain.profile(1);
         let field = closing_field(closing, profile);
         let cone = project(&field, profile, &profile.sections(0)).unwrap();
         let own = chain.link(1).unwrap();

@@ -43,7 +43,7 @@ fn published_chain_of_the_semicircle() {
         let found = link.link.restitution;
         // The last published digit of the third is cut off, not rounded (0.764018836).
         assert!((found - restitution).abs() <= 0.6e-8, "{index}: {found}");
-        let seen = seen_from_ground(&link.mechanism, chain.ring(), index % 2 == 1);
+        let seen = seen_from_ground(&link.mechanism, &arch.arch().ring(), index % 2 == 1);
         // r is flat at its maximum: 1e-16 in r leaves 1e-8 rad, far below the digits.
         assert_hinges(seen, hinges, 0.5e-5);
     }

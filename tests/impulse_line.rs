@@ -73,8 +73,9 @@ fn outer_impulses_solve_the_equations_of_the_paper() {
         let chain = arch.chain();
         for index in 1..8 {
             let Some(link) = chain.link(index) else { break };
-            let closing = closing_field(&chain.link(index - 1).unwrap().mechanism, chain.ring());
-            let theorems = MomentumTheorems::solve(&link.mechanism, &closing, chain.ring());
+            let closing =
+                closing_field(&chain.link(index - 1).unwrap().mechanism, chain.profile(0));
+            let theorems = MomentumTheorems::solve(&link.mechanism, &closing, chain.profile(0));
             let [first, .., last] = link.impulse_line.as_ref().unwrap().hinge_impulses();
             let size = first.norm() + last.norm();
             assert!((first - theorems.impulse_first).norm() < 1e-11 * size);
@@ -89,7 +90,7 @@ fn impulses_change_the_momentum_of_each_body() {
     // on a body and their moments against the momentum that the body gains.
     for arch in arches() {
         let chain = arch.chain();
-        let ring = chain.ring();
+        let ring = chain.profile(0);
         for index in 1..6 {
             let Some(link) = chain.link(index) else { break };
             let closing = closing_field(&chain.link(index - 1).unwrap().mechanism, ring);
@@ -150,7 +151,7 @@ fn refined_extremes_are_not_below_fine_samples() {
             let extremes = line.extremes(ANYWHERE);
             let samples = || {
                 chain
-                    .ring()
+                    .profile(0)
                     .sections(100_000)
                     .into_iter()
                     .map(|angle| line.section(angle))
@@ -226,7 +227,7 @@ fn the_frame_of_the_ground_is_the_mirror_image_for_a_sway_to_the_left() {
     }
     // In the frame of the ground the impulse on the part right of a section has the same components along
     // the radius and the axis as the vector that the hinges tell: at hinge A that is the ground's impulse.
-    let (ring, sway) = (chain.ring(), Sway::Left);
+    let (ring, sway) = (chain.profile(0), Sway::Left);
     let (angle, _) = chain
         .link(1)
         .unwrap()
@@ -234,8 +235,8 @@ fn the_frame_of_the_ground_is_the_mirror_image_for_a_sway_to_the_left() {
         .hinges_from_left(ring, sway)[0];
     let section = line.section_from_left(angle, sway);
     let [at_a, ..] = line.hinge_impulses_from_left(sway);
-    assert!((section.normal - at_a.dot(&ring.tangent(angle))).abs() < 1e-12);
-    assert!((section.tangential - at_a.dot(&ring.radial(angle))).abs() < 1e-12);
+    assert!((section.normal - at_a.dot(&ring.onward(angle))).abs() < 1e-12);
+    assert!((section.tangential - at_a.dot(&ring.outward(angle))).abs() < 1e-12);
     let extremes = line.extremes_from_left(ANYWHERE, sway);
     let there = line.section_from_left(extremes.normal.angle_rad, sway);
     assert!((there.normal - extremes.normal.value).abs() < 1e-15);
@@ -248,11 +249,11 @@ fn the_part_that_stands_is_stopped_by_its_own_impulses() {
     let chain = arch.chain();
     let link = chain.link(2).unwrap();
     let [first, ..] = link.mechanism.hinges_rad();
-    let closing = closing_field(&chain.link(1).unwrap().mechanism, chain.ring());
+    let closing = closing_field(&chain.link(1).unwrap().mechanism, chain.profile(0));
     assert!(first > 0.09 && closing.at(0.5 * first, Side::After).rate.abs() > 0.01);
     let line = link.impulse_line.as_ref().unwrap().resultants();
     let gained = line.at(first) - line.at(0.0);
-    let lost = closing.momentum_to(chain.ring(), first);
+    let lost = closing.momentum_to(chain.profile(0), first);
     assert!((gained - lost).linear.norm() < 1e-14);
 }
 
@@ -264,7 +265,7 @@ fn a_prescribed_restitution_has_no_impulses() {
     assert!(chain.link(3).unwrap().impulse_line.is_none());
     assert!(chain.link(0).unwrap().impulse_line.is_none());
     let first = &chain.link(0).unwrap().mechanism;
-    let mirrored = impact(first, chain.ring(), ANYWHERE, ImpactModel::Mirrored).unwrap();
+    let mirrored = impact(first, chain.profile(0), ANYWHERE, ImpactModel::Mirrored).unwrap();
     assert!(mirrored.impulse_line.is_some());
 }
 

@@ -47,7 +47,7 @@ fn free_motion_keeps_the_energy_of_its_bodies() {
         ..released(0.9, Sway::Right, q0)
     };
     let (history, samples) = run_sampled(&arch, &still, &request);
-    let ring = arch.chain().ring();
+    let ring = arch.chain().profile(0);
     let mechanism = arch.chain().link(0).unwrap().mechanism;
     let [a, b, c, d] = mechanism.hinges_rad();
     let [at_a, at_b, at_c, at_d] = mechanism.points();

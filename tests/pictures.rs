@@ -9,6 +9,7 @@ use std::path::Path;
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::output::impact::LinkImpact;
 use archrock::output::{Figure, map, pictures};
 use archrock::studies::boundary::ImpactFreeBoundary;
 use archrock::studies::map::OverturningMap;
@@ -28,6 +29,15 @@ fn four_links(arch: Arch) -> FourLinkArch {
 
 fn arch(thickness_ratio: f64, embrace_deg: f64) -> FourLinkArch {
     four_links(Arch::new(5.0, thickness_ratio, embrace_deg).unwrap())
+}
+
+/// The impact that leads to a link of the chain after a first sway to the right.
+fn impact(arch: &FourLinkArch, index: usize) -> LinkImpact<'_> {
+    LinkImpact {
+        model: arch,
+        first: Sway::Right,
+        index,
+    }
 }
 
 fn named<'a>(document: &'a Document<'a>, name: &str) -> Vec<Node<'a, 'a>> {
@@ -93,7 +103,7 @@ impl Sheet {
 /// Checks the hinges A to D of a picture and returns the sheet they define.
 fn check_hinges(document: &Document<'_>, chain: &Chain, link: usize, sway: Sway) -> Sheet {
     let mark = if link == 0 { "" } else { "'" };
-    let ring = chain.ring();
+    let ring = chain.profile(0);
     let mechanism = chain.link(link).unwrap().mechanism;
     let exact = mechanism
         .hinges_from_left(ring, sway)
@@ -129,14 +139,14 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
         let arch = arch(thickness_ratio, embrace_deg);
         let chain = arch.chain();
-        let picture = pictures::limit(Figure::SCREEN, chain);
+        let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right);
         let document = Document::parse(&picture).unwrap();
         let sheet = check_hinges(&document, chain, 0, Sway::Right);
         let lines = named(&document, "thrust line");
         assert_eq!(lines.len(), 1);
         let curve = points(&lines[0]);
         let tolerance = 2.0 * PIXEL / (sheet.scale * thickness_ratio);
-        for e in eccentricities(&curve, &sheet, chain.ring()) {
+        for e in eccentricities(&curve, &sheet, &arch.arch().ring()) {
             assert!(e.abs() < 0.5 + tolerance, "{e}");
         }
         // Between points of the polyline, half a pixel apart or so, it passes through the hinges.
@@ -158,14 +168,14 @@ fn joints_are_drawn_where_there_are_voussoirs() {
     let arch = four_links(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();
     for picture in [
-        pictures::limit(Figure::SCREEN, chain),
-        pictures::impact(Figure::SCREEN, chain, 1).unwrap(),
+        pictures::limit(Figure::SCREEN, chain, Sway::Right),
+        pictures::impact(Figure::SCREEN, &impact(&arch, 1)).unwrap(),
     ] {
         let document = Document::parse(&picture).unwrap();
         assert_eq!(named(&document, "joint").len(), 8);
     }
     // The hinges are at joints.
-    let picture = pictures::limit(Figure::SCREEN, chain);
+    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right);
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 0, Sway::Right);
 }
@@ -193,7 +203,7 @@ fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
 fn limit_shows_rigid_bodies_joined_at_hinges() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::limit(Figure::SCREEN, chain);
+    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right);
     let document = Document::parse(&picture).unwrap();
     let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
     assert_eq!(hinges.len(), 4);
@@ -228,7 +238,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 fn the_second_impact_has_a_picture_of_its_own() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, chain, 2).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2)).unwrap();
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 2, Sway::Right);
     let title = &texts(&document)[0];
@@ -245,7 +255,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
             .fold(f64::INFINITY, f64::min)
     };
     assert!(left("body 1") < left("body 2") && left("body 2") < left("body 3"));
-    assert!(pictures::impact(Figure::SCREEN, chain, 0).is_none());
+    assert!(pictures::impact(Figure::SCREEN, &impact(&arch, 0)).is_none());
 
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
@@ -266,7 +276,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
 fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, chain, 1).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1)).unwrap();
     let document = Document::parse(&picture).unwrap();
     let sheet = check_hinges(&document, chain, 1, Sway::Left);
     assert!(
@@ -283,7 +293,7 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
             .iter()
             .flat_map(|angle| {
                 [Edge::Intrados, Edge::Extrados]
-                    .map(|edge| chain.ring().point(angle.to_radians(), edge))
+                    .map(|edge| chain.profile(0).point(angle.to_radians(), edge))
             })
             .collect();
         let shown = corners(&bodies[0]);
@@ -299,7 +309,7 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     assert!(named(&document, "body 7").is_empty());
     let lines = named(&document, "impulse line");
     assert_eq!(lines.len(), 1);
-    let drawn = eccentricities(&points(&lines[0]), &sheet, chain.ring());
+    let drawn = eccentricities(&points(&lines[0]), &sheet, &arch.arch().ring());
     let worst = drawn
         .into_iter()
         .fold(0.0, |worst: f64, e| worst.max(e.abs()));

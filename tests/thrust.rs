@@ -12,6 +12,7 @@ use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
 use archrock::mechanics::four_link::thrust::ThrustLine;
+use archrock::mechanics::geometry::profile::Profile as _;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::{
     Arch, Column, FourLinkArch, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
@@ -69,11 +70,11 @@ fn at_the_onset_it_is_the_line_of_limit_analysis() {
         let at_rest = ThrustLine::at_rest(
             incipient,
             incipient,
-            arch.chain().ring(),
+            arch.chain().profile(0),
             onset.body_force_g,
         );
         for i in 0..=50 {
-            let angle = arch.chain().ring().embrace_rad() * f64::from(i) / 50.0;
+            let angle = arch.chain().profile(0).end() * f64::from(i) / 50.0;
             let expected = incipient.thrust_line.at(angle);
             for line in [&line, &at_rest] {
                 let difference = line.at(angle) - expected;
@@ -90,7 +91,7 @@ fn at_the_onset_it_is_the_line_of_limit_analysis() {
 #[test]
 fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
     for arch in arches() {
-        let ring = *arch.chain().ring();
+        let ring = arch.arch().ring();
         let mechanism = arch.chain().link(0).unwrap().mechanism;
         let linkage = &arch.link(0).unwrap().mechanism;
         let [a, b, c, d] = mechanism.hinges_rad();
@@ -164,8 +165,8 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
 #[test]
 fn the_line_passes_through_the_hinges_from_both_sides() {
     for arch in arches() {
-        let ring = arch.chain().ring();
-        let embrace = ring.embrace_rad();
+        let ring = arch.chain().profile(0);
+        let embrace = ring.end();
         // The thick arch stops at its first impact and has one mechanism only.
         for link in (0..3).map_while(|index| arch.chain().link(index)) {
             let (mechanism, linkage) = (link.mechanism, &link.link.mechanism);
@@ -193,7 +194,7 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
 #[test]
 fn the_parts_that_stand_carry_their_weight_to_the_springings() {
     let arch = semicircle();
-    let ring = arch.chain().ring();
+    let ring = arch.chain().profile(0);
     let linkage = &arch.link(0).unwrap().mechanism;
     let a = arch.chain().link(0).unwrap().mechanism.hinges_rad()[0];
     let line = linkage.thrust_line(&motion(linkage, 0.02, 0.1, 0.0));
@@ -206,7 +207,7 @@ fn the_parts_that_stand_carry_their_weight_to_the_springings() {
 #[test]
 fn at_rest_the_line_stays_inside_up_to_the_onset() {
     for arch in arches() {
-        let ring = arch.chain().ring();
+        let ring = arch.chain().profile(0);
         let limit_g = arch.incipient_g();
         for part in [-1.0, -0.7, 0.0, 0.3, 0.999] {
             let body_force = Vector2::new(part * limit_g, -1.0);
@@ -218,8 +219,8 @@ fn at_rest_the_line_stays_inside_up_to_the_onset() {
                 ring,
                 body_force,
             );
-            let load = line.at(ring.embrace_rad()).linear - line.at(0.0).linear;
-            let mass = ring.moments_to(ring.embrace_rad()).mass;
+            let load = line.at(ring.end()).linear - line.at(0.0).linear;
+            let mass = ring.moments_to(ring.end()).mass;
             assert!((load - body_force * mass).norm() < 1e-14);
         }
         // Mirror images ask the same.
@@ -348,8 +349,8 @@ fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
         if arch.chain().sites() != HingeSites::Anywhere {
             continue;
         }
-        let ring = *arch.chain().ring();
-        let weight = ring.moments_to(ring.embrace_rad()).mass;
+        let ring = arch.arch().ring();
+        let weight = ring.moments_to(ring.end()).mass;
         let linkage = &arch.link(0).unwrap().mechanism;
         let lines = motions(linkage)
             .into_iter()
@@ -370,13 +371,13 @@ fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
             // Samples 2e-8 rad apart miss less than rounding. Far outside the top is the kink where the
             // normal force becomes too small to count, which is found to 1e-6 rad; and the friction jumps at
             // hinges, and may be largest just after one.
-            let excess = densest(ring.embrace_rad(), |angle| of(angle).excess_ratio);
+            let excess = densest(ring.end(), |angle| of(angle).excess_ratio);
             let tolerance = if excess < 1.0 { 1e-9 } else { 1e-7 * excess };
             assert!(
                 (demand.excess_ratio - excess).abs() < tolerance,
                 "{demand:?} {excess}"
             );
-            let friction = densest(ring.embrace_rad(), |angle| of(angle).friction);
+            let friction = densest(ring.end(), |angle| of(angle).friction);
             let above = (demand.friction - friction) / (1.0 + friction);
             assert!(above.abs() < 1e-6, "{demand:?} {friction}");
         }
@@ -461,7 +462,7 @@ fn lines(model: &impl Model, ground: &GroundMotion) -> Vec<Sample> {
 #[test]
 fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
     let arch = seven_voussoirs();
-    let ring = *arch.chain().ring();
+    let ring = arch.arch().ring();
     let sections = arch.arch().thrust_sections_rad();
     assert_eq!(sections, ring.sections(7));
     let mut swayed = [0, 0];

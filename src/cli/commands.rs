@@ -5,11 +5,10 @@ use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use archrock::dynamics::model::MechanismModel;
+use archrock::dynamics::model::{FourLinkModel, MechanismModel};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::equivalent::{Block, Equivalent};
-use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::friction::{self, FrictionError};
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::stability::onset;
@@ -31,12 +30,15 @@ pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
 pub fn limit(
     file: &ScenarioFile,
     format: Format,
-    plot: Option<(&Path, Figure)>,
+    plot: Option<(&Path, Figure, Sway)>,
 ) -> Result<(), Failure> {
     let scenario = file.open()?.read(None)?;
-    if let Some((plot, figure)) = plot {
-        let arch = arch(&scenario, "--plot is")?;
-        write_picture(plot, &pictures::limit(figure, arch.chain()))?;
+    if let Some((plot, figure, first)) = plot {
+        let model = four_links(&scenario, "--plot is")?;
+        write_picture(
+            plot,
+            &pictures::limit(figure, model.chain_from(first), first),
+        )?;
     }
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
     let (mut json, mut text) = if let Structure::Masonry(masonry) = &scenario.structure {
@@ -175,18 +177,12 @@ fn friction_text(row: &Row, coefficient: f64) -> Result<String, FrictionError> {
     Ok(text)
 }
 
-/// The arch of a scenario; the error for a column begins with `what`, subject and verb.
-pub fn arch(scenario: &Scenario, what: &str) -> Result<FourLinkArch, Failure> {
-    match &scenario.structure {
-        Structure::Arch(arch) => FourLinkArch::new(arch.clone(), scenario.impact)
-            .map_err(|error| Failure::Input(error.to_string())),
-        Structure::Column(_) => Err(Failure::Input(format!(
-            "{what} for arches only; the scenario has a column"
-        ))),
-        Structure::Masonry(_) => Err(Failure::Input(format!(
-            "{what} for circular arches without piers and loads"
-        ))),
-    }
+/// The four links of a scenario; the error for a column begins with `what`, subject and verb.
+pub fn four_links(scenario: &Scenario, what: &str) -> Result<Box<dyn FourLinkModel>, Failure> {
+    let model = scenario.structure.four_links(scenario.impact);
+    model
+        .map_err(|error| Failure::Input(error.to_string()))?
+        .ok_or_else(|| Failure::Input(format!("{what} for arches only; the scenario has a column")))
 }
 
 /// Writes a picture to the file named by `--plot`.

@@ -4,26 +4,27 @@ use std::fmt::Write as _;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use archrock::dynamics::model::MechanismModel;
+use archrock::dynamics::model::{FourLinkModel, MechanismModel};
 use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, joints_rad, project,
 };
-use archrock::mechanics::four_link::chain::ArchLink;
 use archrock::mechanics::four_link::impact::{
     Impact, ImpactModel, closing_field, impact as impact_by,
 };
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::four_link::resultant::{Extremes, Extremum};
+use archrock::mechanics::geometry::profile::Profile;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::sway::Sway;
+use archrock::output::impact::LinkImpact;
 use archrock::output::{Folder, impact as output, pictures};
 use archrock::scenario::{Scenario, Structure};
 use serde_json::json;
 
 use super::commands::{self, degrees, pretty};
 use super::figure::FigureOption;
+use super::first::FirstOption;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, print};
 
@@ -37,6 +38,8 @@ pub struct Arguments {
     /// The impact for --models, --certificate, --line and --plot, numbered from 1.
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     link: u16,
+    #[command(flatten)]
+    first: FirstOption,
     /// Compare the impact models.
     #[arg(long)]
     models: bool,
@@ -66,43 +69,27 @@ impl Arguments {
     }
 }
 
-/// The impact that was asked about.
-struct Chosen<'a> {
-    index: usize,
-    before: &'a ArchLink,
-    /// `None` when no mechanism can follow.
-    after: Option<&'a ArchLink>,
-}
-
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.open()?.read(None)?;
-    let arch = match &scenario.structure {
-        Structure::Column(_) | Structure::Masonry(_) if !arguments.of_arches_only() => {
-            let model = commands::model(&scenario)?;
-            let count = arguments.count.into();
-            let (right, left) = (Sway::Right, Sway::Left);
-            let both = matches!(scenario.structure, Structure::Masonry(_));
-            return match arguments.format {
-                Format::Json if both => print(&pretty(&json!({
-                    "impacts": output::chain(&*model, right, count),
-                    "impacts_after_left": output::chain(&*model, left, count),
-                }))),
-                Format::Json => print(&pretty(
-                    &json!({ "impacts": output::chain(&*model, right, count) }),
-                )),
-                Format::Text => {
-                    let mut text = chain_text(&scenario, &*model, right, count);
-                    if both {
-                        text.push('\n');
-                        text += &chain_text(&scenario, &*model, left, count);
-                    }
-                    print(&text)
-                }
-            };
-        }
-        _ => commands::arch(&scenario, "--models, --certificate, --line and --plot are")?,
+    let (first, count) = (arguments.first.get(), usize::from(arguments.count));
+    if matches!(scenario.structure, Structure::Column(_)) && !arguments.of_arches_only() {
+        let model = commands::model(&scenario)?;
+        return match arguments.format {
+            Format::Json => print(&pretty(
+                &json!({ "impacts": output::chain(&*model, first, count) }),
+            )),
+            Format::Text => print(&chain_text(&scenario, &*model, first, count)),
+        };
+    }
+    let options = "--models, --certificate, --line and --plot are";
+    let model = commands::four_links(&scenario, options)?;
+    let model = &*model;
+    let asked = LinkImpact {
+        model,
+        first,
+        index: arguments.link.into(),
     };
-    let chosen = || choose(&arch, arguments.link.into());
+    let chosen = || choose(asked);
     if let Some(path) = &arguments.line {
         let others = arguments.models || arguments.certificate || arguments.plot.is_some();
         if path == Path::new("-") && others {
@@ -112,13 +99,14 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
                     .to_owned(),
             ));
         }
-        write_line(path, &arch, &chosen()?)?;
+        write_line(path, &chosen()?)?;
         if path == Path::new("-") {
             return Ok(());
         }
     }
     if let Some(plot) = &arguments.plot {
-        let picture = pictures::impact(arguments.figure.get(), arch.chain(), chosen()?.index);
+        chosen()?;
+        let picture = pictures::impact(arguments.figure.get(), &asked);
         let picture = picture.ok_or_else(|| {
             Failure::Input(format!(
                 "--plot: impact {} stops the arch; there is no mechanism after it to draw",
@@ -129,69 +117,84 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     }
     let models = arguments
         .models
-        .then(|| Ok::<_, Failure>(models(&scenario, &arch, &chosen()?)))
+        .then(|| Ok::<_, Failure>(models(&scenario, &chosen()?)))
         .transpose()?;
     let certificate = arguments
         .certificate
-        .then(|| certify(&arch, &chosen()?, arguments.joints))
+        .then(|| certify(&chosen()?, arguments.joints))
         .transpose()?;
-    let (count, link) = (usize::from(arguments.count), usize::from(arguments.link));
+    // An arch of equal voussoirs, or of none, is its own mirror image, and so is its chain.
+    let sides = match scenario.structure {
+        Structure::Masonry(_) => vec![Sway::Right, Sway::Left],
+        _ => vec![first],
+    };
     match arguments.format {
         Format::Json => {
-            let mut result = json!({ "impacts": output::impacts(&arch, count) });
+            let keys = ["impacts", "impacts_after_left"].into_iter();
+            let mut result: serde_json::Value = keys
+                .zip(sides)
+                .map(|(key, side)| (key.to_owned(), output::impacts(model, side, count)))
+                .collect();
             if let Some(models) = &models {
-                result["models"] = output::models(&arch, link, models);
+                result["models"] = output::models(&asked, models);
             }
             if let Some(projection) = &certificate {
-                let after = chosen()?.after;
-                result["certificate"] = output::certificate(&arch, link, after, projection);
+                result["certificate"] = output::certificate(&asked, projection);
             }
             print(&pretty(&result))
         }
         Format::Text => {
-            let mut text = chain_text(&scenario, &arch, Sway::Right, count);
-            text += &impulses_text(&arch, count);
+            let chains = sides.into_iter().map(|side| {
+                chain_text(&scenario, model, side, count) + &impulses_text(model, side, count)
+            });
+            let mut text = chains.collect::<Vec<_>>().join("\n");
             if let Some(models) = &models {
-                text += &models_text(&arch, link, models);
+                text += &models_text(&asked, models);
             }
             if let Some(projection) = &certificate {
-                text += &certificate_text(&scenario, &arch, &chosen()?, projection);
+                text += &certificate_text(&scenario, &asked, projection);
             }
             print(&text)
         }
     }
 }
 
-fn choose(arch: &FourLinkArch, index: usize) -> Result<Chosen<'_>, Failure> {
-    let before = arch.chain().link(index - 1).ok_or_else(|| {
+/// An impact with the mechanism that closes.
+struct Chosen<'a> {
+    impact: LinkImpact<'a>,
+    before: &'a FourLink,
+}
+
+fn choose(impact: LinkImpact<'_>) -> Result<Chosen<'_>, Failure> {
+    let before = impact.before().ok_or_else(|| {
         Failure::Input(format!(
-            "--link {index}: an earlier impact stops the arch; give a smaller number"
+            "--link {}: an earlier impact stops the arch; give a smaller number",
+            impact.index
         ))
     })?;
     Ok(Chosen {
-        index,
-        before,
-        after: arch.chain().link(index),
+        impact,
+        before: &before.mechanism,
     })
 }
 
-fn write_line(path: &Path, arch: &FourLinkArch, chosen: &Chosen<'_>) -> Result<(), Failure> {
-    let after = chosen.after.ok_or_else(|| {
+fn write_line(path: &Path, chosen: &Chosen<'_>) -> Result<(), Failure> {
+    let impact = &chosen.impact;
+    let after = impact.after().ok_or_else(|| {
         Failure::Input(format!(
             "--line: no mechanism can follow impact {}, so it has no impulse line",
-            chosen.index
+            impact.index
         ))
     })?;
-    let line = after.impulse_line.as_ref().ok_or_else(|| {
+    let line = impact.line().ok_or_else(|| {
         Failure::Input(
             "--line: a prescribed restitution coefficient has no impulse line; \
              choose another impact model in the scenario"
                 .to_owned(),
         )
     })?;
-    let write = |writer: &mut dyn io::Write| {
-        output::write_line(writer, arch, chosen.index, &after.mechanism, line)
-    };
+    let write =
+        |writer: &mut dyn io::Write| output::write_line(writer, impact, &after.mechanism, line);
     if path == Path::new("-") {
         return Ok(write(&mut io::stdout().lock())?);
     }
@@ -213,11 +216,7 @@ fn write_line(path: &Path, arch: &FourLinkArch, chosen: &Chosen<'_>) -> Result<(
 }
 
 /// The models that the momentum theorems govern, and a prescribed one if the scenario has it.
-fn models(
-    scenario: &Scenario,
-    arch: &FourLinkArch,
-    chosen: &Chosen<'_>,
-) -> Vec<(ImpactModel, Option<Impact>)> {
+fn models(scenario: &Scenario, chosen: &Chosen<'_>) -> Vec<(ImpactModel, Option<Impact>)> {
     let mut models = vec![
         ImpactModel::MaxRestitution,
         ImpactModel::SameSections,
@@ -226,34 +225,25 @@ fn models(
     if !models.contains(&scenario.impact.model) {
         models.push(scenario.impact.model);
     }
-    let (mechanism, chain) = (&chosen.before.mechanism, arch.chain());
+    let (profile, sites) = (chosen.impact.profile(), chosen.impact.chain().sites());
     models
         .into_iter()
-        .map(|model| {
-            (
-                model,
-                impact_by(mechanism, chain.ring(), chain.sites(), model),
-            )
-        })
+        .map(|model| (model, impact_by(chosen.before, profile, sites, model)))
         .collect()
 }
 
-fn certify(
-    arch: &FourLinkArch,
-    chosen: &Chosen<'_>,
-    joints: Option<u16>,
-) -> Result<Projection, Failure> {
-    let (ring, sites) = (arch.chain().ring(), arch.chain().sites());
+fn certify(chosen: &Chosen<'_>, joints: Option<u16>) -> Result<Projection, Failure> {
+    let (profile, sites) = (chosen.impact.profile(), chosen.impact.chain().sites());
     if let (HingeSites::Voussoirs(count), Some(_)) = (sites, joints) {
         return Err(Failure::Input(format!(
             "--joints: the arch has {count} voussoirs, whose joints are used; leave it out"
         )));
     }
     let joints = joints.map_or(DEFAULT_JOINTS, usize::from);
-    let mechanism = chosen.after.map(|link| &link.mechanism);
-    let joints_rad = joints_rad(ring, sites, joints, mechanism);
-    let closing = closing_field(&chosen.before.mechanism, ring);
-    project(&closing, ring, &joints_rad).map_err(|error| Failure::Work(error.to_string()))
+    let mechanism = chosen.impact.after().map(|link| &link.mechanism);
+    let joints_rad = joints_rad(profile, sites, joints, mechanism);
+    let closing = closing_field(chosen.before, profile);
+    project(&closing, profile, &joints_rad).map_err(|error| Failure::Work(error.to_string()))
 }
 
 /// The chain of mechanisms of any structure.
@@ -308,28 +298,68 @@ fn chain_text(
         let sway = first.before(index);
         let _ = write!(text, "{index:>6}  {restitution:>8}  {:5}  ", sway.name());
         for hinge in model.hinges_after(index, sway) {
-            let _ = match hinge {
-                Hinge::Section { angle_rad, edge } => {
-                    write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge))
-                }
-                Hinge::Toe(side) => write!(text, "{:>12}", format!("{} toe", side.name())),
-                Hinge::Joint { joint, edge } => {
-                    let edge = edge.map_or("", initial);
-                    write!(text, "{:>12}", format!("joint {joint} {edge}"))
-                }
-            };
+            text += &hinge_text(hinge);
         }
         text.push('\n');
     }
     text
 }
 
-fn hinges(arch: &FourLinkArch, mechanism: &FourLink, sway: Sway) -> String {
-    let mut text = String::new();
-    for (angle_rad, edge) in mechanism.hinges_from_left(arch.chain().ring(), sway) {
-        let _ = write!(text, "{:>10.5} {}", degrees(angle_rad), initial(edge));
+/// A hinge in a column of a table.
+fn hinge_text(hinge: Hinge) -> String {
+    match hinge {
+        Hinge::Section { angle_rad, edge } => {
+            format!("{:>10.5} {}", degrees(angle_rad), initial(edge))
+        }
+        Hinge::Toe(side) => format!("{:>12}", format!("{} toe", side.name())),
+        Hinge::Joint { joint, edge } => {
+            let edge = edge.map_or("", initial);
+            format!("{:>12}", format!("joint {joint} {edge}"))
+        }
     }
-    text
+}
+
+/// How the sections of a structure are spoken of.
+struct Words {
+    /// What it is.
+    whole: &'static str,
+    /// What a section is called in the head of a column.
+    section: &'static str,
+    /// What is told of it.
+    unit: &'static str,
+}
+
+impl Words {
+    fn of(profile: &dyn Profile) -> Self {
+        match profile.joint(0.0) {
+            Some(_) => Self {
+                whole: "row",
+                section: "joint",
+                unit: "its joint",
+            },
+            None => Self {
+                whole: "ring",
+                section: "section",
+                unit: "its section in degrees",
+            },
+        }
+    }
+}
+
+/// A section as in tables: degrees or the number of a joint.
+fn section_text(profile: &dyn Profile, section: f64) -> String {
+    match profile.joint(section) {
+        Some(joint) => joint.to_string(),
+        None => format!("{:.3}", degrees(section)),
+    }
+}
+
+/// Where a section is, in a sentence.
+fn place_text(near: &str, profile: &dyn Profile, section: f64) -> String {
+    match profile.joint(section) {
+        Some(joint) => format!("at joint {joint}"),
+        None => format!("{near} {:.2} deg", degrees(section)),
+    }
 }
 
 fn initial(edge: Edge) -> &'static str {
@@ -339,12 +369,16 @@ fn initial(edge: Edge) -> &'static str {
     }
 }
 
-fn impulses_text(arch: &FourLinkArch, count: usize) -> String {
-    let unit = arch.impulse_unit_n_s_per_m();
+fn impulses_text(model: &dyn FourLinkModel, first: Sway, count: usize) -> String {
+    let unit = model.impulse_unit_n_s_per_m();
     let lines = || {
         (1..=count).map_while(|index| {
-            let line = arch.chain().link(index)?.impulse_line.as_ref()?;
-            Some((index, line))
+            let impact = LinkImpact {
+                model,
+                first,
+                index,
+            };
+            Some((impact, impact.line()?))
         })
     };
     if lines().next().is_none() {
@@ -360,9 +394,9 @@ fn impulses_text(arch: &FourLinkArch, count: usize) -> String {
         }
     }
     text.push('\n');
-    for (index, line) in lines() {
-        let _ = write!(text, "{index:>6}");
-        for impulse in line.hinge_impulses_from_left(output::sway(index)) {
+    for (impact, line) in lines() {
+        let _ = write!(text, "{:>6}", impact.index);
+        for impulse in line.hinge_impulses_from_left(impact.sway()) {
             let _ = write!(
                 text,
                 "{:>11.5e}{:>11.5e}",
@@ -372,11 +406,21 @@ fn impulses_text(arch: &FourLinkArch, count: usize) -> String {
         }
         text.push('\n');
     }
-    text += "\nimpulse line: eccentricity e (0.5 t is the edge), smallest normal impulse N in the same unit,\n\
-             largest ratio of tangential impulse T to N, each with its section in degrees\n\n\
-             impact      |e|/t   section        min N   section      |T|/N   section\n";
-    for (index, line) in lines() {
-        let extremes = line.extremes_from_left(arch.chain().sites(), output::sway(index));
+    let profile = model.chain_from(first).profile(0);
+    let Words {
+        section,
+        unit: with,
+        ..
+    } = Words::of(profile);
+    let _ = writeln!(
+        text,
+        "\nimpulse line: eccentricity e (0.5 t is the edge), smallest normal impulse N in the same unit,\n\
+         largest ratio of tangential impulse T to N, each with {with}\n\n\
+         impact      |e|/t   {section:>7}        min N   {section:>7}      |T|/N   {section:>7}"
+    );
+    let at = |extremum: Extremum| section_text(profile, extremum.angle_rad);
+    for (impact, line) in lines() {
+        let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
         // Both are infinite where there is tension.
         let ratio = |extremum: Extremum| match extremum.value {
             value if value.is_finite() => format!("{value:>9.5}"),
@@ -384,54 +428,60 @@ fn impulses_text(arch: &FourLinkArch, count: usize) -> String {
         };
         let _ = writeln!(
             text,
-            "{index:>6}  {}  {:>8.3}  {:>11.5e}  {:>8.3}  {}  {:>8.3}  {}",
+            "{:>6}  {}  {:>8}  {:>11.5e}  {:>8}  {}  {:>8}  {}",
+            impact.index,
             ratio(extremes.eccentricity_ratio),
-            degrees(extremes.eccentricity_ratio.angle_rad),
+            at(extremes.eccentricity_ratio),
             extremes.normal.value * unit,
-            degrees(extremes.normal.angle_rad),
+            at(extremes.normal),
             ratio(extremes.friction_ratio),
-            degrees(extremes.friction_ratio.angle_rad),
-            verdict(&extremes),
+            at(extremes.friction_ratio),
+            verdict(&extremes, profile),
         );
     }
     text
 }
 
-fn verdict(extremes: &Extremes) -> &'static str {
+fn verdict(extremes: &Extremes, profile: &dyn Profile) -> String {
     if extremes.is_admissible() {
-        "admissible"
+        "admissible".to_owned()
     } else if extremes.normal.value <= 0.0 {
-        "in tension"
+        "in tension".to_owned()
     } else {
-        "leaves the ring"
+        format!("leaves the {}", Words::of(profile).whole)
     }
 }
 
-fn models_text(
-    arch: &FourLinkArch,
-    index: usize,
-    models: &[(ImpactModel, Option<Impact>)],
-) -> String {
+fn models_text(asked: &LinkImpact<'_>, models: &[(ImpactModel, Option<Impact>)]) -> String {
     let mut text = format!(
-        "\nimpact models compared, impact {index}\n\n\
+        "\nimpact models compared, impact {}{}\n\n\
          model                    r   {:>12}{:>12}{:>12}{:>12}   impulse line\n",
-        "A", "B", "C", "D"
+        asked.index,
+        asked.after_first(),
+        "A",
+        "B",
+        "C",
+        "D"
     );
-    let sway = output::sway(index);
+    let (profile, sway) = (asked.profile(), asked.sway());
     for (model, impact) in models {
         let _ = write!(text, "{:<16}", model.name());
         let Some(impact) = impact else {
             text += "  no mechanism can follow\n";
             continue;
         };
-        let line = impact.impulse_line.as_ref().map_or("none", |line| {
-            verdict(&line.extremes_from_left(arch.chain().sites(), sway))
-        });
+        let sites = asked.chain().sites();
+        let line = impact.impulse_line.as_ref();
+        let line = line.map_or_else(
+            || "none".to_owned(),
+            |line| verdict(&line.extremes_from_left(sites, sway), profile),
+        );
+        let hinges = impact.mechanism.named_hinges_from_left(profile, sway);
         let _ = writeln!(
             text,
             "{:>10.6}   {}   {line}",
             impact.restitution,
-            hinges(arch, &impact.mechanism, sway)
+            hinges.map(hinge_text).concat()
         );
     }
     text
@@ -439,46 +489,47 @@ fn models_text(
 
 fn certificate_text(
     scenario: &Scenario,
-    arch: &FourLinkArch,
-    chosen: &Chosen<'_>,
+    asked: &LinkImpact<'_>,
     projection: &Projection,
 ) -> String {
-    let four_link = chosen.after.map_or(0.0, |link| link.link.restitution);
+    let four_link = asked.after().map_or(0.0, |link| link.link.restitution);
     let gap = projection.restitution - four_link;
-    let sway = output::sway(chosen.index);
+    let (profile, sway) = (asked.profile(), asked.sway());
+    let whole = Words::of(profile).whole;
     let mut text = format!(
-        "\ncertificate of impact {}: largest restitution of any motion that opens joints and closes none\n\
+        "\ncertificate of impact {}{}: largest restitution of any motion that opens joints and closes none\n\
          (any number of hinges; {} joints)\n\n\
          r, four hinges, model {:<16} {four_link:>12.8}\n\
          r, any number of hinges                {:>12.8}\n\
          gap                                    {gap:>12.8}\n\n",
-        chosen.index,
+        asked.index,
+        asked.after_first(),
         projection.joints.len(),
         scenario.impact.model.name(),
         projection.restitution,
     );
-    if let Some(line) = chosen.after.and_then(|link| link.impulse_line.as_ref()) {
-        let extremes = line.extremes_from_left(arch.chain().sites(), sway);
+    if let Some(line) = asked.line() {
+        let extremes = line.extremes_from_left(asked.chain().sites(), sway);
         let eccentricity = extremes.eccentricity_ratio;
         let _ = if extremes.is_admissible() {
             writeln!(
                 text,
-                "The impulse line of the four hinges is compressive and inside the ring: no admissible motion\n\
+                "The impulse line of the four hinges is compressive and inside the {whole}: no admissible motion\n\
                  keeps more energy, so the four hinges are certified."
             )
         } else if extremes.normal.value <= 0.0 {
             writeln!(
                 text,
-                "The impulse line of the four hinges is in tension near {:.2} deg: more hinges keep more energy.",
-                degrees(extremes.normal.angle_rad)
+                "The impulse line of the four hinges is in tension {}: more hinges keep more energy.",
+                place_text("near", profile, extremes.normal.angle_rad)
             )
         } else {
             writeln!(
                 text,
-                "The impulse line of the four hinges leaves the ring by {:.2} % of the thickness at {:.2} deg: \
+                "The impulse line of the four hinges leaves the {whole} by {:.2} % of the thickness {}: \
                  other\nhinges keep more energy, {}.",
                 100.0 * (eccentricity.value - 0.5),
-                degrees(eccentricity.angle_rad),
+                place_text("at", profile, eccentricity.angle_rad),
                 if gap > 1e-6 {
                     "by the gap above"
                 } else {
@@ -498,13 +549,17 @@ fn certificate_text(
         text += "No motion keeps any energy: the impact stops the arch.\n";
         return text;
     }
-    text += "The motion that keeps the most energy opens at, in degrees from the left springing\n";
-    for zone in zones(arch, sway, projection) {
-        let place = if zone.from_deg == zone.to_deg {
-            format!("{:.3}", zone.from_deg)
-        } else {
-            format!("{:.3} to {:.3}", zone.from_deg, zone.to_deg)
-        };
+    text += match profile.joint(0.0) {
+        Some(_) => "The motion that keeps the most energy opens at joints, counted from the left\n",
+        None => {
+            "The motion that keeps the most energy opens at, in degrees from the left springing\n"
+        }
+    };
+    for zone in zones(asked, projection) {
+        let mut place = section_text(profile, zone.from);
+        if zone.from != zone.to {
+            place += &format!(" to {}", section_text(profile, zone.to));
+        }
         let _ = writeln!(
             text,
             "  {place:>20}  {}  by {:.5} rad per rad of closing",
@@ -515,11 +570,11 @@ fn certificate_text(
     text
 }
 
-/// Neighbouring joints of a continuous ring that open about the same edge, or a joint of voussoirs.
+/// Neighbouring joints of a continuous ring that open about the same edge, or one joint.
 struct Zone {
     edge: Edge,
-    from_deg: f64,
-    to_deg: f64,
+    from: f64,
+    to: f64,
     /// Sum of their rotation rates.
     rate: f64,
     /// The last of them.
@@ -527,32 +582,32 @@ struct Zone {
 }
 
 /// The zones that open, from the left springing.
-fn zones(arch: &FourLinkArch, sway: Sway, projection: &Projection) -> Vec<Zone> {
+fn zones(asked: &LinkImpact<'_>, projection: &Projection) -> Vec<Zone> {
     let mut zones: Vec<Zone> = Vec::new();
     for (joint, edge, rate) in projection.opened() {
-        let angle_rad = projection.joints[joint].angle_rad;
-        let angle_deg = degrees(sway.from_left(arch.chain().ring(), angle_rad));
+        let section = projection.joints[joint].angle_rad;
+        let section = asked.sway().from_left(asked.profile(), section);
         let continues = |zone: &&mut Zone| {
-            arch.chain().sites() == HingeSites::Anywhere
+            asked.chain().sites() == HingeSites::Anywhere
                 && zone.edge == edge
                 && zone.joint + 1 == joint
         };
         match zones.iter_mut().find(continues) {
             Some(zone) => {
-                zone.from_deg = zone.from_deg.min(angle_deg);
-                zone.to_deg = zone.to_deg.max(angle_deg);
+                zone.from = zone.from.min(section);
+                zone.to = zone.to.max(section);
                 zone.rate += rate;
                 zone.joint = joint;
             }
             None => zones.push(Zone {
                 edge,
-                from_deg: angle_deg,
-                to_deg: angle_deg,
+                from: section,
+                to: section,
                 rate,
                 joint,
             }),
         }
     }
-    zones.sort_by(|a, b| a.from_deg.total_cmp(&b.from_deg));
+    zones.sort_by(|a, b| a.from.total_cmp(&b.from));
     zones
 }

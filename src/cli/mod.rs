@@ -8,6 +8,7 @@ mod chart;
 mod check;
 mod commands;
 mod figure;
+mod first;
 mod impact;
 mod init;
 mod map;
@@ -29,6 +30,7 @@ use archrock::scenario::{Scenario, ScenarioErrors};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use figure::FigureOption;
+use first::FirstOption;
 use scenario_file::ScenarioFile;
 
 /// Simulates masonry arches and free-standing columns that rock under ground motion.
@@ -58,6 +60,8 @@ enum Command {
         /// Also draw the mechanism and the thrust line to this SVG file.
         #[arg(long, value_name = "FILE")]
         plot: Option<PathBuf>,
+        #[command(flatten)]
+        first: FirstOption,
         #[command(flatten)]
         figure: FigureOption,
     },
@@ -147,9 +151,11 @@ pub fn main() -> ExitCode {
             scenario,
             format,
             plot,
+            first,
             figure,
         } => {
-            let plot = plot.as_deref().map(|path| (path, figure.get()));
+            let plot = plot.as_deref();
+            let plot = plot.map(|path| (path, figure.get(), first.get()));
             commands::limit(&scenario, format, plot)
         }
         Command::Impact(arguments) => impact::impact(&arguments),

@@ -14,6 +14,7 @@ use crate::argument::{ArgumentError, above, within};
 use crate::mechanics::capacity::Displaced;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
+use crate::mechanics::four_link::chain::Chain;
 use crate::mechanics::sway::Sway;
 
 /// A structure under ground motion, as a model of its motion.
@@ -112,6 +113,16 @@ pub trait MechanismModel: Model {
         ground: &GroundMotion,
         request: &Request,
     ) -> Result<Option<Sway>, SimulationError>;
+}
+
+/// A model that rocks as four links, hinges at sections of a ring or at joints of a row of blocks, and what only such a
+/// model has.
+pub trait FourLinkModel: MechanismModel {
+    /// Its chain of mechanisms after a first sway to this side.
+    fn chain_from(&self, first: Sway) -> &Chain;
+
+    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
+    fn impulse_unit_n_s_per_m(&self) -> f64;
 }
 
 /// Smallest rotation that a structure can be released from: the energy of a smaller one may vanish in rounding.

@@ -8,23 +8,71 @@ use serde_json::{Value, json};
 
 use super::OutputError;
 use super::mechanisms::hinges;
-use crate::dynamics::model::MechanismModel;
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::four_link::arch::FourLinkArch;
+use crate::dynamics::model::{FourLinkModel, MechanismModel};
 use crate::mechanics::four_link::certificate::Projection;
-use crate::mechanics::four_link::chain::ArchLink;
+use crate::mechanics::four_link::chain::{ArchLink, Chain};
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
 
-/// The sway of a link of the chain that begins with a sway to the right.
-#[must_use]
-pub const fn sway(link: usize) -> Sway {
-    if link.is_multiple_of(2) {
-        Sway::Right
-    } else {
-        Sway::Left
+/// The impact that leads to a link of the chain of four links after a first sway to one side.
+#[derive(Clone, Copy, Debug)]
+pub struct LinkImpact<'a> {
+    /// What rocks.
+    pub model: &'a dyn FourLinkModel,
+    /// The first sway.
+    pub first: Sway,
+    /// Number of the impact, from 1, and of the link that it leads to.
+    pub index: usize,
+}
+
+impl<'a> LinkImpact<'a> {
+    /// The chain.
+    #[must_use]
+    pub fn chain(&self) -> &'a Chain {
+        self.model.chain_from(self.first)
+    }
+
+    /// The mechanism that closes; `None` when an impact before this one stops the structure.
+    #[must_use]
+    pub fn before(&self) -> Option<&'a ArchLink> {
+        self.chain().link(self.index.checked_sub(1)?)
+    }
+
+    /// The mechanism that follows; `None` when none can.
+    #[must_use]
+    pub fn after(&self) -> Option<&'a ArchLink> {
+        self.chain().link(self.index)
+    }
+
+    /// The impulses; `None` also where the restitution coefficient is prescribed.
+    #[must_use]
+    pub fn line(&self) -> Option<&'a ImpulseLine> {
+        self.after()?.impulse_line.as_ref()
+    }
+
+    /// Which chain, after its number, in words: none of that which begins with a sway to the right, as all do that are told
+    /// without a side.
+    #[must_use]
+    pub const fn after_first(&self) -> &'static str {
+        match self.first {
+            Sway::Right => "",
+            Sway::Left => " after a first sway to the left",
+        }
+    }
+
+    /// The side to which the mechanism after it sways.
+    #[must_use]
+    pub const fn sway(&self) -> Sway {
+        self.first.before(self.index)
+    }
+
+    /// The profile in the frame in which that sway goes right.
+    #[must_use]
+    pub fn profile(&self) -> &'a dyn Profile {
+        self.chain().profile(self.index)
     }
 }
 
@@ -49,26 +97,27 @@ pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Value
         .collect()
 }
 
-/// The same for an arch, with the impulses and the extremes of the impulse line.
+/// The same for four links, with the impulses and the extremes of the impulse line.
 #[must_use]
-pub fn impacts(arch: &FourLinkArch, count: usize) -> Value {
-    let mut impacts = chain(arch, Sway::Right, count);
-    for (index, impact) in (1..).zip(&mut impacts) {
-        let line = arch
-            .chain()
-            .link(index)
-            .and_then(|link| link.impulse_line.as_ref());
-        impact["impulses"] = line.map(|line| impulses(arch, line, sway(index))).into();
-        impact["impulse_line"] = line.map(|line| extremes(arch, line, sway(index))).into();
+pub fn impacts(model: &dyn FourLinkModel, first: Sway, count: usize) -> Value {
+    let mut impacts = chain(model, first, count);
+    for (index, told) in (1..).zip(&mut impacts) {
+        let impact = LinkImpact {
+            model,
+            first,
+            index,
+        };
+        told["impulses"] = impact.line().map(|line| impulses(&impact, line)).into();
+        told["impulse_line"] = impact.line().map(|line| extremes(&impact, line)).into();
     }
     impacts.into()
 }
 
-fn impulses(arch: &FourLinkArch, line: &ImpulseLine, sway: Sway) -> Value {
-    let unit = arch.impulse_unit_n_s_per_m();
+fn impulses(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
+    let unit = impact.model.impulse_unit_n_s_per_m();
     let names = ["a", "b", "c", "d"].into_iter();
     names
-        .zip(line.hinge_impulses_from_left(sway))
+        .zip(line.hinge_impulses_from_left(impact.sway()))
         .map(|(hinge, impulse)| {
             json!({
                 "hinge": hinge,
@@ -79,40 +128,61 @@ fn impulses(arch: &FourLinkArch, line: &ImpulseLine, sway: Sway) -> Value {
         .collect()
 }
 
+/// A section, counted from the left, as it is told: what it is called, and its value.
+fn section(profile: &dyn Profile, section: f64) -> (&'static str, Value) {
+    match profile.joint(section) {
+        Some(joint) => ("joint", joint.into()),
+        None => ("angle_deg", section.to_degrees().into()),
+    }
+}
+
 /// Extremes of the line; values that are infinite, because there is tension, become null.
-fn extremes(arch: &FourLinkArch, line: &ImpulseLine, sway: Sway) -> Value {
-    let extremes = line.extremes_from_left(arch.chain().sites(), sway);
-    json!({
-        "admissible": extremes.is_admissible(),
-        "largest_eccentricity_ratio": extremes.eccentricity_ratio.value,
-        "largest_eccentricity_angle_deg": extremes.eccentricity_ratio.angle_rad.to_degrees(),
-        "least_normal_n_s_per_m": extremes.normal.value * arch.impulse_unit_n_s_per_m(),
-        "least_normal_angle_deg": extremes.normal.angle_rad.to_degrees(),
-        "largest_tangential_ratio": extremes.friction_ratio.value,
-        "largest_tangential_angle_deg": extremes.friction_ratio.angle_rad.to_degrees(),
-    })
+fn extremes(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
+    let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
+    let unit = impact.model.impulse_unit_n_s_per_m();
+    let mut told = json!({ "admissible": extremes.is_admissible() });
+    for (what, value, extremum, unit) in [
+        (
+            "largest_eccentricity",
+            "largest_eccentricity_ratio",
+            extremes.eccentricity_ratio,
+            1.0,
+        ),
+        (
+            "least_normal",
+            "least_normal_n_s_per_m",
+            extremes.normal,
+            unit,
+        ),
+        (
+            "largest_tangential",
+            "largest_tangential_ratio",
+            extremes.friction_ratio,
+            1.0,
+        ),
+    ] {
+        told[value] = (extremum.value * unit).into();
+        let (called, at) = section(impact.profile(), extremum.angle_rad);
+        told[format!("{what}_{called}")] = at;
+    }
+    told
 }
 
-fn sections(arch: &FourLinkArch, impact: &Impact, sway: Sway) -> [Hinge; 4] {
-    let hinges = impact.mechanism.hinges_from_left(arch.chain().ring(), sway);
-    hinges.map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
-}
-
-/// Comparison of the impact models, for the impact that leads to link `index`; null where by a model no
-/// mechanism can follow.
+/// Comparison of the impact models; null where by a model no mechanism can follow.
 #[must_use]
-pub fn models(
-    arch: &FourLinkArch,
-    index: usize,
-    models: &[(ImpactModel, Option<Impact>)],
-) -> Value {
-    let after = |impact: &Impact| {
-        let sway = sway(index);
+pub fn models(impact: &LinkImpact<'_>, models: &[(ImpactModel, Option<Impact>)]) -> Value {
+    let sway = impact.sway();
+    let after = |by_model: &Impact| {
+        let mechanism = &by_model.mechanism;
+        let line = by_model.impulse_line.as_ref();
         json!({
-            "restitution": impact.restitution,
-            "after": { "sway": sway.name(), "hinges": hinges(&sections(arch, impact, sway)) },
-            "impulses": impact.impulse_line.as_ref().map(|line| impulses(arch, line, sway)),
-            "impulse_line": impact.impulse_line.as_ref().map(|line| extremes(arch, line, sway)),
+            "restitution": by_model.restitution,
+            "after": {
+                "sway": sway.name(),
+                "hinges": hinges(&mechanism.named_hinges_from_left(impact.profile(), sway)),
+            },
+            "impulses": line.map(|line| impulses(impact, line)),
+            "impulse_line": line.map(|line| extremes(impact, line)),
         })
     };
     models
@@ -123,19 +193,15 @@ pub fn models(
 
 /// The projection onto all admissible fields beside the link that the chain takes, if any mechanism can follow.
 #[must_use]
-pub fn certificate(
-    arch: &FourLinkArch,
-    index: usize,
-    link: Option<&ArchLink>,
-    projection: &Projection,
-) -> Value {
-    let sway = sway(index);
-    let ring = arch.chain().ring();
+pub fn certificate(impact: &LinkImpact<'_>, projection: &Projection) -> Value {
+    let (sway, profile) = (impact.sway(), impact.profile());
     let mut opened: Vec<Value> = projection
         .opened()
         .map(|(joint, edge, rate)| {
+            let from_left = sway.from_left(profile, projection.joints[joint].angle_rad);
+            let (called, at) = section(profile, from_left);
             json!({
-                "angle_deg": sway.from_left(ring, projection.joints[joint].angle_rad).to_degrees(),
+                called: at,
                 "edge": edge.name(),
                 "opening_rate_ratio": rate,
             })
@@ -144,14 +210,13 @@ pub fn certificate(
     if sway == Sway::Left {
         opened.reverse();
     }
-    let four_link = link.map_or(0.0, |link| link.link.restitution);
-    let line = link.and_then(|link| link.impulse_line.as_ref());
-    let admissible = line.map(|line| {
-        line.extremes_from_left(arch.chain().sites(), sway)
+    let four_link = impact.after().map_or(0.0, |link| link.link.restitution);
+    let admissible = impact.line().map(|line| {
+        line.extremes_from_left(impact.chain().sites(), sway)
             .is_admissible()
     });
     json!({
-        "index": index,
+        "index": impact.index,
         "joints": projection.joints.len(),
         "restitution_four_link": four_link,
         "restitution_all_fields": projection.restitution,
@@ -161,11 +226,11 @@ pub fn certificate(
     })
 }
 
-/// Smallest number of parts of the ring between the rows of an impulse line.
+/// Smallest number of parts of a ring between the rows of an impulse line.
 const LINE_PARTS: usize = 720;
 
-/// Writes the impulse line of the impact that leads to link `index` as CSV: a row at each section of a fine
-/// division of the ring, every joint of voussoirs and every hinge, from the left springing.
+/// Writes the impulse line of an impact as CSV, from the left springing: of a ring a row at each section of a fine
+/// division, every joint of voussoirs and every hinge; of a row of blocks one at every joint.
 ///
 /// The eccentricity is left empty where no impulse crosses a section.
 ///
@@ -173,44 +238,40 @@ const LINE_PARTS: usize = 720;
 /// When the system refuses.
 pub fn write_line(
     writer: impl Write,
-    arch: &FourLinkArch,
-    index: usize,
+    impact: &LinkImpact<'_>,
     mechanism: &FourLink,
     line: &ImpulseLine,
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the impulse line";
+    let (unit, profile, sway) = (
+        impact.model.impulse_unit_n_s_per_m(),
+        impact.profile(),
+        impact.sway(),
+    );
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record([
-        "angle_deg",
+        section(profile, 0.0).0,
         "eccentricity_ratio",
         "normal_n_s_per_m",
         "tangential_n_s_per_m",
     ])
     .map_err(OutputError::csv(WHAT))?;
-    let (unit, ring, sway) = (
-        arch.impulse_unit_n_s_per_m(),
-        arch.chain().ring(),
-        sway(index),
-    );
-    let mut angles_rad = ring.sections(match arch.chain().sites() {
+    let mut sections = profile.sections(match impact.chain().sites() {
         HingeSites::Anywhere => LINE_PARTS,
         HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
     });
-    angles_rad.extend(
-        mechanism
-            .hinges_from_left(ring, sway)
-            .map(|(angle_rad, _)| angle_rad),
-    );
-    angles_rad.sort_by(f64::total_cmp);
-    angles_rad.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-    for angle_rad in angles_rad {
-        let section = line.section_from_left(angle_rad, sway);
-        let eccentricity_ratio = section.eccentricity_ratio;
+    let hinges = mechanism.hinges_from_left(profile, sway);
+    sections.extend(hinges.map(|(section, _)| section));
+    sections.sort_by(f64::total_cmp);
+    sections.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+    for at in sections {
+        let resultant = line.section_from_left(at, sway);
+        let eccentricity_ratio = resultant.eccentricity_ratio;
         csv.serialize((
-            angle_rad.to_degrees(),
+            section(profile, at).1,
             eccentricity_ratio.is_finite().then_some(eccentricity_ratio),
-            section.normal * unit,
-            section.tangential * unit,
+            resultant.normal * unit,
+            resultant.tangential * unit,
         ))
         .map_err(OutputError::csv(WHAT))?;
     }

@@ -1,8 +1,10 @@
 //! Pictures of mechanisms: incipient rocking, and an impact (Fig. 10 of the paper).
 
+use std::fmt::Write as _;
+
 use nalgebra::Vector2;
 
-use super::impact;
+use super::impact::LinkImpact;
 use super::svg::{Anchor, Drawing, Figure, Stroke, color};
 use crate::mechanics::chain::Mechanism as _;
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
@@ -10,7 +12,8 @@ use crate::mechanics::four_link::impact::closing_field;
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::four_link::resultant::ResultantLine;
 use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
 /// Part of the way to its limit position at which a mechanism is drawn, so that one sees it open.
@@ -19,36 +22,67 @@ const DRAWN_PART: f64 = 0.25;
 /// Eccentricity, in parts of the thickness, beyond which a line of resultants is cut off.
 const DRAWN_ECCENTRICITY: f64 = 1.5;
 
-/// Places a ring of unit mean radius on the sheet.
-struct Place {
-    ring: Ring,
-    center: Vector2<f64>,
-    /// Pixels per mean radius.
+/// Parts of a ring between the points of a line of resultants; of a row of blocks they are at the joints.
+const LINE_PARTS: usize = 720;
+
+/// Places a structure of unit size on the sheet.
+struct Place<'a> {
+    chain: &'a Chain,
+    /// First sway of the chain.
+    first: Sway,
+    origin: Vector2<f64>,
+    /// Pixels per size.
     scale: f64,
+    /// Lowest point of the structure at rest.
+    bottom: f64,
 }
 
-impl Place {
-    /// In a rectangle of that width, with the crown at `top`.
-    fn new(ring: &Ring, middle: f64, top: f64, width: f64) -> Self {
-        let outer = ring.radius(Edge::Extrados);
-        let half = outer * (0.5 * ring.embrace_rad()).sin();
-        let scale = 0.5 * width / half;
-        Self {
-            ring: *ring,
-            center: Vector2::new(middle, top + outer * scale),
-            scale,
-        }
+/// Left, lower, right and upper bound of a structure at rest.
+fn bounds(profile: &dyn Profile) -> [f64; 4] {
+    let end = profile.end();
+    let Some(outlines) = profile.outlines(0.0, end) else {
+        let outer = |section| profile.point(section, Edge::Extrados);
+        let lowest = profile.point(0.0, Edge::Intrados).y;
+        return [outer(0.0).x, lowest, outer(end).x, outer(0.5 * end).y];
+    };
+    let corners = outlines.iter().flatten();
+    let nothing = [1.0, 1.0, -1.0, -1.0].map(|sign| sign * f64::INFINITY);
+    corners.fold(nothing, |[left, low, right, high], corner| {
+        [
+            left.min(corner.x),
+            low.min(corner.y),
+            right.max(corner.x),
+            high.max(corner.y),
+        ]
+    })
+}
+
+impl<'a> Place<'a> {
+    /// In a rectangle of that width, not higher than wide, with the crown at `top`.
+    fn new(chain: &'a Chain, first: Sway, middle: f64, top: f64, width: f64) -> Self {
+        let mut place = Self {
+            chain,
+            first,
+            origin: Vector2::zeros(),
+            scale: 1.0,
+            bottom: 0.0,
+        };
+        let [left, low, right, high] = bounds(place.profile(Sway::Right));
+        place.scale = (width / (right - left)).min(width / (high - low));
+        let middle = middle - place.scale * 0.5 * (left + right);
+        place.origin = Vector2::new(middle, top + high * place.scale);
+        place.bottom = place.origin.y - place.scale * low;
+        place
+    }
+
+    /// The profile in the frame of a sway to that side.
+    fn profile(&self, sway: Sway) -> &'a dyn Profile {
+        self.chain.profile(usize::from(sway != self.first))
     }
 
     /// On the sheet, for a sway to that side, whose mirror image the coordinates are in.
     fn px(&self, point: Vector2<f64>, sway: Sway) -> Vector2<f64> {
-        self.center + Vector2::new(sway.sign() * point.x, -point.y) * self.scale
-    }
-
-    /// Lowest point of the ring at rest.
-    fn bottom(&self) -> f64 {
-        let inner = self.ring.radius(Edge::Intrados);
-        self.center.y - self.scale * inner * self.ring.radial(0.0).y
+        self.origin + Vector2::new(sway.sign() * point.x, -point.y) * self.scale
     }
 
     /// A sector, displaced.
@@ -63,33 +97,45 @@ impl Place {
         if to - from < 1e-9 {
             return;
         }
-        let corner = |angle: f64, edge: Edge| {
-            let point = self.px(pose.of(self.ring.point(angle, edge)), sway);
+        let profile = self.profile(sway);
+        let px = |point: Vector2<f64>| {
+            let point = self.px(pose.of(point), sway);
             format!("{:.3} {:.3}", point.x, point.y)
         };
-        let radius = |edge: Edge| self.ring.radius(edge) * self.scale;
-        // Seen in a mirror the arcs turn the other way.
-        let (there, back) = match sway {
-            Sway::Right => (1, 0),
-            Sway::Left => (0, 1),
-        };
-        let (inner, outer) = (radius(Edge::Intrados), radius(Edge::Extrados));
-        let path = format!(
-            "M{}A{inner:.3} {inner:.3} 0 0 {there} {}L{}A{outer:.3} {outer:.3} 0 0 {back} {}Z",
-            corner(from, Edge::Intrados),
-            corner(to, Edge::Intrados),
-            corner(to, Edge::Extrados),
-            corner(from, Edge::Extrados),
-        );
+        let mut path = String::new();
+        if let Some(outlines) = profile.outlines(from, to) {
+            for outline in outlines {
+                let corners: Vec<String> = outline.iter().map(|corner| px(*corner)).collect();
+                let _ = write!(path, "M{}Z", corners.join("L"));
+            }
+        } else {
+            let corner = |section: f64, edge: Edge| px(profile.point(section, edge));
+            let radius = |edge: Edge| profile.point(from, edge).norm() * self.scale;
+            // Seen in a mirror the arcs turn the other way.
+            let (there, back) = match sway {
+                Sway::Right => (1, 0),
+                Sway::Left => (0, 1),
+            };
+            let (inner, outer) = (radius(Edge::Intrados), radius(Edge::Extrados));
+            let _ = write!(
+                path,
+                "M{}A{inner:.3} {inner:.3} 0 0 {there} {}L{}A{outer:.3} {outer:.3} 0 0 {back} {}Z",
+                corner(from, Edge::Intrados),
+                corner(to, Edge::Intrados),
+                corner(to, Edge::Extrados),
+                corner(from, Edge::Extrados),
+            );
+        }
         drawing.path(name, &path, fill, stroke);
     }
 
     /// The joints, where there are voussoirs.
-    fn joints(&self, drawing: &mut Drawing, sites: HingeSites) {
-        if let HingeSites::Voussoirs(count) = sites {
-            for angle_rad in self.ring.sections(count) {
+    fn joints(&self, drawing: &mut Drawing) {
+        if let HingeSites::Voussoirs(count) = self.chain.sites() {
+            let profile = self.profile(Sway::Right);
+            for section in profile.sections(count) {
                 let [inner, outer] = [Edge::Intrados, Edge::Extrados]
-                    .map(|edge| self.px(self.ring.point(angle_rad, edge), Sway::Right));
+                    .map(|edge| self.px(profile.point(section, edge), Sway::Right));
                 let stroke = Stroke::new(color::GREY, 0.8, "");
                 drawing.curve("joint", [inner, outer], stroke);
             }
@@ -97,10 +143,8 @@ impl Place {
     }
 
     fn whole(&self, drawing: &mut Drawing, fill: &str, stroke: Stroke) {
-        let (all, still) = (
-            (0.0, self.ring.embrace_rad()),
-            (Pose::UNDEFORMED, Sway::Right),
-        );
+        let all = (0.0, self.profile(Sway::Right).end());
+        let still = (Pose::UNDEFORMED, Sway::Right);
         self.sector(drawing, "ring", all, still, (fill, stroke));
     }
 
@@ -129,7 +173,7 @@ impl Place {
             (looks[0], (a, b), poses[0]),
             (looks[1], (b, c), poses[1]),
             (looks[2], (c, d), poses[2]),
-            (still, (d, self.ring.embrace_rad()), none),
+            (still, (d, self.profile(sway).end()), none),
         ] {
             self.sector(drawing, name, bounds, (pose, sway), (fill, line));
         }
@@ -149,9 +193,10 @@ impl Place {
 
     /// The hinges with their letters, from the left; names `hinge A` and so on, with `mark` after the letter.
     fn hinges(&self, drawing: &mut Drawing, link: &ArchLink, sway: Sway, mark: &str) {
-        let hinges = link.mechanism.hinges_from_left(&self.ring, sway);
-        for (letter, (angle_rad, edge)) in ["A", "B", "C", "D"].into_iter().zip(hinges) {
-            let at = self.px(self.ring.point(angle_rad, edge), Sway::Right);
+        let profile = self.profile(Sway::Right);
+        let hinges = link.mechanism.hinges_from_left(profile, sway);
+        for (letter, (section, edge)) in ["A", "B", "C", "D"].into_iter().zip(hinges) {
+            let at = self.px(profile.point(section, edge), Sway::Right);
             drawing.circle(
                 &format!("hinge {letter}{mark}"),
                 at,
@@ -162,34 +207,36 @@ impl Place {
                 Edge::Intrados => -1.0,
                 Edge::Extrados => 1.0,
             };
-            let radial = self.ring.radial(angle_rad);
-            let away = Vector2::new(radial.x, -radial.y) * (side * 17.0);
+            let outward = profile.outward(section);
+            let away = Vector2::new(outward.x, -outward.y) * (side * 17.0);
             let text = at + away + Vector2::new(0.0, 4.5);
             drawing.label(text, Anchor::Middle, 0.0, &format!("{letter}{mark}"));
         }
     }
 
-    /// A line of resultants in the frame of a sway, cut off far outside the ring.
+    /// A line of resultants in the frame of a sway, cut off far outside the structure.
     fn resultants(&self, drawing: &mut Drawing, name: &str, line: &ResultantLine, sway: Sway) {
-        let sections = 720;
-        let points = (0..=sections).map(|i| {
-            let angle = self.ring.embrace_rad() * f64::from(i) / f64::from(sections);
-            let e = line.section(angle).eccentricity_ratio;
+        let profile = self.profile(sway);
+        let points = profile.sections(LINE_PARTS).into_iter().map(|section| {
+            let e = line.section(section).eccentricity_ratio;
             let e = if e.is_finite() { e } else { 0.0 };
             let e = e.clamp(-DRAWN_ECCENTRICITY, DRAWN_ECCENTRICITY);
-            let radius = 1.0 + e * self.ring.thickness_ratio();
-            self.px(self.ring.radial(angle) * radius, sway)
+            let out = profile.outward(section) * (e * profile.thickness(section));
+            self.px(profile.middle(section) + out, sway)
         });
         drawing.curve(name, points, Stroke::new(color::BLUE, 1.8, ""));
     }
 }
 
-fn shape(ring: &Ring) -> String {
-    format!(
-        "embrace angle {} deg, t/R = {}",
-        rounded(ring.embrace_rad().to_degrees()),
-        rounded(ring.thickness_ratio())
-    )
+fn shape(profile: &dyn Profile) -> String {
+    match profile.joint(profile.end()) {
+        Some(blocks) => format!("{blocks} blocks"),
+        None => format!(
+            "embrace angle {} deg, t/R = {}",
+            rounded(profile.end().to_degrees()),
+            rounded(profile.thickness(0.0))
+        ),
+    }
 }
 
 /// A number for people, without rounding residue.
@@ -201,12 +248,12 @@ fn rotations_text([left, middle, right]: [f64; 3]) -> String {
     format!("left {left:+.3}, middle {middle:+.3}, right {right:+.3} rad")
 }
 
-/// Incipient rocking to the right: the thrust line at `A_L` through its hinges, and the mechanism.
+/// Incipient rocking to one side: the thrust line at `A_L` through its hinges, and the mechanism. The chain is the one
+/// that begins with that sway.
 ///
 /// The mechanism is drawn to scale at finite rotations, at a quarter of the way to its limit position.
 #[must_use]
-pub fn limit(figure: Figure, chain: &Chain) -> String {
-    let ring = chain.ring();
+pub fn limit(figure: Figure, chain: &Chain, first: Sway) -> String {
     let link = chain
         .link(0)
         .expect("a chain begins with the mechanism that starts");
@@ -215,37 +262,38 @@ pub fn limit(figure: Figure, chain: &Chain) -> String {
     let title = format!(
         "Incipient rocking at A_L = {:.5} g; {}",
         incipient.acceleration_g,
-        shape(ring)
+        shape(chain.profile(0))
     );
     let top = drawing.title(&title);
-    let cells = Cells::new(figure);
+    let cells = Cells::new(figure, chain, first);
 
-    let (left, middle) = cells.first(ring, top);
+    let (left, middle) = cells.first(top);
     left.whole(&mut drawing, "#f4f4f4", Stroke::new(color::BLACK, 1.2, ""));
-    left.joints(&mut drawing, chain.sites());
-    left.resultants(
-        &mut drawing,
-        "thrust line",
-        &incipient.thrust_line,
-        Sway::Right,
+    left.joints(&mut drawing);
+    left.resultants(&mut drawing, "thrust line", &incipient.thrust_line, first);
+    left.hinges(&mut drawing, link, first, "");
+    let text = format!(
+        "Thrust line under gravity and a push of A_L to the {}; A to D: hinges, circles at the edge about which the arch \
+         turns",
+        first.name()
     );
-    left.hinges(&mut drawing, link, Sway::Right, "");
-    let text = "Thrust line under gravity and a push of A_L to the right; A to D: hinges, circles at the edge about \
-                which the arch turns";
-    let first_end = cells.caption(&mut drawing, middle, left.bottom(), text);
+    let first_end = cells.caption(&mut drawing, middle, left.bottom, &text);
 
-    let (right, middle) = cells.second(ring, top, first_end);
-    let rotations = right.mechanism(&mut drawing, link, Sway::Right);
+    let (right, middle) = cells.second(top, first_end);
+    let rotations = right.mechanism(&mut drawing, link, first);
     let text = format!(
         "Mechanism, to scale, at rotations (anticlockwise) of {}",
         rotations_text(rotations)
     );
-    let end = cells.caption(&mut drawing, middle, right.bottom(), &text);
+    let end = cells.caption(&mut drawing, middle, right.bottom, &text);
     drawing.finish(end.max(first_end) + 12.0)
 }
 
 /// Two arches side by side, or one below the other where there is not the room.
-struct Cells {
+struct Cells<'a> {
+    chain: &'a Chain,
+    /// First sway of the chain.
+    first: Sway,
     /// Width of a cell in pixels.
     width: f64,
     side_by_side: bool,
@@ -254,31 +302,35 @@ struct Cells {
 /// Room above an arch, for its hinges and a body that rises.
 const ABOVE_PX: f64 = 42.0;
 
-impl Cells {
-    fn new(figure: Figure) -> Self {
+impl<'a> Cells<'a> {
+    fn new(figure: Figure, chain: &'a Chain, first: Sway) -> Self {
         let columns = figure.columns(2, 340.0);
         Self {
+            chain,
+            first,
             width: figure.width_px() / if columns == 2 { 2.0 } else { 1.0 },
             side_by_side: columns == 2,
         }
     }
 
     /// The place of the first arch below `top`, and the middle of its cell.
-    fn first(&self, ring: &Ring, top: f64) -> (Place, f64) {
-        let middle = 0.5 * self.width;
-        let place = Place::new(ring, middle, top + ABOVE_PX, 0.8 * self.width);
+    fn first(&self, top: f64) -> (Place<'a>, f64) {
+        self.place(0.5 * self.width, top)
+    }
+
+    fn place(&self, middle: f64, top: f64) -> (Place<'a>, f64) {
+        let (top, width) = (top + ABOVE_PX, 0.8 * self.width);
+        let place = Place::new(self.chain, self.first, middle, top, width);
         (place, middle)
     }
 
     /// That of the second, where the first ends at `first_end`.
-    fn second(&self, ring: &Ring, top: f64, first_end: f64) -> (Place, f64) {
-        let (middle, top) = if self.side_by_side {
-            (1.5 * self.width, top)
+    fn second(&self, top: f64, first_end: f64) -> (Place<'a>, f64) {
+        if self.side_by_side {
+            self.place(1.5 * self.width, top)
         } else {
-            (0.5 * self.width, first_end)
-        };
-        let place = Place::new(ring, middle, top + ABOVE_PX, 0.8 * self.width);
-        (place, middle)
+            self.place(0.5 * self.width, first_end)
+        }
     }
 
     /// Text below an arch; returns where it ends.
@@ -288,51 +340,52 @@ impl Cells {
     }
 }
 
-/// Impact number `index`, from 1, after a first sway to the right, as Fig. 10 of the paper: the mechanisms before
-/// and after, the bodies that both together cut out of the ring (Eq. (3)), and the impulse line. `None` when
-/// this impact or one before it stops the arch.
+/// An impact as Fig. 10 of the paper: the mechanisms before and after, the bodies that both together cut out of the
+/// ring (Eq. (3)), and the impulse line. `None` when this impact or one before it stops the arch.
 #[must_use]
-pub fn impact(figure: Figure, chain: &Chain, index: usize) -> Option<String> {
-    let ring = chain.ring();
-    let (before, after) = (chain.link(index.checked_sub(1)?)?, chain.link(index)?);
-    let sway_after = impact::sway(index);
+pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
+    let (before, after) = (impact.before()?, impact.after()?);
+    let (chain, first, index) = (impact.chain(), impact.first, impact.index);
+    let (profile, sway_after) = (impact.profile(), impact.sway());
     let sway_before = sway_after.opposite();
     let mut drawing = Drawing::new(figure);
     let title = format!(
-        "Impact {index}: restitution (kinetic energy after/before) r = {:.6}; {}",
+        "Impact {index}{}: restitution (kinetic energy after/before) r = {:.6}; {}",
+        impact.after_first(),
         after.link.restitution,
-        shape(ring)
+        shape(profile)
     );
     let top = drawing.title(&title);
-    let cells = Cells::new(figure);
+    let cells = Cells::new(figure, chain, first);
     let caption = |text: &str, mark: &str, rotations: [f64; 3]| {
         let rotations = rotations_text(rotations);
         format!("{text}, hinges A{mark} to D{mark}, drawn at rotations of {rotations}")
     };
-    let (place, middle) = cells.first(ring, top);
+    let (place, middle) = cells.first(top);
     let rotations = place.mechanism(&mut drawing, before, sway_before);
     let text = caption("u before the impact", "", rotations);
-    let first_end = cells.caption(&mut drawing, middle, place.bottom(), &text);
-    let (place, middle) = cells.second(ring, top, first_end);
+    let first_end = cells.caption(&mut drawing, middle, place.bottom, &text);
+    let (place, middle) = cells.second(top, first_end);
     let rotations = place.mechanism(&mut drawing, after, sway_after);
     let text = caption("u' after the impact", "'", rotations);
-    let second_end = cells.caption(&mut drawing, middle, place.bottom(), &text);
+    let second_end = cells.caption(&mut drawing, middle, place.bottom, &text);
 
     let lower_top = first_end.max(second_end) + ABOVE_PX + 14.0;
     let (wide, middle) = (0.71 * figure.width_px(), 0.5 * figure.width_px());
-    let place = Place::new(ring, middle, lower_top, wide);
-    let closing = closing_field(&before.mechanism, ring);
+    let place = Place::new(chain, first, middle, lower_top, wide);
+    let closing = closing_field(&before.mechanism, profile);
     let field = after.mechanism.field();
     // All in the frame of the new mechanism, which is drawn in a mirror if it sways left.
     let cut = closing.minus(&field);
-    let mut bounds = [cut.cuts_rad(), &[0.0, ring.embrace_rad()]].concat();
+    let mut bounds = [cut.cuts_rad(), &[0.0, profile.end()]].concat();
     bounds.sort_by(f64::total_cmp);
     bounds.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let moves = |mechanism: [f64; 4], angle: f64| mechanism[0] < angle && angle < mechanism[3];
+    let moves =
+        |mechanism: [f64; 4], section: f64| mechanism[0] < section && section < mechanism[3];
     let hinges_before = before
         .mechanism
         .hinges_rad()
-        .map(|angle| ring.embrace_rad() - angle);
+        .map(|section| profile.end() - section);
     let [a, b, c, d] = hinges_before;
     let mut number = 0;
     // The bodies are counted from the left.
@@ -363,25 +416,38 @@ pub fn impact(figure: Figure, chain: &Chain, index: usize) -> Option<String> {
             (fill, Stroke::new(color::GREY, 0.9, "")),
         );
         if moving {
-            let out = 1.0 + 0.5 * ring.thickness_ratio() + 30.0 / place.scale;
-            let at = place.px(ring.radial(middle) * out, sway_after);
+            let at = place.px(beside(profile, middle, 30.0 / place.scale), sway_after);
             let at = at + Vector2::new(0.0, 4.5);
             drawing.label(at, Anchor::Middle, 0.0, &number.to_string());
         }
     }
     place.whole(&mut drawing, "none", Stroke::new(color::BLACK, 1.2, ""));
-    place.joints(&mut drawing, chain.sites());
+    place.joints(&mut drawing);
     let change = closing.minus(&field.scaled(after.link.rate_ratio));
-    let line = ResultantLine::through_hinges(ring, &after.mechanism, change);
+    let line = ResultantLine::through_hinges(profile, &after.mechanism, change);
     place.resultants(&mut drawing, "impulse line", &line, sway_after);
     place.hinges(&mut drawing, after, sway_after, "'");
-    for (angle, edge) in before.mechanism.hinges_from_left(ring, sway_before) {
-        let at = place.px(ring.point(angle, edge), Sway::Right);
+    let seen = place.profile(Sway::Right);
+    for (section, edge) in before.mechanism.hinges_from_left(seen, sway_before) {
+        let at = place.px(seen.point(section, edge), Sway::Right);
         drawing.circle("hinge before", at, 2.5, Stroke::new(color::GREY, 1.2, ""));
     }
     let text = "Impulse line through the hinges A' to D' of u', at the edges about which the arch turns after the \
                 impact; grey circles: the hinges A to D of u, which close; 1, 2 ...: the bodies that both together cut \
                 out of the arch";
-    let end = drawing.caption(place.bottom() + 34.0, text);
+    let end = drawing.caption(place.bottom + 34.0, text);
     Some(drawing.finish(end + 12.0))
+}
+
+/// Where the number of a body stands: at a distance outside the extrados of a ring. Of a row at a distance inside the
+/// intrados, as buttresses stand behind the extrados, and midway between the joints on either side.
+fn beside(profile: &dyn Profile, section: f64, distance: f64) -> Vector2<f64> {
+    let at = |section: f64, edge: Edge, out: f64| {
+        profile.point(section, edge) + profile.outward(section) * out
+    };
+    if profile.joint(section).is_none() {
+        return at(section, Edge::Extrados, distance);
+    }
+    let at = |section: f64| at(section, Edge::Intrados, -distance);
+    (at(section.floor()) + at(section.ceil())) * 0.5
 }

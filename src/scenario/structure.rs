@@ -12,7 +12,7 @@ use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Table};
 use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
-use crate::dynamics::model::MechanismModel;
+use crate::dynamics::model::{FourLinkModel, MechanismModel};
 use crate::mechanics::arch::{self, Arch};
 use crate::mechanics::blocks::MAX_BLOCKS;
 use crate::mechanics::column::{Column, RockingColumn};
@@ -103,7 +103,22 @@ impl Structure {
         Ok(match self {
             Self::Arch(arch) => Box::new(FourLinkArch::new(arch.clone(), impact)?),
             Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
-            Self::Masonry(masonry) => Box::new(FourLinkRow::new(masonry.row(), impact)?),
+            Self::Masonry(masonry) => Box::new(four_link_row(masonry, impact)?),
+        })
+    }
+
+    /// The same as four links, with what only they have; `None` for a column.
+    ///
+    /// # Errors
+    /// When it does not rock as four links.
+    pub fn four_links(
+        &self,
+        impact: impl Into<ImpactLaw>,
+    ) -> Result<Option<Box<dyn FourLinkModel>>, FourLinkError> {
+        Ok(match self {
+            Self::Arch(arch) => Some(Box::new(FourLinkArch::new(arch.clone(), impact)?)),
+            Self::Column(_) => None,
+            Self::Masonry(masonry) => Some(Box::new(four_link_row(masonry, impact)?)),
         })
     }
 
@@ -149,6 +164,15 @@ impl Structure {
         };
         model.with_options(options)
     }
+}
+
+/// A row of blocks as four links, as deep as the scenario says.
+fn four_link_row(
+    masonry: &Masonry,
+    impact: impl Into<ImpactLaw>,
+) -> Result<FourLinkRow, FourLinkError> {
+    let depth_m = masonry.shape.material().depth_m;
+    Ok(FourLinkRow::new(masonry.row(), impact)?.with_depth_m(depth_m)?)
 }
 
 /// What a table of a structure says.

@@ -296,7 +296,7 @@ impl FreeHinges {
                 }
                 let hinges_rad = chain.incipient().mechanism.hinges_rad();
                 let bodies_rad = link.mechanism.rotations(initial.rotation_rad);
-                let sections_rad = chain.ring().sections(*voussoirs);
+                let sections_rad = chain.profile(0).sections(*voussoirs);
                 let body = |middle_rad: f64| {
                     let before = hinges_rad
                         .iter()

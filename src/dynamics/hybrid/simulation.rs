@@ -14,11 +14,16 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{
     Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
 };
-use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError};
+use crate::dynamics::model::{
+    FourLinkModel, MechanismModel, Model, Recorder, Request, SimulationError,
+};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::capacity::{Displaced, displaced};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
+use crate::mechanics::four_link::arch::FourLinkArch;
+use crate::mechanics::four_link::chain::Chain;
+use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 
@@ -145,6 +150,26 @@ impl<C: MechanismChain> MechanismModel for C {
             &rocking,
             request.relative_tolerance,
         )?)
+    }
+}
+
+impl FourLinkModel for FourLinkArch {
+    fn chain_from(&self, _first: Sway) -> &Chain {
+        self.chain()
+    }
+
+    fn impulse_unit_n_s_per_m(&self) -> f64 {
+        self.impulse_unit_n_s_per_m()
+    }
+}
+
+impl FourLinkModel for FourLinkRow {
+    fn chain_from(&self, first: Sway) -> &Chain {
+        self.chain(first)
+    }
+
+    fn impulse_unit_n_s_per_m(&self) -> f64 {
+        self.impulse_unit_n_s_per_m()
     }
 }
 

@@ -11,7 +11,7 @@ use crate::argument::ArgumentError;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::chain::{Demand, Hinge, Link, MechanismChain, Motion};
 use crate::mechanics::contact::ContactError;
-use crate::mechanics::geometry::ring::Ring;
+use crate::mechanics::geometry::profile::Profile as _;
 use crate::mechanics::sway::Sway;
 
 /// An arch with its chain of four-link mechanisms under an impact model. The chain depends on neither size nor
@@ -19,7 +19,7 @@ use crate::mechanics::sway::Sway;
 #[derive(Clone, Debug)]
 pub struct FourLinkArch {
     arch: Arch,
-    chains: Chains<Ring>,
+    chains: Chains,
 }
 
 /// Why an arch does not rock as four-link mechanisms.
@@ -60,7 +60,8 @@ impl FourLinkArch {
         let law = law.into();
         law.check()?;
         let incipient = arch.incipient()?.clone();
-        let chain = Chain::new([arch.ring(); 2], arch.sites(), incipient, law);
+        let ring = arch.ring().shared();
+        let chain = Chain::new([ring.clone(), ring], arch.sites(), incipient, law);
         Ok(Self {
             arch,
             chains: Chains::symmetric(chain),
@@ -136,12 +137,7 @@ impl MechanismChain for FourLinkArch {
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        let hinges = self.chains.hinges(impacts, sway);
-        hinges.map_or(Vec::new(), |hinges| {
-            hinges
-                .map(|(angle_rad, edge)| Hinge::Section { angle_rad, edge })
-                .to_vec()
-        })
+        self.chains.hinges(impacts, sway)
     }
 
     fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {

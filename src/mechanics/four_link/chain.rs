@@ -14,9 +14,8 @@ use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
 use super::thrust::ThrustLine;
-use crate::mechanics::chain::{Demand, Link};
+use crate::mechanics::chain::{Demand, Hinge, Link};
 use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::{Edge, Ring};
 use crate::mechanics::sway::Sway;
 
 /// A link whose hinges are this close to those of the link two before it closes the chain into a repeating
@@ -56,9 +55,9 @@ impl ArchLink {
 /// A profile with its chain of mechanisms: everything about an arch that does not depend on its size, its
 /// density or the ground motion.
 #[derive(Debug)]
-pub struct Chain<P = Ring> {
+pub struct Chain {
     /// As seen in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
-    profiles: [P; 2],
+    profiles: [Arc<dyn Profile>; 2],
     sites: HingeSites,
     law: ImpactLaw,
     incipient: Incipient,
@@ -68,19 +67,11 @@ pub struct Chain<P = Ring> {
     pair: OnceLock<usize>,
 }
 
-impl Chain<Ring> {
-    /// The ring.
-    #[must_use]
-    pub const fn ring(&self) -> &Ring {
-        &self.profiles[0]
-    }
-}
-
-impl<P: Profile> Chain<P> {
+impl Chain {
     /// The chain of a profile and its mirror image under an impact law, from its onset by
     /// [`incipient`](super::limit::incipient_of).
     pub(crate) fn new(
-        profiles: [P; 2],
+        profiles: [Arc<dyn Profile>; 2],
         sites: HingeSites,
         incipient: Incipient,
         law: ImpactLaw,
@@ -97,8 +88,8 @@ impl<P: Profile> Chain<P> {
 
     /// The profile in the frame in which the mechanism after so many impacts sways right.
     #[must_use]
-    pub const fn profile(&self, impacts: usize) -> &P {
-        &self.profiles[impacts % 2]
+    pub fn profile(&self, impacts: usize) -> &dyn Profile {
+        &*self.profiles[impacts % 2]
     }
 
     /// Where hinges may form.
@@ -167,24 +158,14 @@ impl<P: Profile> Chain<P> {
 
 /// The chains after a first sway to the right and to the left: one and the same of a structure that is its own mirror
 /// image.
-#[derive(Debug)]
-pub(crate) struct Chains<P> {
-    right: Arc<Chain<P>>,
-    left: Arc<Chain<P>>,
+#[derive(Clone, Debug)]
+pub(crate) struct Chains {
+    right: Arc<Chain>,
+    left: Arc<Chain>,
 }
 
-// Not derived, because that would require the profile to be `Clone`.
-impl<P> Clone for Chains<P> {
-    fn clone(&self) -> Self {
-        Self {
-            right: self.right.clone(),
-            left: self.left.clone(),
-        }
-    }
-}
-
-impl<P: Profile> Chains<P> {
-    pub fn symmetric(chain: Chain<P>) -> Self {
+impl Chains {
+    pub fn symmetric(chain: Chain) -> Self {
         let right = Arc::new(chain);
         Self {
             left: right.clone(),
@@ -192,14 +173,14 @@ impl<P: Profile> Chains<P> {
         }
     }
 
-    pub fn new(right: Chain<P>, left: Chain<P>) -> Self {
+    pub fn new(right: Chain, left: Chain) -> Self {
         Self {
             right: Arc::new(right),
             left: Arc::new(left),
         }
     }
 
-    pub fn from(&self, first: Sway) -> &Chain<P> {
+    pub fn from(&self, first: Sway) -> &Chain {
         match first {
             Sway::Right => &self.right,
             Sway::Left => &self.left,
@@ -219,11 +200,15 @@ impl<P: Profile> Chains<P> {
         self.thrust_at_rest(body_force_g).demand(self.right.sites())
     }
 
-    /// Sections, counted from the left, and edges of the hinges after so many impacts, when that sways to this side.
-    pub fn hinges(&self, impacts: usize, sway: Sway) -> Option<[(f64, Edge); 4]> {
+    /// Hinges from left to right after so many impacts, when that sways to this side.
+    pub fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
         let chain = self.from(sway.before(impacts));
-        let mechanism = &chain.link(impacts)?.mechanism;
-        Some(mechanism.hinges_from_left(chain.profile(impacts), sway))
+        chain.link(impacts).map_or(Vec::new(), |link| {
+            let profile = chain.profile(impacts);
+            link.mechanism
+                .named_hinges_from_left(profile, sway)
+                .to_vec()
+        })
     }
 
     pub fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
@@ -241,11 +226,17 @@ mod tests {
     use crate::mechanics::chain::Mechanism as _;
     use crate::mechanics::four_link::impact::ImpactModel;
     use crate::mechanics::four_link::limit::incipient;
+    use crate::mechanics::geometry::ring::Ring;
 
     fn chain(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Chain {
         let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
         let onset = incipient(&ring, sites).unwrap();
-        Chain::new([ring; 2], sites, onset, ImpactModel::MaxRestitution.into())
+        Chain::new(
+            [ring.shared(), ring.shared()],
+            sites,
+            onset,
+            ImpactModel::MaxRestitution.into(),
+        )
     }
 
     #[test]

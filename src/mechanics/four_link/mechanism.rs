@@ -7,6 +7,7 @@
 
 use nalgebra::Vector2;
 
+use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::field::{Field, Twist};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
@@ -91,6 +92,22 @@ impl FourLink {
                 EDGES[3 - i],
             ),
         })
+    }
+
+    /// The same as hinges with the names of their sections: angles of a ring, joints of a row.
+    #[must_use]
+    pub fn named_hinges_from_left(&self, profile: &dyn Profile, sway: Sway) -> [Hinge; 4] {
+        self.hinges_from_left(profile, sway)
+            .map(|(section, edge)| match profile.joint(section) {
+                Some(joint) => Hinge::Joint {
+                    joint,
+                    edge: Some(edge),
+                },
+                None => Hinge::Section {
+                    angle_rad: section,
+                    edge,
+                },
+            })
     }
 
     /// Positions of the hinges.

@@ -8,6 +8,8 @@ use super::impact::ImpactLaw;
 use super::limit::{Incipient, LimitError, incipient_of};
 use super::linkage::Linkage;
 use super::mechanism::HingeSites;
+use crate::argument::{ArgumentError, within};
+use crate::mechanics::arch;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::{Demand, Hinge, Link, MechanismChain, Motion};
 use crate::mechanics::geometry::profile::{JointedProfile, Profile as _};
@@ -19,7 +21,8 @@ use crate::mechanics::sway::Sway;
 pub struct FourLinkRow {
     length_m: f64,
     mass_unit_kg: f64,
-    chains: Chains<JointedProfile>,
+    depth_m: f64,
+    chains: Chains,
 }
 
 impl FourLinkRow {
@@ -49,11 +52,12 @@ impl FourLinkRow {
             incipient_of(profile, sites).map_err(|error| FourLinkError::Row { sway, error })
         };
         let (right, left) = (onset(&own, Sway::Right)?, onset(&mirrored, Sway::Left)?);
-        let profiles = [own, mirrored];
-        let [own, mirrored] = profiles.clone();
+        let [own, mirrored] = [own, mirrored].map(|profile| profile.shared());
+        let profiles = [own.clone(), mirrored.clone()];
         Ok(Self {
             length_m: row.size_m(),
             mass_unit_kg: row.mass_kg(),
+            depth_m: arch::DEPTH_M,
             chains: Chains::new(
                 Chain::new(profiles, sites, right, law),
                 Chain::new([mirrored, own], sites, left, law),
@@ -61,10 +65,28 @@ impl FourLinkRow {
         })
     }
 
+    /// The same row with its depth out of plane in metres, which is 1 m unless given. Nothing depends on it but the metre of
+    /// depth that impulses are told for: the blocks have their masses.
+    ///
+    /// # Errors
+    /// When it is outside 0.001 to 1e6.
+    pub fn with_depth_m(self, depth_m: f64) -> Result<Self, ArgumentError> {
+        Ok(Self {
+            depth_m: within("depth_m", depth_m, arch::MAGNITUDE)?,
+            ..self
+        })
+    }
+
     /// The chain of mechanisms after a first sway to this side.
     #[must_use]
-    pub fn chain(&self, first: Sway) -> &Chain<JointedProfile> {
+    pub fn chain(&self, first: Sway) -> &Chain {
         self.chains.from(first)
+    }
+
+    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
+    #[must_use]
+    pub fn impulse_unit_n_s_per_m(&self) -> f64 {
+        self.mass_unit_kg * self.length_m / self.depth_m
     }
 }
 
@@ -108,14 +130,7 @@ impl MechanismChain for FourLinkRow {
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        let hinges = self.chains.hinges(impacts, sway);
-        hinges.map_or(Vec::new(), |hinges| {
-            let joint = |(section, edge)| Hinge::Joint {
-                joint: JointedProfile::joint(section),
-                edge: Some(edge),
-            };
-            hinges.map(joint).to_vec()
-        })
+        self.chains.hinges(impacts, sway)
     }
 
     fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {

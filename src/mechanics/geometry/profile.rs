@@ -59,6 +59,17 @@ pub trait Profile: Debug + Send + Sync {
     /// The sections that cut it into equal parts, the supports included; of a row its joints, whatever the number.
     fn sections(&self, parts: usize) -> Vec<f64>;
 
+    /// The joint that a section is; `None` where sections are angles.
+    fn joint(&self, _section: f64) -> Option<usize> {
+        None
+    }
+
+    /// The closed polygons that are drawn between two sections, one for each block; `None` where the edges are arcs about
+    /// the origin.
+    fn outlines(&self, _from: f64, _to: f64) -> Option<&[Vec<Vector2<f64>>]> {
+        None
+    }
+
     /// The same to keep.
     fn shared(&self) -> Arc<dyn Profile>;
 }
@@ -115,6 +126,8 @@ pub struct JointedProfile {
     joints: Vec<Joint>,
     /// Before every joint.
     moments: Vec<MassMoments>,
+    /// Of every block; every linkage keeps the profile.
+    outlines: Arc<[Vec<Vector2<f64>>]>,
 }
 
 impl JointedProfile {
@@ -146,6 +159,9 @@ impl JointedProfile {
                 })
                 .collect(),
             moments,
+            outlines: (row.outlines_m().iter())
+                .map(|outline| outline.iter().map(|corner| corner * per_m).collect())
+                .collect(),
         })
     }
 
@@ -156,18 +172,17 @@ impl JointedProfile {
     }
 
     /// The joint that a section is.
-    #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "sections are joints, which are few"
     )]
-    pub fn joint(section: f64) -> usize {
-        section.round().max(0.0) as usize
+    fn index(&self, section: f64) -> usize {
+        (section.round().max(0.0) as usize).min(self.joints.len() - 1)
     }
 
     fn at(&self, section: f64) -> &Joint {
-        &self.joints[Self::joint(section).min(self.joints.len() - 1)]
+        &self.joints[self.index(section)]
     }
 }
 
@@ -190,12 +205,20 @@ impl Profile for JointedProfile {
     }
 
     fn moments_to(&self, section: f64) -> MassMoments {
-        self.moments[Self::joint(section).min(self.moments.len() - 1)]
+        self.moments[self.index(section)]
     }
 
     #[expect(clippy::cast_precision_loss, reason = "joints are few")]
     fn sections(&self, _: usize) -> Vec<f64> {
         (0..self.joints.len()).map(|joint| joint as f64).collect()
+    }
+
+    fn joint(&self, section: f64) -> Option<usize> {
+        Some(self.index(section))
+    }
+
+    fn outlines(&self, from: f64, to: f64) -> Option<&[Vec<Vector2<f64>>]> {
+        self.outlines.get(self.index(from)..self.index(to))
     }
 
     fn shared(&self) -> Arc<dyn Profile> {

@@ -1,0 +1,28 @@
+//! The side to which a structure sways first.
+
+use archrock::mechanics::sway::Sway;
+use clap::ValueEnum;
+
+/// The option of commands that tell of one chain of mechanisms: a structure that is not its own mirror image has two.
+#[derive(clap::Args, Clone, Copy)]
+pub struct FirstOption {
+    /// The side to which the structure sways first.
+    #[arg(long, value_enum, value_name = "SIDE", default_value_t)]
+    first: Side,
+}
+
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum Side {
+    #[default]
+    Right,
+    Left,
+}
+
+impl FirstOption {
+    pub const fn get(self) -> Sway {
+        match self.first {
+            Side::Right => Sway::Right,
+            Side::Left => Sway::Left,
+        }
+    }
+}
