@@ -11,6 +11,7 @@ use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::output::impact::LinkImpact;
 use archrock::output::{Figure, map, pictures};
+use archrock::scenario::Structure;
 use archrock::studies::boundary::ImpactFreeBoundary;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::runner::Study as _;
@@ -315,6 +316,125 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
         .fold(0.0, |worst: f64, e| worst.max(e.abs()));
     // Published: |e|/t = 0.50199 at most; a hundredth of a pixel is 3e-4 of t.
     assert!((worst - 0.50199).abs() < 5e-4, "{worst}");
+}
+
+/// The closed polygons of a path.
+fn polygons(node: &Node<'_, '_>) -> Vec<Vec<Vector2<f64>>> {
+    let path = node.attribute("d").unwrap();
+    let point = |text: &str| {
+        let (x, y) = text.split_once(' ').unwrap();
+        Vector2::new(x.parse().unwrap(), y.parse().unwrap())
+    };
+    let polygons = path.split_terminator('Z');
+    polygons
+        .map(|polygon| polygon[1..].split('L').map(point).collect())
+        .collect()
+}
+
+/// An uneven arch on piers, whose blocks, onset and hinges are known from the row and the static programme.
+#[test]
+fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let text = "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 13\n\
+                [piers.right]\nheight_m = 2.0\nwidth_m = 1.5\n\
+                [[load]]\nmass_kg = 1500.0\nx_m = 1.0\nwidth_m = 0.5\n";
+    fs::write(folder.join("s.toml"), text).unwrap();
+    let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
+    let Structure::Masonry(masonry) = &scenario.structure else {
+        panic!("{:?}", scenario.structure);
+    };
+    let outlines_m = masonry.row().outlines_m();
+    let corner = |outlines: &[Vec<Vector2<f64>>], block: usize| outlines[block][0];
+    let printed_json = printed(folder, &["limit", "s.toml", "--format", "json"]);
+    let onset: serde_json::Value = serde_json::from_str(&printed_json).unwrap();
+    for side in ["right", "left"] {
+        let options = ["--first", side, "--plot"];
+        printed(
+            folder,
+            &[&["limit", "s.toml"], &options[..], &["l.svg"]].concat(),
+        );
+        printed(
+            folder,
+            &[&["impact", "s.toml"], &options[..], &["i.svg"]].concat(),
+        );
+        let [limit, impact] =
+            ["l.svg", "i.svg"].map(|file| fs::read_to_string(folder.join(file)).unwrap());
+        let (limit, impact) = (
+            Document::parse(&limit).unwrap(),
+            Document::parse(&impact).unwrap(),
+        );
+        let last = outlines_m.len() - 1;
+        let exact = [corner(outlines_m, 0), corner(outlines_m, last)];
+        let mut sheets = Vec::new();
+        for document in [&limit, &impact] {
+            // The structure at rest, wherever it is drawn whole: similar to its blocks.
+            let whole = named(document, "ring");
+            assert!(!whole.is_empty());
+            for node in &whole {
+                let drawn = polygons(node);
+                assert_eq!(drawn.len(), outlines_m.len());
+                let sheet = Sheet::new([corner(&drawn, 0), corner(&drawn, last)], exact);
+                for (drawn, outline_m) in drawn.iter().zip(outlines_m) {
+                    assert_eq!(drawn.len(), outline_m.len());
+                    for (drawn, corner_m) in drawn.iter().zip(outline_m) {
+                        assert!((sheet.back(*drawn) - corner_m).norm() * sheet.scale < PIXEL);
+                    }
+                }
+                sheets.push(sheet);
+            }
+        }
+        // Hinges of the first mechanism are where the static programme opens the joints, on the thrust line.
+        let mechanism = onset["mechanism"][side].as_array().unwrap();
+        assert_eq!(mechanism.len(), 4);
+        let mut line = points(&named(&limit, "thrust line")[0]);
+        assert_eq!(line.len(), outlines_m.len() + 1);
+        let mut moved: Vec<_> = named(&limit, "moved hinge").iter().map(center).collect();
+        if side == "left" {
+            // Drawn in the frame of the sway.
+            line.reverse();
+            moved.reverse();
+        }
+        for (letter, opening) in ["A", "B", "C", "D"].into_iter().zip(mechanism) {
+            let shown = center(&named(&limit, &format!("hinge {letter}"))[0]);
+            let [x_m, y_m] = ["x_m", "y_m"].map(|key| opening[key].as_f64().unwrap());
+            let exact = Vector2::new(x_m, y_m);
+            assert!((sheets[0].back(shown) - exact).norm() * sheets[0].scale < PIXEL);
+            let joint = usize::try_from(opening["joint"].as_u64().unwrap()).unwrap();
+            assert!((line[joint] - shown).norm() < PIXEL, "{letter}");
+        }
+        // Rigid bodies that share their hinges: left and middle the second, middle and right the third.
+        for (name, hinges) in [("left", [0, 1]), ("middle", [1, 2]), ("right", [2, 3])] {
+            let body = polygons(&named(&limit, name)[0]);
+            for hinge in hinges {
+                let corners = body.iter().flatten();
+                let distances = corners.map(|corner| (corner - moved[hinge]).norm());
+                assert!(
+                    distances.fold(f64::INFINITY, f64::min) < PIXEL,
+                    "{name} {hinge}"
+                );
+            }
+        }
+        let drawn: usize = ["still", "left", "middle", "right"]
+            .iter()
+            .flat_map(|name| named(&limit, name))
+            .map(|node| polygons(&node).len())
+            .sum();
+        assert_eq!(drawn, outlines_m.len());
+        // To that side: the hinge between left and middle goes there.
+        let at_rest = center(&named(&limit, "hinge B")[0]);
+        let sway = sheets[1].back(moved[1]).x - sheets[0].back(at_rest).x;
+        assert_eq!(sway > 0.0, side == "right");
+        // The impulse line passes through the hinges of the new mechanism, and all its bodies are numbered.
+        let line = points(&named(&impact, "impulse line")[0]);
+        for letter in ["A'", "B'", "C'", "D'"] {
+            let shown = center(&named(&impact, &format!("hinge {letter}"))[0]);
+            let distances = line.iter().map(|point| (point - shown).norm());
+            assert!(distances.fold(f64::INFINITY, f64::min) < PIXEL);
+        }
+        let bodies = (1..9).take_while(|n| !named(&impact, &format!("body {n}")).is_empty());
+        assert!(bodies.count() >= 3);
+    }
 }
 
 fn scenario(folder: &Path, more: &str) {

@@ -12,7 +12,7 @@ use archrock::mechanics::masonry::{
 };
 use archrock::mechanics::stability::onset;
 use archrock::scenario::{Scenario, Structure};
-use archrock::{Arch, Request, Sway};
+use archrock::{Arch, Outcome, Request, Sway};
 use nalgebra::Vector2;
 
 fn dimensions(rise_m: f64, voussoirs: usize) -> Dimensions {
@@ -254,6 +254,38 @@ fn the_arch_on_buttresses_rocks_as_elsewhere() {
     let peaks = summary.peak_rotations_rad.iter();
     let peak = peaks.fold(0.0_f64, |largest, peak| largest.max(*peak));
     assert!((peak - 0.0581).abs() < 3e-4, "{peak}");
+}
+
+/// The least amplitude of that step pair that overturns it: the prototype stands below 0.70 g and overturns from there on.
+#[test]
+fn the_arch_on_buttresses_overturns_from_where_it_does_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    buttresses(folder.path(), 64);
+    for (amplitude_g, overturns) in [(0.69, false), (0.70, true)] {
+        let scenario = parse(
+            folder.path(),
+            &format!(
+                "[blocks]\njoints = 'joints.csv'\noutlines = 'outlines.csv'\ndensity_kg_m3 = 2620\n[free_hinges]\n\
+                 [ground.step_pair]\namplitude_g = {:?}\nduration_s = 0.2\n",
+                -amplitude_g
+            ),
+        );
+        let model = scenario.model().unwrap();
+        let request = Request {
+            end_s: 12.0,
+            ..scenario.request()
+        };
+        let summary = model
+            .simulate(scenario.ground_motion(), &request, None)
+            .unwrap();
+        // What stands has its largest rotation, 0.197 rad, before 4 s, and sways by 0.05 rad at the end.
+        let expected = if overturns {
+            Outcome::Overturned(Sway::Left)
+        } else {
+            Outcome::StillRocking
+        };
+        assert_eq!(summary.outcome, expected, "{amplitude_g}");
+    }
 }
 
 /// Sector voussoirs about (0, 16.4), radii 10 and 11.5 m, from 30 to 150 degrees; buttresses 30 m high, 5 m wide,

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 /// The option of commands that tell of one chain of mechanisms: a structure that is not its own mirror image has two.
 #[derive(clap::Args, Clone, Copy)]
 pub struct FirstOption {
-    /// The side to which the structure sways first.
+    /// The side to which the structure sways first, for what is told or drawn of one side.
     #[arg(long, value_enum, value_name = "SIDE", default_value_t)]
     first: Side,
 }

@@ -325,8 +325,8 @@ struct Words {
     whole: &'static str,
     /// What a section is called in the head of a column.
     section: &'static str,
-    /// What is told of it.
-    unit: &'static str,
+    /// How the place of an extreme is told.
+    place: &'static str,
 }
 
 impl Words {
@@ -335,12 +335,12 @@ impl Words {
             Some(_) => Self {
                 whole: "row",
                 section: "joint",
-                unit: "its joint",
+                place: "its joint",
             },
             None => Self {
                 whole: "ring",
                 section: "section",
-                unit: "its section in degrees",
+                place: "its section in degrees",
             },
         }
     }
@@ -407,15 +407,11 @@ fn impulses_text(model: &dyn FourLinkModel, first: Sway, count: usize) -> String
         text.push('\n');
     }
     let profile = model.chain_from(first).profile(0);
-    let Words {
-        section,
-        unit: with,
-        ..
-    } = Words::of(profile);
+    let Words { section, place, .. } = Words::of(profile);
     let _ = writeln!(
         text,
         "\nimpulse line: eccentricity e (0.5 t is the edge), smallest normal impulse N in the same unit,\n\
-         largest ratio of tangential impulse T to N, each with {with}\n\n\
+         largest ratio of tangential impulse T to N, each with {place}\n\n\
          impact      |e|/t   {section:>7}        min N   {section:>7}      |T|/N   {section:>7}"
     );
     let at = |extremum: Extremum| section_text(profile, extremum.angle_rad);

@@ -53,8 +53,7 @@ impl<'a> LinkImpact<'a> {
         self.after()?.impulse_line.as_ref()
     }
 
-    /// Which chain, after its number, in words: none of that which begins with a sway to the right, as all do that are told
-    /// without a side.
+    /// Words that follow its number: nothing after a first sway to the right, which goes without saying.
     #[must_use]
     pub const fn after_first(&self) -> &'static str {
         match self.first {

@@ -126,7 +126,7 @@ pub struct JointedProfile {
     joints: Vec<Joint>,
     /// Before every joint.
     moments: Vec<MassMoments>,
-    /// Of every block; every linkage keeps the profile.
+    /// Of every block; shared, because every linkage keeps its profile.
     outlines: Arc<[Vec<Vector2<f64>>]>,
 }
 
