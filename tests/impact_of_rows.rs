@@ -190,6 +190,16 @@ fn a_mirror_image_is_told_as_seen_in_a_mirror() {
                 assert_same(&own[key], &seen, 1.0, key);
             }
             assert_ne!(own["impacts"][0], there["impacts"][0]);
+            // The scenario's model among the models is the impact of the chain.
+            let chain = match side {
+                "right" => &own["impacts"],
+                _ => &own["impacts_after_left"],
+            };
+            let impact = &chain[link.parse::<usize>().unwrap() - 1];
+            let model = &own["models"][0]["impact"];
+            for key in ["restitution", "after", "impulses", "impulse_line"] {
+                assert_same(&model[key], &impact[key], 1.0, key);
+            }
 
             let line = |file: &str, side: &str| -> Vec<[f64; 4]> {
                 let options = ["--line", "-", "--link", link, "--first", side];
