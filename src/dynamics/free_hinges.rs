@@ -20,7 +20,7 @@ use super::ground::GroundMotion;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::contact::ContactError;
-use crate::mechanics::joints::{Frame, Pose};
+use crate::mechanics::joints::{Frame, Placement, Pose};
 use crate::mechanics::sway::Sway;
 
 /// A row has overturned when it is lower than at rest by this part of weight times size.
@@ -357,21 +357,22 @@ pub fn simulate(
     recorder: &mut impl Recorder,
 ) -> Result<Run, FreeHingeError> {
     check(gravity_m_s2, settings)?;
-    let mut engine = Engine::new(row, ground, gravity_m_s2, settings);
-    if let Some(rotations_rad) = initial_rad {
-        engine.release(rotations_rad)?;
-    }
-    if let Some(coefficient) = settings.friction_coefficient {
-        let engine = sliding::Engine::new(
-            engine.placement(),
-            row,
-            ground,
-            gravity_m_s2,
-            settings,
-            coefficient,
-        );
-        return course::run(engine, ground, settings, recorder);
-    }
+    let released = || -> Result<Engine, FreeHingeError> {
+        let mut engine = Engine::new(row, ground, gravity_m_s2, settings);
+        if let Some(rotations_rad) = initial_rad {
+            engine.release(rotations_rad)?;
+        }
+        Ok(engine)
+    };
+    let Some(coefficient) = settings.friction_coefficient else {
+        return course::run(released()?, ground, settings, recorder);
+    };
+    let placement = if initial_rad.is_some() {
+        released()?.into_placement()
+    } else {
+        Placement::new(row)
+    };
+    let engine = sliding::Engine::new(&placement, row, ground, gravity_m_s2, settings, coefficient);
     course::run(engine, ground, settings, recorder)
 }
 

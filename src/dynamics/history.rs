@@ -122,6 +122,31 @@ pub struct Sample {
     pub offsets_m: Vec<f64>,
 }
 
+impl Sample {
+    /// A structure at rest on still ground, of which nothing else is told: all lists are empty.
+    #[must_use]
+    pub const fn at_rest(time_s: f64) -> Self {
+        Self {
+            time_s,
+            ground_acceleration_m_s2: 0.0,
+            vertical_acceleration_m_s2: 0.0,
+            phase: 0,
+            state: State::Rest,
+            rotations_rad: Vec::new(),
+            rates_rad_s: Vec::new(),
+            poses: Vec::new(),
+            hinges: Vec::new(),
+            demand: Demand::NONE,
+            energy_j: 0.0,
+            energy_ratio: None,
+            rotation_over_critical: None,
+            gaps_m: Vec::new(),
+            eccentricity_ratios: Vec::new(),
+            offsets_m: Vec::new(),
+        }
+    }
+}
+
 named! {
     /// What an event is.
     pub enum EventKind {

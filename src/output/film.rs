@@ -87,31 +87,13 @@ impl Film {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::chain::Demand;
 
     #[test]
     fn frames_are_evenly_spaced_and_end_with_the_last_sample() {
         for count in [1, 7, 8, 9, 100, 1023, 1024] {
             let mut film = Film::new(8);
             for i in 0..count {
-                film.push(&Sample {
-                    time_s: f64::from(i),
-                    ground_acceleration_m_s2: 0.0,
-                    vertical_acceleration_m_s2: 0.0,
-                    phase: 0,
-                    state: State::Rest,
-                    rotations_rad: Vec::new(),
-                    rates_rad_s: Vec::new(),
-                    poses: Vec::new(),
-                    hinges: Vec::new(),
-                    demand: Demand::NONE,
-                    energy_j: 0.0,
-                    energy_ratio: None,
-                    rotation_over_critical: None,
-                    gaps_m: Vec::new(),
-                    offsets_m: Vec::new(),
-                    eccentricity_ratios: Vec::new(),
-                });
+                film.push(&Sample::at_rest(f64::from(i)));
             }
             let times_s: Vec<f64> = film.frames().iter().map(|frame| frame.time_s).collect();
             assert!(

@@ -364,22 +364,8 @@ mod tests {
             hinges.push(hinge(2, None));
         }
         Sample {
-            time_s,
-            ground_acceleration_m_s2: 0.0,
-            vertical_acceleration_m_s2: 0.0,
-            phase: 0,
-            state: State::Rest,
-            rotations_rad: Vec::new(),
-            rates_rad_s: Vec::new(),
-            poses: Vec::new(),
             hinges,
-            demand: crate::mechanics::chain::Demand::NONE,
-            energy_j: 0.0,
-            energy_ratio: None,
-            rotation_over_critical: None,
-            gaps_m: Vec::new(),
-            eccentricity_ratios: Vec::new(),
-            offsets_m: Vec::new(),
+            ..Sample::at_rest(time_s)
         }
     }
 

@@ -167,8 +167,8 @@ impl<'a> Engine<'a> {
     }
 
     /// Where the blocks are.
-    pub(super) fn placement(&self) -> &Placement {
-        &self.placement
+    pub(super) fn into_placement(self) -> Placement {
+        self.placement
     }
 
     /// Takes up the initial rotations, at rest.
@@ -298,6 +298,17 @@ impl<'a> Engine<'a> {
             -ground - Vector2::new(0.0, self.gravity * (to_s - from_s)),
             ground,
         )
+    }
+
+    /// The rest of the last kick, up to the instant of the positions, with what touches there; the impulse of the ground in it.
+    fn half_kick(&mut self) -> Vector2<f64> {
+        let time = self.course.time;
+        let (impulse, ground) = self.impulse(time - 0.5 * self.last_step, time);
+        self.kick(impulse);
+        self.jumps.fill(Twist::ZERO);
+        self.landing.fill([0.0; 2]);
+        self.touch_shut();
+        ground
     }
 
     /// The interval of the kick of a step.
@@ -608,12 +619,7 @@ impl<'a> Engine<'a> {
     /// Completes the velocity at a landing with the old mechanism, then projects it.
     fn impact(&mut self) -> Result<(), FreeHingeError> {
         let before = self.momentum();
-        let (impulse, ground) =
-            self.impulse(self.course.time - 0.5 * self.last_step, self.course.time);
-        self.kick(impulse);
-        self.jumps.fill(Twist::ZERO);
-        self.landing.fill([0.0; 2]);
-        self.touch_shut();
+        let ground = self.half_kick();
         for (touching, closed) in self.touching.iter_mut().zip(&self.closed) {
             for edge in 0..2 {
                 touching[edge] &= closed[edge];

@@ -366,7 +366,7 @@ impl Model for FreeHinges {
             ),
             phase: 0,
             thrust: ThrustRecord::default(),
-            sample: undeformed(self.row.blocks().len()),
+            sample: Sample::at_rest(0.0),
             recorder,
         };
         let run = super::simulate(
@@ -614,27 +614,5 @@ impl RowRecorder for Relay<'_, '_> {
                 impulses_n_s: Vec::new(),
             }),
         })
-    }
-}
-
-/// A sample to begin with.
-fn undeformed(blocks: usize) -> Sample {
-    Sample {
-        time_s: 0.0,
-        ground_acceleration_m_s2: 0.0,
-        vertical_acceleration_m_s2: 0.0,
-        phase: 0,
-        state: State::Rest,
-        rotations_rad: vec![0.0; blocks],
-        rates_rad_s: vec![0.0; blocks],
-        poses: Vec::new(),
-        hinges: Vec::new(),
-        demand: Demand::NONE,
-        energy_j: 0.0,
-        energy_ratio: None,
-        rotation_over_critical: None,
-        gaps_m: Vec::new(),
-        eccentricity_ratios: Vec::new(),
-        offsets_m: Vec::new(),
     }
 }

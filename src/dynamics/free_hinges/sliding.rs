@@ -183,24 +183,24 @@ impl<'a> Engine<'a> {
     /// By how much the coordinates would be short of zero at the end of a step, did the joints move on as in the last
     /// solution, besides what their rates make of it: what they are now, and the curvature of the motion.
     fn lag(&mut self, step: f64) {
-        let moved = |positions: &[Position], program: &Program, block: usize| {
-            let v = program.velocity(block) * step;
-            let position = &positions[block];
+        let moved = |block: usize| {
+            let Some(position) = self.positions.get(block) else {
+                return Position::HELD;
+            };
+            let v = self.program.velocity(block) * step;
             Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z)
         };
-        let mut left = Position::HELD;
+        // That of the block before, where it was needed.
+        let mut left = Some(Position::HELD);
         for joint in 0..self.faces.len() {
-            let right = if joint < self.positions.len() {
-                moved(&self.positions, &self.program, joint)
-            } else {
-                Position::HELD
-            };
             let now = self.contacts[joint].coordinates_m;
             let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
             // A joint that moves as one has none, whatever straight lines say.
+            let mut right = None;
             if self.program.modes()[joint] != Mode::WHOLE {
-                let then = self.faces[joint].contact(&left, &right).coordinates_m;
-                lag += then - now - self.program.joint_rate(joint) * step;
+                let left = left.unwrap_or_else(|| moved(joint - 1));
+                let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
+                lag += then.coordinates_m - now - self.program.joint_rate(joint) * step;
             }
             self.lags[joint] = lag / step;
             left = right;

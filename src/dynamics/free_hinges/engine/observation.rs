@@ -7,7 +7,6 @@ use crate::dynamics::free_hinges::course::{Stepper as _, heading};
 use crate::dynamics::free_hinges::{FreeHingeError, Impact, Recorder, Sample, Uplift};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
 
 /// At rest, kinetic and potential energy are below this part of weight times size.
@@ -163,12 +162,7 @@ impl Engine<'_> {
 
     pub(super) fn record(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
         let before = self.momentum();
-        let (impulse, ground) =
-            self.impulse(self.course.time - 0.5 * self.last_step, self.course.time);
-        self.kick(impulse);
-        self.jumps.fill(Twist::ZERO);
-        self.landing.fill([0.0; 2]);
-        self.touch_shut();
+        let ground = self.half_kick();
         std::mem::swap(&mut self.program, &mut self.auxiliary);
         self.program.start_from(self.auxiliary.active());
         let solved = self.solve();
