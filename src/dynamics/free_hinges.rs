@@ -333,7 +333,8 @@ pub struct Run {
     pub friction_demand: f64,
     /// Energy taken by impacts, in joules, without what friction takes.
     pub energy_taken_j: f64,
-    /// Largest error of the energy balance at impacts and samples, over weight times size.
+    /// Largest error of the energy balance at impacts and samples, or, where joints slip, the largest growth of energy less the
+    /// work of the ground; over weight times size.
     pub energy_defect_ratio: f64,
     /// Largest error of closure in metres.
     pub closure_error_m: f64,
