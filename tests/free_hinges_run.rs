@@ -683,6 +683,27 @@ fn a_column_of_drums_is_released_from_its_base() {
     assert!((three.number(0, "rotation_3_rad") + 0.05).abs() < 1e-15);
 }
 
+/// Below the unstable equilibrium of its first mechanism an arch of any shape comes to rest, beyond it falls at once.
+#[test]
+fn an_arch_of_any_shape_is_released_from_its_first_mechanism() {
+    let released = |rotation_rad: f64| {
+        let text = format!(
+            "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 14\n[free_hinges]\n\
+             [initial]\nsway = \"left\"\nrotation_rad = {rotation_rad}\n"
+        );
+        summary(&Results::of(&text, &["--no-spread"]).path("summary.json"))
+    };
+    let rested = released(0.05);
+    assert_eq!(rested["outcome"], "rest");
+    assert!(rested["peak_rotation_13_rad"].as_f64().unwrap() >= 0.05);
+    let fallen = released(0.3);
+    assert_eq!(fallen["outcome"], "overturned");
+    assert_eq!(fallen["overturning_sway"], "left");
+    // Nothing moved but what was released.
+    let peak_rad = fallen["peak_rotation_13_rad"].as_f64().unwrap();
+    assert!((peak_rad - 0.3).abs() < 1e-12);
+}
+
 #[test]
 fn what_a_model_cannot_do_is_refused() {
     let whole = SEVEN.replace("voussoirs = 7\n", "");

@@ -182,8 +182,11 @@ pub fn summary(
             }));
         }
         put("half_cycles", json!(half_cycles));
-        let least_normal_n = run.least_normal_n;
-        put("least_normal_n", number("least_normal_n", least_normal_n)?);
+        // None where it was released beyond where it overturns.
+        if run.cost.steps > 0 {
+            let least_normal_n = run.least_normal_n;
+            put("least_normal_n", number("least_normal_n", least_normal_n)?);
+        }
         if let Some(thrust) = &history.thrust {
             let (name, largest) = ("largest_friction_demand", thrust.largest_friction);
             put(name, number(name, largest.value)?);

@@ -306,12 +306,11 @@ fn words(
     if let Some(run) = history.free_hinges.as_deref()
         && history.outcome != Outcome::NeverMoved
     {
-        let cycles = run.half_cycles.iter().take(FIRST).map(cycle);
-        let _ = writeln!(
-            text,
-            "  peaks of the first half cycles in rad: {}",
-            cycles.collect::<Vec<_>>().join(", ")
-        );
+        let cycles: Vec<_> = run.half_cycles.iter().take(FIRST).map(cycle).collect();
+        if !cycles.is_empty() {
+            let cycles = cycles.join(", ");
+            let _ = writeln!(text, "  peaks of the first half cycles in rad: {cycles}");
+        }
         let (peak, peaks) = (history.largest_rotation_rad(), &history.peak_rotations_rad);
         if let Some(block) = peaks.iter().rposition(|other| *other == peak) {
             let _ = writeln!(
@@ -478,6 +477,7 @@ fn sure(spread: &Spread) -> String {
     let percent = 100.0 * SAME_PEAK_RATIO;
     let same = spread.same_until_half_cycle;
     let _ = match (same, spread.parts_at_s) {
+        (0, None) => Ok(()),
         (1, None) => write!(text, ", peak of the only half cycle within {percent} %"),
         (_, None) => write!(text, ", peaks of all {same} half cycles within {percent} %"),
         (0, Some(_)) => write!(text, "; the first half cycles differ already"),

@@ -155,8 +155,14 @@ impl Course {
         }
     }
 
-    /// The row is released at rest, with this potential energy.
-    pub(super) fn released(&mut self, potential: f64, moved: bool) {
+    /// The row is released at rest, with these rotations and this potential energy.
+    pub(super) fn released(
+        &mut self,
+        rotations_rad: impl Iterator<Item = f64>,
+        potential: f64,
+        moved: bool,
+    ) {
+        self.note_peaks(rotations_rad);
         self.potential = potential;
         self.run.peak_potential_j = potential.max(0.0);
         self.moved = moved;
@@ -172,12 +178,7 @@ impl Course {
         kinetic: f64,
         sway: f64,
     ) {
-        let mut largest = 0.0_f64;
-        for (peak, rotation_rad) in self.run.peaks_rad.iter_mut().zip(rotations_rad) {
-            let rotation = rotation_rad.abs();
-            *peak = peak.max(rotation);
-            largest = largest.max(rotation);
-        }
+        let largest = self.note_peaks(rotations_rad);
         if potential >= self.potential {
             self.rising = true;
         } else if self.rising {
@@ -203,6 +204,17 @@ impl Course {
         if let Some(cycle) = &mut self.cycle {
             cycle.peak_rad = cycle.peak_rad.max(largest);
         }
+    }
+
+    /// Raises the peaks to the rotations of the blocks now; returns the largest of these.
+    fn note_peaks(&mut self, rotations_rad: impl Iterator<Item = f64>) -> f64 {
+        let mut largest = 0.0_f64;
+        for (peak, rotation_rad) in self.run.peaks_rad.iter_mut().zip(rotations_rad) {
+            let rotation = rotation_rad.abs();
+            *peak = peak.max(rotation);
+            largest = largest.max(rotation);
+        }
+        largest
     }
 
     /// Files the half cycle that ends now, with the energy that is left if it is known.

@@ -203,7 +203,8 @@ impl<'a> Engine<'a> {
         self.weigh_pieces();
         self.start_energy = self.height_energy();
         self.stands = open == 0;
-        self.course.released(self.start_energy, open > 0);
+        let rotations = self.placement.poses().iter().map(|pose| pose.rotation_rad);
+        self.course.released(rotations, self.start_energy, open > 0);
         Ok(())
     }
 

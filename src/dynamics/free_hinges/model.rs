@@ -17,11 +17,11 @@ use crate::dynamics::hybrid::integrator::Cost;
 use crate::dynamics::model::{Initial, Model, Recorder, Request, SimulationError};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::arch::Arch;
-use crate::mechanics::blocks::{Row, RowError};
+use crate::mechanics::blocks::{Row, RowError, Supports};
 use crate::mechanics::chain::{Demand, Hinge, Mechanism, MechanismChain};
 use crate::mechanics::column::Column;
-use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
@@ -95,8 +95,8 @@ impl RowOptions {
 /// What the motion of the first mechanism is known by.
 #[derive(Clone, Debug)]
 enum FirstMechanism {
-    /// Four links at the joints of an arch of so many voussoirs.
-    FourLinks(FourLinkArch, usize),
+    /// Four links.
+    FourLinks(FourLinkRow),
     /// A stack turns about an edge of its base.
     Base,
 }
@@ -119,7 +119,7 @@ pub enum FreeHingesError {
 }
 
 impl FreeHinges {
-    /// Any row that stands. It cannot be released from a rotated position unless it is a stack.
+    /// Any row that stands.
     ///
     /// # Errors
     /// When the row cannot carry its own weight.
@@ -128,7 +128,13 @@ impl FreeHinges {
             onset(&row, Sway::Right)?.map(|onset| onset.acceleration_g),
             onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
         ];
-        let first = (row.joints().len() == row.blocks().len()).then_some(FirstMechanism::Base);
+        let first = match row.supports() {
+            Supports::Left => Some(FirstMechanism::Base),
+            // An impact model is asked for, and not used: the first mechanism comes before any impact.
+            Supports::Both => FourLinkRow::new(&row, ImpactModel::MaxRestitution)
+                .ok()
+                .map(FirstMechanism::FourLinks),
+        };
         Ok(Self {
             row,
             incipient_g,
@@ -147,20 +153,13 @@ impl FreeHinges {
             value: 0.0,
             allowed: "given: free hinges open at joints".to_owned(),
         })?;
-        let row = Row::arch(
+        Self::new(Row::arch(
             &arch.ring(),
             voussoirs,
             arch.mean_radius_m(),
             arch.depth_m(),
             arch.density_kg_m3(),
-        )?;
-        let four_links = FourLinkArch::new(arch.clone(), ImpactModel::MaxRestitution);
-        Ok(Self {
-            first: four_links
-                .ok()
-                .map(|arch| FirstMechanism::FourLinks(arch, voussoirs)),
-            ..Self::new(row)?
-        })
+        )?)
     }
 
     /// The drums of a column.
@@ -227,13 +226,15 @@ impl FreeHinges {
         &self.row
     }
 
-    /// Energy that the first mechanism has to gain to overturn, in J, where it is known.
+    /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is
+    /// not known.
     #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         match &self.first {
-            Some(FirstMechanism::FourLinks(arch, _)) => {
-                let barrier = arch.link(0)?.barrier;
-                Some(gravity_m_s2 * barrier * arch.mass_unit_kg() * arch.length_m())
+            Some(FirstMechanism::FourLinks(row)) => {
+                let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));
+                let barrier = links.map(|link| link.barrier).reduce(f64::min)?;
+                Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
             }
             Some(FirstMechanism::Base) | None => match (self.row.blocks(), self.row.joints()) {
                 // One block turns about the nearer edge of its base, up to where its centre is above that.
@@ -283,32 +284,14 @@ impl FreeHinges {
             })
         };
         let blocks = self.row.blocks().len();
-        let mut rotations_rad = match &self.first {
-            Some(FirstMechanism::Base) => vec![-initial.rotation_rad; blocks],
-            Some(FirstMechanism::FourLinks(arch, voussoirs)) => {
-                let (chain, link) = (arch.chain(), arch.link(0));
-                let link = link.expect("an arch that starts as four links has its first mechanism");
-                if initial.rotation_rad >= link.limit_rad {
-                    let limit_rad = link.limit_rad;
-                    return Err(refused(format!(
-                        "below {limit_rad:?}, the limit position of the first mechanism"
-                    )));
-                }
-                let hinges_rad = chain.incipient().mechanism.hinges_rad();
-                let bodies_rad = link.mechanism.rotations(initial.rotation_rad);
-                let sections_rad = chain.profile(0).sections(*voussoirs);
-                let body = |middle_rad: f64| {
-                    let before = hinges_rad
-                        .iter()
-                        .filter(|hinge| **hinge < middle_rad)
-                        .count();
-                    before.checked_sub(1).and_then(|body| bodies_rad.get(body))
-                };
-                sections_rad
-                    .windows(2)
-                    .map(|ends| body(0.5 * (ends[0] + ends[1])).copied().unwrap_or(0.0))
-                    .collect()
-            }
+        // Swaying right, in the frame in which the mechanism does so; the other side is its mirror image.
+        let side = match initial.sway {
+            Sway::Right => 1.0,
+            Sway::Left => -1.0,
+        };
+        let row = match &self.first {
+            Some(FirstMechanism::FourLinks(row)) => row,
+            Some(FirstMechanism::Base) => return Ok(vec![-side * initial.rotation_rad; blocks]),
             None => {
                 return Err(refused(
                     "left out: this row starts as no mechanism that it could be released in"
@@ -316,15 +299,30 @@ impl FreeHinges {
                 ));
             }
         };
-        if initial.sway == Sway::Left {
-            if matches!(self.first, Some(FirstMechanism::FourLinks(..))) {
-                rotations_rad.reverse();
-            }
-            for rotation in &mut rotations_rad {
-                *rotation = -*rotation;
-            }
+        let link = row
+            .link_from(initial.sway, 0)
+            .expect("a row that starts as four links has its first mechanism");
+        if initial.rotation_rad >= link.limit_rad {
+            let limit_rad = link.limit_rad;
+            return Err(refused(format!(
+                "below {limit_rad:?}, the limit position of the first mechanism"
+            )));
         }
-        Ok(rotations_rad)
+        let mut bodies_rad = link.mechanism.rotations(initial.rotation_rad);
+        if initial.sway == Sway::Left {
+            bodies_rad.reverse();
+        }
+        let hinges = row.hinges(0, initial.sway);
+        let hinges_before = |block: usize| {
+            let before =
+                |hinge: &&Hinge| matches!(hinge, Hinge::Joint { joint, .. } if *joint <= block);
+            hinges.iter().filter(before).count()
+        };
+        let rotation_rad = |block: usize| {
+            let body = hinges_before(block).checked_sub(1);
+            side * body.and_then(|body| bodies_rad.get(body)).unwrap_or(&0.0)
+        };
+        Ok((0..blocks).map(rotation_rad).collect())
     }
 }
 

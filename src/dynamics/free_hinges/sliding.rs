@@ -116,7 +116,8 @@ impl<'a> Engine<'a> {
         let start_energy = gravity * rise(row, placement.centres_m());
         let stands = placement.shut_corners() == 2 * joints;
         if !stands {
-            course.released(start_energy, true);
+            let rotations = positions.iter().map(|position| position.rotation_rad);
+            course.released(rotations, start_energy, true);
         }
         Self {
             row,
