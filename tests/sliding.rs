@@ -449,7 +449,6 @@ fn random_histories_create_no_energy() {
     }
     assert!(failures.is_empty(), "{failures:?}");
     let found = format!("{worst:e} created, {unconverged} of {steps} steps, {slipped} slip");
-    println!("{found}");
     assert!(slipped > 10 && worst < 1e-6, "{found}");
     assert!(unconverged * 100_000 <= steps, "{found}");
 }
