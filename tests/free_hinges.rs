@@ -19,7 +19,6 @@ use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::mechanics::joints::Placement;
 use archrock::mechanics::stability::{StabilityError, falls, onset};
 use archrock::mechanics::sway::Sway;
 use archrock::{Column, Model, Request, RockingColumn};
@@ -67,7 +66,7 @@ fn projected(row: &Row, free: &[Twist]) -> (Vec<Twist>, f64) {
         jumps: &jumps,
         touching: &touching,
     };
-    program.solve(&Placement::new(row), &load).unwrap();
+    program.solve(&load).unwrap();
     let energy = |twists: &[Twist]| -> f64 {
         let blocks = row.blocks().iter().zip(twists);
         blocks

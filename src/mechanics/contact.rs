@@ -12,6 +12,8 @@
 //! method for solving strictly convex quadratic programs", Math. Programming 27, 1983), started from the last one: corners that
 //! pull are released, then the corner that closes fastest is stopped. Rows that depend on others never become active, so that
 //! rest, where the impulses are not unique, is no special case.
+//!
+//! What does not depend on the motion, bodies and pivots from the left up to where corners change, is kept from solution to solution.
 
 use std::ops::Range;
 
@@ -76,40 +78,36 @@ struct Body {
     inverse_mass: f64,
     inverse_inertia: f64,
     centre: Vector2<f64>,
-    velocity: Vector2<f64>,
-    rate: f64,
 }
 
 impl Body {
     /// A body whose motion is prescribed.
-    fn held(twist: Twist) -> Self {
-        Self {
-            inverse_mass: 0.0,
-            inverse_inertia: 0.0,
-            centre: Vector2::zeros(),
-            velocity: twist.at_center,
-            rate: twist.rate,
-        }
-    }
+    const HELD: Self = Self {
+        inverse_mass: 0.0,
+        inverse_inertia: 0.0,
+        centre: Vector2::new(0.0, 0.0),
+    };
 
-    fn free(moments: &MassMoments, momentum: &Momentum) -> Self {
+    fn free(moments: &MassMoments) -> Self {
         let inverse_mass = 1.0 / moments.mass;
         let centre = moments.first * inverse_mass;
-        let inverse_inertia = 1.0 / (moments.polar - moments.first.dot(&centre));
         Self {
             inverse_mass,
-            inverse_inertia,
+            inverse_inertia: 1.0 / (moments.polar - moments.first.dot(&centre)),
             centre,
-            velocity: momentum.linear * inverse_mass,
-            rate: momentum.about(centre) * inverse_inertia,
         }
     }
 
-    fn motion(&self) -> Motion {
+    fn is_held(&self) -> bool {
+        self.inverse_mass == 0.0
+    }
+
+    /// Its motion with a momentum.
+    fn motion(&self, momentum: &Momentum) -> Motion {
         Motion {
             centre: self.centre,
-            velocity: self.velocity,
-            rate: self.rate,
+            velocity: momentum.linear * self.inverse_mass,
+            rate: momentum.about(self.centre) * self.inverse_inertia,
         }
     }
 }
@@ -123,6 +121,15 @@ struct Motion {
 }
 
 impl Motion {
+    /// Of a body that a support holds.
+    fn held(twist: Twist) -> Self {
+        Self {
+            centre: Vector2::zeros(),
+            velocity: twist.at_center,
+            rate: twist.rate,
+        }
+    }
+
     fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
         let arm = point - self.centre;
         self.velocity + Vector2::new(-arm.y, arm.x) * self.rate
@@ -204,6 +211,9 @@ pub struct Program {
     handedness: f64,
     masses: Vec<(f64, f64)>,
     active: Vec<Corners>,
+    frames: Vec<Frame>,
+    /// Mass moments of every block.
+    own: Vec<MassMoments>,
     /// Sums over the blocks before each joint.
     moments: Vec<MassMoments>,
     momenta: Vec<Momentum>,
@@ -211,6 +221,11 @@ pub struct Program {
     datum: Vec<Twist>,
     bodies: Vec<Body>,
     pins: Vec<Pin>,
+    /// The least pivot up to each pin, over what it would be without the other rows.
+    least: Vec<f64>,
+    /// The active set that bodies and pins are of, at the joints before `factored`.
+    factored_active: Vec<Corners>,
+    factored: usize,
     answer: Answer,
     response: Answer,
     velocities: Vec<Twist>,
@@ -220,7 +235,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// A program for the row that starts with all joints of a stack shut, or with an arch of three pins.
+    /// A program for the undeformed row that starts with all joints of a stack shut, or with an arch of three pins.
     #[must_use]
     pub fn new(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
@@ -233,19 +248,44 @@ impl Program {
                 .map(|b| (b.mass_kg, b.inertia_kg_m2))
                 .collect(),
             active: vec![[true; 2]; joints],
+            frames: Vec::with_capacity(joints),
+            own: vec![NO_MASS; blocks],
             moments: vec![NO_MASS; blocks + 1],
             momenta: vec![Momentum::ZERO; blocks + 1],
             datum: vec![Twist::ZERO; blocks + 1],
             bodies: Vec::with_capacity(joints + 1),
             pins: Vec::with_capacity(joints),
+            least: Vec::with_capacity(joints),
+            factored_active: vec![[true; 2]; joints],
+            factored: 0,
             answer: Answer::with_capacity(joints),
             response: Answer::with_capacity(joints),
             velocities: vec![Twist::ZERO; blocks],
             force_floor: 0.0,
             wrong: Vec::with_capacity(2 * joints),
         };
+        program.place(&Placement::new(row));
         program.reset();
         program
+    }
+
+    /// Takes the positions of the blocks.
+    pub fn place(&mut self, placement: &Placement) {
+        self.frames.clear();
+        self.frames.extend_from_slice(placement.frames());
+        let mut moments = NO_MASS;
+        for (block, centre) in placement.centres_m().iter().enumerate() {
+            let (mass, inertia) = self.masses[block];
+            let own = MassMoments {
+                mass,
+                first: centre * mass,
+                polar: inertia + mass * centre.norm_squared(),
+            };
+            moments = moments + own;
+            self.own[block] = own;
+            self.moments[block + 1] = moments;
+        }
+        self.factored = 0;
     }
 
     /// Goes back to the active set of the beginning.
@@ -279,7 +319,7 @@ impl Program {
         &self.velocities
     }
 
-    /// Mass moments of the blocks before each joint, about the origin, in the positions of the last solution.
+    /// Mass moments of the blocks before each joint, about the origin.
     #[must_use]
     pub fn moments(&self) -> &[MassMoments] {
         &self.moments
@@ -305,14 +345,13 @@ impl Program {
     }
 
     /// Impulses in N s on the right block of every joint: along the joint towards the extrados, and normal.
-    pub fn joint_impulses(&self, placement: &Placement, into: &mut [[f64; 2]]) {
-        let frames = placement.frames();
+    pub fn joint_impulses(&self, into: &mut [[f64; 2]]) {
         for body in 0..self.bodies.len() {
-            let start = self.start(frames, &self.answer, body, None, true);
+            let start = self.start(&self.answer, body, None, true);
             let twist = self.answer.motions[body].twist();
             for joint in self.shut_joints(body) {
                 let linear = (start - self.change(&twist, joint, true)).linear;
-                let frame = &frames[joint];
+                let frame = &self.frames[joint];
                 into[joint] = [frame.along.dot(&linear), frame.normal.dot(&linear)];
             }
         }
@@ -321,61 +360,27 @@ impl Program {
         }
     }
 
-    /// Solves the program for a row in the given position.
+    /// Solves the program for the row where it was placed.
     ///
     /// # Errors
     /// When the active set is not found.
-    pub fn solve(&mut self, placement: &Placement, load: &Load) -> Result<Effort, ContactError> {
-        let frames = placement.frames();
-        let largest_rate = self.set_up(placement, load);
+    pub fn solve(&mut self, load: &Load) -> Result<Effort, ContactError> {
+        let largest_rate = self.set_up(load);
         for (active, touching) in self.active.iter_mut().zip(load.touching) {
             for edge in 0..2 {
                 active[edge] &= touching[edge];
             }
         }
         let mut effort = Effort::default();
-        let patience = 60 + 2 * frames.len();
-        let mut tolerance = RATE_TOLERANCE;
-        if !exceeds(self.factor(frames), DEPENDENCE * DEPENDENCE) {
+        if !exceeds(self.factor(), DEPENDENCE * DEPENDENCE) {
             self.active.fill([false; 2]);
-            self.factor(frames);
+            self.factor();
         }
-        self.answer_load(frames, None);
+        self.answer_load(None);
         effort.iterations += 1;
-        self.exchange(
-            frames,
-            load.touching,
-            tolerance * largest_rate,
-            &mut effort.iterations,
-        );
-        loop {
-            if effort.iterations > patience * (effort.relaxed + 1)
-                && !relax(&mut tolerance, &mut effort)
-            {
-                let iterations = effort.iterations;
-                return Err(ContactError { iterations });
-            }
-            if self.release() {
-                self.factor(frames);
-                self.answer_load(frames, None);
-                effort.iterations += 1;
-                continue;
-            }
-            let Some((pin, edge)) = self.fastest_closing(load.touching, tolerance * largest_rate)
-            else {
-                break;
-            };
-            let cap = patience * (effort.relaxed + 1);
-            if !self.stop(frames, pin, edge, &mut effort.iterations, cap) {
-                // It depends on corners none of which gives way: its closing is rounding.
-                if !relax(&mut tolerance, &mut effort) {
-                    let iterations = effort.iterations;
-                    return Err(ContactError { iterations });
-                }
-                self.factor(frames);
-                self.answer_load(frames, None);
-                effort.iterations += 1;
-            }
+        let tolerance = RATE_TOLERANCE * largest_rate;
+        if !self.exchange(load.touching, tolerance, &mut effort.iterations) {
+            self.exchange_singly(load.touching, largest_rate, &mut effort)?;
         }
         self.set_velocities();
         let moves = |twist: &Twist| twist.rate + twist.at_center.x + twist.at_center.y;
@@ -387,28 +392,58 @@ impl Program {
         }
     }
 
+    /// The dual method: releases what pulls, and stops one corner after the other.
+    fn exchange_singly(
+        &mut self,
+        touching: &[Corners],
+        largest_rate: f64,
+        effort: &mut Effort,
+    ) -> Result<(), ContactError> {
+        let patience = 60 + 2 * self.frames.len();
+        let mut tolerance = RATE_TOLERANCE;
+        loop {
+            if effort.iterations > patience * (effort.relaxed + 1) && !relax(&mut tolerance, effort)
+            {
+                let iterations = effort.iterations;
+                return Err(ContactError { iterations });
+            }
+            if self.release() {
+                self.factor();
+                self.answer_load(None);
+                effort.iterations += 1;
+                continue;
+            }
+            let closing = self.fastest_closing(touching, tolerance * largest_rate);
+            let Some((pin, edge)) = closing else {
+                return Ok(());
+            };
+            let cap = patience * (effort.relaxed + 1);
+            if !self.stop(pin, edge, &mut effort.iterations, cap) {
+                // It depends on corners none of which gives way: its closing is rounding.
+                if !relax(&mut tolerance, effort) {
+                    let iterations = effort.iterations;
+                    return Err(ContactError { iterations });
+                }
+                self.factor();
+                self.answer_load(None);
+                effort.iterations += 1;
+            }
+        }
+    }
+
     /// Sums over the blocks; returns the largest velocity.
-    fn set_up(&mut self, placement: &Placement, load: &Load) -> f64 {
-        let (mut moments, mut momentum, mut datum) = (NO_MASS, Momentum::ZERO, Twist::ZERO);
+    fn set_up(&mut self, load: &Load) -> f64 {
+        let (mut momentum, mut datum) = (Momentum::ZERO, Twist::ZERO);
         let (mut largest, mut total) = (0.0_f64, 0.0);
         for block in 0..self.velocities.len() {
             datum = datum + load.jumps[block];
             self.datum[block] = datum;
-            let centre = placement.centres_m()[block];
-            let (mass, inertia) = self.masses[block];
-            let own = MassMoments {
-                mass,
-                first: centre * mass,
-                polar: inertia + mass * centre.norm_squared(),
-            };
             let motion = load.free[block] - datum;
-            let added = motion.momentum(&own);
+            let added = motion.momentum(&self.own[block]);
             let (x, y) = (added.linear.x.abs(), added.linear.y.abs());
             total += x + y;
-            largest = largest.max((x + y) / mass);
-            moments = moments + own;
+            largest = largest.max((x + y) / self.own[block].mass);
             momentum = momentum + added;
-            self.moments[block + 1] = moments;
             self.momenta[block + 1] = momentum;
         }
         if self.supports == Supports::Both {
@@ -422,51 +457,68 @@ impl Program {
 
     /// Bodies, pins and pivots of the active set. Returns the least pivot over what it would be without the other rows: zero
     /// when rows depend on each other.
-    fn factor(&mut self, frames: &[Frame]) -> f64 {
-        self.bodies.clear();
-        self.pins.clear();
-        let mut first = None;
-        let blocks = self.velocities.len();
-        for (joint, active) in self.active.iter().enumerate() {
+    fn factor(&mut self) -> f64 {
+        let known = self.active.iter().zip(&self.factored_active);
+        let same = known.take_while(|(now, then)| now == then).count();
+        let from = same.min(self.factored);
+        if from == self.active.len() {
+            return self.least_pivot();
+        }
+        self.factored_active[from..].copy_from_slice(&self.active[from..]);
+        self.factored = self.active.len();
+        // The body after the last pin that stays depends on where the next one is.
+        let kept = self.pins.partition_point(|pin| pin.joint < from);
+        self.pins.truncate(kept);
+        self.bodies.truncate(kept);
+        let mut first = self.pins.last().map(|pin| pin.joint);
+        for joint in from..self.active.len() {
+            let active = self.active[joint];
             let point = match active {
                 [true, true] => continue,
-                [false, true] => frames[joint].corner_m(Edge::Extrados),
-                _ => frames[joint].intrados_m,
+                [false, true] => self.frames[joint].corner_m(Edge::Extrados),
+                _ => self.frames[joint].intrados_m,
             };
             self.bodies.push(match first {
-                None => Body::held(Twist::ZERO),
+                None => Body::HELD,
                 Some(first) => self.body(first, joint),
             });
             self.pins.push(Pin {
                 joint,
                 point,
-                parted: *active == [false; 2],
+                parted: active == [false; 2],
                 pivot: Matrix2::zeros(),
                 gain: Matrix2::zeros(),
             });
             first = Some(joint);
         }
         self.bodies.push(match (self.supports, first) {
-            (Supports::Left, Some(first)) => self.body(first, blocks),
-            (Supports::Left, None) => Body::held(Twist::ZERO),
-            (Supports::Both, _) => Body::held(self.datum[blocks] * -1.0),
+            (Supports::Left, Some(first)) => self.body(first, self.velocities.len()),
+            (Supports::Left, None) | (Supports::Both, _) => Body::HELD,
         });
-        // An arch without any hinge is held twice.
-        if self.supports == Supports::Both && self.pins.is_empty() {
-            return 0.0;
+        // The pivot of a pin depends on the bodies to both sides.
+        self.eliminate(kept.saturating_sub(1));
+        self.least_pivot()
+    }
+
+    fn least_pivot(&self) -> f64 {
+        match (self.least.last(), self.supports) {
+            (Some(least), _) => *least,
+            (None, Supports::Left) => 1.0,
+            // An arch without any hinge is held twice.
+            (None, Supports::Both) => 0.0,
         }
-        self.eliminate(frames)
     }
 
     fn body(&self, first: usize, end: usize) -> Body {
-        let moments = self.moments[end] - self.moments[first];
-        Body::free(&moments, &(self.momenta[end] - self.momenta[first]))
+        Body::free(&(self.moments[end] - self.moments[first]))
     }
 
-    /// Forward elimination of the compliances at the pins, in axes along and across each joint.
-    fn eliminate(&mut self, frames: &[Frame]) -> f64 {
-        let mut least = 1.0_f64;
-        for index in 0..self.pins.len() {
+    /// Forward elimination of the compliances at the pins from this one on, in axes along and across each joint.
+    fn eliminate(&mut self, start: usize) {
+        let frames = &self.frames;
+        self.least.truncate(start);
+        let mut least = self.least.last().copied().unwrap_or(1.0);
+        for index in start..self.pins.len() {
             let (before, from) = self.pins.split_at_mut(index);
             let pin = &mut from[0];
             let frame = &frames[pin.joint];
@@ -527,32 +579,42 @@ impl Program {
                     own.m11 * inverse,
                 );
             }
+            self.least.push(least);
         }
-        least
     }
 
     /// Motions and impulses under the load and an impulse at one corner.
-    fn answer_load(&mut self, frames: &[Frame], press: Option<Press>) {
+    fn answer_load(&mut self, press: Option<Press>) {
         let mut answer = std::mem::take(&mut self.answer);
-        answer.motions.clear();
-        answer.motions.extend(self.bodies.iter().map(Body::motion));
-        self.complete(frames, &mut answer, press, None, true);
+        self.start_motions(&mut answer);
+        self.complete(&mut answer, press, None, true);
         self.answer = answer;
     }
 
+    /// Motions of the bodies without impulses between them.
+    fn start_motions(&self, answer: &mut Answer) {
+        answer.motions.clear();
+        for (index, body) in self.bodies.iter().enumerate() {
+            answer.motions.push(if body.is_held() {
+                Motion::held(match self.supports {
+                    Supports::Both if index > 0 => self.datum[self.velocities.len()] * -1.0,
+                    _ => Twist::ZERO,
+                })
+            } else {
+                let blocks = self.blocks(index);
+                body.motion(&(self.momenta[blocks.end] - self.momenta[blocks.start]))
+            });
+        }
+    }
+
     /// Motions and impulses under a unit impulse at one corner alone.
-    fn answer_unit(&mut self, frames: &[Frame], pin: usize, edge: usize) {
+    fn answer_unit(&mut self, pin: usize, edge: usize) {
         let mut response = std::mem::take(&mut self.response);
         response.motions.clear();
-        let still = |body: &Body| Motion {
-            velocity: Vector2::zeros(),
-            rate: 0.0,
-            ..body.motion()
-        };
+        let still = |body: &Body| body.motion(&Momentum::ZERO);
         response.motions.extend(self.bodies.iter().map(still));
         let impulse = 1.0;
         self.complete(
-            frames,
             &mut response,
             Some(Press { pin, edge, impulse }),
             None,
@@ -564,12 +626,12 @@ impl Program {
     /// From motions without impulses between the bodies to those with them.
     fn complete(
         &self,
-        frames: &[Frame],
         answer: &mut Answer,
         press: Option<Press>,
         closure: Option<&Closure>,
         loaded: bool,
     ) {
+        let frames = &self.frames;
         if let Some(press) = press {
             let frame = &frames[self.pins[press.pin].joint];
             let impulse = frame.normal * press.impulse;
@@ -625,7 +687,7 @@ impl Program {
                 }
             });
         }
-        self.press_corners(frames, answer, press, loaded);
+        self.press_corners(answer, press, loaded);
     }
 
     /// Applies an impulse to the two bodies at a pin.
@@ -635,19 +697,13 @@ impl Program {
     }
 
     /// Impulses at the corners: at hinges those of the pins, at shut joints by the running sum.
-    fn press_corners(
-        &self,
-        frames: &[Frame],
-        answer: &mut Answer,
-        press: Option<Press>,
-        loaded: bool,
-    ) {
+    fn press_corners(&self, answer: &mut Answer, press: Option<Press>, loaded: bool) {
         for body in 0..self.bodies.len() {
-            let start = self.start(frames, answer, body, press, loaded);
+            let start = self.start(answer, body, press, loaded);
             let twist = answer.motions[body].twist();
             for joint in self.shut_joints(body) {
                 let resultant = start - self.change(&twist, joint, loaded);
-                let frame = &frames[joint];
+                let frame = &self.frames[joint];
                 let normal = frame.normal.dot(&resultant.linear);
                 let extrados =
                     self.handedness * resultant.about(frame.intrados_m) / frame.thickness_m;
@@ -697,20 +753,13 @@ impl Program {
 
     /// The resultant impulse at some joint of a body plus the change of momentum before it: what is constant along
     /// the body. It is taken at a hinge, or at the free end.
-    fn start(
-        &self,
-        frames: &[Frame],
-        answer: &Answer,
-        body: usize,
-        press: Option<Press>,
-        loaded: bool,
-    ) -> Momentum {
+    fn start(&self, answer: &Answer, body: usize, press: Option<Press>, loaded: bool) -> Momentum {
         let twist = answer.motions[body].twist();
         let index = body.saturating_sub(1);
         let Some(pin) = self.pins.get(index) else {
             return self.change(&twist, self.velocities.len(), loaded);
         };
-        let frame = &frames[pin.joint];
+        let frame = &self.frames[pin.joint];
         let along = answer.pins[index];
         let impulse = frame.along * along.x + frame.normal * along.y;
         let mut resultant = Momentum::applied_at(pin.point, impulse);
@@ -724,21 +773,15 @@ impl Program {
     /// Releases all corners that pull and stops all that close, again and again, while that leaves fewer of them; then
     /// only the worst one of each run of neighbours, whose release often lets the others press again. It
     /// solves impacts at which many corners change in a few rounds, but may go in circles: what it leaves is for
-    /// the dual method.
-    fn exchange(
-        &mut self,
-        frames: &[Frame],
-        touching: &[Corners],
-        tolerance: f64,
-        iterations: &mut usize,
-    ) {
+    /// the dual method. True if that is nothing.
+    fn exchange(&mut self, touching: &[Corners], tolerance: f64, iterations: &mut usize) -> bool {
         let mut fewest = usize::MAX;
         let mut patience = EXCHANGE_PATIENCE;
         let mut worst_only = false;
         loop {
             self.find_wrong(touching, tolerance);
             if self.wrong.is_empty() {
-                return;
+                return true;
             }
             if self.wrong.len() < fewest {
                 fewest = self.wrong.len();
@@ -746,7 +789,7 @@ impl Program {
             } else if patience > 0 {
                 patience -= 1;
             } else if worst_only {
-                return;
+                return false;
             } else {
                 worst_only = true;
                 patience = EXCHANGE_PATIENCE;
@@ -755,16 +798,16 @@ impl Program {
                 self.keep_worst();
             }
             self.flip_wrong();
-            if !exceeds(self.factor(frames), DEPENDENCE) {
+            if !exceeds(self.factor(), DEPENDENCE) {
                 self.flip_wrong();
-                self.factor(frames);
+                self.factor();
                 if worst_only {
-                    return;
+                    return false;
                 }
                 worst_only = true;
                 continue;
             }
-            self.answer_load(frames, None);
+            self.answer_load(None);
             *iterations += 1;
         }
     }
@@ -866,21 +909,14 @@ impl Program {
 
     /// Makes a closing corner active; others that would pull on the way are released. False when it is not possible
     /// within the iterations.
-    fn stop(
-        &mut self,
-        frames: &[Frame],
-        pin: usize,
-        edge: usize,
-        iterations: &mut usize,
-        cap: usize,
-    ) -> bool {
+    fn stop(&mut self, pin: usize, edge: usize, iterations: &mut usize, cap: usize) -> bool {
         let joint = self.pins[pin].joint;
         let mut impulse = 0.0;
         loop {
             let Some(pin) = self.pins.iter().position(|pin| pin.joint == joint) else {
                 return false;
             };
-            self.answer_unit(frames, pin, edge);
+            self.answer_unit(pin, edge);
             *iterations += 1;
             let compliance = self.response.rates[pin][edge];
             let free = self.bodies[pin].inverse_mass + self.bodies[pin + 1].inverse_mass;
@@ -892,25 +928,25 @@ impl Program {
             let (partial, blocking) = self.first_to_pull();
             if full <= partial && full < f64::INFINITY {
                 self.active[joint][edge] = true;
-                if exceeds(self.factor(frames), DEPENDENCE) {
-                    self.answer_load(frames, None);
+                if exceeds(self.factor(), DEPENDENCE) {
+                    self.answer_load(None);
                     *iterations += 1;
                     return true;
                 }
                 // It depends on the others all the same.
                 self.active[joint][edge] = false;
-                self.factor(frames);
+                self.factor();
             }
             let Some((blocked, blocked_edge)) = blocking else {
                 return false;
             };
             impulse += partial;
             self.active[blocked][blocked_edge] = false;
-            self.factor(frames);
+            self.factor();
             let Some(pin) = self.pins.iter().position(|pin| pin.joint == joint) else {
                 return false;
             };
-            self.answer_load(frames, Some(Press { pin, edge, impulse }));
+            self.answer_load(Some(Press { pin, edge, impulse }));
             *iterations += 1;
             if *iterations > cap {
                 return true;
@@ -948,18 +984,17 @@ impl Program {
     /// joint: changes of the gaps at the open joints, through [`Program::open_joints`]. False when the open joints
     /// leave no such displacement.
     pub fn close(&mut self, placement: &Placement, closure: &Closure, load: &Load) -> bool {
-        let frames = placement.frames();
-        self.set_up(placement, load);
+        self.place(placement);
+        self.set_up(load);
         for (active, gaps) in self.active.iter_mut().zip(placement.gaps_m()) {
             *active = gaps.map(|gap| gap == 0.0);
         }
-        if !exceeds(self.factor(frames), DEPENDENCE * DEPENDENCE) || self.pins.is_empty() {
+        if !exceeds(self.factor(), DEPENDENCE * DEPENDENCE) || self.pins.is_empty() {
             return false;
         }
         let mut answer = std::mem::take(&mut self.answer);
-        answer.motions.clear();
-        answer.motions.extend(self.bodies.iter().map(Body::motion));
-        self.complete(frames, &mut answer, None, Some(closure), true);
+        self.start_motions(&mut answer);
+        self.complete(&mut answer, None, Some(closure), true);
         self.answer = answer;
         true
     }

@@ -11,7 +11,6 @@ use thiserror::Error;
 
 use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
-use super::joints::Placement;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
@@ -94,7 +93,6 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
 /// The undeformed row under loads.
 struct Trial<'a> {
     row: &'a Row,
-    placement: Placement,
     program: Program,
     free: Vec<Twist>,
     jumps: Vec<Twist>,
@@ -106,7 +104,6 @@ impl<'a> Trial<'a> {
         let joints = row.joints().len();
         Self {
             row,
-            placement: Placement::new(row),
             program: Program::new(row),
             free: vec![Twist::ZERO; row.blocks().len()],
             jumps: vec![Twist::ZERO; joints],
@@ -122,7 +119,7 @@ impl<'a> Trial<'a> {
             jumps: &self.jumps,
             touching: &self.touching,
         };
-        self.program.solve(&self.placement, &load_case)?;
+        self.program.solve(&load_case)?;
         let blocks = self.row.blocks().iter().zip(self.program.velocities());
         let mut work = Vector2::zeros();
         let mut fastest = 0.0_f64;

@@ -200,6 +200,7 @@ impl<'a> Engine<'a> {
         if self.row.supports() == Supports::Left || open >= 3 {
             self.program.start_from(&active);
         }
+        self.program.place(&self.placement);
         self.weigh_pieces();
         self.start_energy = self.height_energy();
         self.stands = open == 0;
@@ -333,7 +334,7 @@ impl<'a> Engine<'a> {
             jumps: &self.jumps,
             touching: &self.touching,
         };
-        let effort = self.program.solve(&self.placement, &load);
+        let effort = self.program.solve(&load);
         let effort = effort.map_err(|reason| FreeHingeError::Contact {
             time_s: self.course.time,
             reason,
@@ -481,8 +482,7 @@ impl<'a> Engine<'a> {
         if !ordinary {
             return;
         }
-        self.program
-            .joint_impulses(&self.placement, &mut self.shares);
+        self.program.joint_impulses(&mut self.shares);
         let (mut least, mut demand) = (f64::INFINITY, 0.0_f64);
         for [_, normal] in &self.shares {
             least = least.min(*normal);
@@ -518,6 +518,7 @@ impl<'a> Engine<'a> {
         self.course.time += step;
         self.last_step = step;
         self.close();
+        self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
         self.course.run.closure_error_m = self.course.run.closure_error_m.max(error_m);
         // Also when it is not a number.
