@@ -11,7 +11,8 @@
 //! not settle, a case in a hundred thousand, are left to Lemke's method ([`crate::mechanics::complementarity`]).
 //! Whatever comes out never drives a slip and never pulls: an early stop makes a bound wrong, never the sign of the work.
 //!
-//! A small proximal term draws the impulses to those of the step before. It settles them where the row does not, as at rest.
+//! A small proximal term draws the impulses to those of the solution before. It settles them where the row does not, as at rest;
+//! where they jump, as at an impact, it leaves rates, which another solution from these impulses takes away.
 
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
@@ -87,6 +88,8 @@ pub struct Solution {
     pub changed: bool,
     /// Largest error of a bound of friction, as part of the largest bound; zero where Coulomb's law holds.
     pub bound_error: f64,
+    /// Largest rate in m/s that the proximal term leaves.
+    pub drawn_m_s: f64,
 }
 
 /// One equation of a row of the system.
@@ -264,6 +267,8 @@ impl Program {
             self.bounded(tolerance, &mut solution);
         }
         solution.changed = self.modes != self.modes_before;
+        let drawn = (0..self.own.len()).map(|joint| self.drawn(joint).amax());
+        solution.drawn_m_s = drawn.fold(0.0, f64::max);
         self.set_velocities();
         solution
     }
@@ -427,10 +432,14 @@ impl Program {
             if let Some(after) = self.impulses.get(joint + 1) {
                 rate += self.next[joint] * after;
             }
-            let drawn = self.impulses[joint] - self.before[joint];
-            let proximal = self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL;
-            self.rates[joint] = rate + proximal;
+            self.rates[joint] = rate + self.drawn(joint);
         }
+    }
+
+    /// Rates of a joint by the proximal term.
+    fn drawn(&self, joint: usize) -> Vector3<f64> {
+        let drawn = self.impulses[joint] - self.before[joint];
+        self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL
     }
 
     /// Goes over programs with given bounds to modes that hold, or to bounds that agree with the impulses.
@@ -652,10 +661,9 @@ impl Program {
         let mut twice = 0.0;
         for joint in 0..self.impulses.len() {
             let impulse = &self.impulses[joint];
-            let drawn = impulse - self.before[joint];
-            let proximal = self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL;
+            let proximal = self.drawn(joint);
             twice += impulse.dot(&(self.rates[joint] + self.drive[joint] - proximal))
-                + drawn.dot(&proximal);
+                + (impulse - self.before[joint]).dot(&proximal);
         }
         0.5 * twice
     }

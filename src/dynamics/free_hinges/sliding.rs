@@ -23,6 +23,8 @@ use crate::mechanics::slip::{Contact, Faces, Position};
 
 /// Rates are found to within this part of the fastest motion, and of what gravity does in a step.
 const RATE_TOLERANCE: f64 = 1e-9;
+/// Impulses that jump are solved for again where the proximal term leaves rates above this part of the fastest motion.
+const DRAWN: f64 = 1e-6;
 /// Corners land when they were farther apart than this part of the thickness of their joint.
 const APART_RATIO: f64 = 1e-9;
 /// At rest, the kinetic energy is below this part of weight times size ...
@@ -230,8 +232,11 @@ impl<'a> Engine<'a> {
         let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
         let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
         let mut passes = solution.passes;
-        if solution.changed {
+        let again = solution.changed;
+        if again {
             self.lag(step);
+        }
+        if again || solution.drawn_m_s > DRAWN * (self.gravity * step + fastest) {
             solution = self.program.solve(|joint| self.lags[joint], tolerance);
             passes += solution.passes;
         }
