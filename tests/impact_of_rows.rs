@@ -11,7 +11,6 @@ use archrock::mechanics::blocks::Row;
 use archrock::mechanics::contact::{Load, Program};
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::field::{Field, Side, Twist};
-use archrock::mechanics::joints::Placement;
 use archrock::scenario::Structure;
 use archrock::{FourLinkRow, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
@@ -309,7 +308,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
             jumps: &vec![Twist::ZERO; joints],
             touching: &vec![[true; 2]; joints],
         };
-        program.solve(&Placement::new(&blocks), &load).unwrap();
+        program.solve(&load).unwrap();
         let energy = |twists: &[Twist]| -> f64 {
             let moving = blocks.blocks().iter().zip(twists);
             moving
