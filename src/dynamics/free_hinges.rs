@@ -297,6 +297,9 @@ pub struct Cost {
     pub merged: usize,
     /// Most iterations in one step.
     pub most_iterations: usize,
+    /// Time that the longest step took to compute, in seconds; measured where samples are made. It alone differs from one
+    /// computation to the next.
+    pub longest_step_s: Option<f64>,
 }
 
 /// What slipped in a motion.

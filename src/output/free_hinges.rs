@@ -226,6 +226,9 @@ pub fn summary(
         ] {
             put(name, json!(count));
         }
+        if let Some(longest_step_s) = run.cost.longest_step_s {
+            put("longest_step_us", json!((longest_step_s * 1e6).round()));
+        }
     }
     match spread {
         Some(Ok(spread)) => put("spread", of_spread(spread)?),

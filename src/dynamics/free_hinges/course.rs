@@ -1,5 +1,7 @@
 //! The course of a motion, whichever engine steps it: its clock and driver, peaks, half cycles and outcome.
 
+use std::time::{Duration, Instant};
+
 use crate::dynamics::ground::GroundMotion;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::sway::Sway;
@@ -58,6 +60,7 @@ pub(super) fn run(
     let mut samples = 0_u32;
     let mut sampled_s = None;
     let quiet_s = ground.end_s();
+    let mut longest_step = settings.output_step_s.map(|_| Duration::ZERO);
     loop {
         let mark = settings
             .output_step_s
@@ -93,7 +96,9 @@ pub(super) fn run(
             engine.course_mut().run.outcome = outcome;
             break;
         }
+        let begun = longest_step.map(|_| Instant::now());
         engine.step(mark.min(settings.end_s), recorder)?;
+        longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
     }
     let course = engine.course();
     let unsampled = settings.output_step_s.is_some() && sampled_s != Some(course.time);
@@ -103,6 +108,7 @@ pub(super) fn run(
     let course = engine.course_mut();
     course.end_cycle(None);
     course.run.end_s = course.time;
+    course.run.cost.longest_step_s = longest_step.map(|longest| longest.as_secs_f64());
     Ok(engine.finish())
 }
 
