@@ -10,16 +10,20 @@
 //! block-tridiagonal system of 2x2 blocks, one per open joint; those at the shut joints follow by one running sum of
 //! the changes of momentum. The active set is found by the dual method of Goldfarb and Idnani ("A numerically stable dual
 //! method for solving strictly convex quadratic programs", Math. Programming 27, 1983), started from the last one: corners that
-//! pull are released, then the corner that closes fastest is stopped. Rows that depend on others never become active, so that
+//! pull are released, then the corner that closes fastest is stopped. Before, many corners change at once while that helps; where
+//! both take long, an interior-point method finds the set (`interior`). Rows that depend on others never become active, so that
 //! rest, where the impulses are not unique, is no special case.
 //!
 //! What does not depend on the motion, bodies and pivots from the left up to where corners change, is kept from solution to solution.
 
+mod interior;
+
 use std::ops::Range;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2, Vector3};
 use thiserror::Error;
 
+use self::interior::Interior;
 use super::blocks::{Row, Supports};
 use super::joints::{Closure, Frame, Placement};
 use crate::mechanics::geometry::field::{Momentum, Twist};
@@ -38,6 +42,8 @@ const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
 const DEPENDENCE: f64 = 1e-10;
 /// Rounds of exchanging many corners without progress after which the dual method takes over.
 const EXCHANGE_PATIENCE: usize = 6;
+/// Iterations of the dual method after which all corners are looked for at once.
+const SINGLE_PATIENCE: usize = 50;
 /// A corner whose impulse falls by less than this part of a unit impulse elsewhere keeps it.
 const LEAST_SLOPE: f64 = 1e-12;
 
@@ -232,6 +238,7 @@ pub struct Program {
     force_floor: f64,
     /// Corners that pull or close.
     wrong: Vec<Wrong>,
+    interior: Interior,
 }
 
 impl Program {
@@ -263,6 +270,7 @@ impl Program {
             velocities: vec![Twist::ZERO; blocks],
             force_floor: 0.0,
             wrong: Vec::with_capacity(2 * joints),
+            interior: Interior::with_joints(joints),
         };
         program.place(&Placement::new(row));
         program.reset();
@@ -379,8 +387,12 @@ impl Program {
         self.answer_load(None);
         effort.iterations += 1;
         let tolerance = RATE_TOLERANCE * largest_rate;
-        if !self.exchange(load.touching, tolerance, &mut effort.iterations) {
-            self.exchange_singly(load.touching, largest_rate, &mut effort)?;
+        let touching = load.touching;
+        let solved = self.exchange(touching, tolerance, &mut effort.iterations)
+            || self.exchange_singly(touching, tolerance, SINGLE_PATIENCE, &mut effort.iterations)
+            || self.go_inside(touching, tolerance, &mut effort.iterations);
+        if !solved {
+            self.exchange_tolerantly(touching, largest_rate, &mut effort)?;
         }
         self.set_velocities();
         let moves = |twist: &Twist| twist.rate + twist.at_center.x + twist.at_center.y;
@@ -392,8 +404,70 @@ impl Program {
         }
     }
 
-    /// The dual method: releases what pulls, and stops one corner after the other.
+    /// Starts again from the active set of the interior-point method, if it finds one. True if that leaves nothing wrong.
+    fn go_inside(&mut self, touching: &[Corners], tolerance: f64, iterations: &mut usize) -> bool {
+        let mut interior = std::mem::take(&mut self.interior);
+        let found = interior.solve(self, touching);
+        if let Some(found) = found {
+            *iterations += found;
+            interior.exchange_active(&mut self.active);
+            if !exceeds(self.factor(), DEPENDENCE * DEPENDENCE) {
+                interior.exchange_active(&mut self.active);
+                self.factor();
+            }
+        }
+        self.interior = interior;
+        self.answer_load(None);
+        *iterations += 1;
+        found.is_some() && self.exchange(touching, tolerance, iterations)
+    }
+
+    /// Centre of a block.
+    fn centre(&self, block: usize) -> Vector2<f64> {
+        self.own[block].first / self.own[block].mass
+    }
+
+    /// Motion of a block without the others: velocity of its centre and rate, times the roots of mass and inertia.
+    fn scaled_motion(&self, block: usize) -> Vector3<f64> {
+        let (mass, inertia) = self.masses[block];
+        let momentum = self.momenta[block + 1] - self.momenta[block];
+        let linear = momentum.linear / mass.sqrt();
+        let turn = momentum.about(self.centre(block)) / inertia.sqrt();
+        Vector3::new(linear.x, linear.y, turn)
+    }
+
+    /// The dual method: releases what pulls, and stops one corner after the other. False when it goes on for more than so many
+    /// iterations, or a corner depends on others none of which gives way: its closing is rounding.
     fn exchange_singly(
+        &mut self,
+        touching: &[Corners],
+        tolerance: f64,
+        patience: usize,
+        iterations: &mut usize,
+    ) -> bool {
+        let cap = *iterations + patience;
+        while *iterations <= cap {
+            if self.release() {
+                self.factor();
+                self.answer_load(None);
+                *iterations += 1;
+                continue;
+            }
+            let Some((pin, edge)) = self.fastest_closing(touching, tolerance) else {
+                return true;
+            };
+            if !self.stop(pin, edge, iterations, cap) {
+                self.factor();
+                self.answer_load(None);
+                *iterations += 1;
+                return false;
+            }
+        }
+        false
+    }
+
+    /// The same, with tolerances that are relaxed where it does not come to an end.
+    fn exchange_tolerantly(
         &mut self,
         touching: &[Corners],
         largest_rate: f64,
@@ -401,34 +475,16 @@ impl Program {
     ) -> Result<(), ContactError> {
         let patience = 60 + 2 * self.frames.len();
         let mut tolerance = RATE_TOLERANCE;
-        loop {
-            if effort.iterations > patience * (effort.relaxed + 1) && !relax(&mut tolerance, effort)
-            {
-                let iterations = effort.iterations;
+        let iterations = &mut effort.iterations;
+        while !self.exchange_singly(touching, tolerance * largest_rate, patience, iterations) {
+            tolerance *= 10.0;
+            effort.relaxed += 1;
+            if tolerance > LARGEST_RATE_TOLERANCE {
+                let iterations = *iterations;
                 return Err(ContactError { iterations });
             }
-            if self.release() {
-                self.factor();
-                self.answer_load(None);
-                effort.iterations += 1;
-                continue;
-            }
-            let closing = self.fastest_closing(touching, tolerance * largest_rate);
-            let Some((pin, edge)) = closing else {
-                return Ok(());
-            };
-            let cap = patience * (effort.relaxed + 1);
-            if !self.stop(pin, edge, &mut effort.iterations, cap) {
-                // It depends on corners none of which gives way: its closing is rounding.
-                if !relax(&mut tolerance, effort) {
-                    let iterations = effort.iterations;
-                    return Err(ContactError { iterations });
-                }
-                self.factor();
-                self.answer_load(None);
-                effort.iterations += 1;
-            }
         }
+        Ok(())
     }
 
     /// Sums over the blocks; returns the largest velocity.
@@ -998,13 +1054,6 @@ impl Program {
         self.answer = answer;
         true
     }
-}
-
-/// Takes corners that close up to ten times as fast for standing still; false when that would be too fast.
-fn relax(tolerance: &mut f64, effort: &mut Effort) -> bool {
-    *tolerance *= 10.0;
-    effort.relaxed += 1;
-    *tolerance <= LARGEST_RATE_TOLERANCE
 }
 
 /// False also for a pivot that is not a number.
