@@ -755,9 +755,13 @@ impl Program {
     /// Impulses at the corners: at hinges those of the pins, at shut joints by the running sum.
     fn press_corners(&self, answer: &mut Answer, press: Option<Press>, loaded: bool) {
         for body in 0..self.bodies.len() {
+            let joints = self.shut_joints(body);
+            if joints.is_empty() {
+                continue;
+            }
             let start = self.start(answer, body, press, loaded);
             let twist = answer.motions[body].twist();
-            for joint in self.shut_joints(body) {
+            for joint in joints {
                 let resultant = start - self.change(&twist, joint, loaded);
                 let frame = &self.frames[joint];
                 let normal = frame.normal.dot(&resultant.linear);
@@ -914,11 +918,12 @@ impl Program {
 
     /// Impulses below this pull.
     fn pull_limit(&self) -> f64 {
-        let corners = &self.answer.corners;
-        let largest = corners
-            .iter()
-            .flatten()
-            .fold(0.0_f64, |most, x| most.max(x.abs()));
+        // Edge by edge, so that one comparison does not wait for the other.
+        let corners = self.answer.corners.iter();
+        let [intrados, extrados] = corners.fold([0.0_f64; 2], |most, corner| {
+            [most[0].max(corner[0].abs()), most[1].max(corner[1].abs())]
+        });
+        let largest = intrados.max(extrados);
         -(FORCE_TOLERANCE * largest).max(self.force_floor)
     }
 
