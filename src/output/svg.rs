@@ -174,14 +174,18 @@ impl Figure {
     fn lines(text: &str, width_px: f64) -> Vec<String> {
         let mut lines = vec![String::new()];
         for word in text.split_whitespace() {
+            let mut shown: String = word.chars().take(LONGEST_WORD).collect();
+            if shown.len() < word.len() {
+                shown.push_str("...");
+            }
             let last = lines.len() - 1;
             let line = &mut lines[last];
             if line.is_empty() {
-                line.push_str(word);
-            } else if text_px(line) + text_px(word) + CHARACTER_PX <= width_px {
-                *line += &format!(" {word}");
+                *line = shown;
+            } else if text_px(line) + text_px(&shown) + CHARACTER_PX <= width_px {
+                *line += &format!(" {shown}");
             } else {
-                lines.push(word.to_owned());
+                lines.push(shown);
             }
         }
         lines
@@ -255,12 +259,7 @@ impl Drawing {
         let mut y = middle.y;
         for line in lines {
             let at = Vector2::new(middle.x, y);
-            // A word that is longer than a line.
-            let mut shown: String = line.chars().take(LONGEST_LINE).collect();
-            if shown.len() < line.len() {
-                shown.push_str("...");
-            }
-            self.label(at, Anchor::Middle, 0.0, &shown);
+            self.label(at, Anchor::Middle, 0.0, line);
             y += LINE_PX;
         }
         y - LINE_PX + 8.0
@@ -497,8 +496,8 @@ pub enum Sign {
 const KEY_PX: f64 = 24.0;
 /// Height of a row of a legend.
 const LEGEND_ROW_PX: f64 = 24.0;
-/// Characters that a line is cut at, however long its words are.
-const LONGEST_LINE: usize = 130;
+/// Characters that a word is cut at.
+const LONGEST_WORD: usize = 130;
 
 /// The name of a mark that stands for a result; nothing for others.
 fn name_attribute(name: &str) -> String {
