@@ -132,8 +132,10 @@ def assert_same(history: History, folder: Path, name: str) -> None:
             compared += 1
     assert compared >= 6
 
-    summary = json.loads((folder / "summary.json").read_text())
-    assert summary == history.summary, name
+    # The time that the longest step of free hinges took is another each time.
+    told, own = json.loads((folder / "summary.json").read_text()), dict(history.summary)
+    assert told.pop("longest_step_us", None) is None or own.pop("longest_step_us") > 0.0
+    assert told == own, name
 
     with open(folder / "impacts.csv", encoding="utf-8") as file:
         impacts = list(csv.DictReader(file))
