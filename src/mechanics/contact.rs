@@ -321,6 +321,11 @@ impl Program {
         self.active.copy_from_slice(active);
     }
 
+    /// Starts the next solution with this corner active too.
+    pub fn press(&mut self, joint: usize, edge: usize) {
+        self.active[joint][edge] = true;
+    }
+
     /// Velocities of the blocks in the last solution.
     #[must_use]
     pub fn velocities(&self) -> &[Twist] {

@@ -219,6 +219,9 @@ impl<'a> Engine<'a> {
         let from_s = self.course.time;
         let taken_before = self.course.run.energy_taken_j;
         self.landing.fill([0.0; 2]);
+        if self.last_step == 0.0 && self.course.run.cost.impacts > 0 {
+            self.press_again();
+        }
         let shortest = self.settings.shortest_step_s.min(step);
 
         // A step that ends at the first landing: its length changes the kick, and so the landing. No corner lands
@@ -436,10 +439,33 @@ impl<'a> Engine<'a> {
                     [false, false] => [0.0; 2],
                 };
             }
+            self.press_landed();
             self.solve_step(step)?;
         }
         self.course.run.energy_taken_j += without - self.kinetic_of_solution();
         Ok(())
+    }
+
+    /// Starts the next program with the corners that land: most of them press.
+    fn press_landed(&mut self) {
+        for (joint, touching) in self.touching.iter().enumerate() {
+            for edge in 0..2 {
+                if touching[edge] && !self.closed[joint][edge] {
+                    self.program.press(joint, edge);
+                }
+            }
+        }
+    }
+
+    /// Starts the next program with the corners that pressed before the impact too: most do so again under gravity.
+    fn press_again(&mut self) {
+        for (joint, pressed) in self.pressed.iter().enumerate() {
+            for (edge, pressed) in pressed.iter().enumerate() {
+                if *pressed {
+                    self.program.press(joint, edge);
+                }
+            }
+        }
     }
 
     fn kinetic_of_solution(&mut self) -> f64 {
@@ -638,6 +664,7 @@ impl<'a> Engine<'a> {
         self.touch_shut();
         // A step with several landings knows already where they lead.
         self.program.start_from(&self.pressed);
+        self.press_landed();
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
         self.course.run.energy_taken_j += kinetic_before - kinetic_after;
