@@ -10,6 +10,7 @@ mod sliding;
 pub mod spread;
 
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 use thiserror::Error;
 
@@ -297,9 +298,18 @@ pub struct Cost {
     pub merged: usize,
     /// Most iterations in one step.
     pub most_iterations: usize,
-    /// Time that the longest step took to compute, in seconds; measured where samples are made. It alone differs from one
-    /// computation to the next.
-    pub longest_step_s: Option<f64>,
+    /// Time that the longest step took to compute, where samples are made.
+    pub longest_step: Elapsed,
+}
+
+/// Time that a computation took; `None` where it was not measured. It belongs to no result: any two are equal.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Elapsed(pub Option<Duration>);
+
+impl PartialEq for Elapsed {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// What slipped in a motion.

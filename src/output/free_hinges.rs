@@ -226,8 +226,9 @@ pub fn summary(
         ] {
             put(name, json!(count));
         }
-        if let Some(longest_step_s) = run.cost.longest_step_s {
-            put("longest_step_us", json!((longest_step_s * 1e6).round()));
+        if let Some(longest_step) = run.cost.longest_step.0 {
+            let longest_step_us = longest_step.as_secs_f64() * 1e6;
+            put("longest_step_us", json!(longest_step_us.round()));
         }
     }
     match spread {

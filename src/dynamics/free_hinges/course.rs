@@ -6,7 +6,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::sway::Sway;
 
-use super::{Cost, FreeHingeError, HalfCycle, Outcome, Recorder, Run, Settings};
+use super::{Cost, Elapsed, FreeHingeError, HalfCycle, Outcome, Recorder, Run, Settings};
 
 /// Sways below this part of the size do not count as a change of side.
 const SWAY_RATIO: f64 = 1e-9;
@@ -108,7 +108,7 @@ pub(super) fn run(
     let course = engine.course_mut();
     course.end_cycle(None);
     course.run.end_s = course.time;
-    course.run.cost.longest_step_s = longest_step.map(|longest| longest.as_secs_f64());
+    course.run.cost.longest_step = Elapsed(longest_step);
     Ok(engine.finish())
 }
 

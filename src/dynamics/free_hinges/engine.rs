@@ -448,9 +448,9 @@ impl<'a> Engine<'a> {
 
     /// Starts the next program with the corners that land: most of them press.
     fn press_landed(&mut self) {
-        for (joint, touching) in self.touching.iter().enumerate() {
-            for edge in 0..2 {
-                if touching[edge] && !self.closed[joint][edge] {
+        for (joint, (touching, closed)) in self.touching.iter().zip(&self.closed).enumerate() {
+            for (edge, (touches, touched)) in touching.iter().zip(closed).enumerate() {
+                if *touches && !touched {
                     self.program.press(joint, edge);
                 }
             }
