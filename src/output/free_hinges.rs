@@ -226,10 +226,6 @@ pub fn summary(
         ] {
             put(name, json!(count));
         }
-        if let Some(longest_step) = run.cost.longest_step.0 {
-            let longest_step_us = longest_step.as_secs_f64() * 1e6;
-            put("longest_step_us", json!(longest_step_us.round()));
-        }
     }
     match spread {
         Some(Ok(spread)) => put("spread", of_spread(spread)?),

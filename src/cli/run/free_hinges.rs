@@ -84,7 +84,12 @@ pub fn run(
         Err(reason) => Err(reason.as_str()),
     });
     let mut text = words(scenario, &model, &summary, spread, &impacts);
-    let json = self::summary(scenario, &model, &summary, spread)?;
+    let mut json = self::summary(scenario, &model, &summary, spread)?;
+    let run = summary.free_hinges.as_deref();
+    if let Some(longest_step) = run.and_then(|run| run.cost.longest_step.0) {
+        // What a computation takes is told here, and belongs to no result.
+        json["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
+    }
     if let Some(mut folder) = folder {
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
         let subject = subject(scenario, &model, title);
