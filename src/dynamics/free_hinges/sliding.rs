@@ -324,10 +324,13 @@ impl<'a> Engine<'a> {
             let lands =
                 (0..2).any(|end| mode.pressed[end] && !before.pressed[end] && gaps[end] > least);
             landed |= lands;
-            if lands && mode.pressed == [true; 2] {
+            // One that was parted and lands on one corner has not shut.
+            let shuts = lands && (mode.pressed == [true; 2] || before.pressed != [false; 2]);
+            if shuts {
                 let edge = only(before.pressed.map(|pressed| !pressed));
                 self.shut.push(Hinge::Joint { joint, edge });
-            } else if before.pressed == [true; 2] && mode.pressed != [true; 2] {
+            }
+            if (shuts || before.pressed == [true; 2]) && mode.pressed != [true; 2] {
                 let edge = only(mode.pressed);
                 self.opened.push(Hinge::Joint { joint, edge });
             }
