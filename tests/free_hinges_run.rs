@@ -798,6 +798,8 @@ fn joints_that_slip_are_told_of() {
     let results = Results::of(&slipping, &["--no-spread"]);
     let summary = results.summary();
     assert_eq!(summary["friction_coefficient"], 0.4);
+    // It has slipped so far down that its height tells nothing about overturning.
+    assert_eq!(summary["peak_potential_over_barrier"], Value::Null);
     assert_eq!(summary["unconverged_steps"], 0);
     let slips_m: Vec<f64> = serde_json::from_value(summary["slips_m"].clone()).unwrap();
     assert_eq!(slips_m.len(), 8);
@@ -822,6 +824,22 @@ fn joints_that_slip_are_told_of() {
     for (field, slip_m) in last.iter().skip(17).zip(&slips_m) {
         assert!((field.parse::<f64>().unwrap() - slip_m).abs() < 1e-9);
     }
+    // Something lands in every impact; a joint that opens again at once turns about the edge that landed.
+    let table = Table::read(&results.path("impacts.csv"));
+    let list = |row, name| -> Vec<&str> { table.text(row, name).split_whitespace().collect() };
+    let mut turned = 0;
+    for row in 0..table.rows.len() {
+        let [shut, landed] = ["joints_shut", "edges_shut"].map(|name| list(row, name));
+        let [opened, about] = ["joints_opened", "edges_opened"].map(|name| list(row, name));
+        assert!(!shut.is_empty(), "{row}");
+        for (joint, edge) in shut.iter().zip(landed) {
+            if let Some(at) = opened.iter().position(|opened| opened == joint) {
+                assert_eq!(about[at], edge, "{row}");
+                turned += 1;
+            }
+        }
+    }
+    assert!(turned > 10, "{turned}");
     let mut impacts = csv::Reader::from_path(results.path("impacts.csv")).unwrap();
     assert_eq!(
         impacts.headers().unwrap().iter().next_back(),

@@ -239,7 +239,7 @@ pub struct Summary {
     /// alone overturns. `None` where it is not known.
     pub peak_over_critical: Option<f64>,
     /// Of a row of blocks, its largest potential energy over the barrier of its first mechanism, which may not be the one that
-    /// it overturns by. `None` where no barrier is known.
+    /// it overturns by. `None` where no barrier is known, or joints slipped so far that friction took a hundredth of it.
     pub peak_potential_over_barrier: Option<f64>,
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus the losses at impacts, over the energy barrier of the first mechanism.

@@ -92,6 +92,10 @@ impl RowOptions {
     }
 }
 
+/// A row has slipped when friction took more than this part of the barrier of its first mechanism. It then stands lower than it did,
+/// and its potential energy tells nothing about that barrier.
+const SLIPPED_RATIO: f64 = 0.01;
+
 /// What the motion of the first mechanism is known by.
 #[derive(Clone, Debug)]
 enum FirstMechanism {
@@ -382,6 +386,10 @@ impl Model for FreeHinges {
             RowOutcome::Rocking => (Outcome::StillRocking, run.end_s),
         };
         relay.end(outcome, run.end_s);
+        let rubbed_j = run
+            .sliding
+            .as_ref()
+            .map_or(0.0, |sliding| sliding.friction_j);
         Ok(Summary {
             outcome,
             outcome_time_s,
@@ -390,6 +398,7 @@ impl Model for FreeHinges {
             peak_rotations_rad: run.peaks_rad.clone(),
             peak_over_critical: None,
             peak_potential_over_barrier: barrier_j
+                .filter(|barrier_j| rubbed_j <= SLIPPED_RATIO * barrier_j)
                 .map(|barrier_j| run.peak_potential_j / barrier_j),
             energy_defect_ratio: run.energy_defect_ratio,
             thrust: relay.recorder.is_some().then_some(relay.thrust),
