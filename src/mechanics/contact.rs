@@ -41,9 +41,9 @@ const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
 /// the active ones.
 const DEPENDENCE: f64 = 1e-10;
 /// Rounds of exchanging many corners without progress after which the dual method takes over.
-const EXCHANGE_PATIENCE: usize = 6;
-/// Iterations of the dual method after which all corners are looked for at once.
-const SINGLE_PATIENCE: usize = 50;
+const EXCHANGE_PATIENCE: usize = 10;
+/// Iterations of the dual method after which all corners are looked for at once: it stops few that depend on others in fewer.
+const SINGLE_PATIENCE: usize = 5;
 /// A corner whose impulse falls by less than this part of a unit impulse elsewhere keeps it.
 const LEAST_SLOPE: f64 = 1e-12;
 
@@ -186,14 +186,14 @@ struct Press {
     impulse: f64,
 }
 
-/// A corner that pulls or closes.
+/// A corner that pulls or closes, and the run of joints whose corners change with it.
 #[derive(Clone, Copy, Debug)]
 struct Wrong {
     joint: usize,
     edge: usize,
     /// Its impulse or its rate, below zero.
     by: f64,
-    /// The last joint of the run of neighbours that it stands for.
+    first: usize,
     last: usize,
 }
 
@@ -203,6 +203,7 @@ impl Wrong {
             joint,
             edge,
             by,
+            first: joint,
             last: joint,
         }
     }
@@ -238,6 +239,8 @@ pub struct Program {
     force_floor: f64,
     /// Corners that pull or close.
     wrong: Vec<Wrong>,
+    /// The active set before the last exchange.
+    earlier: Vec<Corners>,
     interior: Interior,
 }
 
@@ -270,6 +273,7 @@ impl Program {
             velocities: vec![Twist::ZERO; blocks],
             force_floor: 0.0,
             wrong: Vec::with_capacity(2 * joints),
+            earlier: vec![[true; 2]; joints],
             interior: Interior::with_joints(joints),
         };
         program.place(&Placement::new(row));
@@ -835,14 +839,15 @@ impl Program {
         resultant + self.change(&twist, pin.joint, loaded)
     }
 
-    /// Releases all corners that pull and stops all that close, again and again, while that leaves fewer of them; then
-    /// only the worst one of each run of neighbours, whose release often lets the others press again. It
+    /// Releases the corner that pulls most in each run of neighbours that do, because that often lets the others press again, and
+    /// stops all that close, again and again while that leaves fewer of them; then only the one of each run that closes fastest. It
     /// solves impacts at which many corners change in a few rounds, but may go in circles: what it leaves is for
     /// the dual method. True if that is nothing.
     fn exchange(&mut self, touching: &[Corners], tolerance: f64, iterations: &mut usize) -> bool {
         let mut fewest = usize::MAX;
         let mut patience = EXCHANGE_PATIENCE;
         let mut worst_only = false;
+        self.earlier.copy_from_slice(&self.active);
         loop {
             self.find_wrong(touching, tolerance);
             if self.wrong.is_empty() {
@@ -859,12 +864,13 @@ impl Program {
                 worst_only = true;
                 patience = EXCHANGE_PATIENCE;
             }
-            if worst_only {
-                self.keep_worst();
+            self.keep_worst(worst_only);
+            if !worst_only {
+                self.go_on(touching);
             }
             self.flip_wrong();
             if !exceeds(self.factor(), DEPENDENCE) {
-                self.flip_wrong();
+                self.active.copy_from_slice(&self.earlier);
                 self.factor();
                 if worst_only {
                     return false;
@@ -897,27 +903,48 @@ impl Program {
         }
     }
 
-    /// Keeps the worst one of each run of neighbours that are wrong in the same way.
-    fn keep_worst(&mut self) {
+    /// Keeps the worst one of each run of neighbours that pull, on request also of those that close.
+    fn keep_worst(&mut self, of_closing: bool) {
         let active = &self.active;
+        let mut end = None;
         self.wrong.dedup_by(|next, kept| {
-            let alike = active[next.joint][next.edge] == active[kept.joint][kept.edge];
-            let run = next.edge == kept.edge && alike && next.joint == kept.last + 1;
-            if run {
-                let last = next.joint;
-                if next.by < kept.by {
-                    *kept = *next;
-                }
-                kept.last = last;
+            let pulls = [&*kept, &*next].map(|wrong| active[wrong.joint][wrong.edge]);
+            let alike = pulls[0] == pulls[1] && (pulls[0] || of_closing);
+            let follows = next.edge == kept.edge && next.joint == end.unwrap_or(kept.joint) + 1;
+            let run = alike && follows;
+            end = run.then_some(next.joint);
+            if run && next.by < kept.by {
+                *kept = *next;
             }
             run
         });
     }
 
+    /// Openings and closings travel along the row from joint to joint: takes as many joints more as the last exchange changed
+    /// next to a corner in the same way.
+    fn go_on(&mut self, touching: &[Corners]) {
+        let (active, earlier) = (&self.active, &self.earlier);
+        for wrong in &mut self.wrong {
+            let (joint, edge) = (wrong.joint, wrong.edge);
+            let before = active[joint][edge];
+            let changed = |j: &usize| active[*j][edge] != before && earlier[*j][edge] == before;
+            let same = |j: &usize| active[*j][edge] == before && touching[*j][edge];
+            let (left, right) = (0..joint, joint + 1..active.len());
+            let from_left = left.clone().rev().take_while(changed).count();
+            let from_right = right.clone().take_while(changed).count();
+            wrong.first -= left.rev().take(from_right).take_while(same).count();
+            wrong.last += right.take(from_left).take_while(same).count();
+        }
+    }
+
     /// Releases the wrong corners that are active, and stops the others.
     fn flip_wrong(&mut self) {
+        self.earlier.copy_from_slice(&self.active);
         for wrong in &self.wrong {
-            self.active[wrong.joint][wrong.edge] ^= true;
+            let before = self.earlier[wrong.joint][wrong.edge];
+            for corners in &mut self.active[wrong.first..=wrong.last] {
+                corners[wrong.edge] = !before;
+            }
         }
     }
 
