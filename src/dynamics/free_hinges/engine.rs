@@ -32,6 +32,8 @@ const CLOSURE_RATIO: f64 = 1e-13;
 const CLOSURE_PASSES: usize = 8;
 /// Passes in which the step that ends at a landing is found.
 const LANDING_PASSES: usize = 8;
+/// A landing by this part of a step earlier or later than expected needs no other pass.
+const LANDING_TOLERANCE: f64 = 1e-6;
 /// Joints with less than this part of the largest normal force are not pressed.
 const LOADED: f64 = 1e-6;
 
@@ -61,6 +63,32 @@ impl Piece {
     }
 }
 
+/// A step that was solved.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// The length that it was expected to have: the impulses are those up to its middle.
+    expected_s: f64,
+    length_s: f64,
+    /// Whether corners land within it, not at its end.
+    merged: bool,
+}
+
+/// A corner that falls towards its joint.
+#[derive(Clone, Copy, Debug)]
+struct Fall {
+    joint: usize,
+    edge: usize,
+    gap_m: f64,
+    /// Rate of the gap, below zero.
+    rate_m_s: f64,
+}
+
+impl Fall {
+    fn duration_s(&self) -> f64 {
+        self.gap_m / -self.rate_m_s
+    }
+}
+
 pub(super) struct Engine<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
@@ -68,8 +96,8 @@ pub(super) struct Engine<'a> {
     settings: &'a Settings,
     thinnest: f64,
     course: Course,
-    /// The last step, zero where position and velocity belong to the same instant.
-    last_step: f64,
+    /// The time up to which gravity and ground have acted on the velocities.
+    kicked_s: f64,
     placement: Placement,
     backup: Placement,
     program: Program,
@@ -81,6 +109,8 @@ pub(super) struct Engine<'a> {
     turning: Vec<Option<Edge>>,
     free: Vec<Twist>,
     jumps: Vec<Twist>,
+    /// Rates of the gaps in the solution before the last.
+    earlier_rates: Vec<[f64; 2]>,
     /// Rates of the gaps that bring landing corners to zero within the step.
     landing: Vec<[f64; 2]>,
     touching: Vec<Corners>,
@@ -121,7 +151,7 @@ impl<'a> Engine<'a> {
             settings,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
             course: Course::new(row, gravity, fallen_energy_j(row, gravity, false)),
-            last_step: 0.0,
+            kicked_s: 0.0,
             backup: placement.clone(),
             placement,
             auxiliary: program.clone(),
@@ -131,6 +161,7 @@ impl<'a> Engine<'a> {
             turning: vec![None; joints],
             free: vec![Twist::ZERO; blocks],
             jumps: vec![Twist::ZERO; joints],
+            earlier_rates: vec![[0.0; 2]; joints],
             landing: vec![[0.0; 2]; joints],
             touching: vec![[true; 2]; joints],
             change: vec![[0.0; 2]; joints],
@@ -212,60 +243,19 @@ impl<'a> Engine<'a> {
     /// One step, at most to the given time, at its landing if there is one.
     fn advance(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
         self.step_iterations = 0;
-        let mut step = equal_step(self.course.time, until, self.settings.longest_step_s);
+        let longest = equal_step(self.course.time, until, self.settings.longest_step_s);
         let before = self.momentum();
         self.touch_shut();
         self.closed.copy_from_slice(&self.touching);
         let from_s = self.course.time;
         let taken_before = self.course.run.energy_taken_j;
         self.landing.fill([0.0; 2]);
-        if self.last_step == 0.0 && self.course.run.cost.impacts > 0 {
+        if self.kicked_s == self.course.time && self.course.run.cost.impacts > 0 {
             self.press_again();
         }
-        let shortest = self.settings.shortest_step_s.min(step);
-
-        // A step that ends at the first landing: its length changes the kick, and so the landing. No corner lands
-        // within `safe`, some do within `late`.
-        let (mut safe, mut late) = (0.0, step);
-        let mut earlier: Option<(f64, f64)> = None;
-        let mut merged = false;
-        for pass in 0.. {
-            self.solve_step(step)?;
-            let (fall, residual_ratio) = self.first_landing(step);
-            if residual_ratio.abs() <= 0.5 * SHUT_RATIO || (fall > step && pass == 0) {
-                break;
-            }
-            if fall > step {
-                safe = step;
-                if pass >= LANDING_PASSES {
-                    break;
-                }
-            } else {
-                late = step;
-            }
-            let miss = fall - step;
-            let secant = earlier.map_or(fall, |(other, other_miss)| {
-                step - miss * (step - other) / (miss - other_miss)
-            });
-            earlier = Some((step, miss));
-            step = if pass + 1 >= LANDING_PASSES {
-                safe
-            } else if safe < secant && secant < late {
-                secant
-            } else {
-                0.5 * (safe + late)
-            };
-            if step < shortest {
-                merged = true;
-                break;
-            }
-        }
-        if merged {
-            step = shortest;
-            self.solve_merged(step)?;
-        }
-        self.account(step, before, !merged);
-        self.drift(step)?;
+        let step = self.solve_to_landing(longest)?;
+        self.account(&step, before);
+        self.drift(&step)?;
         if self.has_landed() {
             self.impact()?;
             self.report(taken_before, recorder);
@@ -274,10 +264,75 @@ impl<'a> Engine<'a> {
         }
         let cost = &mut self.course.run.cost;
         cost.steps += 1;
-        cost.merged += usize::from(merged);
+        cost.merged += usize::from(step.merged);
         cost.most_iterations = cost.most_iterations.max(self.step_iterations);
         self.observe();
         Ok(())
+    }
+
+    /// Solves the step that ends at the first landing, if that is not beyond the longest one. Its length changes the kick, and so
+    /// the landing.
+    fn solve_to_landing(&mut self, longest: f64) -> Result<Step, FreeHingeError> {
+        let shortest = self.settings.shortest_step_s.min(longest);
+        let duration_s = |fall: Option<Fall>| fall.map_or(f64::INFINITY, |fall| fall.duration_s());
+        let mut step = duration_s(self.first_fall()).clamp(shortest, longest);
+        // No corner lands within `safe`, some do within `late`.
+        let (mut safe, mut late) = (0.0, f64::INFINITY);
+        // The rates at hand are those of a step that would have ended as long ago as this one is still to go.
+        let mut earlier = 2.0 * (self.kicked_s - self.course.time);
+        for pass in 0.. {
+            self.note_rates();
+            self.solve_step(step)?;
+            let fall = self.first_fall();
+            let lands = duration_s(fall);
+            let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
+            let passes_left = LANDING_PASSES.saturating_sub(pass);
+            if met || (lands > step && (step == longest || passes_left == 0)) {
+                return Ok(Step {
+                    expected_s: step,
+                    length_s: if met { lands } else { step },
+                    merged: false,
+                });
+            }
+            if lands > step {
+                safe = step;
+            } else if step > shortest {
+                late = step;
+            } else {
+                break;
+            }
+            let expected = fall.map_or(f64::INFINITY, |fall| self.landing(&fall, step, earlier));
+            earlier = step;
+            step = if passes_left <= 1 && safe > 0.0 {
+                safe
+            } else if safe < expected && expected < late {
+                expected
+            } else {
+                0.5 * (safe + late)
+            }
+            .clamp(shortest, longest);
+        }
+        self.merge(shortest)?;
+        Ok(Step {
+            expected_s: shortest,
+            length_s: shortest,
+            merged: true,
+        })
+    }
+
+    /// The step that ends where this corner lands, from the rates of steps of two lengths between which they change evenly.
+    fn landing(&self, fall: &Fall, step: f64, earlier: f64) -> f64 {
+        let change = fall.rate_m_s - self.earlier_rates[fall.joint][fall.edge];
+        let acceleration = change / (step - earlier);
+        let rate = fall.rate_m_s - acceleration * step;
+        let root = (rate * rate - 4.0 * acceleration * fall.gap_m).sqrt();
+        2.0 * fall.gap_m / (root - rate)
+    }
+
+    fn note_rates(&mut self) {
+        for (joint, rates) in self.program.open_joints() {
+            self.earlier_rates[joint] = rates;
+        }
     }
 
     /// Corners that may not close: those that touch.
@@ -308,7 +363,7 @@ impl<'a> Engine<'a> {
     /// The rest of the last kick, up to the instant of the positions, with what touches there; the impulse of the ground in it.
     fn half_kick(&mut self) -> Vector2<f64> {
         let time = self.course.time;
-        let (impulse, ground) = self.impulse(time - 0.5 * self.last_step, time);
+        let (impulse, ground) = self.impulse(self.kicked_s, time);
         self.kick(impulse);
         self.jumps.fill(Twist::ZERO);
         self.landing.fill([0.0; 2]);
@@ -318,10 +373,7 @@ impl<'a> Engine<'a> {
 
     /// The interval of the kick of a step.
     fn kicked(&self, step: f64) -> (f64, f64) {
-        (
-            self.course.time - 0.5 * self.last_step,
-            self.course.time + 0.5 * step,
-        )
+        (self.kicked_s, self.course.time + 0.5 * step)
     }
 
     fn solve_step(&mut self, step: f64) -> Result<(), FreeHingeError> {
@@ -390,19 +442,21 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// When the first open corner lands, and its gap at the end of a step over the thickness of its joint.
-    fn first_landing(&self, step: f64) -> (f64, f64) {
-        let mut first = (f64::INFINITY, f64::INFINITY);
+    /// The open corner that lands first at the rates of the last solution.
+    fn first_fall(&self) -> Option<Fall> {
+        let mut first: Option<Fall> = None;
         for (joint, rates) in self.program.open_joints() {
             let gaps = self.placement.gaps_m()[joint];
             for edge in 0..2 {
-                if !self.touching[joint][edge] && rates[edge] < 0.0 {
-                    let fall = gaps[edge] / -rates[edge];
-                    if fall < first.0 {
-                        let residual = gaps[edge] + step * rates[edge];
-                        let thickness = self.placement.frames()[joint].thickness_m;
-                        first = (fall, residual / thickness);
-                    }
+                let fall = Fall {
+                    joint,
+                    edge,
+                    gap_m: gaps[edge],
+                    rate_m_s: rates[edge],
+                };
+                let falls = !self.touching[joint][edge] && fall.rate_m_s < 0.0;
+                if falls && first.is_none_or(|first| fall.duration_s() < first.duration_s()) {
+                    first = Some(fall);
                 }
             }
         }
@@ -410,8 +464,7 @@ impl<'a> Engine<'a> {
     }
 
     /// A step within which all corners that would land come to touch.
-    fn solve_merged(&mut self, step: f64) -> Result<(), FreeHingeError> {
-        self.solve_step(step)?;
+    fn merge(&mut self, step: f64) -> Result<(), FreeHingeError> {
         let without = self.kinetic_of_solution();
         loop {
             let mut more = false;
@@ -500,12 +553,12 @@ impl<'a> Engine<'a> {
     }
 
     /// Books the work of the ground and the forces of a step that was solved, and forms its pieces.
-    fn account(&mut self, step: f64, before: Vector2<f64>, ordinary: bool) {
-        let (from_s, to_s) = self.kicked(step);
+    fn account(&mut self, step: &Step, before: Vector2<f64>) {
+        let (from_s, to_s) = self.kicked(step.expected_s);
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.ground_work -= self.impulse(from_s, to_s).1.dot(&mean);
-        if !ordinary {
+        if step.merged {
             return;
         }
         self.program.joint_impulses(&mut self.shares);
@@ -529,20 +582,20 @@ impl<'a> Engine<'a> {
     }
 
     /// Moves the row over a step that was solved.
-    fn drift(&mut self, step: f64) -> Result<(), FreeHingeError> {
+    fn drift(&mut self, step: &Step) -> Result<(), FreeHingeError> {
+        self.kicked_s = self.kicked(step.expected_s).1;
         for (change, rates) in self.change.iter_mut().zip(&self.landing) {
-            *change = rates.map(|rate| rate * step);
+            *change = rates.map(|rate| rate * step.length_s);
         }
         for (joint, rates) in self.program.open_joints() {
             for (change, rate) in self.change[joint].iter_mut().zip(rates) {
-                *change += rate * step;
+                *change += rate * step.length_s;
             }
         }
         let change = &self.change;
         self.placement.open(|joint| change[joint]);
         self.take_pieces();
-        self.course.time += step;
-        self.last_step = step;
+        self.course.time += step.length_s;
         self.close();
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
@@ -669,7 +722,7 @@ impl<'a> Engine<'a> {
         let kinetic_after = self.kinetic_of_solution();
         self.course.run.energy_taken_j += kinetic_before - kinetic_after;
         self.take_pieces();
-        self.last_step = 0.0;
+        self.kicked_s = self.course.time;
         self.course.run.cost.impacts += 1;
         Ok(())
     }
