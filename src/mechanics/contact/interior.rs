@@ -34,6 +34,8 @@ pub(super) struct Interior {
     rates: Vec<Vector3<f64>>,
     /// By how much the equations of the rates are missed.
     misses: Vec<Vector3<f64>>,
+    /// One over the impulses at corners, zero along joints and where none can be.
+    inverses: Vec<Vector3<f64>>,
     pivots: Vec<Matrix3<f64>>,
     gains: Vec<Matrix3<f64>>,
     right: Vec<Vector3<f64>>,
@@ -54,6 +56,7 @@ impl Interior {
             impulses: vec![Vector3::zeros(); joints],
             rates: vec![Vector3::zeros(); joints],
             misses: vec![Vector3::zeros(); joints],
+            inverses: vec![Vector3::zeros(); joints],
             pivots: vec![Matrix3::zeros(); joints],
             gains: vec![Matrix3::zeros(); joints],
             right: vec![Vector3::zeros(); joints],
@@ -242,11 +245,18 @@ impl Interior {
     /// Eliminates from left to right.
     fn factor(&mut self) -> Option<()> {
         for joint in 0..self.own.len() {
+            let impulse = &self.impulses[joint];
+            let inverse = |row: usize| {
+                if self.touching[joint][row - 1] {
+                    1.0 / impulse[row]
+                } else {
+                    0.0
+                }
+            };
+            self.inverses[joint] = Vector3::new(0.0, inverse(1), inverse(2));
             let mut pivot = self.own[joint];
             for row in 1..3 {
-                if self.touching[joint][row - 1] {
-                    pivot[(row, row)] += self.rates[joint][row] / self.impulses[joint][row];
-                }
+                pivot[(row, row)] += self.rates[joint][row] * self.inverses[joint][row];
             }
             if let Some(before) = joint.checked_sub(1) {
                 pivot -= self.next[before].transpose() * self.gains[before];
@@ -261,15 +271,13 @@ impl Interior {
     fn step(&mut self, centre: f64, second: f64) {
         let joints = self.own.len();
         for joint in 0..joints {
-            let (impulse, rate) = (&self.impulses[joint], &self.rates[joint]);
-            let mut right = -self.misses[joint];
-            for row in 1..3 {
-                if self.touching[joint][row - 1] {
-                    let left_out =
-                        second * self.impulse_steps[joint][row] * self.rate_steps[joint][row];
-                    right[row] += (centre - left_out) / impulse[row] - rate[row];
-                }
-            }
+            // What the rates change by where the impulses do not: nothing along joints and where none can be.
+            let left_out =
+                self.impulse_steps[joint].component_mul(&self.rate_steps[joint]) * second;
+            let products = left_out.map(|left_out| centre - left_out);
+            let change = products.component_mul(&self.inverses[joint]) - self.rates[joint];
+            self.rate_steps[joint] = change;
+            let mut right = change - self.misses[joint];
             if let Some(before) = joint.checked_sub(1) {
                 right -= self.gains[before].tr_mul(&self.right[before]);
             }
@@ -281,17 +289,8 @@ impl Interior {
                 step -= self.gains[joint] * after;
             }
             self.impulse_steps[joint] = step;
-        }
-        for joint in 0..joints {
-            let mut step = self.misses[joint] + self.compliant(joint, &self.impulse_steps);
-            // Along a joint the rate is zero, and stays so.
-            step.x = 0.0;
-            for row in 1..3 {
-                if !self.touching[joint][row - 1] {
-                    step[row] = 0.0;
-                }
-            }
-            self.rate_steps[joint] = step;
+            let slope = self.rates[joint].component_mul(&self.inverses[joint]);
+            self.rate_steps[joint] -= slope.component_mul(&step);
         }
     }
 
