@@ -403,14 +403,9 @@ impl Program {
         if !solved {
             self.exchange_tolerantly(touching, largest_rate, &mut effort)?;
         }
-        self.set_velocities();
-        let moves = |twist: &Twist| twist.rate + twist.at_center.x + twist.at_center.y;
-        if self.velocities.iter().map(moves).all(f64::is_finite) {
-            Ok(effort)
-        } else {
-            let iterations = effort.iterations;
-            Err(ContactError { iterations })
-        }
+        let finite = self.set_velocities();
+        let iterations = effort.iterations;
+        finite.then_some(effort).ok_or(ContactError { iterations })
     }
 
     /// Starts again from the active set of the interior-point method, if it finds one. True if that leaves nothing wrong.
@@ -507,7 +502,7 @@ impl Program {
             let added = motion.momentum(&self.own[block]);
             let (x, y) = (added.linear.x.abs(), added.linear.y.abs());
             total += x + y;
-            largest = largest.max((x + y) / self.own[block].mass);
+            largest = higher(largest, (x + y) / self.own[block].mass);
             momentum = momentum + added;
             self.momenta[block + 1] = momentum;
         }
@@ -888,10 +883,10 @@ impl Program {
         let pulling = self.pull_limit();
         self.wrong.clear();
         for edge in 0..2 {
-            for (joint, active) in self.active.iter().enumerate() {
-                let by = self.answer.corners[joint][edge];
-                if active[edge] && by < pulling {
-                    self.wrong.push(Wrong::new(joint, edge, by));
+            // Those that are not active have none.
+            for (joint, impulses) in self.answer.corners.iter().enumerate() {
+                if impulses[edge] < pulling {
+                    self.wrong.push(Wrong::new(joint, edge, impulses[edge]));
                 }
             }
             for (pin, rates) in self.pins.iter().zip(&self.answer.rates) {
@@ -953,10 +948,9 @@ impl Program {
         // Edge by edge, so that one comparison does not wait for the other.
         let corners = self.answer.corners.iter();
         let [intrados, extrados] = corners.fold([0.0_f64; 2], |most, corner| {
-            [most[0].max(corner[0].abs()), most[1].max(corner[1].abs())]
+            [0, 1].map(|edge| higher(most[edge], corner[edge].abs()))
         });
-        let largest = intrados.max(extrados);
-        -(FORCE_TOLERANCE * largest).max(self.force_floor)
+        -(FORCE_TOLERANCE * higher(intrados, extrados)).max(self.force_floor)
     }
 
     /// Releases the corners that pull, the worst one of each run of neighbours. False if none does.
@@ -1064,13 +1058,19 @@ impl Program {
         first
     }
 
-    fn set_velocities(&mut self) {
+    /// Velocities of the blocks in the last solution. False where they are not finite.
+    fn set_velocities(&mut self) -> bool {
+        let mut sum = 0.0;
         for body in 0..self.bodies.len() {
             let twist = self.answer.motions[body].twist();
-            for block in self.blocks(body) {
-                self.velocities[block] = twist + self.datum[block];
+            let blocks = self.blocks(body);
+            let velocities = self.velocities[blocks.clone()].iter_mut();
+            for (velocity, datum) in velocities.zip(&self.datum[blocks]) {
+                *velocity = twist + *datum;
+                sum += velocity.rate + velocity.at_center.x + velocity.at_center.y;
             }
         }
+        sum.is_finite()
     }
 
     /// The displacement of least kinetic norm that takes up the closure error of an arch, without opening or shutting a
@@ -1101,6 +1101,11 @@ fn exceeds(pivot: f64, least: f64) -> bool {
 /// The lower of two numbers, or what is not a number.
 fn lower(one: f64, other: f64) -> f64 {
     if one <= other { one } else { other }
+}
+
+/// The higher of two numbers, or the first one.
+fn higher(one: f64, other: f64) -> f64 {
+    if other > one { other } else { one }
 }
 
 impl Answer {
