@@ -160,10 +160,31 @@ struct Pin {
     joint: usize,
     point: Vector2<f64>,
     parted: bool,
+    /// Unit vectors along the joint and across it.
+    axes: [Vector2<f64>; 2],
+    /// Moments of unit impulses along them about the centres of the left and of the right body.
+    turns: [[f64; 2]; 2],
     /// Inverse of the pivot of the elimination.
     pivot: Matrix2<f64>,
     /// Pivot of the joint before times the coupling with it.
     gain: Matrix2<f64>,
+}
+
+impl Pin {
+    /// Velocity of its right body against its left one, along the joint and across it.
+    fn rate(&self, left: &Motion, right: &Motion) -> Vector2<f64> {
+        let apart = right.velocity - left.velocity;
+        let [on_left, on_right] = self.turns;
+        let rate = |axis: usize| {
+            self.axes[axis].dot(&apart) + (on_right[axis] * right.rate - on_left[axis] * left.rate)
+        };
+        Vector2::new(rate(0), rate(1))
+    }
+
+    /// An impulse along the joint and across it.
+    fn impulse(&self, shares: &Vector2<f64>) -> Vector2<f64> {
+        self.axes[0] * shares.x + self.axes[1] * shares.y
+    }
 }
 
 /// Solution of a pin system: of the load, or the response to a unit impulse.
@@ -533,11 +554,13 @@ impl Program {
         let mut first = self.pins.last().map(|pin| pin.joint);
         for joint in from..self.active.len() {
             let active = self.active[joint];
+            let frame = &self.frames[joint];
             let point = match active {
                 [true, true] => continue,
-                [false, true] => self.frames[joint].corner_m(Edge::Extrados),
-                _ => self.frames[joint].intrados_m,
+                [false, true] => frame.corner_m(Edge::Extrados),
+                _ => frame.intrados_m,
             };
+            let axes = [frame.along, frame.normal];
             self.bodies.push(match first {
                 None => Body::HELD,
                 Some(first) => self.body(first, joint),
@@ -546,6 +569,8 @@ impl Program {
                 joint,
                 point,
                 parted: active == [false; 2],
+                axes,
+                turns: [[0.0; 2]; 2],
                 pivot: Matrix2::zeros(),
                 gain: Matrix2::zeros(),
             });
@@ -575,18 +600,18 @@ impl Program {
 
     /// Forward elimination of the compliances at the pins from this one on, in axes along and across each joint.
     fn eliminate(&mut self, start: usize) {
-        let frames = &self.frames;
         self.least.truncate(start);
         let mut least = self.least.last().copied().unwrap_or(1.0);
         for index in start..self.pins.len() {
             let (before, from) = self.pins.split_at_mut(index);
             let pin = &mut from[0];
-            let frame = &frames[pin.joint];
-            let axes = [frame.along, frame.normal];
-            let mut own = Matrix2::<f64>::zeros();
-            for body in &self.bodies[index..=index + 1] {
+            let sides = [&self.bodies[index], &self.bodies[index + 1]];
+            pin.turns = sides.map(|body| {
                 let arm = pin.point - body.centre;
-                let turn = axes.map(|axis| arm.perp(&axis));
+                pin.axes.map(|axis| arm.perp(&axis))
+            });
+            let mut own = Matrix2::<f64>::zeros();
+            for (body, turn) in sides.iter().zip(&pin.turns) {
                 let share = body.inverse_inertia;
                 own.m11 += body.inverse_mass + share * turn[0] * turn[0];
                 own.m12 += share * turn[0] * turn[1];
@@ -594,15 +619,10 @@ impl Program {
             }
             let free = [own.m11, own.m22];
             if let Some(previous) = before.last() {
-                let body = &self.bodies[index];
-                let other = &frames[previous.joint];
-                let other_axes = [other.along, other.normal];
-                let arms = [previous.point - body.centre, pin.point - body.centre];
+                let body = sides[0];
                 let coupling = |p: usize, q: usize| {
-                    -(body.inverse_mass * other_axes[p].dot(&axes[q])
-                        + body.inverse_inertia
-                            * arms[0].perp(&other_axes[p])
-                            * arms[1].perp(&axes[q]))
+                    -(body.inverse_mass * previous.axes[p].dot(&pin.axes[q])
+                        + body.inverse_inertia * previous.turns[1][p] * pin.turns[0][q])
                 };
                 let mut b = Matrix2::new(
                     coupling(0, 0),
@@ -692,32 +712,23 @@ impl Program {
         loaded: bool,
     ) {
         let frames = &self.frames;
-        if let Some(press) = press {
-            let frame = &frames[self.pins[press.pin].joint];
-            let impulse = frame.normal * press.impulse;
-            self.push(
-                &mut answer.motions,
-                press.pin,
-                frame.corner_m(EDGES[press.edge]),
-                impulse,
-            );
+        if let Some(Press { pin, edge, impulse }) = press {
+            let frame = &frames[self.pins[pin].joint];
+            let (corner, impulse) = (frame.corner_m(EDGES[edge]), frame.normal * impulse);
+            answer.motions[pin].push(&self.bodies[pin], corner, -impulse);
+            answer.motions[pin + 1].push(&self.bodies[pin + 1], corner, impulse);
         }
         answer.pins.clear();
         let mut carried = Vector2::zeros();
-        for (index, pin) in self.pins.iter().enumerate() {
-            let frame = &frames[pin.joint];
-            let mut gap =
-                answer.motions[index + 1].at(pin.point) - answer.motions[index].at(pin.point);
+        for (pin, sides) in self.pins.iter().zip(answer.motions.windows(2)) {
+            let mut rate = pin.rate(&sides[0], &sides[1]);
             if let Some(closure) = closure.filter(|closure| closure.joint == pin.joint) {
-                gap += closure.error_m;
+                rate += Vector2::from(pin.axes.map(|axis| axis.dot(&closure.error_m)));
             }
-            let across = if pin.parted {
-                0.0
-            } else {
-                -frame.normal.dot(&gap)
-            };
-            let wanted = Vector2::new(-frame.along.dot(&gap), across);
-            carried = wanted - pin.gain.transpose() * carried;
+            if pin.parted {
+                rate.y = 0.0;
+            }
+            carried = -rate - pin.gain.transpose() * carried;
             answer.pins.push(carried);
         }
         let mut next = Vector2::zeros();
@@ -726,13 +737,24 @@ impl Program {
             *impulse = pin.pivot * *impulse - gain * next;
             (next, gain) = (*impulse, pin.gain);
         }
-        answer.rates.clear();
-        for index in 0..self.pins.len() {
-            let frame = &frames[self.pins[index].joint];
-            let along = answer.pins[index];
-            let impulse = frame.along * along.x + frame.normal * along.y;
-            self.push(&mut answer.motions, index, self.pins[index].point, impulse);
+        // Each body takes the impulses of the pins to both its sides.
+        let mut left: Option<(&Pin, Vector2<f64>)> = None;
+        for (index, (body, motion)) in self.bodies.iter().zip(&mut answer.motions).enumerate() {
+            let right = self.pins.get(index).map(|pin| (pin, answer.pins[index]));
+            let (mut linear, mut angular) = (Vector2::zeros(), 0.0);
+            if let Some((pin, shares)) = left {
+                linear += pin.impulse(&shares);
+                angular += pin.turns[1][0] * shares.x + pin.turns[1][1] * shares.y;
+            }
+            if let Some((pin, shares)) = right {
+                linear -= pin.impulse(&shares);
+                angular -= pin.turns[0][0] * shares.x + pin.turns[0][1] * shares.y;
+            }
+            motion.velocity += linear * body.inverse_mass;
+            motion.rate += angular * body.inverse_inertia;
+            left = right;
         }
+        answer.rates.clear();
         for (index, pin) in self.pins.iter().enumerate() {
             let frame = &frames[pin.joint];
             let (left, right) = (&answer.motions[index], &answer.motions[index + 1]);
@@ -748,12 +770,6 @@ impl Program {
             });
         }
         self.press_corners(answer, press, loaded);
-    }
-
-    /// Applies an impulse to the two bodies at a pin.
-    fn push(&self, motions: &mut [Motion], pin: usize, point: Vector2<f64>, impulse: Vector2<f64>) {
-        motions[pin].push(&self.bodies[pin], point, -impulse);
-        motions[pin + 1].push(&self.bodies[pin + 1], point, impulse);
     }
 
     /// Impulses at the corners: at hinges those of the pins, at shut joints by the running sum.
@@ -823,11 +839,10 @@ impl Program {
         let Some(pin) = self.pins.get(index) else {
             return self.change(&twist, self.velocities.len(), loaded);
         };
-        let frame = &self.frames[pin.joint];
-        let along = answer.pins[index];
-        let impulse = frame.along * along.x + frame.normal * along.y;
+        let impulse = pin.impulse(&answer.pins[index]);
         let mut resultant = Momentum::applied_at(pin.point, impulse);
         if let Some(press) = press.filter(|press| press.pin == index) {
+            let frame = &self.frames[pin.joint];
             let corner = frame.corner_m(EDGES[press.edge]);
             resultant = resultant + Momentum::applied_at(corner, frame.normal * press.impulse);
         }
