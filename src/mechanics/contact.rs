@@ -1139,3 +1139,79 @@ const NO_MASS: MassMoments = MassMoments {
     first: Vector2::new(0.0, 0.0),
     polar: 0.0,
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::geometry::ring::Ring;
+
+    /// Whatever the blocks do, each way to the active set leads to the same velocities: exchanges of many corners with what follows
+    /// where they fail, the interior-point method, and the dual method from the corners of the beginning.
+    #[test]
+    fn all_ways_lead_to_one_solution() {
+        let mut state = 7_u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            f64::from((state >> 40) as u32) / f64::from(1_u32 << 24)
+        };
+        for blocks in [3, 20, 60, 150] {
+            let arch = Row::arch(&Ring::new(0.15, 2.5).unwrap(), blocks, 5.0, 1.0, 2000.0);
+            let stack = Row::tapered_stack(&vec![0.5; blocks], 2.0, 1.0, 1.0, 2000.0);
+            for row in [arch.unwrap(), stack.unwrap()] {
+                let mut program = Program::new(&row);
+                let joints = row.joints().len();
+                for _ in 0..20 {
+                    let motion = |x: f64, y: f64, rate: f64| {
+                        Twist::translation(Vector2::new(x - 0.5, y - 0.5))
+                            + Twist::rotation(Vector2::zeros(), rate - 0.5)
+                    };
+                    let free: Vec<Twist> = (0..blocks)
+                        .map(|_| motion(next(), next(), next()))
+                        .collect();
+                    let jumps = vec![Twist::translation(Vector2::new(0.01 * next(), 0.0)); joints];
+                    let touching: Vec<Corners> =
+                        (0..joints).map(|_| [next() < 0.9, next() < 0.9]).collect();
+                    let load = Load {
+                        free: &free,
+                        jumps: &jumps,
+                        touching: &touching,
+                    };
+                    program.solve(&load).unwrap();
+                    let solution = program.velocities.clone();
+
+                    let largest_rate = program.set_up(&load);
+                    let agrees = |program: &mut Program, way: &str| {
+                        program.set_velocities();
+                        for (block, twist) in program.velocities.iter().enumerate() {
+                            let off = *twist - solution[block];
+                            let off_m_s = off.at(program.centre(block)).norm();
+                            assert!(off_m_s < 1e-8 * largest_rate, "{way} {blocks}: {off_m_s:e}");
+                        }
+                    };
+                    let begin = |program: &mut Program| {
+                        program.reset();
+                        for (active, touching) in program.active.iter_mut().zip(&touching) {
+                            *active = [0, 1].map(|edge| active[edge] && touching[edge]);
+                        }
+                        program.factor();
+                        program.answer_load(None);
+                    };
+                    begin(&mut program);
+                    let mut iterations = 0;
+                    assert!(program.go_inside(&touching, 1e-9 * largest_rate, &mut iterations));
+                    assert!(iterations <= 40, "{iterations}");
+                    agrees(&mut program, "inside");
+
+                    begin(&mut program);
+                    let mut effort = Effort::default();
+                    program
+                        .exchange_tolerantly(&touching, largest_rate, &mut effort)
+                        .unwrap();
+                    agrees(&mut program, "dual");
+                }
+            }
+        }
+    }
+}
