@@ -270,15 +270,15 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
-    /// Solves the step that ends at the first landing, if that is not beyond the longest one. Its length changes the kick, and so
-    /// the landing.
+    /// Solves the step that ends at the first landing, or the longest one if nothing lands in it. Its length changes the kick, and
+    /// so the landing. What lands within the shortest step is merged.
     fn solve_to_landing(&mut self, longest: f64) -> Result<Step, FreeHingeError> {
         let shortest = self.settings.shortest_step_s.min(longest);
         let duration_s = |fall: Option<Fall>| fall.map_or(f64::INFINITY, |fall| fall.duration_s());
         let mut step = duration_s(self.first_fall()).clamp(shortest, longest);
         // No corner lands within `safe`, some do within `late`.
         let (mut safe, mut late) = (0.0, f64::INFINITY);
-        // The rates at hand are those of a step that would have ended as long ago as this one is still to go.
+        // The rates before the step are those of one that goes back by as much as the last one went on.
         let mut earlier = 2.0 * (self.kicked_s - self.course.time);
         for pass in 0.. {
             self.note_rates();
@@ -287,7 +287,8 @@ impl<'a> Engine<'a> {
             let lands = duration_s(fall);
             let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
             let passes_left = LANDING_PASSES.saturating_sub(pass);
-            if met || (lands > step && (step == longest || passes_left == 0)) {
+            let ends_before = lands > step && (step == longest || passes_left == 0);
+            if met || ends_before || step == safe {
                 return Ok(Step {
                     expected_s: step,
                     length_s: if met { lands } else { step },
@@ -320,7 +321,8 @@ impl<'a> Engine<'a> {
         })
     }
 
-    /// The step that ends where this corner lands, from the rates of steps of two lengths between which they change evenly.
+    /// Length of the step at whose end this corner lands, as its rate changes evenly with the length: from that of the step last
+    /// solved and that of the one before.
     fn landing(&self, fall: &Fall, step: f64, earlier: f64) -> f64 {
         let change = fall.rate_m_s - self.earlier_rates[fall.joint][fall.edge];
         let acceleration = change / (step - earlier);
@@ -329,6 +331,7 @@ impl<'a> Engine<'a> {
         2.0 * fall.gap_m / (root - rate)
     }
 
+    /// Keeps the rates of the last solution for comparison with those of the next.
     fn note_rates(&mut self) {
         for (joint, rates) in self.program.open_joints() {
             self.earlier_rates[joint] = rates;
