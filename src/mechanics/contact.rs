@@ -8,22 +8,19 @@
 //!
 //! Shut joints make rigid bodies of the blocks between open joints. The impulses at open joints solve a
 //! block-tridiagonal system of 2x2 blocks, one per open joint; those at the shut joints follow by one running sum of
-//! the changes of momentum. The active set is found by the dual method of Goldfarb and Idnani ("A numerically stable dual
-//! method for solving strictly convex quadratic programs", Math. Programming 27, 1983), started from the last one: corners that
-//! pull are released, then the corner that closes fastest is stopped. Before, many corners change at once while that helps; where
-//! both take long, an interior-point method finds the set (`interior`). Rows that depend on others never become active, so that
-//! rest, where the impulses are not unique, is no special case.
+//! the changes of momentum. The active set is found from the last one by exchanges of many corners at once, which nearly always
+//! get there. What they leave is for the dual method of Goldfarb and Idnani ("A numerically stable dual
+//! method for solving strictly convex quadratic programs", Math. Programming 27, 1983): corners that
+//! pull are released, then the corner that closes fastest is stopped. Rows that depend on others never become active, so that rest,
+//! where the impulses are not unique, is no special case.
 //!
 //! What does not depend on the motion, bodies and pivots from the left up to where corners change, is kept from solution to solution.
 
-mod interior;
-
 use std::ops::Range;
 
-use nalgebra::{Matrix2, Vector2, Vector3};
+use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
-use self::interior::Interior;
 use super::blocks::{Row, Supports};
 use super::joints::{Closure, Frame, Placement};
 use crate::mechanics::geometry::field::{Momentum, Twist};
@@ -41,9 +38,7 @@ const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
 /// the active ones.
 const DEPENDENCE: f64 = 1e-10;
 /// Rounds of exchanging many corners without progress after which the dual method takes over.
-const EXCHANGE_PATIENCE: usize = 10;
-/// Iterations of the dual method after which all corners are looked for at once: it stops few that depend on others in fewer.
-const SINGLE_PATIENCE: usize = 5;
+const EXCHANGE_PATIENCE: usize = 30;
 /// A corner whose impulse falls by less than this part of a unit impulse elsewhere keeps it.
 const LEAST_SLOPE: f64 = 1e-12;
 
@@ -262,7 +257,6 @@ pub struct Program {
     wrong: Vec<Wrong>,
     /// The active set before the last exchange.
     earlier: Vec<Corners>,
-    interior: Interior,
 }
 
 impl Program {
@@ -295,7 +289,6 @@ impl Program {
             force_floor: 0.0,
             wrong: Vec::with_capacity(2 * joints),
             earlier: vec![[true; 2]; joints],
-            interior: Interior::with_joints(joints),
         };
         program.place(&Placement::new(row));
         program.reset();
@@ -418,10 +411,7 @@ impl Program {
         effort.iterations += 1;
         let tolerance = RATE_TOLERANCE * largest_rate;
         let touching = load.touching;
-        let solved = self.exchange(touching, tolerance, &mut effort.iterations)
-            || self.exchange_singly(touching, tolerance, SINGLE_PATIENCE, &mut effort.iterations)
-            || self.go_inside(touching, tolerance, &mut effort.iterations);
-        if !solved {
+        if !self.exchange(touching, tolerance, &mut effort.iterations) {
             self.exchange_tolerantly(touching, largest_rate, &mut effort)?;
         }
         let finite = self.set_velocities();
@@ -429,48 +419,15 @@ impl Program {
         finite.then_some(effort).ok_or(ContactError { iterations })
     }
 
-    /// Starts again from the active set of the interior-point method, if it finds one. True if that leaves nothing wrong.
-    fn go_inside(&mut self, touching: &[Corners], tolerance: f64, iterations: &mut usize) -> bool {
-        let mut interior = std::mem::take(&mut self.interior);
-        let found = interior.solve(self, touching);
-        if let Some(found) = found {
-            *iterations += found;
-            interior.exchange_active(&mut self.active);
-            if !exceeds(self.factor(), DEPENDENCE * DEPENDENCE) {
-                interior.exchange_active(&mut self.active);
-                self.factor();
-            }
-        }
-        self.interior = interior;
-        self.answer_load(None);
-        *iterations += 1;
-        found.is_some() && self.exchange(touching, tolerance, iterations)
-    }
-
-    /// Centre of a block.
-    fn centre(&self, block: usize) -> Vector2<f64> {
-        self.own[block].first / self.own[block].mass
-    }
-
-    /// Motion of a block without the others: velocity of its centre and rate, times the roots of mass and inertia.
-    fn scaled_motion(&self, block: usize) -> Vector3<f64> {
-        let (mass, inertia) = self.masses[block];
-        let momentum = self.momenta[block + 1] - self.momenta[block];
-        let linear = momentum.linear / mass.sqrt();
-        let turn = momentum.about(self.centre(block)) / inertia.sqrt();
-        Vector3::new(linear.x, linear.y, turn)
-    }
-
-    /// The dual method: releases what pulls, and stops one corner after the other. False when it goes on for more than so many
+    /// The dual method: releases what pulls, and stops one corner after the other. False when that takes too many
     /// iterations, or a corner depends on others none of which gives way: its closing is rounding.
     fn exchange_singly(
         &mut self,
         touching: &[Corners],
         tolerance: f64,
-        patience: usize,
         iterations: &mut usize,
     ) -> bool {
-        let cap = *iterations + patience;
+        let cap = *iterations + 60 + 2 * self.frames.len();
         while *iterations <= cap {
             if self.release() {
                 self.factor();
@@ -498,10 +455,9 @@ impl Program {
         largest_rate: f64,
         effort: &mut Effort,
     ) -> Result<(), ContactError> {
-        let patience = 60 + 2 * self.frames.len();
         let mut tolerance = RATE_TOLERANCE;
         let iterations = &mut effort.iterations;
-        while !self.exchange_singly(touching, tolerance * largest_rate, patience, iterations) {
+        while !self.exchange_singly(touching, tolerance * largest_rate, iterations) {
             tolerance *= 10.0;
             effort.relaxed += 1;
             if tolerance > LARGEST_RATE_TOLERANCE {
@@ -1145,10 +1101,10 @@ mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// Whatever the blocks do, each way to the active set leads to the same velocities: exchanges of many corners with what follows
-    /// where they fail, the interior-point method, and the dual method from the corners of the beginning.
+    /// Whatever the blocks do, exchanges of many corners lead to the same velocities as the dual method alone, from the corners
+    /// of the beginning.
     #[test]
-    fn all_ways_lead_to_one_solution() {
+    fn the_dual_method_alone_has_the_same_solution() {
         let mut state = 7_u64;
         let mut next = || {
             state = state
@@ -1182,34 +1138,22 @@ mod tests {
                     let solution = program.velocities.clone();
 
                     let largest_rate = program.set_up(&load);
-                    let agrees = |program: &mut Program, way: &str| {
-                        program.set_velocities();
-                        for (block, twist) in program.velocities.iter().enumerate() {
-                            let off = *twist - solution[block];
-                            let off_m_s = off.at(program.centre(block)).norm();
-                            assert!(off_m_s < 1e-8 * largest_rate, "{way} {blocks}: {off_m_s:e}");
-                        }
-                    };
-                    let begin = |program: &mut Program| {
-                        program.reset();
-                        for (active, touching) in program.active.iter_mut().zip(&touching) {
-                            *active = [0, 1].map(|edge| active[edge] && touching[edge]);
-                        }
-                        program.factor();
-                        program.answer_load(None);
-                    };
-                    begin(&mut program);
-                    let mut iterations = 0;
-                    assert!(program.go_inside(&touching, 1e-9 * largest_rate, &mut iterations));
-                    assert!(iterations <= 40, "{iterations}");
-                    agrees(&mut program, "inside");
-
-                    begin(&mut program);
+                    program.reset();
+                    for (active, touching) in program.active.iter_mut().zip(&touching) {
+                        *active = [0, 1].map(|edge| active[edge] && touching[edge]);
+                    }
+                    program.factor();
+                    program.answer_load(None);
                     let mut effort = Effort::default();
                     program
                         .exchange_tolerantly(&touching, largest_rate, &mut effort)
                         .unwrap();
-                    agrees(&mut program, "dual");
+                    program.set_velocities();
+                    for (block, twist) in program.velocities.iter().enumerate() {
+                        let centre = program.own[block].centroid();
+                        let off_m_s = (*twist - solution[block]).at(centre).norm();
+                        assert!(off_m_s < 1e-8 * largest_rate, "{blocks}: {off_m_s:e}");
+                    }
                 }
             }
         }
