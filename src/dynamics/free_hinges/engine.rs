@@ -32,6 +32,8 @@ const CLOSURE_RATIO: f64 = 1e-13;
 const CLOSURE_PASSES: usize = 8;
 /// Passes in which the step that ends at a landing is found.
 const LANDING_PASSES: usize = 8;
+/// Rounds of landings in a merged step after which all corners that can land are looked for at once.
+const LANDING_ROUNDS: usize = 8;
 /// A landing by this part of a step earlier or later than expected needs no other pass.
 const LANDING_TOLERANCE: f64 = 1e-6;
 /// Joints with less than this part of the largest normal force are not pressed.
@@ -114,6 +116,8 @@ pub(super) struct Engine<'a> {
     /// Rates of the gaps that bring landing corners to zero within the step.
     landing: Vec<[f64; 2]>,
     touching: Vec<Corners>,
+    /// Corners that land in a merged step: joint and edge.
+    landed: Vec<(usize, usize)>,
     change: Vec<[f64; 2]>,
     shares: Vec<[f64; 2]>,
     shut: Vec<Hinge>,
@@ -164,6 +168,7 @@ impl<'a> Engine<'a> {
             earlier_rates: vec![[0.0; 2]; joints],
             landing: vec![[0.0; 2]; joints],
             touching: vec![[true; 2]; joints],
+            landed: Vec::with_capacity(2 * joints),
             change: vec![[0.0; 2]; joints],
             shares: vec![[0.0; 2]; joints],
             shut: Vec::with_capacity(joints),
@@ -469,8 +474,8 @@ impl<'a> Engine<'a> {
     /// A step within which all corners that would land come to touch.
     fn merge(&mut self, step: f64) -> Result<(), FreeHingeError> {
         let without = self.kinetic_of_solution();
-        loop {
-            let mut more = false;
+        for round in 0.. {
+            self.landed.clear();
             for (joint, rates) in self.program.open_joints() {
                 let gaps = self.placement.gaps_m()[joint];
                 for edge in 0..2 {
@@ -478,13 +483,26 @@ impl<'a> Engine<'a> {
                     let thickness = self.placement.frames()[joint].thickness_m;
                     let lands = gaps[edge] + step * rate < -SHUT_RATIO * thickness;
                     if !self.touching[joint][edge] && lands {
-                        self.touching[joint][edge] = true;
-                        more = true;
+                        self.landed.push((joint, edge));
                     }
                 }
             }
-            if !more {
+            if self.landed.is_empty() {
                 break;
+            }
+            // Landings travel along the row: where they go on, the program is told of all corners that can land.
+            if round >= LANDING_ROUNDS {
+                let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
+                let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
+                for (touching, gaps) in self.touching.iter_mut().zip(self.placement.gaps_m()) {
+                    for edge in 0..2 {
+                        touching[edge] |= gaps[edge] < step * fastest;
+                    }
+                }
+            }
+            for (joint, edge) in &self.landed {
+                self.touching[*joint][*edge] = true;
+                self.program.press(*joint, *edge);
             }
             for (joint, touching) in self.touching.iter().enumerate() {
                 let rates = self.placement.gaps_m()[joint].map(|gap| -gap / step);
@@ -495,7 +513,6 @@ impl<'a> Engine<'a> {
                     [false, false] => [0.0; 2],
                 };
             }
-            self.press_landed();
             self.solve_step(step)?;
         }
         self.course.run.energy_taken_j += without - self.kinetic_of_solution();
