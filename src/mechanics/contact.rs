@@ -854,17 +854,21 @@ impl Program {
         let pulling = self.pull_limit();
         self.wrong.clear();
         for edge in 0..2 {
-            // Those that are not active have none.
-            for (joint, impulses) in self.answer.corners.iter().enumerate() {
-                if impulses[edge] < pulling {
-                    self.wrong.push(Wrong::new(joint, edge, impulses[edge]));
-                }
-            }
+            self.find_pulling(edge, pulling);
             for (pin, rates) in self.pins.iter().zip(&self.answer.rates) {
                 let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
                 if free && rates[edge] < -tolerance {
                     self.wrong.push(Wrong::new(pin.joint, edge, rates[edge]));
                 }
+            }
+        }
+    }
+
+    /// Adds the corners at an edge whose impulses are below a limit; those that are not active have none.
+    fn find_pulling(&mut self, edge: usize, limit: f64) {
+        for (joint, impulses) in self.answer.corners.iter().enumerate() {
+            if impulses[edge] < limit {
+                self.wrong.push(Wrong::new(joint, edge, impulses[edge]));
             }
         }
     }
@@ -927,26 +931,13 @@ impl Program {
     /// Releases the corners that pull, the worst one of each run of neighbours. False if none does.
     fn release(&mut self) -> bool {
         let limit = self.pull_limit();
-        let mut released = false;
+        self.wrong.clear();
         for edge in 0..2 {
-            let mut worst: Option<usize> = None;
-            for joint in 0..=self.active.len() {
-                let pulls = self.active.get(joint).is_some_and(|a| a[edge])
-                    && self.answer.corners[joint][edge] < limit;
-                if pulls {
-                    let more = |other: usize| {
-                        self.answer.corners[joint][edge] < self.answer.corners[other][edge]
-                    };
-                    if worst.is_none_or(more) {
-                        worst = Some(joint);
-                    }
-                } else if let Some(joint) = worst.take() {
-                    self.active[joint][edge] = false;
-                    released = true;
-                }
-            }
+            self.find_pulling(edge, limit);
         }
-        released
+        self.keep_worst(false);
+        self.flip_wrong();
+        !self.wrong.is_empty()
     }
 
     /// Pin and edge of the corner that closes fastest, beyond a tolerance.
@@ -1102,7 +1093,7 @@ mod tests {
     use crate::mechanics::geometry::ring::Ring;
 
     /// Whatever the blocks do, exchanges of many corners lead to the same velocities as the dual method alone, from the corners
-    /// of the beginning.
+    /// of the beginning; and nearly always they do so without its help, in a few dozen rounds.
     #[test]
     fn the_dual_method_alone_has_the_same_solution() {
         let mut state = 7_u64;
@@ -1112,6 +1103,7 @@ mod tests {
                 .wrapping_add(1);
             f64::from((state >> 40) as u32) / f64::from(1_u32 << 24)
         };
+        let (mut programs, mut settled, mut most) = (0, 0, 0);
         for blocks in [3, 20, 60, 150] {
             let arch = Row::arch(&Ring::new(0.15, 2.5).unwrap(), blocks, 5.0, 1.0, 2000.0);
             let stack = Row::tapered_stack(&vec![0.5; blocks], 2.0, 1.0, 1.0, 2000.0);
@@ -1134,16 +1126,25 @@ mod tests {
                         jumps: &jumps,
                         touching: &touching,
                     };
+                    let begin = |program: &mut Program| {
+                        program.reset();
+                        let largest_rate = program.set_up(&load);
+                        for (active, touching) in program.active.iter_mut().zip(&touching) {
+                            *active = [0, 1].map(|edge| active[edge] && touching[edge]);
+                        }
+                        program.factor();
+                        program.answer_load(None);
+                        largest_rate
+                    };
+                    let tolerance = RATE_TOLERANCE * begin(&mut program);
+                    let mut iterations = 0;
+                    programs += 1;
+                    settled += usize::from(program.exchange(&touching, tolerance, &mut iterations));
+                    most = most.max(iterations);
                     program.solve(&load).unwrap();
                     let solution = program.velocities.clone();
 
-                    let largest_rate = program.set_up(&load);
-                    program.reset();
-                    for (active, touching) in program.active.iter_mut().zip(&touching) {
-                        *active = [0, 1].map(|edge| active[edge] && touching[edge]);
-                    }
-                    program.factor();
-                    program.answer_load(None);
+                    let largest_rate = begin(&mut program);
                     let mut effort = Effort::default();
                     program
                         .exchange_tolerantly(&touching, largest_rate, &mut effort)
@@ -1157,5 +1158,8 @@ mod tests {
                 }
             }
         }
+        // Measured: 153 of 160 in at most 39 rounds; in the others corners depend on each other, which is for the dual method.
+        let counts = [settled, programs, most];
+        assert!(20 * settled >= 19 * programs && most <= 60, "{counts:?}");
     }
 }
