@@ -142,6 +142,26 @@ fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
         fs::read(path.join("o/rotations.csv")).unwrap(),
         fs::read(path.join("results/s/wave-1.at2/rotations.csv")).unwrap()
     );
+    // One of two records of one name would replace the results of the other.
+    for place in ["a", "b"] {
+        fs::create_dir(path.join(place)).unwrap();
+        fs::copy(path.join("wave-1.at2"), path.join(place).join("w.at2")).unwrap();
+    }
+    let text = fs::read_to_string(path.join("s.toml")).unwrap();
+    let twins = text.replace("wave-*.at2", "*/w.at2");
+    assert_ne!(text, twins);
+    fs::write(path.join("twins.toml"), twins).unwrap();
+    for command in ["run", "threshold"] {
+        let refused = archrock(path, &[command, "twins.toml", "--suite"]);
+        assert_eq!(refused.status.code(), Some(2));
+        let said = stderr(&refused);
+        let both = "b/w.at2 would both have their results in results/twins/w.at2: rename one";
+        assert!(
+            said.contains("a/w.at2 and ") && said.contains(both),
+            "{said}"
+        );
+        assert!(!path.join("results/twins").exists());
+    }
     fs::write(path.join("t.toml"), COLUMN).unwrap();
     for command in ["run", "threshold"] {
         let refused = archrock(path, &[command, "t.toml", "--suite"]);

@@ -6,7 +6,7 @@ use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -265,4 +265,155 @@ fn a_long_output_streams() {
     assert!(child.wait().unwrap().success());
     // The header and both ends.
     assert_eq!(count, 1_000_002);
+}
+
+/// Runs `action` with the path of a folder that a long run is writing to.
+fn while_being_written(root: &Path, action: impl FnOnce(&Path)) {
+    let (scenario, folder) = (root.join("long.toml"), root.join("results"));
+    fs::write(&scenario, endless(0.1, 9e3, 1e-3)).unwrap();
+    let mut long = program(&["run", "--quiet", "--out"])
+        .args([&folder, &scenario])
+        .spawn()
+        .unwrap();
+    // Tables of which something is on the disk are open, and the folder is locked before these are made.
+    let begun = || {
+        fs::read_dir(&folder).is_ok_and(|mut files| {
+            files
+                .any(|file| file.is_ok_and(|file| file.metadata().is_ok_and(|file| file.len() > 0)))
+        })
+    };
+    while !begun() {
+        assert!(long.try_wait().unwrap().is_none(), "the run is too short");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    action(&folder);
+    long.kill().unwrap();
+    long.wait().unwrap();
+}
+
+#[test]
+fn of_two_that_write_to_one_folder_the_second_says_so() {
+    let root = tempfile::tempdir().unwrap();
+    let short = root.path().join("short.toml");
+    fs::write(&short, endless(0.1, 1.0, 1e-2)).unwrap();
+    let run = |folder: &Path| {
+        let mut command = program(&["run", "--quiet", "--out"]);
+        let output = command.args([folder, &short]).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), said)
+    };
+    let results = root.path().join("results");
+    while_being_written(root.path(), |folder| {
+        let (code, said) = run(folder);
+        assert_eq!(code, Some(2), "{said}");
+        let folder = folder.display();
+        assert_eq!(
+            said,
+            format!(
+                "error: the folder {folder} is being written to by another run; choose another folder with --out\n"
+            )
+        );
+    });
+    // The lock of a killed run goes with it, and so do its files.
+    assert_eq!(run(&results), (Some(0), String::new()));
+    assert!(names(&results).iter().all(|name| !name.starts_with('.')));
+}
+
+/// Runs the program, which is to end by itself.
+fn within_a_minute(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = Command::new("timeout")
+        .args(["60", PROGRAM])
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    (output.status.code(), said)
+}
+
+#[test]
+fn nobody_waits_for_a_pipe_in_the_results() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path();
+    let folder = path.join("results/s");
+    fs::create_dir_all(&folder).unwrap();
+    let pipe = |name: &str| {
+        let made = Command::new("mkfifo").arg(folder.join(name)).status();
+        assert!(made.unwrap().success());
+    };
+    let map = "[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.1\n\
+               [map]\nduration_s = [0.1, 0.2]\namplitude_g = [0.2, 0.3]\n";
+    let scenario = format!("[column]\nheight_m = 4\nwidth_m = 0.8\n{map}");
+    fs::write(path.join("s.toml"), scenario).unwrap();
+    for name in [
+        ".archrock-rotations.csv-x",
+        ".scenario",
+        "rotations.csv",
+        "summary.json",
+    ] {
+        pipe(name);
+    }
+    let (code, said) = within_a_minute(path, &["run", "s.toml"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(check_file(&folder.join("rotations.csv")) && check_file(&folder.join("summary.json")));
+    pipe("map.part");
+    for arguments in [&["map", "s.toml"][..], &["map", "s.toml", "--resume"]] {
+        let (code, said) = within_a_minute(path, arguments);
+        assert_eq!(code, Some(2), "{said}");
+        assert_eq!(said, "error: results/s/map.part: is not a file\n");
+    }
+    let (code, said) = within_a_minute(path, &["merge", "results/s/map.part"]);
+    assert_eq!(code, Some(2), "{said}");
+    fs::remove_file(folder.join("map.part")).unwrap();
+    let (code, said) = within_a_minute(path, &["map", "s.toml"]);
+    assert_eq!(code, Some(0), "{said}");
+}
+
+fn check_file(path: &Path) -> bool {
+    path.metadata().unwrap().is_file()
+}
+
+#[test]
+fn a_folder_that_is_removed_during_a_map_is_made_again() {
+    let root = tempfile::tempdir().unwrap();
+    let (scenario, folder) = (root.path().join("s.toml"), root.path().join("gone"));
+    let map = "[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.1\n\
+               [map]\nduration_s = { from = 0.1, to = 1, count = 120 }\n\
+               amplitude_g = { from = 0.1, to = 1, count = 120 }\n";
+    let text = format!("[column]\nheight_m = 4\nwidth_m = 0.8\n{map}");
+    fs::write(&scenario, text).unwrap();
+    let study = |shard: &[&str], part: &str| {
+        let mut child = program(&["map", "--quiet", "--out"])
+            .args([&folder, &scenario])
+            .args(shard)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let written = || fs::metadata(folder.join(part)).is_ok_and(|part| part.len() > 10_000);
+        while !written() {
+            assert!(child.try_wait().unwrap().is_none(), "the map is too short");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        fs::remove_dir_all(&folder).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), said)
+    };
+    assert_eq!(study(&[], "map.part"), (Some(0), String::new()));
+    assert_eq!(
+        names(&folder),
+        ["map.csv", "map.html", "map.json", "map.svg"]
+    );
+    assert_eq!(rows(&folder.join("map.csv")).len(), 14_400);
+    // The file of a part is its result.
+    fs::remove_dir_all(&folder).unwrap();
+    let (code, said) = study(&["--shard", "1/2"], "map-1-of-2.part");
+    assert_eq!(code, Some(1), "{said}");
+    assert!(
+        said.contains(
+            "map-1-of-2.part: it was removed while it was written; compute this part again"
+        ),
+        "{said}"
+    );
 }

@@ -218,18 +218,10 @@ fn suite_files(heading: &Heading, rows: Vec<CaseRow>) -> PyResult<Files> {
 }
 
 /// On so many threads, or on all processors.
-fn runner(threads: Option<usize>) -> PyResult<Runner> {
-    let allowed = 1..=1024;
-    if let Some(count) = threads.filter(|count| !allowed.contains(count)) {
-        return Err(PyValueError::new_err(format!(
-            "`threads = {count}` is not allowed: it must be from {} to {}",
-            allowed.start(),
-            allowed.end()
-        )));
+fn runner(threads: Option<u16>) -> Runner {
+    Runner {
+        threads: threads.and_then(|count| NonZeroUsize::new(count.into())),
     }
-    Ok(Runner {
-        threads: threads.and_then(NonZeroUsize::new),
-    })
 }
 
 /// Computes the study that a scenario describes, all in memory.
@@ -238,10 +230,10 @@ pub fn study<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     kind: &str,
-    threads: Option<usize>,
+    threads: Option<u16>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyFiles<'py>> {
-    let (kind, runner) = (Kind::of(kind)?, runner(threads)?);
+    let (kind, runner) = (Kind::of(kind)?, runner(threads));
     let scenario = Arc::clone(&scenario.inner);
     let done = watched(py, progress, move |watch| {
         compute_kind(&scenario, kind, &Place::Memory, runner, watch)
@@ -260,10 +252,10 @@ pub fn compute_part(
     kind: &str,
     shard: &str,
     folder: PathBuf,
-    threads: Option<usize>,
+    threads: Option<u16>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PathBuf> {
-    let (kind, runner) = (Kind::of(kind)?, runner(threads)?);
+    let (kind, runner) = (Kind::of(kind)?, runner(threads));
     let shard = shard.parse::<Shard>().map_err(refused)?;
     let scenario = Arc::clone(&scenario.inner);
     let done = watched(py, progress, move |watch| {
@@ -338,12 +330,12 @@ pub fn threshold<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     factors: (f64, f64, f64),
-    threads: Option<usize>,
+    threads: Option<u16>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyFiles<'py>> {
     let (from, to, stride) = factors;
     let factors = Factors::new(from, to, stride).map_err(refused)?;
-    let runner = runner(threads)?;
+    let runner = runner(threads);
     if scenario.inner.initial.is_some() {
         return Err(refused(
             "the histories of a threshold start from rest: leave [initial] out",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import pickle
 from pathlib import Path
 from types import SimpleNamespace
@@ -238,6 +239,15 @@ def test_settings_that_are_not_allowed(arch: Arch, pulse: Pulse) -> None:
             make()
 
 
+def test_a_number_is_no_file() -> None:
+    # Taken for a file that is open, it would be closed.
+    with open(os.devnull, encoding="ascii") as file:
+        for path in (file.fileno(), 1, 2.5, None):
+            with pytest.raises(TypeError):
+                Scenario.read(path)  # type: ignore[arg-type]
+        os.fstat(file.fileno())
+
+
 def test_errors_in_files_have_their_places(program: Program, tmp_path: Path) -> None:
     path = tmp_path / "wrong.toml"
     path.write_text("[arch]\nmean_radius_m = -5.0\nthicknes_ratio = 0.15\n[ground.half_sine]\namplitude_g = 1e9\n")
@@ -272,12 +282,20 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
 
 def test_tables_for_pandas(arch: Arch, pulse: Pulse) -> None:
     table = simulate(arch, pulse, duration_s=0.5).to_pandas()
-    assert list(table.columns)[5:11] == [
+    assert list(table.columns) == [
+        "time_s",
+        "ground_acceleration_m_s2",
+        "phase",
+        "state",
         "rotation_left_rad",
         "rotation_middle_rad",
         "rotation_right_rad",
         "rate_left_rad_s",
         "rate_middle_rad_s",
         "rate_right_rad_s",
+        "thrust_excess_ratio",
+        "friction_demand",
+        "vertical_acceleration_m_s2",
+        "energy_j",
     ]
     assert "rotation_rad" in simulate(Column(4.0, 0.8), Pulse.half_sine(0.5, 0.5), duration_s=0.5).to_pandas()

@@ -197,7 +197,7 @@ def test_progress_is_told_and_may_end_the_work(arch: Arch) -> None:
 def test_threads_do_not_change_results(arch: Arch) -> None:
     one = overturning_map(arch, COSINE, AXES, duration_s=20.0, threads=1)
     assert one == overturning_map(arch, COSINE, AXES, duration_s=20.0, threads=4)
-    for threads in (0, 100_000):
+    for threads in (-1, 0, 100_000, 10**30):
         with pytest.raises(ValueError, match="`threads ="):
             overturning_map(arch, COSINE, AXES, threads=threads)
 

@@ -153,19 +153,11 @@ impl Job {
             let message = "--rotations - is for one scenario: run them one by one";
             return Err(Failure::Input(message.to_owned()));
         }
-        for (index, job) in jobs.iter().enumerate() {
-            let Some(path) = job.place.path() else {
-                continue;
-            };
-            let mut before = jobs[..index].iter();
-            if let Some(other) = before.find(|other| other.place.path() == Some(path)) {
-                wrong.push(format!(
-                    "{} and {} would both have their results in {}: run them one by one with --out",
-                    other.name,
-                    job.name,
-                    path.display()
-                ));
-            }
+        let places = jobs
+            .iter()
+            .filter_map(|job| Some((job.name.as_str(), job.place.results.as_ref()?)));
+        if let Err(Failure::Input(message)) = Destination::check_distinct(places) {
+            wrong.push(message);
         }
         if wrong.is_empty() {
             Ok(jobs)
@@ -313,11 +305,6 @@ impl Place {
             extras: arguments.extras.clone(),
             figure: arguments.figure.get(),
         })
-    }
-
-    /// The folder.
-    fn path(&self) -> Option<&Path> {
-        self.results.as_ref().map(Destination::path)
     }
 
     /// A folder in that one.

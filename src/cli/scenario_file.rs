@@ -1,5 +1,6 @@
 //! The scenario of a command: where it is read from, what changes it, and where its results go.
 
+use std::collections::BTreeMap;
 use std::env;
 use std::fs;
 use std::io::{self, Write as _};
@@ -178,6 +179,27 @@ impl Destination {
         Self::of(&self.path.join(name))
     }
 
+    /// Refuses places where several results would be one; each has the name of what it is for.
+    pub fn check_distinct<'d>(
+        places: impl IntoIterator<Item = (&'d str, &'d Self)>,
+    ) -> Result<(), Failure> {
+        let mut first = BTreeMap::new();
+        let mut wrong = Vec::new();
+        for (name, Self { path, .. }) in places {
+            if let Some(other) = first.insert(path, name) {
+                wrong.push(format!(
+                    "{other} and {name} would both have their results in {}: rename one, or run them one by one with --out",
+                    path.display()
+                ));
+            }
+        }
+        if wrong.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Input(wrong.join("\n")))
+        }
+    }
+
     /// The folder in that one for what a record of the scenario's suite does.
     pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
         let name = Path::new(record).file_name().unwrap_or_default();
@@ -186,7 +208,10 @@ impl Destination {
 
     /// The folder, unless it holds the results of another scenario file.
     fn checked(path: PathBuf, origin: Option<String>) -> Result<Self, Failure> {
-        if let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(path.join(ORIGIN)))
+        let told = path.join(ORIGIN);
+        // Of a pipe nobody would ever read the end.
+        if told.is_file()
+            && let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(told))
             && ours != theirs.trim_end()
         {
             return Err(Failure::Input(format!(

@@ -162,10 +162,13 @@ impl Options {
             // All rows so far are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.bar.abandon();
-                say(&format!(
-                    "interrupted: {} of {} cases are done; continue with --resume",
-                    progress.done, progress.all
-                ));
+                let Progress { done, all } = progress;
+                let file = task.folder.join(task.shard.file_name(S::NAME));
+                say(&if file.exists() {
+                    format!("interrupted: {done} of {all} cases are done; continue with --resume")
+                } else {
+                    format!("interrupted; {} was removed meanwhile", file.display())
+                });
                 process::exit(INTERRUPTED_CODE);
             }
             display.show(progress);

@@ -66,16 +66,19 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let both = Models::read(arguments.hinges, &input)?;
     let about = |failure| input.about(failure);
     let place = input.results(arguments.out.as_deref())?;
-    let mut tasks = Vec::new();
+    let (mut names, mut tasks) = (Vec::new(), Vec::new());
     for (record, (scenario, other)) in arguments.suite.choose(both).map_err(about)? {
         check(&scenario).map_err(|message| about(Failure::Input(message.to_owned())))?;
-        let place = match record {
-            Some(record) => place.of_record(&record)?,
+        let place = match &record {
+            Some(record) => place.of_record(record)?,
             None => place.clone(),
         };
         let scenarios: Vec<Scenario> = iter::once(scenario).chain(other).collect();
+        names.push(record.unwrap_or_default());
         tasks.push((scenarios, place));
     }
+    let places = tasks.iter().map(|(_, place)| place);
+    Destination::check_distinct(names.iter().map(String::as_str).zip(places)).map_err(about)?;
     if !quiet
         && let Some(ignored) = tasks
             .iter()

@@ -1,6 +1,6 @@
 //! A folder of results that are replaced as a whole.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -13,11 +13,15 @@ use super::OutputError;
 /// Every file is written under a hidden name and gets its own when all are complete. The last of them,
 /// the seal, is removed first and written last: a folder that has it holds the results of one run.
 ///
-/// A killed run leaves its hidden files behind. Files in use are locked, so the next run can tell those left
-/// behind and removes them.
+/// The folder is locked as long as this lives, so that no two runs mix their files: another one is told that it is being
+/// written to. A single file replaces another at once and mixes with nothing; its writers share the lock.
+///
+/// A killed run leaves its hidden files behind, and no lock: the next run removes them.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
+    /// Holds the lock; `None` where folders cannot be locked, as on some network drives and on Windows.
+    _lock: Option<File>,
     /// Folders that were made for this one, outermost first.
     made: Vec<PathBuf>,
     files: Vec<(String, BufWriter<NamedTempFile>)>,
@@ -32,24 +36,34 @@ impl Folder {
     /// Opens the folder, making it if need be, with the files that it is going to have, the seal last.
     ///
     /// # Errors
-    /// When the folder or a file in it cannot be made.
+    /// When the folder or a file in it cannot be made, or another run is writing to it.
     pub fn open(path: &Path, names: &[&str]) -> Result<Self, OutputError> {
         let mut folder = Self {
             path: path.to_owned(),
+            _lock: None,
             made: Vec::new(),
             files: Vec::new(),
             obsolete: Vec::new(),
         };
         for ancestor in path.ancestors().collect::<Vec<_>>().into_iter().rev() {
-            if !ancestor.as_os_str().is_empty() && !ancestor.exists() {
-                fs::create_dir(ancestor).map_err(OutputError::io(format!(
-                    "cannot make the folder {}",
-                    ancestor.display()
-                )))?;
-                folder.made.push(ancestor.to_owned());
+            if ancestor.as_os_str().is_empty() || ancestor.exists() {
+                continue;
+            }
+            match fs::create_dir(ancestor) {
+                Ok(()) => folder.made.push(ancestor.to_owned()),
+                // Another run was faster.
+                Err(_) if ancestor.is_dir() => {}
+                Err(error) => {
+                    let what = format!("cannot make the folder {}", ancestor.display());
+                    return Err(OutputError::io(what)(error));
+                }
             }
         }
-        remove_abandoned(path);
+        let alone = names.len() > 1;
+        folder._lock = lock(path, alone)?;
+        if alone && folder._lock.is_some() {
+            remove_abandoned(path);
+        }
         for name in names {
             let file = tempfile::Builder::new()
                 .prefix(&format!("{PREFIX}{name}-"))
@@ -61,9 +75,6 @@ impl Folder {
                     "cannot write {}",
                     path.join(name).display()
                 )))?;
-            // Where files cannot be locked, what a killed run leaves stays, or goes while it is still
-            // being written by another; the latter then says so.
-            let _ = file.as_file().try_lock();
             folder
                 .files
                 .push(((*name).to_owned(), BufWriter::new(file)));
@@ -138,6 +149,26 @@ impl Drop for Folder {
     }
 }
 
+/// Locks a folder, for one run alone or for several writers of single files. The system unlocks it when the program ends,
+/// however that is.
+fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
+    let Ok(folder) = File::open(path) else {
+        return Ok(None);
+    };
+    let locked = if alone {
+        folder.try_lock()
+    } else {
+        folder.try_lock_shared()
+    };
+    match locked {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(OutputError::InUse {
+            folder: path.to_owned(),
+        }),
+        Err(TryLockError::Error(_)) => Ok(None),
+    }
+}
+
 /// Removes the hidden files of killed runs, as far as possible.
 fn remove_abandoned(path: &Path) {
     let entries = fs::read_dir(path).into_iter().flatten().flatten();
@@ -146,10 +177,7 @@ fn remove_abandoned(path: &Path) {
             .file_name()
             .to_str()
             .is_some_and(|name| name.starts_with(PREFIX));
-        if hidden
-            && let Ok(file) = File::open(entry.path())
-            && file.try_lock().is_ok()
-        {
+        if hidden && entry.file_type().is_ok_and(|kind| kind.is_file()) {
             let _ = fs::remove_file(entry.path());
         }
     }
@@ -225,16 +253,75 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_run_left_goes_and_what_another_is_writing_stays() {
+    fn what_a_killed_run_left_goes() {
         let root = tempfile::tempdir().unwrap();
         fs::write(root.path().join(".archrock-x.csv-dead"), "half").unwrap();
-        let mut working = Folder::open(root.path(), &["x.csv"]).unwrap();
+        // Not ours, whatever its name.
+        fs::create_dir(root.path().join(".archrock-folder")).unwrap();
+        let folder = Folder::open(root.path(), &["x.csv", "seal.json"]).unwrap();
+        folder.complete().unwrap();
+        assert_eq!(
+            names(root.path()),
+            [".archrock-folder", "seal.json", "x.csv"]
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_is_written_to_by_one_run_at_a_time() {
+        let root = tempfile::tempdir().unwrap();
+        let all = ["x.csv", "seal.json"];
+        let mut working = Folder::open(root.path(), &all).unwrap();
         working.file("x.csv").write_all(b"slow").unwrap();
-        let other = Folder::open(root.path(), &["x.csv"]).unwrap();
-        assert_eq!(names(root.path()).len(), 2);
-        drop(other);
+        let before = names(root.path());
+        for files in [&all[..], &all[..1]] {
+            let error = Folder::open(root.path(), files).unwrap_err();
+            assert!(error.to_string().contains("is being written to"), "{error}");
+            assert_eq!(names(root.path()), before);
+        }
         working.complete().unwrap();
-        assert_eq!(names(root.path()), ["x.csv"]);
+        assert_eq!(names(root.path()), ["seal.json", "x.csv"]);
+        // Single files do not get in each other's way, nor does what is left of one.
+        let mut one = Folder::open(root.path(), &["one.csv"]).unwrap();
+        let mut two = Folder::open(root.path(), &["two.csv"]).unwrap();
+        assert!(Folder::open(root.path(), &all).is_err());
+        for folder in [&mut one, &mut two] {
+            let (_, file) = folder.files().next().unwrap();
+            file.write_all(b"whole").unwrap();
+        }
+        one.complete().unwrap();
+        two.complete().unwrap();
+        for file in ["one.csv", "two.csv"] {
+            assert_eq!(fs::read(root.path().join(file)).unwrap(), b"whole");
+        }
+        drop(Folder::open(root.path(), &all).unwrap());
+    }
+
+    #[test]
+    fn of_many_that_write_at_once_each_seals_its_own_files() {
+        let root = tempfile::tempdir().unwrap();
+        let sealed = std::sync::atomic::AtomicUsize::new(0);
+        std::thread::scope(|scope| {
+            for writer in 0..8 {
+                let (path, sealed) = (root.path(), &sealed);
+                scope.spawn(move || {
+                    for turn in 0..50 {
+                        let Ok(mut folder) = Folder::open(path, &["a", "b", "seal"]) else {
+                            continue;
+                        };
+                        for (_, file) in folder.files() {
+                            write!(file, "{writer} {turn}").unwrap();
+                        }
+                        folder.complete().unwrap();
+                        sealed.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                    }
+                });
+            }
+        });
+        assert!(sealed.into_inner() > 0);
+        let read = |name| fs::read_to_string(root.path().join(name)).unwrap();
+        assert_eq!([read("a"), read("b")], [read("seal"), read("seal")]);
+        assert_eq!(names(root.path()), ["a", "b", "seal"]);
     }
 
     #[test]

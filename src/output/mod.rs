@@ -37,6 +37,7 @@ pub mod threshold;
 pub mod timeline;
 
 use std::io;
+use std::path::PathBuf;
 
 pub use folder::Folder;
 pub use panels::Subject;
@@ -53,6 +54,12 @@ pub enum OutputError {
         what: String,
         /// What the system said.
         source: io::Error,
+    },
+    /// Another run is writing to the folder.
+    #[error("the folder {} is being written to by another run", folder.display())]
+    InUse {
+        /// Its path.
+        folder: PathBuf,
     },
     /// A result is not a finite number. This is a defect of the program; nothing is written.
     #[error("the result {what} is not a finite number: please report the scenario")]

@@ -271,9 +271,22 @@ fn unusable(path: &Path, what: impl Into<String>) -> PartError {
     }
 }
 
-/// The complete lines of what was read of a file, and how many bytes these are.
-fn complete_lines(path: &Path, read: io::Result<Vec<u8>>) -> Result<(String, u64), PartError> {
-    let mut bytes = read.map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
+/// Refuses what is there and no file: of a pipe nobody would ever read the end.
+fn check_file(path: &Path) -> Result<(), PartError> {
+    match fs::metadata(path) {
+        Ok(found) if !found.is_file() => Err(unusable(path, "is not a file")),
+        _ => Ok(()),
+    }
+}
+
+/// The complete lines of a file, or of its beginning as it is read here, and how many bytes these are.
+fn complete_lines(
+    path: &Path,
+    read: impl FnOnce(&Path) -> io::Result<Vec<u8>>,
+) -> Result<(String, u64), PartError> {
+    check_file(path)?;
+    let mut bytes =
+        read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
     // A line without end was being written when the program was killed.
     let complete = bytes
         .iter()
@@ -331,12 +344,11 @@ fn rows_of<R: DeserializeOwned>(
 /// # Errors
 /// When the file cannot be read or is not a part.
 pub fn read_header(path: &Path) -> Result<Header, PartError> {
-    let first = File::open(path).and_then(|file| {
+    let (text, _) = complete_lines(path, |path| {
         let mut line = Vec::new();
-        BufReader::new(file).read_until(b'\n', &mut line)?;
+        BufReader::new(File::open(path)?).read_until(b'\n', &mut line)?;
         Ok(line)
-    });
-    let (text, _) = complete_lines(path, first)?;
+    })?;
     let (header, _) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
     Ok(header)
 }
@@ -360,6 +372,7 @@ impl PartFile {
         header: &Header,
         resume: bool,
     ) -> Result<(Self, Rows<R>), PartError> {
+        check_file(path)?;
         let file = OpenOptions::new()
             .create(true)
             .read(true)
@@ -370,7 +383,7 @@ impl PartFile {
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
         }
-        let (text, length) = complete_lines(path, fs::read(path))?;
+        let (text, length) = complete_lines(path, |path| fs::read(path))?;
         let rows = match header_of(path, &text)? {
             None => Rows::new(),
             Some((found, lines)) => {
@@ -428,9 +441,26 @@ impl PartFile {
     /// Removes it, once the results are complete.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When it is there and the system refuses.
     pub fn remove(self) -> Result<(), PartError> {
-        fs::remove_file(&self.path).map_err(self.cannot("remove"))
+        match fs::remove_file(&self.path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(self.cannot("remove")(error))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks that it is still there, as a result of its own.
+    pub(super) fn check_there(&self) -> Result<(), PartError> {
+        if self.path.exists() {
+            return Ok(());
+        }
+        let what = "it was removed while it was written; compute this part again";
+        Err(self.cannot("keep")(io::Error::new(
+            io::ErrorKind::NotFound,
+            what,
+        )))
     }
 
     fn cannot(&self, what: &'static str) -> impl FnOnce(io::Error) -> PartError + use<> {
@@ -453,7 +483,7 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
     let mut whole: Option<(Header, Rows<R>)> = None;
     let mut places: BTreeMap<usize, &Path> = BTreeMap::new();
     for path in paths {
-        let (text, _) = complete_lines(path, fs::read(path))?;
+        let (text, _) = complete_lines(path, |path| fs::read(path))?;
         let (header, lines) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
         let shard = header.shard;
         if let Some((first, _)) = &whole {

@@ -201,6 +201,7 @@ impl Runner {
         Ok(if shard.is_whole() {
             Computed::Whole(rows.into_values().collect(), part)
         } else {
+            part.check_there()?;
             Computed::Shard(part)
         })
     }

@@ -318,13 +318,14 @@ class History:
     # Elsewhere
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The samples as a table with the columns of ``rotations.csv``, and energies. Needs pandas."""
+        """The samples as a table: the columns of ``rotations.csv``, vertical accelerations also of ground that has
+        none, and energies. Needs pandas.
+        """
         import pandas
 
         columns: dict[str, Any] = {
             "time_s": self.time,
             "ground_acceleration_m_s2": self.ground_acceleration_m_s2,
-            "vertical_acceleration_m_s2": self.vertical_acceleration_m_s2,
             "phase": self.phase,
             "state": self.state,
         }
@@ -335,7 +336,12 @@ class History:
             for index, body in enumerate(self.bodies):
                 name = "_".join(filter(None, (quantity, body, unit)))
                 columns[name] = values[:, index]
+        if self.gaps.shape[1] > 0:
+            columns["open_joints"] = self.open_hinges
+        else:
+            columns["thrust_excess_ratio"] = self.thrust_excess_ratio
         columns["friction_demand"] = self.friction_demand
+        columns["vertical_acceleration_m_s2"] = self.vertical_acceleration_m_s2
         columns["energy_j"] = self.energy_j
         table: pandas.DataFrame = pandas.DataFrame(columns)
         return table

@@ -80,10 +80,12 @@ class Scenario(Described):
 
         Raises:
             OSError: when the file cannot be read.
+            TypeError: when that is no path.
             ValueError: all that is wrong with it, each with line and column.
         """
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
+        # Not `open` alone, which takes a number for a file that is open already, and closes it.
+        path = Path(path)
+        text = path.read_text(encoding="utf-8")
         return cls.parse(text, str(path), model=model, changes=changes)
 
     @classmethod

@@ -221,12 +221,18 @@ class Threshold(Results):
 _KINDS: dict[str, type[Results]] = {"map": OverturningMap, "spectrum": Spectrum, "suite": Suite}
 
 
+def _allowed(threads: int | None) -> int | None:
+    if threads is not None and not 1 <= threads <= 1024:
+        raise ValueError(f"`threads = {threads}` is not allowed: it must be from 1 to 1024")
+    return threads
+
+
 def _study(
     kind: str, scenario: Scenario, threads: int | None, progress: Progress | None
 ) -> list[tuple[str, bytes]]:
     if progress is not None and not callable(progress):
         raise TypeError("`progress` must be a function of two numbers")
-    return _native.study(scenario._native, kind, threads, progress)
+    return _native.study(scenario._native, kind, _allowed(threads), progress)
 
 
 def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
@@ -459,7 +465,7 @@ def threshold(
         assert isinstance(of, Structure)
         scenario = Scenario.of(of, ground, **settings)
     factors = (from_factor, to_factor, stride)
-    return Threshold(_native.threshold(scenario._native, factors, threads, progress))
+    return Threshold(_native.threshold(scenario._native, factors, _allowed(threads), progress))
 
 
 def compute_part(
@@ -496,7 +502,7 @@ def compute_part(
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
     index, count = shard
     path = _native.compute_part(
-        scenario._native, study, f"{index}/{count}", folder, threads, progress
+        scenario._native, study, f"{index}/{count}", folder, _allowed(threads), progress
     )
     return Path(path)
 
