@@ -145,6 +145,7 @@ fn the_command_writes_table_picture_and_summary() {
     let output = program::archrock(folder.path(), &["capacity", "a.toml", "--format", "json"]);
     assert!(output.status.success(), "{}", program::stderr(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["masses"], "16 blocks");
     let own = capacity(&scenario(POINTED), None).unwrap();
     let results = folder.path().join("results/a");
     let table = std::fs::read_to_string(results.join("capacity.csv")).unwrap();

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use archrock::mechanics::capacity::Capacity;
 use archrock::output::capacity as output;
-use archrock::studies::capacity::capacity as capacities;
+use archrock::studies::capacity::{capacity as capacities, grouping};
 use nalgebra::Vector2;
 
 use super::commands::pretty;
@@ -59,6 +59,8 @@ pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut folder = place.open(&[PICTURE, TABLE, SUMMARY])?;
     let title = scenario.title.as_deref().unwrap_or("Capacity");
     let mut json = output::to_json(&sides, gravity_m_s2);
+    let masses = grouping(&scenario.structure);
+    json["masses"] = masses.clone().into();
     json["scenario"] = scenario.to_json();
     let json = pretty(&json);
     output::write_table(folder.file(TABLE), &sides)?;
@@ -84,18 +86,19 @@ pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     }
     match arguments.format {
         Format::Json => print(&json),
-        Format::Text => print(&words(&sides, gravity_m_s2)),
+        Format::Text => print(&words(&sides, &masses, gravity_m_s2)),
     }
 }
 
-fn words(sides: &[Capacity; 2], gravity_m_s2: f64) -> String {
+fn words(sides: &[Capacity; 2], masses: &str, gravity_m_s2: f64) -> String {
     // A middle that rounding has moved is still the middle.
     let control = sides[0]
         .control
         .at_m
         .map(|x| if x.abs() < 5e-5 { 0.0 } else { x });
     let mut text = format!(
-        "quasi-static capacity of the first mechanism, control point at x {:.4} m, y {:.4} m\n",
+        "quasi-static capacity of the first mechanism, control point at x {:.4} m, y {:.4} m\n\
+         masses at the centres of {masses}, not of the rigid bodies of the mechanism\n",
         control.x, control.y
     );
     for side in sides {

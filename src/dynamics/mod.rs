@@ -1,4 +1,5 @@
 //! Motion in time: ground motion, models of motion and their histories.
+pub mod demand;
 pub mod free_hinges;
 pub mod ground;
 pub mod history;

@@ -16,6 +16,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
 use crate::mechanics::four_link::chain::Chain;
 use crate::mechanics::sway::Sway;
+use crate::mechanics::virtual_work::MovingBody;
 
 /// A structure under ground motion, as a model of its motion.
 ///
@@ -103,6 +104,10 @@ pub trait MechanismModel: Model {
 
     /// Its first mechanism to this side, at this part of its way to the unstable equilibrium; `None` if it has none.
     fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
+
+    /// The rigid bodies of its first mechanism to this side, as [`crate::mechanics::capacity::moving_bodies`]; `None` if it
+    /// has none.
+    fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;
 
     /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
     ///

@@ -20,9 +20,11 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::chain::{Mechanism as _, MechanismChain};
+use super::chain::{Mechanism as _, MechanismChain, Motion};
+use super::geometry::field::Twist;
 use super::geometry::pose::Pose;
 use super::sway::Sway;
+use super::virtual_work::{MovingBody, Participation};
 
 /// A structure on the way of its first mechanism.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +35,8 @@ pub struct Displaced {
     pub acceleration_g: f64,
     /// Poses of its bodies from left to right, in metres, in the frame of the ground.
     pub poses: Vec<Pose>,
+    /// Friction coefficient without which it would slide there, held at rest by that acceleration.
+    pub friction: f64,
 }
 
 /// The first mechanism to a side, at this part of its way to the unstable equilibrium.
@@ -41,6 +45,13 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
     let link = structure.link_from(sway, 0)?;
     let q_rad = part * link.critical_rad;
     let coefficients = link.mechanism.coefficients(q_rad);
+    let acceleration_g = coefficients.s_y / coefficients.s_x;
+    let held = Motion {
+        q_rad,
+        rate: 0.0,
+        acceleration: 0.0,
+        body_force_g: Vector2::new(acceleration_g, -1.0),
+    };
     let (mut poses, mut hinges) = (Vec::new(), Vec::new());
     link.mechanism.place(q_rad, &mut poses, &mut hinges);
     for pose in &mut poses {
@@ -54,9 +65,40 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
     }
     Some(Displaced {
         q_rad,
-        acceleration_g: coefficients.s_y / coefficients.s_x,
+        acceleration_g,
         poses,
+        friction: structure.demand(&link.mechanism, &held).friction,
     })
+}
+
+/// The rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements for one radian of
+/// its coordinate, in metres; what stands still is none of them.
+#[must_use]
+pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingBody>> {
+    let mechanism = &structure.link_from(sway, 0)?.mechanism;
+    let (mut poses, mut hinges) = (Vec::new(), Vec::new());
+    mechanism.place(0.0, &mut poses, &mut hinges);
+    let rates = mechanism.rotation_rates(0.0);
+    // Every hinge adds a rotation about itself to the motion of the body before it.
+    let mut twist = Twist::ZERO;
+    let bodies = mechanism.moments().into_iter().zip(&hinges);
+    let mut moving: Vec<MovingBody> = bodies
+        .zip(rates.as_ref())
+        .map(|((moments, hinge), rate)| {
+            twist = twist + Twist::rotation(*hinge, rate - twist.rate);
+            let centre = moments.centroid();
+            MovingBody {
+                mass_kg: moments.mass * structure.mass_unit_kg(),
+                centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
+                displacement: twist.at(centre) * structure.length_m(),
+                rotation: -rate,
+            }
+        })
+        .collect();
+    if sway == Sway::Left {
+        moving.reverse();
+    }
+    Some(moving)
 }
 
 /// A point that moves with a body.
@@ -73,6 +115,45 @@ impl Carried {
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let pose = self.body.and_then(|body| poses.get(body));
         pose.map_or(0.0, |pose| (pose.of(self.at_m) - self.at_m).x)
+    }
+}
+
+/// The point whose displacement is told: one of the structure, or the common centre of several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Control {
+    /// Where it is in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+    /// The points with their parts of it, which add up to one.
+    points: Vec<(f64, Carried)>,
+}
+
+impl Control {
+    /// A point of the structure.
+    #[must_use]
+    pub fn point(point: Carried) -> Self {
+        Self {
+            at_m: point.at_m,
+            points: vec![(1.0, point)],
+        }
+    }
+
+    /// The common centre of those masses, in kg, that move.
+    #[must_use]
+    pub fn centre_of(masses: &[(f64, Carried)]) -> Self {
+        let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
+        let whole_kg: f64 = moving().map(|(mass_kg, _)| mass_kg).sum();
+        let points = moving().map(|(mass_kg, point)| (mass_kg / whole_kg, *point));
+        let points: Vec<(f64, Carried)> = points.collect();
+        let at_m = points.iter().map(|(part, point)| point.at_m * *part).sum();
+        Self { at_m, points }
+    }
+
+    /// Its horizontal displacement in metres.
+    fn shift_m(&self, poses: &[Pose]) -> f64 {
+        let points = self.points.iter();
+        points
+            .map(|(part, point)| part * point.shift_m(poses))
+            .sum()
     }
 }
 
@@ -99,11 +180,13 @@ pub struct Capacity {
     /// To which side.
     pub sway: Sway,
     /// The control point.
-    pub control: Carried,
+    pub control: Control,
     /// Participating mass `M*` in kg.
     pub participating_mass_kg: f64,
     /// Its part `e*` of the mass that moves.
     pub mass_fraction: f64,
+    /// What displacements of the control point are multiplied by to be those of the oscillator.
+    pub to_oscillator: f64,
     /// From rest to the unstable equilibrium, at equal steps of the coordinate.
     pub curve: Vec<CurvePoint>,
 }
@@ -122,6 +205,15 @@ pub enum CapacityError {
         /// The side.
         sway: Sway,
     },
+    /// There is no unstable equilibrium.
+    #[error(
+        "the linkage that sways to the {side} comes to the end of its way before it loses its strength: it has no ultimate \
+         displacement", side = .sway.name()
+    )]
+    Locks {
+        /// The side.
+        sway: Sway,
+    },
 }
 
 /// Intervals of a capacity curve.
@@ -136,62 +228,74 @@ impl Capacity {
     /// kg.
     ///
     /// # Errors
-    /// When the control point does not move.
+    /// When the control point does not move, or the mechanism locks before its acceleration falls to zero.
     pub fn new(
         sway: Sway,
         displaced: impl Fn(f64) -> Displaced,
         masses: &[(f64, Carried)],
-        control: Carried,
+        control: Control,
         gravity_m_s2: f64,
     ) -> Result<Self, CapacityError> {
         let (before, after) = (displaced(-START), displaced(START));
-        let velocity = |point: &Carried| {
-            let moved = point.shift_m(&after.poses) - point.shift_m(&before.poses);
-            sway.sign() * moved / (after.q_rad - before.q_rad)
+        let velocity = |before_m: f64, after_m: f64| {
+            sway.sign() * (after_m - before_m) / (after.q_rad - before.q_rad)
         };
-        let control_velocity = velocity(&control);
-        let fastest = masses
-            .iter()
-            .map(|(_, point)| velocity(point).abs())
-            .fold(0.0, f64::max);
+        let control_velocity = velocity(
+            control.shift_m(&before.poses),
+            control.shift_m(&after.poses),
+        );
+        let moving = masses.iter().filter(|(_, point)| point.body.is_some());
+        let moving = moving.map(|(mass_kg, point)| {
+            let shifts_m = [&before, &after].map(|at| point.shift_m(&at.poses));
+            (*mass_kg, velocity(shifts_m[0], shifts_m[1]))
+        });
+        let moving: Vec<(f64, f64)> = moving.collect();
+        let speeds = moving.iter().map(|(_, velocity)| velocity.abs());
+        let fastest = speeds.fold(0.0, f64::max);
         if control_velocity <= 1e-9 * fastest {
             let at_m = control.at_m;
             return Err(CapacityError::Control { at_m, sway });
         }
-        let (mut whole, mut first, mut second) = (0.0, 0.0, 0.0);
-        for (mass_kg, point) in masses.iter().filter(|(_, point)| point.body.is_some()) {
-            let velocity = velocity(point);
-            whole += mass_kg;
-            first += mass_kg * velocity;
-            second += mass_kg * velocity * velocity;
+        let Participation {
+            participating_mass_kg,
+            mass_fraction,
+            oscillator_displacement,
+            ..
+        } = Participation::of(moving);
+        let to_oscillator = oscillator_displacement / control_velocity;
+        // At the end of the way it may be no number.
+        let [start_g, end_g] = [0.0, 1.0].map(|part| displaced(part).acceleration_g);
+        if end_g.is_nan() || end_g.abs() > 1e-6 * start_g {
+            return Err(CapacityError::Locks { sway });
         }
-        let participating_mass_kg = first * first / second;
-        let mass_fraction = participating_mass_kg / whole;
-        let to_oscillator = second / (control_velocity * first);
-        let curve = (0..=INTERVALS).map(|step| {
-            let here = displaced(f64::from(step) / f64::from(INTERVALS));
-            let displacement_m = sway.sign() * control.shift_m(&here.poses) + 0.0;
-            // At the end rounding may leave it on either side of zero.
-            let last = step == INTERVALS;
-            let acceleration_g = if last { 0.0 } else { here.acceleration_g };
-            let oscillator_displacement_m = displacement_m * to_oscillator;
-            let oscillator_acceleration_g = acceleration_g / mass_fraction;
-            let square_s2 = oscillator_displacement_m / (gravity_m_s2 * oscillator_acceleration_g);
-            CurvePoint {
-                q_rad: here.q_rad,
-                displacement_m,
-                acceleration_g,
-                oscillator_displacement_m,
-                oscillator_acceleration_g,
-                secant_period_s: (!last).then(|| 2.0 * std::f64::consts::PI * square_s2.sqrt()),
-            }
-        });
+        let curve: Vec<CurvePoint> = (0..=INTERVALS)
+            .map(|step| {
+                let here = displaced(f64::from(step) / f64::from(INTERVALS));
+                let displacement_m = sway.sign() * control.shift_m(&here.poses) + 0.0;
+                // At the end rounding may leave it on either side of zero.
+                let last = step == INTERVALS;
+                let acceleration_g = if last { 0.0 } else { here.acceleration_g };
+                let oscillator_displacement_m = displacement_m * to_oscillator;
+                let oscillator_acceleration_g = acceleration_g / mass_fraction;
+                let square_s2 =
+                    oscillator_displacement_m / (gravity_m_s2 * oscillator_acceleration_g);
+                CurvePoint {
+                    q_rad: here.q_rad,
+                    displacement_m,
+                    acceleration_g,
+                    oscillator_displacement_m,
+                    oscillator_acceleration_g,
+                    secant_period_s: (!last).then(|| 2.0 * std::f64::consts::PI * square_s2.sqrt()),
+                }
+            })
+            .collect();
         Ok(Self {
             sway,
             control,
             participating_mass_kg,
             mass_fraction,
-            curve: curve.collect(),
+            to_oscillator,
+            curve,
         })
     }
 

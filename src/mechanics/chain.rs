@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use crate::bisection::{Width, bisect, middle};
 use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::geometry::ring::{Edge, MassMoments};
 use crate::mechanics::sway::Sway;
 
 /// Coefficients of the equation of motion of a system with one degree of freedom,
@@ -56,6 +56,8 @@ pub trait Mechanism {
     /// Names of the bodies, from left to right; one empty name if there is only one body.
     const BODIES: &'static [&'static str];
 
+    /// Mass moments of the bodies, undeformed, from left to right.
+    fn moments(&self) -> Vec<MassMoments>;
     /// Coefficients of the equation of motion at `q`.
     fn coefficients(&self, q_rad: f64) -> Coefficients;
     /// Mass times displacement of the centre of gravity at `q`.

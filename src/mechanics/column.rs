@@ -58,6 +58,17 @@ impl Mechanism for Tilting {
     type Rotations = [f64; 1];
     const BODIES: &'static [&'static str] = &[""];
 
+    fn moments(&self) -> Vec<MassMoments> {
+        let first = Vector2::new(0.0, self.cos) * self.mass;
+        // The half diagonal is the unit of length.
+        let polar = self.mass * (1.0 / 3.0 + self.cos * self.cos);
+        vec![MassMoments {
+            mass: self.mass,
+            first,
+            polar,
+        }]
+    }
+
     fn coefficients(&self, q_rad: f64) -> Coefficients {
         let (sin, cos) = self.sin_cos_from(q_rad);
         Coefficients {

@@ -22,3 +22,4 @@ pub mod masonry;
 pub mod slip;
 pub mod stability;
 pub mod sway;
+pub mod virtual_work;

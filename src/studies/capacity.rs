@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::mechanics::arch::Arch;
-use crate::mechanics::capacity::{Capacity, CapacityError, Carried};
+use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::geometry::ring::Edge;
@@ -68,7 +68,8 @@ pub fn capacity(
             displaced.expect("a structure has its first mechanism")
         };
         let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-        Capacity::new(sway, displaced, &masses, carried(place, at_m), gravity_m_s2)
+        let control = Control::point(carried(place, at_m));
+        Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
     };
     Ok([side(Sway::Right)?, side(Sway::Left)?])
 }
@@ -86,6 +87,20 @@ fn place_of_hinge(hinge: &Hinge) -> f64 {
 #[expect(clippy::cast_precision_loss, reason = "blocks are few")]
 fn middle_of(block: usize) -> f64 {
     block as f64 + 0.5
+}
+
+/// What the masses of these curves are the masses of, in words. The rigid bodies of the mechanism would be fewer, with another
+/// participating mass.
+#[must_use]
+pub fn grouping(structure: &Structure) -> String {
+    match structure {
+        Structure::Arch(arch) => match arch.voussoirs() {
+            Some(voussoirs) => format!("{voussoirs} voussoirs"),
+            None => format!("{PARTS} equal parts of the ring"),
+        },
+        Structure::Column(_) => "the column as one block".to_owned(),
+        Structure::Masonry(masonry) => format!("{} blocks", masonry.row().blocks().len()),
+    }
 }
 
 /// What it consists of: place along the structure, mass in kg, centre of gravity in metres.

@@ -18,7 +18,7 @@ use crate::dynamics::model::{
     FourLinkModel, MechanismModel, Model, Recorder, Request, SimulationError,
 };
 use crate::dynamics::thrust::ThrustRecord;
-use crate::mechanics::capacity::{Displaced, displaced};
+use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
 use crate::mechanics::four_link::arch::FourLinkArch;
@@ -26,6 +26,7 @@ use crate::mechanics::four_link::chain::Chain;
 use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
+use crate::mechanics::virtual_work::MovingBody;
 
 /// Most transitions of a history: more would mean chatter, which the model should not produce.
 const MAX_TRANSITIONS: usize = 1_000_000;
@@ -138,6 +139,10 @@ impl<C: MechanismChain> MechanismModel for C {
 
     fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced> {
         displaced(self, sway, part)
+    }
+
+    fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>> {
+        moving_bodies(self, sway)
     }
 
     fn overturns_without_impact(

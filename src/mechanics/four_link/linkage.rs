@@ -254,6 +254,13 @@ impl Mechanism for Linkage {
     type Rotations = [f64; 3];
     const BODIES: &'static [&'static str] = &["left", "middle", "right"];
 
+    fn moments(&self) -> Vec<MassMoments> {
+        let hinges = self.hinges_rad.windows(2);
+        hinges
+            .map(|ends| self.profile.sector(ends[0], ends[1]))
+            .collect()
+    }
+
     /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
     fn coefficients(&self, q_rad: f64) -> Coefficients {
         let bars = self.bars(q_rad);

@@ -1,0 +1,122 @@
+//! The spectrum at a height in a building, Circolare 7/2019, C7.2.3, [C7.2.5] to [C7.2.8].
+//!
+//! In addition, on the safe side, peak and ordinates are here at least those of the ground at every period; the clause has that
+//! for periods above the first only, so that it falls below the ground where a building sways little.
+
+use serde::Serialize;
+
+use super::ground::GroundSpectrum;
+use super::{damping_factor, displacement_m};
+
+/// Periods around that of a mode between which its ordinate is the largest, over that.
+pub const PLATEAU: [f64; 2] = [0.8, 1.1];
+
+/// A mode of a building, in the state that it is in.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mode {
+    /// Period, in seconds.
+    pub t_s: f64,
+    /// Damping, in per cent.
+    pub damping_percent: f64,
+    /// Participation factor.
+    pub gamma: f64,
+    /// Modal shape at the height of the mechanism.
+    pub psi: f64,
+}
+
+impl Mode {
+    /// Largest acceleration of the floor in this mode, [C7.2.7], in g.
+    #[must_use]
+    pub fn peak_g(&self, ground: &GroundSpectrum) -> f64 {
+        let damping = self.damping_percent;
+        ground.acceleration_g(self.t_s, damping)
+            * (self.gamma * self.psi).abs()
+            * (1.0 + 0.0004 * damping * damping).sqrt()
+    }
+
+    /// By how much what is in resonance with it, of this damping, exceeds the floor, [C7.2.6]. The damping of the mode
+    /// counts as a fraction here, as in the transfer of a harmonic motion; in per cent it would be no amplification.
+    #[must_use]
+    pub fn amplification(&self, damping_percent: f64) -> f64 {
+        1.1 * damping_factor(damping_percent) / (self.damping_percent / 100.0).sqrt()
+    }
+
+    /// Its ordinate, [C7.2.6], in g.
+    fn acceleration_g(&self, ground: &GroundSpectrum, period_s: f64, damping_percent: f64) -> f64 {
+        let factor = self.amplification(damping_percent);
+        let [low, high] = PLATEAU.map(|part| period_s / (part * self.t_s));
+        let falls = if low < 1.0 {
+            (1.0 - low).powf(1.6)
+        } else if high > 1.0 {
+            (high - 1.0).powf(1.2)
+        } else {
+            0.0
+        };
+        factor * self.peak_g(ground) / (1.0 + (factor - 1.0) * falls)
+    }
+}
+
+/// The spectrum where a mechanism stands in a building.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorSpectrum {
+    ground: GroundSpectrum,
+    modes: Vec<Mode>,
+}
+
+impl FloorSpectrum {
+    /// That of a building on that ground; `None` without modes.
+    #[must_use]
+    pub fn new(ground: GroundSpectrum, modes: Vec<Mode>) -> Option<Self> {
+        (!modes.is_empty()).then_some(Self { ground, modes })
+    }
+
+    /// The modes of the building.
+    #[must_use]
+    pub fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// The longest period of the building, `T_1`, in seconds.
+    #[must_use]
+    pub fn first_period_s(&self) -> f64 {
+        let periods = self.modes.iter().map(|mode| mode.t_s);
+        periods.fold(0.0, f64::max)
+    }
+
+    /// Largest acceleration of the floor, [C7.2.8], and at least that of the ground, in g.
+    #[must_use]
+    pub fn peak_g(&self) -> f64 {
+        let modes = self.modes.iter().map(|mode| mode.peak_g(&self.ground));
+        root_of_squares(modes).max(self.ground.peak_g())
+    }
+
+    /// Spectral acceleration `S_eZ`, [C7.2.5], and at least that of the ground at every period, in g.
+    #[must_use]
+    pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> f64 {
+        let modes = self.modes.iter();
+        let floor = modes.map(|mode| mode.acceleration_g(&self.ground, period_s, damping_percent));
+        root_of_squares(floor).max(self.ground.acceleration_g(period_s, damping_percent))
+    }
+
+    /// The displacement that is asked of a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`, and beyond
+    /// the resonance with the first mode at least what it is there.
+    #[must_use]
+    pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
+        let at = |acceleration_g, period_s| displacement_m(acceleration_g, period_s, gravity_m_s2);
+        let own = at(self.acceleration_g(period_s, damping_percent), period_s);
+        let first_s = self.first_period_s();
+        let resonance_s = PLATEAU[1] * first_s;
+        if period_s <= resonance_s {
+            return own;
+        }
+        own.max(at(
+            self.acceleration_g(first_s, damping_percent),
+            resonance_s,
+        ))
+    }
+}
+
+/// Square root of the sum of the squares.
+fn root_of_squares(values: impl Iterator<Item = f64>) -> f64 {
+    values.map(|value| value * value).sum::<f64>().sqrt()
+}

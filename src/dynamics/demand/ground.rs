@@ -1,0 +1,249 @@
+//! The elastic response spectrum of the horizontal ground motion, NTC 2018, § 3.2.3.2.
+
+use serde::Serialize;
+
+use super::{damping_factor, displacement_m};
+use crate::argument::{ArgumentError, short};
+
+named! {
+    /// Subsoil category (Tab. 3.2.II).
+    pub enum Soil {
+        /// Rock, or very stiff soil.
+        A = "A",
+        /// Soft rock, dense coarse or very stiff fine soil.
+        B = "B",
+        /// Medium dense coarse or medium stiff fine soil.
+        C = "C",
+        /// Loose coarse or soft fine soil.
+        D = "D",
+        /// Soil like C or D, at most 30 m thick, on rock.
+        E = "E",
+    }
+}
+
+impl Soil {
+    /// Coefficient `S_S` (Tab. 3.2.IV) for `x = F_o a_g / g`.
+    #[must_use]
+    pub fn amplification(self, x: f64) -> f64 {
+        let (most, slope, range) = match self {
+            Self::A => return 1.0,
+            Self::B => (1.40, 0.40, (1.00, 1.20)),
+            Self::C => (1.70, 0.60, (1.00, 1.50)),
+            Self::D => (2.40, 1.50, (0.90, 1.80)),
+            Self::E => (2.00, 1.10, (1.00, 1.60)),
+        };
+        (most - slope * x).clamp(range.0, range.1)
+    }
+
+    /// Coefficient `C_C` (Tab. 3.2.IV) for `T_C*` in seconds.
+    #[must_use]
+    pub fn period_coefficient(self, tc_star_s: f64) -> f64 {
+        match self {
+            Self::A => 1.0,
+            Self::B => 1.10 * tc_star_s.powf(-0.20),
+            Self::C => 1.05 * tc_star_s.powf(-0.33),
+            Self::D => 1.25 * tc_star_s.powf(-0.50),
+            Self::E => 1.15 * tc_star_s.powf(-0.40),
+        }
+    }
+
+    /// Period `T_E` (Tab. 3.2.VII), in seconds.
+    #[must_use]
+    pub const fn t_e_s(self) -> f64 {
+        match self {
+            Self::A => 4.5,
+            Self::B => 5.0,
+            Self::C | Self::D | Self::E => 6.0,
+        }
+    }
+}
+
+/// Period `T_F` (Tab. 3.2.VII), in seconds, of all soils.
+pub const T_F_S: f64 = 10.0;
+
+named! {
+    /// Topographic category (Tab. 3.2.III).
+    pub enum Topography {
+        /// Flat, or slopes of at most 15 degrees.
+        T1 = "T1",
+        /// Slopes steeper than 15 degrees.
+        T2 = "T2",
+        /// Ridges with slopes of 15 to 30 degrees.
+        T3 = "T3",
+        /// Ridges with slopes steeper than 30 degrees.
+        T4 = "T4",
+    }
+}
+
+impl Topography {
+    /// The largest coefficient `S_T` of the category (Tab. 3.2.V), that at the top.
+    #[must_use]
+    pub const fn factor(self) -> f64 {
+        match self {
+            Self::T1 => 1.0,
+            Self::T2 | Self::T3 => 1.2,
+            Self::T4 => 1.4,
+        }
+    }
+}
+
+/// Seismic hazard of a site for a limit state (§ 3.2).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Hazard {
+    /// Peak acceleration `a_g` on rigid ground, in g.
+    pub ag_g: f64,
+    /// Largest amplification `F_o`.
+    pub f0: f64,
+    /// Reference period `T_C*`, in seconds.
+    pub tc_star_s: f64,
+}
+
+/// What the soil and the relief make of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// Subsoil category.
+    pub soil: Soil,
+    /// Topographic coefficient `S_T`.
+    pub topographic_factor: f64,
+}
+
+/// The elastic spectrum of a site for a limit state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundSpectrum {
+    /// The hazard.
+    pub hazard: Hazard,
+    /// The site.
+    pub site: Site,
+    /// Soil coefficient `S_S`.
+    pub s_s: f64,
+    /// Coefficient `C_C`.
+    pub c_c: f64,
+    /// Where the branch of constant acceleration begins, in seconds.
+    pub t_b_s: f64,
+    /// Where that of constant velocity begins, in seconds.
+    pub t_c_s: f64,
+    /// Where that of constant displacement begins, in seconds.
+    pub t_d_s: f64,
+    /// Where that ends, in seconds.
+    pub t_e_s: f64,
+}
+
+impl GroundSpectrum {
+    /// The spectrum of a hazard on a site.
+    ///
+    /// # Errors
+    /// When a parameter is out of the range of the code: `F_o` below 2.2, or corner periods out of order.
+    pub fn new(hazard: Hazard, site: Site) -> Result<Self, ArgumentError> {
+        let Hazard {
+            ag_g,
+            f0,
+            tc_star_s,
+        } = hazard;
+        let t_e_s = site.soil.t_e_s();
+        let refused = |argument, value, allowed| {
+            Err(ArgumentError {
+                argument,
+                value,
+                allowed,
+            })
+        };
+        if !(2.2..=10.0).contains(&f0) {
+            let allowed = "a number from 2.2 (NTC 2018, § 3.2.1) to 10".to_owned();
+            return refused("f0", f0, allowed);
+        }
+        let t_d_s = 4.0 * ag_g + 1.6;
+        // False also for what is not a number.
+        if !(ag_g > 0.0 && t_d_s <= t_e_s) {
+            let allowed = format!(
+                "above 0 and at most {} on soil {}, so that T_D = 4 a_g/g + 1.6 is at most T_E = {} s (NTC 2018, § 3.2.3.2)",
+                short(((t_e_s - 1.6) / 4.0 * 1e6).round() / 1e6),
+                site.soil.name(),
+                short(t_e_s),
+            );
+            return refused("ag_g", ag_g, allowed);
+        }
+        let c_c = site.soil.period_coefficient(tc_star_s);
+        let t_c_s = c_c * tc_star_s;
+        if !(tc_star_s > 0.0 && t_c_s <= t_d_s) {
+            let allowed = format!(
+                "above 0, and T_C = C_C T_C* (NTC 2018, Tab. 3.2.IV) at most T_D = {} s",
+                short((t_d_s * 1e6).round() / 1e6)
+            );
+            return refused("tc_star_s", tc_star_s, allowed);
+        }
+        if !(1.0..=2.0).contains(&site.topographic_factor) {
+            let allowed = "a number from 1 to 2 (NTC 2018, Tab. 3.2.V has 1.0 to 1.4)".to_owned();
+            return refused("topographic_factor", site.topographic_factor, allowed);
+        }
+        Ok(Self {
+            hazard,
+            site,
+            s_s: site.soil.amplification(f0 * ag_g),
+            c_c,
+            t_b_s: t_c_s / 3.0,
+            t_c_s,
+            t_d_s,
+            t_e_s,
+        })
+    }
+
+    /// `S = S_S S_T`.
+    #[must_use]
+    pub fn s(&self) -> f64 {
+        self.s_s * self.site.topographic_factor
+    }
+
+    /// Peak acceleration of the ground, `a_g S`, in g.
+    #[must_use]
+    pub fn peak_g(&self) -> f64 {
+        self.hazard.ag_g * self.s()
+    }
+
+    /// Spectral acceleration `S_e` [3.2.2] at a period and a damping, in g.
+    #[must_use]
+    pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> f64 {
+        let (t, amplified) = (period_s, damping_factor(damping_percent) * self.hazard.f0);
+        let shape = if t < self.t_b_s {
+            let part = t / self.t_b_s;
+            part + (1.0 - part) / amplified
+        } else if t < self.t_c_s {
+            1.0
+        } else if t < self.t_d_s {
+            self.t_c_s / t
+        } else {
+            self.t_c_s * self.t_d_s / (t * t)
+        };
+        self.peak_g() * amplified * shape
+    }
+
+    /// Spectral displacement `S_De` (§ 3.2.3.2.3) at a period and a damping, in metres.
+    #[must_use]
+    pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
+        if period_s <= self.t_e_s {
+            let acceleration_g = self.acceleration_g(period_s, damping_percent);
+            return displacement_m(acceleration_g, period_s, gravity_m_s2);
+        }
+        let amplified = damping_factor(damping_percent) * self.hazard.f0;
+        let part = ((period_s - self.t_e_s) / (T_F_S - self.t_e_s)).min(1.0);
+        self.peak_displacement_m(gravity_m_s2) * (amplified + (1.0 - amplified) * part)
+    }
+
+    /// Peak displacement of the ground, `d_g = 0.025 a_g S T_C T_D`, in metres.
+    #[must_use]
+    pub fn peak_displacement_m(&self, gravity_m_s2: f64) -> f64 {
+        0.025 * self.peak_g() * gravity_m_s2 * self.t_c_s * self.t_d_s
+    }
+
+    /// The largest spectral displacement up to a period: beyond `T_E` it falls, and what softens on its way has passed that
+    /// period.
+    #[must_use]
+    pub fn largest_displacement_m(
+        &self,
+        period_s: f64,
+        damping_percent: f64,
+        gravity_m_s2: f64,
+    ) -> f64 {
+        let period_s = period_s.min(self.t_e_s);
+        self.displacement_m(period_s, damping_percent, gravity_m_s2)
+    }
+}

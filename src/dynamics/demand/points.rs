@@ -1,0 +1,170 @@
+//! A spectrum given by points, straight between them.
+
+use thiserror::Error;
+
+use super::{damping_factor, displacement_m};
+
+/// Accelerations at rising periods, at one damping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointSpectrum {
+    /// Period in seconds and acceleration in g.
+    points: Vec<(f64, f64)>,
+    damping_percent: f64,
+}
+
+/// Why points make no spectrum.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum PointError {
+    /// There are none, or one.
+    #[error("has fewer than two rows; give a row for each corner of the spectrum")]
+    TooFew,
+    /// A period is negative, or no number.
+    #[error("has the period {period_s:?} s in row {row}; periods must be numbers of at least 0")]
+    Period {
+        /// Which, from 1 on.
+        row: usize,
+        /// The period.
+        period_s: f64,
+    },
+    /// Periods do not rise.
+    #[error("has in row {row} a period that is not above that before; sort the rows by period")]
+    Order {
+        /// Which, from 1 on.
+        row: usize,
+    },
+    /// An acceleration is not positive.
+    #[error(
+        "has the acceleration {acceleration_g:?} g in row {row}; accelerations must be numbers above 0"
+    )]
+    Acceleration {
+        /// Which, from 1 on.
+        row: usize,
+        /// The acceleration.
+        acceleration_g: f64,
+    },
+}
+
+/// A period at which nothing is known.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the spectrum is given from {:?} to {:?} s, and is needed at {period_s:?} s: add rows", .given_s[0], .given_s[1])]
+pub struct Beyond {
+    /// The period that is needed, in seconds.
+    pub period_s: f64,
+    /// First and last period that are given, in seconds.
+    pub given_s: [f64; 2],
+}
+
+impl PointSpectrum {
+    /// The spectrum through points: period in seconds, acceleration in g, at a damping in per cent.
+    ///
+    /// # Errors
+    /// When there are fewer than two points, periods do not rise, or a number is not allowed.
+    pub fn new(points: Vec<(f64, f64)>, damping_percent: f64) -> Result<Self, PointError> {
+        if points.len() < 2 {
+            return Err(PointError::TooFew);
+        }
+        let mut before_s = f64::NEG_INFINITY;
+        for (row, (period_s, acceleration_g)) in (1..).zip(points.iter().copied()) {
+            if !(period_s >= 0.0 && period_s.is_finite()) {
+                return Err(PointError::Period { row, period_s });
+            }
+            if period_s <= before_s {
+                return Err(PointError::Order { row });
+            }
+            if !(acceleration_g > 0.0 && acceleration_g.is_finite()) {
+                return Err(PointError::Acceleration {
+                    row,
+                    acceleration_g,
+                });
+            }
+            before_s = period_s;
+        }
+        Ok(Self {
+            points,
+            damping_percent,
+        })
+    }
+
+    /// The points.
+    #[must_use]
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
+    /// Damping at which it is given, in per cent.
+    #[must_use]
+    pub const fn damping_percent(&self) -> f64 {
+        self.damping_percent
+    }
+
+    /// Peak acceleration: that at the period zero, in g.
+    ///
+    /// # Errors
+    /// When there is no row for it.
+    pub fn peak_g(&self) -> Result<f64, Beyond> {
+        // No damping changes it.
+        self.acceleration_g(0.0, self.damping_percent)
+    }
+
+    /// Spectral acceleration at a period and a damping, in g.
+    ///
+    /// # Errors
+    /// When the period is not within the rows.
+    pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> Result<f64, Beyond> {
+        let [from_s, to_s] = self.range_s();
+        if !(from_s..=to_s).contains(&period_s) {
+            return Err(Beyond {
+                period_s,
+                given_s: [from_s, to_s],
+            });
+        }
+        let after = self.points.partition_point(|point| point.0 < period_s);
+        let after = after.clamp(1, self.points.len() - 1);
+        let (low, high) = (self.points[after - 1], self.points[after]);
+        let part = (period_s - low.0) / (high.0 - low.0);
+        Ok(self.scale(damping_percent) * (low.1 + part * (high.1 - low.1)))
+    }
+
+    /// The largest spectral displacement between two periods, in metres, and the period where it is: at an end, at a row, or
+    /// where between two rows the acceleration `p + s T` makes `p T^2 + s T^3` largest, at `T = -2 p / (3 s)`.
+    ///
+    /// # Errors
+    /// When the periods are not within the rows.
+    pub fn largest_displacement(
+        &self,
+        periods_s: [f64; 2],
+        damping_percent: f64,
+        gravity_m_s2: f64,
+    ) -> Result<(f64, f64), Beyond> {
+        let [from_s, to_s] = periods_s;
+        let within = |period_s: &f64| (from_s..=to_s).contains(period_s);
+        let rows = self.points.iter().map(|point| point.0);
+        let between = self.points.windows(2).filter_map(|pair| {
+            let slope = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+            let at_zero = pair[0].1 - slope * pair[0].0;
+            let period_s = -2.0 * at_zero / (3.0 * slope);
+            (pair[0].0..=pair[1].0)
+                .contains(&period_s)
+                .then_some(period_s)
+        });
+        let mut largest = (0.0, from_s);
+        for period_s in rows.chain(between).filter(within).chain(periods_s) {
+            let acceleration_g = self.acceleration_g(period_s, damping_percent)?;
+            let own = displacement_m(acceleration_g, period_s, gravity_m_s2);
+            if own > largest.0 {
+                largest = (own, period_s);
+            }
+        }
+        Ok(largest)
+    }
+
+    /// First and last period, in seconds.
+    #[must_use]
+    pub fn range_s(&self) -> [f64; 2] {
+        [self.points[0].0, self.points[self.points.len() - 1].0]
+    }
+
+    fn scale(&self, damping_percent: f64) -> f64 {
+        damping_factor(damping_percent) / damping_factor(self.damping_percent)
+    }
+}

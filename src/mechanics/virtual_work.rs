@@ -1,0 +1,84 @@
+//! Virtual work of a mechanism of rigid bodies: the load multiplier that starts it, and its participating mass.
+//!
+//! Bodies are lumped at their centres of gravity, with what they carry. Their virtual displacements are those from the
+//! undeformed position, up to a common factor, which nothing here depends on.
+
+use nalgebra::Vector2;
+
+/// A rigid body of a mechanism, with its virtual displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovingBody {
+    /// Its mass and that of what it carries, in kg.
+    pub mass_kg: f64,
+    /// Its centre of gravity in the undeformed structure, in metres.
+    pub centre_m: Vector2<f64>,
+    /// Virtual displacement of its centre: x in the direction of the sway, y upwards.
+    pub displacement: Vector2<f64>,
+    /// Virtual rotation, towards the side of the sway, per metre where displacements have no unit.
+    pub rotation: f64,
+}
+
+/// The load multiplier `alpha0`: the horizontal acceleration, in units of gravity, at which the work of the inertia of all
+/// bodies equals that of their weights, `sum P delta_y / sum P delta_x`.
+#[must_use]
+pub fn load_multiplier(bodies: &[MovingBody]) -> f64 {
+    let work = |component: fn(&MovingBody) -> f64| -> f64 {
+        let each = bodies.iter().map(|body| body.mass_kg * component(body));
+        each.sum()
+    };
+    work(|body| body.displacement.y) / work(|body| body.displacement.x)
+}
+
+/// The masses that take part in a motion, given with their horizontal virtual displacements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Participation {
+    /// All of the mass that moves, in kg.
+    pub moving_mass_kg: f64,
+    /// Participating mass `M* = (sum m delta)^2 / sum m delta^2`, in kg.
+    pub participating_mass_kg: f64,
+    /// Its part `e*` of the mass that moves.
+    pub mass_fraction: f64,
+    /// `sum m delta^2 / sum m delta`: over the virtual displacement of the control point, what displacements of that are
+    /// multiplied by to be those of the oscillator.
+    pub oscillator_displacement: f64,
+}
+
+impl Participation {
+    /// That of masses in kg, each with its horizontal virtual displacement. All of them move.
+    #[must_use]
+    pub fn of(masses: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let (mut whole, mut first, mut second) = (0.0, 0.0, 0.0);
+        for (mass_kg, displacement) in masses {
+            whole += mass_kg;
+            first += mass_kg * displacement;
+            second += mass_kg * displacement * displacement;
+        }
+        let participating_mass_kg = first * first / second;
+        Self {
+            moving_mass_kg: whole,
+            participating_mass_kg,
+            mass_fraction: participating_mass_kg / whole,
+            oscillator_displacement: second / first,
+        }
+    }
+
+    /// That of rigid bodies.
+    #[must_use]
+    pub fn of_bodies(bodies: &[MovingBody]) -> Self {
+        let bodies = bodies.iter();
+        Self::of(bodies.map(|body| (body.mass_kg, body.displacement.x)))
+    }
+}
+
+/// The bodies with their virtual displacements scaled so that the centre of all their masses moves by one.
+#[must_use]
+pub fn per_displacement_of_centre(mut bodies: Vec<MovingBody>) -> Vec<MovingBody> {
+    let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
+    let first = bodies.iter().map(|body| body.mass_kg * body.displacement.x);
+    let scale = mass_kg / first.sum::<f64>();
+    for body in &mut bodies {
+        body.displacement *= scale;
+        body.rotation *= scale;
+    }
+    bodies
+}
