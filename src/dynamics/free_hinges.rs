@@ -24,6 +24,8 @@ use crate::mechanics::contact::ContactError;
 use crate::mechanics::joints::{Frame, Placement, Pose};
 use crate::mechanics::sway::Sway;
 
+/// Impacts within the shortest step after which the next landings are merged: without end they would stop time.
+const CROWDED_IMPACTS: usize = 50;
 /// A row has overturned when it is lower than at rest by this part of weight times size.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
 /// The same where joints slip, so that a row may come to rest lower than it stood.
@@ -34,8 +36,10 @@ const SLIPPED_ENERGY_RATIO: f64 = 1e-2;
 pub struct Settings {
     /// Longest step in seconds.
     pub longest_step_s: f64,
-    /// Landings within this time, in seconds, are one.
+    /// Where landings crowd within this time, in seconds, they are taken as one.
     pub shortest_step_s: f64,
+    /// After how many impacts within the shortest step landings crowd.
+    pub impacts_before_merging: usize,
     /// When to stop at the latest, in seconds.
     pub end_s: f64,
     /// Time between samples in seconds; without it there are none.
@@ -75,6 +79,7 @@ impl Settings {
         Self {
             longest_step_s: steps[0] * scale,
             shortest_step_s: steps[1] * scale,
+            impacts_before_merging: CROWDED_IMPACTS,
             end_s,
             output_step_s: None,
             friction_coefficient: None,

@@ -203,11 +203,36 @@ impl Placement {
         self.gaps_m[joint] == [0.0; 2]
     }
 
-    /// Number of corners that touch.
+    /// Number of corners that do not touch.
     #[must_use]
-    pub fn shut_corners(&self) -> usize {
+    pub fn open_corners(&self) -> usize {
         let corners = self.gaps_m.iter().flatten();
-        corners.filter(|gap| **gap == 0.0).count()
+        corners.filter(|gap| **gap > 0.0).count()
+    }
+
+    /// The largest gap over the thickness of its joint.
+    #[must_use]
+    pub fn largest_gap_ratio(&self) -> f64 {
+        let corners = self.gaps_m.iter().zip(&self.faces);
+        let ratios = corners.flat_map(|(gaps, face)| gaps.map(|gap| gap / face.thickness));
+        ratios.fold(0.0, f64::max)
+    }
+
+    /// Shuts the corners that are open by less than this part of the thickness, and places the blocks anew. False if there is none.
+    pub fn shut_below(&mut self, ratio: f64) -> bool {
+        let mut found = false;
+        for (gaps, face) in self.gaps_m.iter_mut().zip(&self.faces) {
+            for gap in gaps.iter_mut().filter(|gap| **gap > 0.0) {
+                if *gap < ratio * face.thickness {
+                    *gap = 0.0;
+                    found = true;
+                }
+            }
+        }
+        if found {
+            self.place();
+        }
+        found
     }
 
     /// Takes over the positions of another placement of the same row.

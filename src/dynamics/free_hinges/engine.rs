@@ -1,9 +1,15 @@
 //! One computation of such a motion, step by step.
 //!
 //! Steps are those of the leapfrog: a kick by gravity and the ground, after which the velocities are the nearest ones that
-//! the joints allow ([`crate::mechanics::contact`]), and a drift of the gaps. A step ends where a corner lands; there the
-//! velocity is completed with the old mechanism and then projected on what the shut corners allow, the
-//! perfectly inelastic impact of Moreau. Landings that follow each other within the shortest step are one program of one step.
+//! the joints allow ([`crate::mechanics::contact`]), and a drift of the gaps. A step ends exactly where a corner lands, however
+//! short that makes it; there the velocity is completed with the old mechanism and then projected on what the shut corners
+//! allow, the perfectly inelastic impact of Moreau.
+//!
+//! An impact shuts more than the corner that was aimed at. Four open corners of an arch have one degree of freedom, so that
+//! all four land at one instant; in numbers the others are left open by the rounding of the closure. They belong to the
+//! impact, and so does every corner open by less than a billionth of the thickness: one projection after the other is not the
+//! projection on all, and the difference does not fall with the step. Nothing is merged by time but where impacts crowd
+//! without end.
 //!
 //! Pins move on arcs. What the straight drift of two bodies would part them by over the coming step is taken from their last
 //! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
@@ -28,10 +34,15 @@ use crate::mechanics::joints::{Placement, SHUT_RATIO};
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
 /// Below this part of the thickness of a joint the closure error is left alone.
 const CLOSURE_RATIO: f64 = 1e-13;
-/// Passes in which it is taken up; one is enough unless corners shut on the way.
-const CLOSURE_PASSES: usize = 8;
+/// Corners that are open by less than this part of the thickness belong to an impact.
+const LANDED_RATIO: f64 = 1e-9;
+/// The last three open corners of an arch belong to an impact when all are open by less than this part of the thickness: they
+/// must meet three equations of closure, which none but the shut joints do.
+const LAST_THREE_RATIO: f64 = 1e-6;
 /// Passes in which the step that ends at a landing is found.
-const LANDING_PASSES: usize = 8;
+const LANDING_PASSES: usize = 30;
+/// The same, once the landing is known to within this part of the step.
+const BRACKET_RATIO: f64 = 1e-12;
 /// Rounds of landings in a merged step after which all corners that can land are looked for at once.
 const LANDING_ROUNDS: usize = 8;
 /// A landing by this part of a step earlier or later than expected needs no other pass.
@@ -73,6 +84,23 @@ struct Step {
     length_s: f64,
     /// Whether corners land within it, not at its end.
     merged: bool,
+}
+
+/// Impacts that follow each other within the shortest step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Crowd {
+    /// When the first of them was.
+    first_s: f64,
+    impacts: usize,
+}
+
+impl Crowd {
+    fn count(&mut self, time_s: f64, within_s: f64) {
+        if self.impacts == 0 || time_s - self.first_s > within_s {
+            *self = Self { first_s: time_s, impacts: 0 };
+        }
+        self.impacts += 1;
+    }
 }
 
 /// A corner that falls towards its joint.
@@ -135,6 +163,7 @@ pub(super) struct Engine<'a> {
     friction_demand: f64,
     least_normal: f64,
     step_iterations: usize,
+    crowd: Crowd,
 }
 
 impl<'a> Engine<'a> {
@@ -183,6 +212,7 @@ impl<'a> Engine<'a> {
             friction_demand: 0.0,
             least_normal: f64::INFINITY,
             step_iterations: 0,
+            crowd: Crowd::default(),
         };
         engine.stand_still();
         engine
@@ -249,17 +279,16 @@ impl<'a> Engine<'a> {
     fn advance(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
         self.step_iterations = 0;
         let longest = equal_step(self.course.time, until, self.settings.longest_step_s);
-        let before = self.momentum();
         self.touch_shut();
         self.closed.copy_from_slice(&self.touching);
         let from_s = self.course.time;
         let taken_before = self.course.run.energy_taken_j;
         self.landing.fill([0.0; 2]);
-        if self.kicked_s == self.course.time && self.course.run.cost.impacts > 0 {
+        if self.has_just_landed() {
             self.press_again();
         }
         let step = self.solve_to_landing(longest)?;
-        self.account(&step, before);
+        self.account(&step);
         self.drift(&step)?;
         if self.has_landed() {
             self.impact()?;
@@ -276,24 +305,27 @@ impl<'a> Engine<'a> {
     }
 
     /// Solves the step that ends at the first landing, or the longest one if nothing lands in it. Its length changes the kick, and
-    /// so the landing. What lands within the shortest step is merged.
+    /// so the landing.
     fn solve_to_landing(&mut self, longest: f64) -> Result<Step, FreeHingeError> {
-        let shortest = self.settings.shortest_step_s.min(longest);
+        let floor = if self.is_crowded() {
+            self.settings.shortest_step_s.min(longest)
+        } else {
+            0.0
+        };
         let duration_s = |fall: Option<Fall>| fall.map_or(f64::INFINITY, |fall| fall.duration_s());
-        let mut step = duration_s(self.first_fall()).clamp(shortest, longest);
+        let mut step = duration_s(self.first_fall()).clamp(floor, longest);
         // No corner lands within `safe`, some do within `late`.
         let (mut safe, mut late) = (0.0, f64::INFINITY);
         // The rates before the step are those of one that goes back by as much as the last one went on.
         let mut earlier = 2.0 * (self.kicked_s - self.course.time);
-        for pass in 0.. {
+        for pass in 1.. {
             self.note_rates();
             self.solve_step(step)?;
             let fall = self.first_fall();
             let lands = duration_s(fall);
             let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
-            let passes_left = LANDING_PASSES.saturating_sub(pass);
-            let ends_before = lands > step && (step == longest || passes_left == 0);
-            if met || ends_before || step == safe {
+            // Rounding may say otherwise of a step that was seen to be safe.
+            if met || (lands > step && step == longest) || step == safe {
                 return Ok(Step {
                     expected_s: step,
                     length_s: if met { lands } else { step },
@@ -302,28 +334,45 @@ impl<'a> Engine<'a> {
             }
             if lands > step {
                 safe = step;
-            } else if step > shortest {
+            } else if step > floor {
                 late = step;
             } else {
                 break;
             }
+            // Where the mechanism changes with the length there may be no landing to find.
+            if pass >= LANDING_PASSES || late - safe <= BRACKET_RATIO * late {
+                if safe == 0.0 {
+                    break;
+                }
+                step = safe;
+                continue;
+            }
             let expected = fall.map_or(f64::INFINITY, |fall| self.landing(&fall, step, earlier));
             earlier = step;
-            step = if passes_left <= 1 && safe > 0.0 {
-                safe
-            } else if safe < expected && expected < late {
+            step = if safe < expected && expected < late {
                 expected
             } else {
                 0.5 * (safe + late)
             }
-            .clamp(shortest, longest);
+            .clamp(floor, longest);
         }
-        self.merge(shortest)?;
+        let length_s = self.settings.shortest_step_s.min(longest);
+        self.merge(length_s)?;
         Ok(Step {
-            expected_s: shortest,
-            length_s: shortest,
+            expected_s: length_s,
+            length_s,
             merged: true,
         })
+    }
+
+    /// Whether the step before ended at an impact after so many within the shortest step that the next ones are merged.
+    fn is_crowded(&self) -> bool {
+        self.has_just_landed() && self.crowd.impacts > self.settings.impacts_before_merging
+    }
+
+    /// Whether the step before ended at an impact.
+    fn has_just_landed(&self) -> bool {
+        self.kicked_s == self.course.time && self.course.run.cost.impacts > 0
     }
 
     /// Length of the step at whose end this corner lands, as its rate changes evenly with the length: from that of the step last
@@ -473,6 +522,13 @@ impl<'a> Engine<'a> {
 
     /// A step within which all corners that would land come to touch.
     fn merge(&mut self, step: f64) -> Result<(), FreeHingeError> {
+        if self.kicked_s < self.course.time {
+            self.complete_kick()?;
+            self.take_pieces();
+            self.kicked_s = self.course.time;
+        }
+        self.crowd.impacts = 0;
+        self.solve_step(step)?;
         let without = self.kinetic_of_solution();
         for round in 0.. {
             self.landed.clear();
@@ -573,7 +629,8 @@ impl<'a> Engine<'a> {
     }
 
     /// Books the work of the ground and the forces of a step that was solved, and forms its pieces.
-    fn account(&mut self, step: &Step, before: Vector2<f64>) {
+    fn account(&mut self, step: &Step) {
+        let before = self.momentum();
         let (from_s, to_s) = self.kicked(step.expected_s);
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
@@ -664,49 +721,55 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Takes up the closure error by the open joints, in positions only, while that at least halves it. A corner that
-    /// shuts on the way stays shut, and the others take up the rest.
+    /// Takes up the closure error by the open joints, in positions only, while that at least halves it: the displacement of
+    /// least kinetic norm, as far as the first corner shuts. That one stays shut, and the others take up the rest.
     fn close(&mut self) {
-        // The error to come back to, where what follows does not halve it.
-        let mut sound_m = f64::INFINITY;
-        for _ in 0..CLOSURE_PASSES {
-            let Some(closure) = self.placement.closure() else {
-                break;
-            };
+        self.free.fill(Twist::ZERO);
+        self.jumps.fill(Twist::ZERO);
+        while let Some(closure) = self.placement.closure() {
             let error_m = closure.error_m.norm();
-            if error_m <= 0.5 * sound_m {
-                if error_m <= CLOSURE_RATIO * self.thinnest {
-                    return;
-                }
-                sound_m = error_m;
-                self.backup.copy_from(&self.placement);
+            if error_m <= CLOSURE_RATIO * self.thinnest {
+                return;
             }
-            self.free.fill(Twist::ZERO);
-            self.jumps.fill(Twist::ZERO);
             let load = Load {
                 free: &self.free,
                 jumps: &self.jumps,
                 touching: &self.touching,
             };
             if !self.auxiliary.close(&self.placement, &closure, &load) {
-                break;
+                return;
             }
-            self.change.fill([0.0; 2]);
-            for (joint, rates) in self.auxiliary.open_joints() {
-                self.change[joint] = rates;
-            }
-            let shut = self.placement.shut_corners();
+            let shuts = self.closing_change();
+            self.backup.copy_from(&self.placement);
             let change = &self.change;
             self.placement.open(|joint| change[joint]);
-            let halved = self.placement.closure_error() <= 0.5 * sound_m;
-            if !halved && self.placement.shut_corners() <= shut {
-                break;
+            if !shuts && self.placement.closure_error() > 0.5 * error_m {
+                self.placement.copy_from(&self.backup);
+                return;
             }
         }
-        let closed = self.placement.closure().is_some();
-        if sound_m < f64::INFINITY && !(closed && self.placement.closure_error() <= 0.5 * sound_m) {
-            self.placement.copy_from(&self.backup);
+    }
+
+    /// Changes of the gaps by the solution of the closure, as far as the first corner shuts; whether one does.
+    fn closing_change(&mut self) -> bool {
+        let gaps_m = self.placement.gaps_m();
+        let mut first = (1.0, None);
+        for (joint, changes) in self.auxiliary.open_joints() {
+            for edge in 0..2 {
+                let (gap, change) = (gaps_m[joint][edge], changes[edge]);
+                if gap > 0.0 && gap + first.0 * change < 0.0 {
+                    first = (gap / -change, Some((joint, edge)));
+                }
+            }
         }
+        self.change.fill([0.0; 2]);
+        for (joint, changes) in self.auxiliary.open_joints() {
+            self.change[joint] = changes.map(|change| change * first.0);
+        }
+        if let Some((joint, edge)) = first.1 {
+            self.change[joint][edge] = -gaps_m[joint][edge];
+        }
+        first.1.is_some()
     }
 
     /// Whether a corner touches that did not at the beginning of the step.
@@ -719,23 +782,14 @@ impl<'a> Engine<'a> {
 
     /// Completes the velocity at a landing with the old mechanism, then projects it.
     fn impact(&mut self) -> Result<(), FreeHingeError> {
-        let before = self.momentum();
-        let ground = self.half_kick();
-        for (touching, closed) in self.touching.iter_mut().zip(&self.closed) {
-            for edge in 0..2 {
-                touching[edge] &= closed[edge];
-            }
-        }
+        self.shut_what_landed();
         self.pressed.copy_from_slice(self.program.active());
-        self.solve()?;
-        let kinetic_before = self.kinetic_of_solution();
-        let mean = (before + momentum(&self.next_pieces)) * 0.5;
-        self.ground_work -= ground.dot(&mean);
+        self.complete_kick()?;
+        let kinetic_before = kinetic(&self.next_pieces);
         self.course.potential = self.height_energy();
         self.audit(kinetic_before);
         self.free.copy_from_slice(self.program.velocities());
         self.touch_shut();
-        // A step with several landings knows already where they lead.
         self.program.start_from(&self.pressed);
         self.press_landed();
         self.solve()?;
@@ -744,6 +798,40 @@ impl<'a> Engine<'a> {
         self.take_pieces();
         self.kicked_s = self.course.time;
         self.course.run.cost.impacts += 1;
+        self.crowd.count(self.course.time, self.settings.shortest_step_s);
+        Ok(())
+    }
+
+    /// Shuts the corners that belong to an impact besides those that the closure shut.
+    fn shut_what_landed(&mut self) {
+        loop {
+            let few = self.row.supports() == Supports::Both && self.placement.open_corners() <= 3;
+            let near = self.placement.largest_gap_ratio() < LAST_THREE_RATIO;
+            let ratio = if few && near {
+                LAST_THREE_RATIO
+            } else {
+                LANDED_RATIO
+            };
+            if !self.placement.shut_below(ratio) {
+                break;
+            }
+        }
+        self.program.place(&self.placement);
+        self.weigh_pieces();
+    }
+
+    /// Solves for the velocities at the instant of the positions, with what touched at the beginning of the step.
+    fn complete_kick(&mut self) -> Result<(), FreeHingeError> {
+        let before = self.momentum();
+        let ground = self.half_kick();
+        for (touching, closed) in self.touching.iter_mut().zip(&self.closed) {
+            for edge in 0..2 {
+                touching[edge] &= closed[edge];
+            }
+        }
+        self.solve()?;
+        self.form_pieces();
+        self.ground_work -= ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
         Ok(())
     }
 }

@@ -116,7 +116,7 @@ impl<'a> Engine<'a> {
         };
         let mut course = Course::new(row, gravity, fallen_energy_j(row, gravity, true));
         let start_energy = gravity * rise(row, placement.centres_m());
-        let stands = placement.shut_corners() == 2 * joints;
+        let stands = placement.open_corners() == 0;
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
             course.released(rotations, start_energy, true);
