@@ -101,7 +101,7 @@ fn history_of_the_semicircle(bencher: Bencher) {
     let row = arch(180.0, 36, 5.0);
     let ground =
         GroundMotion::pulse(Pulse::Rectangular, -0.25 * GRAVITY_M_S2, 0.2, 0.0).expect("a pulse");
-    let settings = Settings::fine(&row, GRAVITY_M_S2, 60.0);
+    let settings = Settings::to_landings(&row, GRAVITY_M_S2, 60.0);
     bencher
         .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ()).map(|r| r.end_s));
 }
@@ -110,7 +110,7 @@ fn history_of_the_semicircle(bencher: Bencher) {
 #[divan::bench(args = [7, 36], sample_count = 2, sample_size = 1)]
 fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
     let row = arch(180.0, voussoirs, 5.0);
-    let settings = Settings::coarse(&row, GRAVITY_M_S2, 30.0);
+    let settings = Settings::to_landings(&row, GRAVITY_M_S2, 30.0);
     bencher.counter(ItemsCount::new(36_usize)).bench(|| {
         let cells = (0..36).map(|cell| (f64::from(cell / 6), f64::from(cell % 6)));
         let runs = cells.map(|(x, y)| {

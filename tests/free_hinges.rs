@@ -307,7 +307,7 @@ fn a_block_moves_like_the_column() {
         .samples
         .rotations_rad;
     let row = column(1);
-    let settings = Settings::fine(&row, GRAVITY, 4.0).times(0.5);
+    let settings = Settings::to_landings(&row, GRAVITY, 4.0).times(0.5);
     let ours = run(&row, &ground, &settings);
     let mut peaks: Vec<f64> = Vec::new();
     let mut side = 0.0;
@@ -338,7 +338,7 @@ fn a_stack_that_does_not_open_moves_like_one_block() {
     let ground = push(-0.3, 0.3);
     let peaks = [1, 5].map(|drums| {
         let row = column(drums);
-        let settings = Settings::fine(&row, GRAVITY, 0.5);
+        let settings = Settings::to_landings(&row, GRAVITY, 0.5);
         let run = run(&row, &ground, &settings);
         assert!(run.peaks_rad.iter().all(|peak| *peak == run.peaks_rad[0]));
         run.peaks_rad[0]
@@ -359,7 +359,7 @@ fn first_peaks_are_the_measured_ones() {
         (180.0, 36, 5.0, 0.1813, 4.028),
     ] {
         let row = arch(embrace, 0.15, voussoirs, radius_m);
-        let settings = Settings::coarse(&row, GRAVITY, 3.0);
+        let settings = Settings::to_landings(&row, GRAVITY, 3.0);
         let settings = Settings {
             end_s: if amplitude_g > 1.0 { 2.2 } else { 0.7 },
             ..settings
@@ -386,7 +386,7 @@ fn thresholds_of_single_pulses_are_the_measured_ones() {
         let row = arch(embrace, thickness, voussoirs, radius_m);
         let outcome = |factor: f64| {
             // Below the threshold the first half cycle is enough.
-            let settings = Settings::coarse(&row, GRAVITY, if factor > 1.0 { 60.0 } else { 2.0 });
+            let settings = Settings::to_landings(&row, GRAVITY, if factor > 1.0 { 60.0 } else { 2.0 });
             run(&row, &push(factor * threshold_g, duration_s), &settings)
         };
         let overturned = outcome(1.001);
@@ -416,7 +416,7 @@ fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
             let amplitude = -factor * threshold_g * GRAVITY;
             let ground = GroundMotion::pulse(Pulse::StepPair, amplitude, duration_s, 0.0).unwrap();
             let settings =
-                Settings::coarse(&row, GRAVITY, if falls { 60.0 } else { 6.0 }).times(0.5);
+                Settings::to_landings(&row, GRAVITY, if falls { 60.0 } else { 6.0 }).times(0.5);
             let run = run(&row, &ground, &settings);
             let overturned = matches!(run.outcome, Outcome::Overturned { .. });
             assert_eq!(overturned, falls, "{duration_s} {factor} {:?}", run.outcome);
@@ -486,6 +486,7 @@ fn fall(row: &Row, linkage: &Linkage, step_s: f64) -> Kept {
     let settings = Settings {
         longest_step_s: step_s,
         shortest_step_s: 1e-6,
+        merged_after: 50,
         end_s: 0.7,
         output_step_s: Some(0.1),
         friction_coefficient: None,
@@ -528,7 +529,7 @@ fn four_hinges_move_like_the_linkage_and_the_error_is_of_second_order() {
 #[test]
 fn left_and_right_are_mirror_images() {
     let row = arch(157.5, 0.15, 14, 10.0);
-    let settings = Settings::coarse(&row, GRAVITY, 0.6);
+    let settings = Settings::to_landings(&row, GRAVITY, 0.6);
     let peaks = [0.5433, -0.5433]
         .map(|amplitude| run(&row, &push(amplitude, 0.2), &settings).half_cycles[0]);
     assert!(peaks[0].sway == Sway::Right && peaks[1].sway == Sway::Left);
@@ -542,7 +543,7 @@ fn left_and_right_are_mirror_images() {
 fn size_density_and_depth_scale_as_they_should() {
     let ring = ring(0.15, 157.5);
     let reference = Row::arch(&ring, 14, 4.0, 1.0, 2048.0).unwrap();
-    let settings = Settings::coarse(&reference, GRAVITY, 4.0);
+    let settings = Settings::to_landings(&reference, GRAVITY, 4.0);
     let expected = run(&reference, &push(0.55, 0.125), &settings);
     assert!(expected.half_cycles.len() > 2);
     let heavier = Row::arch(&ring, 14, 4.0, 0.5, 8192.0).unwrap();
@@ -552,7 +553,7 @@ fn size_density_and_depth_scale_as_they_should() {
     let large = run(
         &larger,
         &push(0.55, 0.25),
-        &Settings::coarse(&larger, GRAVITY, 8.0),
+        &Settings::to_landings(&larger, GRAVITY, 8.0),
     );
     assert_eq!(large.peaks_rad, expected.peaks_rad);
     assert_eq!(large.half_cycles.len(), expected.half_cycles.len());
@@ -566,7 +567,7 @@ fn energy_does_not_grow() {
     for (factor, bound) in [(1.0, 2e-6), (0.25, 5e-7)] {
         let settings = Settings {
             output_step_s: Some(0.01),
-            ..Settings::coarse(&row, GRAVITY, 3.0).times(factor)
+            ..Settings::to_landings(&row, GRAVITY, 3.0).times(factor)
         };
         let mut kept = Kept::default();
         let run = simulate(&row, &ground, GRAVITY, &settings, None, &mut kept).unwrap();
@@ -586,7 +587,7 @@ fn energy_does_not_grow() {
 #[test]
 fn what_does_not_move_says_so() {
     let row = arch(180.0, 0.15, 36, 5.0);
-    let settings = Settings::coarse(&row, GRAVITY, 10.0);
+    let settings = Settings::to_landings(&row, GRAVITY, 10.0);
     assert_eq!(
         run(&row, &push(0.144, 0.2), &settings).outcome,
         Outcome::NeverMoved
@@ -600,7 +601,7 @@ fn what_does_not_move_says_so() {
 
 fn torture(random: &mut Random, most: usize, length_s: f64) -> Result<Run, FreeHingeError> {
     let (row, ground) = random_history(random, most, length_s);
-    let settings = Settings::coarse(&row, GRAVITY, length_s);
+    let settings = Settings::to_landings(&row, GRAVITY, length_s);
     simulate(&row, &ground, GRAVITY, &settings, None, &mut ())
 }
 
@@ -653,7 +654,7 @@ fn the_ends_of_an_arch_meet_where_corners_shut_on_the_way() {
     for (voussoirs, amplitude_g, duration_s) in [(7, -2.0, 0.4), (36, -2.0, 0.4), (36, -1.27, 0.6)]
     {
         let row = arch(157.5, 0.15, voussoirs, 10.0);
-        let settings = Settings::coarse(&row, GRAVITY, 10.0);
+        let settings = Settings::to_landings(&row, GRAVITY, 10.0);
         let run = run(&row, &push(amplitude_g, duration_s), &settings);
         assert!(matches!(run.outcome, Outcome::Overturned { .. }));
         assert!(run.closure_error_m < 1e-9, "{}", run.closure_error_m);
@@ -690,7 +691,7 @@ fn bad_arguments_are_refused() {
     assert!(Row::between_faces(&turned, Supports::Both, 1.0, 1.0, 2000.0).is_err());
 
     let row = column(2);
-    let good = Settings::coarse(&row, GRAVITY, 1.0);
+    let good = Settings::to_landings(&row, GRAVITY, 1.0);
     let ground = GroundMotion::still();
     for settings in [
         Settings {

@@ -107,6 +107,7 @@ fn equal(step_s: f64, end_s: f64, coefficient: f64) -> Settings {
     Settings {
         longest_step_s: step_s,
         shortest_step_s: step_s,
+        merged_after: 0,
         end_s,
         output_step_s: None,
         friction_coefficient: Some(coefficient),
@@ -231,7 +232,7 @@ fn the_motion_with_much_friction_is_that_without_sliding() {
     let row = arch(157.5, 0.15, 7, 10.0);
     for amplitude_g in [0.45, 0.5336, 0.8] {
         let ground = push(amplitude_g, 0.2);
-        let settings = Settings::fine(&row, GRAVITY, 6.0);
+        let settings = Settings::to_landings(&row, GRAVITY, 6.0);
         let without = run(&row, &ground, &settings).half_cycles[0].peak_rad;
         let with = run(&row, &ground, &equal(5e-5, 6.0, 20.0)).half_cycles[0].peak_rad;
         assert!(

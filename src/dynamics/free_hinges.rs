@@ -24,6 +24,8 @@ use crate::mechanics::contact::ContactError;
 use crate::mechanics::joints::{Frame, Placement, Pose};
 use crate::mechanics::sway::Sway;
 
+/// The shortest step over the longest one, where it is not given.
+const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
 /// Impacts within the shortest step after which the next landings are merged: without end they would stop time.
 const CROWDED_IMPACTS: usize = 50;
 /// A row has overturned when it is lower than at rest by this part of weight times size.
@@ -38,51 +40,40 @@ pub struct Settings {
     pub longest_step_s: f64,
     /// Where landings crowd within this time, in seconds, they are taken as one.
     pub shortest_step_s: f64,
-    /// After how many impacts within the shortest step landings crowd.
-    pub impacts_before_merging: usize,
+    /// Number of impacts within the shortest step after which landings crowd.
+    pub merged_after: usize,
     /// When to stop at the latest, in seconds.
     pub end_s: f64,
-    /// Time between samples in seconds; without it there are none.
+    /// Time between samples in seconds; without it there are none. Steps end there whether or not samples are asked for.
     pub output_step_s: Option<f64>,
     /// Coulomb's coefficient of friction at every joint; without it joints do not slip.
     pub friction_coefficient: Option<f64>,
 }
 
 impl Settings {
-    /// Steps for single histories: on a size of 10 m about 0.35 ms, and 0.01 ms for landings; with other
-    /// sizes they follow the square root of size over gravity.
+    /// Steps that end at landings: on a size of 10 m at most about 0.35 ms. With other sizes they follow the square root of size
+    /// over gravity. The shortest step is a thirtieth of that.
     #[must_use]
-    pub fn fine(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
-        Self::scaled(row, gravity_m_s2, end_s, [3.4e-4, 1.1e-5])
-    }
-
-    /// Steps for maps, about three times as long, and ten times for landings.
-    #[must_use]
-    pub fn coarse(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
-        Self::scaled(row, gravity_m_s2, end_s, [1.1e-3, 1.1e-4])
-    }
-
-    /// Equal steps for single histories of joints that slip: 0.1 ms on a size of 10 m.
-    #[must_use]
-    pub fn equal_fine(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
-        Self::scaled(row, gravity_m_s2, end_s, [1e-4, 1e-4])
-    }
-
-    /// Equal steps for maps of joints that slip, three times as long.
-    #[must_use]
-    pub fn equal_coarse(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
-        Self::scaled(row, gravity_m_s2, end_s, [3e-4, 3e-4])
-    }
-
-    fn scaled(row: &Row, gravity_m_s2: f64, end_s: f64, steps: [f64; 2]) -> Self {
-        let scale = (row.size_m() / gravity_m_s2).sqrt();
+    pub fn to_landings(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
+        let longest_step_s = 3.4e-4 * (row.size_m() / gravity_m_s2).sqrt();
         Self {
-            longest_step_s: steps[0] * scale,
-            shortest_step_s: steps[1] * scale,
-            impacts_before_merging: CROWDED_IMPACTS,
+            longest_step_s,
+            shortest_step_s: SHORTEST_STEP_RATIO * longest_step_s,
+            merged_after: CROWDED_IMPACTS,
             end_s,
             output_step_s: None,
             friction_coefficient: None,
+        }
+    }
+
+    /// Equal steps, for joints that slip: 0.1 ms on a size of 10 m.
+    #[must_use]
+    pub fn equal(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
+        let step_s = 1e-4 * (row.size_m() / gravity_m_s2).sqrt();
+        Self {
+            longest_step_s: step_s,
+            shortest_step_s: step_s,
+            ..Self::to_landings(row, gravity_m_s2, end_s)
         }
     }
 
@@ -233,6 +224,10 @@ pub struct Impact<'a> {
 
 /// Who listens to a motion.
 pub trait Recorder {
+    /// Whether it listens to samples.
+    fn wants_samples(&self) -> bool {
+        true
+    }
     /// At every output time, and at the end. To break ends the motion.
     fn sample(&mut self, _: &Sample) -> ControlFlow<()> {
         ControlFlow::Continue(())
@@ -248,7 +243,11 @@ pub trait Recorder {
 }
 
 /// Nobody does.
-impl Recorder for () {}
+impl Recorder for () {
+    fn wants_samples(&self) -> bool {
+        false
+    }
+}
 
 /// How a motion ended.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -31,6 +31,12 @@ pub trait Model: Debug + Send + Sync {
     /// `None` if no push moves it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64>;
 
+    /// The same structure, computed in other ways that are as good: what they do not agree in is not known. None where the
+    /// computation does not matter.
+    fn repetitions(&self) -> Vec<Repetition> {
+        Vec::new()
+    }
+
     /// Its motion on moving ground. Samples and events go to the recorder as they happen; without a recorder none
     /// are made, as in studies.
     ///
@@ -61,6 +67,15 @@ pub trait Model: Debug + Send + Sync {
             events: recording.events,
         })
     }
+}
+
+/// A model beside another one that is computed in another way.
+#[derive(Debug)]
+pub struct Repetition {
+    /// In which way, in words.
+    pub name: &'static str,
+    /// The same structure.
+    pub model: Box<dyn Model>,
 }
 
 /// A model that moves as one mechanism with one degree of freedom at a time, and what only such a model has.

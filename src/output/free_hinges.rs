@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::results::{beginning, edges, joints};
 use super::{OutputError, finite};
 use crate::dynamics::free_hinges::FreeHinges;
-use crate::dynamics::free_hinges::spread::Spread;
+use crate::dynamics::free_hinges::spread::{PeakSpread, Spread};
 use crate::dynamics::history::{Impact, Sample, Summary};
 use crate::dynamics::model::Model as _;
 use crate::mechanics::sway::Sway;
@@ -242,17 +242,24 @@ fn number(name: &str, value: f64) -> Result<Value, OutputError> {
 
 fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
     let mut half_cycles = Vec::new();
-    for peak in &spread.half_cycles {
+    let peak = |peak: &PeakSpread| -> Result<Value, OutputError> {
         finite("spread", &[peak.own_rad, peak.min_rad, peak.max_rad])?;
-        half_cycles.push(json!({
-            "peak_rad": { "own": peak.own_rad, "min": peak.min_rad, "max": peak.max_rad },
-        }));
+        Ok(json!({ "own": peak.own_rad, "min": peak.min_rad, "max": peak.max_rad }))
+    };
+    for cycle in &spread.half_cycles {
+        half_cycles.push(json!({ "peak_rad": peak(cycle)? }));
     }
-    let [own, half_steps, double_steps] = spread.outcomes.map(|outcome| outcome.name());
+    let mut outcomes = serde_json::Map::new();
+    let names = std::iter::once("own").chain(spread.repeated.iter().copied());
+    for (name, outcome) in names.zip(&spread.outcomes) {
+        outcomes.insert(name.replace(' ', "_"), json!(outcome.name()));
+    }
+    let largest = spread.largest.as_ref().map(peak).transpose()?;
     Ok(json!({
-        "outcomes": { "own": own, "half_steps": half_steps, "double_steps": double_steps },
+        "outcomes": outcomes,
         "half_cycles": half_cycles,
         "same_until_half_cycle": spread.same_until_half_cycle,
         "parts_at_s": spread.parts_at_s,
+        "largest_rotation_rad": largest,
     }))
 }

@@ -8,11 +8,10 @@ use super::ending::Ending;
 use super::impact_free::ScalablePulse;
 use super::runner::Study;
 use crate::argument::ArgumentError;
-use crate::dynamics::free_hinges::spread::REPETITIONS;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Outcome;
-use crate::dynamics::model::{MechanismModel, Model, Request};
+use crate::dynamics::model::{MechanismModel, Model, Repetition, Request};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
@@ -406,10 +405,9 @@ type Outcomes = Result<usize, String>;
 /// How many outcomes a row of blocks has with its own steps, half of them and double.
 fn outcomes(row: &FreeHinges, ground: &GroundMotion, request: &Request, own: Outcome) -> Outcomes {
     let mut names = vec![own.name()];
-    for factor in REPETITIONS {
-        let row = row.with_coarse_steps_times(factor, request);
-        let ending = Ending::of(&row, ground, request)
-            .map_err(|error| format!("with {factor} times the steps: {error}"))?;
+    for Repetition { name, model } in row.repetitions() {
+        let ending = Ending::of(&*model, ground, request)
+            .map_err(|error| format!("with {name}: {error}"))?;
         let other = ending.outcome.name();
         if !names.contains(&other) {
             names.push(other);

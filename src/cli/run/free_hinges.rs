@@ -5,11 +5,11 @@ use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::thread::{self, JoinHandle};
 
-use archrock::dynamics::free_hinges::spread::{REPETITIONS, SAME_PEAK_RATIO, Spread};
+use archrock::dynamics::free_hinges::spread::{SAME_PEAK_RATIO, Spread};
 use archrock::dynamics::free_hinges::{FreeHinges, HalfCycle, Sliding};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
-use archrock::dynamics::model::{Model as _, Recorder, Request, SimulationError};
+use archrock::dynamics::model::{Model as _, Recorder, Repetition, Request, SimulationError};
 use archrock::mechanics::chain::Hinge;
 use archrock::output::free_hinges::{JointsWriter, LandingsWriter, summary};
 use archrock::output::overlay::Curves;
@@ -30,7 +30,7 @@ use crate::cli::Failure;
 /// What can be asked of it.
 #[derive(Clone, Copy)]
 pub struct Options {
-    /// Whether it is repeated with half and with double steps.
+    /// Whether it is repeated in other ways, to see what depends on the computation.
     pub spread: bool,
 }
 
@@ -111,30 +111,32 @@ pub fn run(
     })
 }
 
-/// The repetitions with other steps, on threads of their own while the history is computed. Where that fails or cannot
-/// be written nobody waits for them: they end with the program.
-struct Repetitions([JoinHandle<Result<Summary, SimulationError>>; 2]);
+/// The repetitions, on threads of their own while the history is computed. Where that fails or cannot be written nobody waits for
+/// them: they end with the program.
+struct Repetitions(Vec<(&'static str, JoinHandle<Result<Summary, SimulationError>>)>);
 
 impl Repetitions {
     fn start(model: &FreeHinges, ground: &GroundMotion, request: Request) -> Self {
-        Self(REPETITIONS.map(|factor| {
-            let (model, ground) = (model.clone(), ground.clone());
-            thread::spawn(move || model.repeated(factor, &ground, &request))
-        }))
+        let start = |Repetition { name, model }| {
+            let ground = ground.clone();
+            let repeated = move || model.simulate(&ground, &request, None);
+            (name, thread::spawn(repeated))
+        };
+        Self(model.repetitions().into_iter().map(start).collect())
     }
 
     /// How they differ from the history, or why that is not known.
     fn spread(self, own: &Summary) -> Result<Spread, String> {
         let mut repeated = Vec::new();
-        for (factor, repetition) in REPETITIONS.iter().zip(self.0) {
+        for (name, repetition) in self.0 {
             let ended = match repetition.join() {
                 Ok(ended) => ended.map_err(|error| format!("failed: {error}")),
                 Err(_) => Err("crashed".to_owned()),
             };
-            let failed = |how| format!("the repetition with {factor} times the steps {how}");
-            repeated.push(ended.map_err(failed)?);
+            let failed = |how| format!("the repetition with {name} {how}");
+            repeated.push((name, ended.map_err(failed)?));
         }
-        Ok(Spread::new(own, &repeated[0], &repeated[1]))
+        Ok(Spread::new(own, &repeated))
     }
 }
 
@@ -471,13 +473,18 @@ fn cycle(cycle: &HalfCycle) -> String {
     format!("{} {:.6}", cycle.sway.name(), cycle.peak_rad)
 }
 
-/// What half and double steps leave as it is.
+/// What the repetitions leave as it is.
 fn sure(spread: &Spread) -> String {
-    let [_, half, double] = spread.outcomes.map(ending);
+    let repeated = spread.repeated.join("; ");
     let mut text = if spread.same_outcome() {
-        "  half and double steps: the same outcome".to_owned()
+        format!("  repeated ({repeated}): the same outcome")
     } else {
-        format!("  half and double steps: ANOTHER OUTCOME, {half} and {double}")
+        let others: Vec<String> = spread.outcomes[1..]
+            .iter()
+            .map(|other| ending(*other))
+            .collect();
+        let others = others.join(" and ");
+        format!("  repeated ({repeated}): ANOTHER OUTCOME, {others}")
     };
     let percent = 100.0 * SAME_PEAK_RATIO;
     let same = spread.same_until_half_cycle;
@@ -496,13 +503,20 @@ fn sure(spread: &Spread) -> String {
         ),
     };
     if let Some(peak) = spread.half_cycles.get(same) {
+        let (min_rad, max_rad) = (peak.min_rad, peak.max_rad);
         let _ = write!(
             text,
-            ": half cycle {} peaks at {:.6} to {:.6} rad",
-            same + 1,
-            peak.min_rad,
-            peak.max_rad
+            ": half cycle {} peaks at {min_rad:.6} to {max_rad:.6} rad",
+            same + 1
         );
+    }
+    if let Some(largest) = spread.largest {
+        let (min_rad, max_rad) = (largest.min_rad, largest.max_rad);
+        let _ = if largest.is_same() {
+            write!(text, "\n    largest rotation within {percent} %")
+        } else {
+            write!(text, "\n    LARGEST ROTATION {min_rad:.6} to {max_rad:.6} rad")
+        };
     }
     text.push('\n');
     text

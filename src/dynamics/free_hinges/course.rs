@@ -60,7 +60,8 @@ pub(super) fn run(
     let mut samples = 0_u32;
     let mut sampled_s = None;
     let quiet_s = ground.end_s();
-    let mut longest_step = settings.output_step_s.map(|_| Duration::ZERO);
+    let samples_are_made = settings.output_step_s.is_some() && recorder.wants_samples();
+    let mut longest_step = samples_are_made.then_some(Duration::ZERO);
     loop {
         let mark = settings
             .output_step_s
@@ -69,8 +70,10 @@ pub(super) fn run(
         let time = course.time;
         if time >= mark - 1e-9 * settings.shortest_step_s {
             samples += 1;
-            engine.sample(recorder)?;
-            sampled_s = Some(time);
+            if samples_are_made {
+                engine.sample(recorder)?;
+                sampled_s = Some(time);
+            }
             continue;
         }
         let outcome = if course.stopped {
@@ -101,7 +104,7 @@ pub(super) fn run(
         longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
     }
     let course = engine.course();
-    let unsampled = settings.output_step_s.is_some() && sampled_s != Some(course.time);
+    let unsampled = samples_are_made && sampled_s != Some(course.time);
     if unsampled && !course.stopped {
         engine.sample(recorder)?;
     }

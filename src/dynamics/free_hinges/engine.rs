@@ -367,7 +367,7 @@ impl<'a> Engine<'a> {
 
     /// Whether the step before ended at an impact after so many within the shortest step that the next ones are merged.
     fn is_crowded(&self) -> bool {
-        self.has_just_landed() && self.crowd.impacts > self.settings.impacts_before_merging
+        self.has_just_landed() && self.crowd.impacts > self.settings.merged_after
     }
 
     /// Whether the step before ended at an impact.
@@ -968,7 +968,7 @@ mod tests {
         ] {
             let ground =
                 GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
-            let settings = Settings::coarse(&row, 9.81, 60.0);
+            let settings = Settings::to_landings(&row, 9.81, 60.0);
             let mut engine = Engine::new(&row, &ground, 9.81, &settings);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{
     Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder, Sample as RowSample,
-    Settings, Uplift,
+    Settings, Uplift, spread::Repeated,
 };
 use crate::argument::{ArgumentError, above};
 use crate::dynamics::ground::GroundMotion;
@@ -14,7 +14,7 @@ use crate::dynamics::history::{
     Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
 };
 use crate::dynamics::hybrid::integrator::Cost;
-use crate::dynamics::model::{Initial, Model, Recorder, Request, SimulationError};
+use crate::dynamics::model::{Initial, Model, Recorder, Repetition, Request, SimulationError};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::{Row, RowError, Supports};
@@ -41,6 +41,8 @@ pub struct FreeHinges {
     /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
     first: Option<FirstMechanism>,
     options: RowOptions,
+    /// In which other way its motion is computed, if in another.
+    repeated: Option<Repeated>,
 }
 
 /// What was asked of the model.
@@ -49,7 +51,7 @@ pub struct RowOptions {
     /// The longest step, in seconds; without it, it follows the size of the row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
-    /// Landings within this time, in seconds, are one; without it, it follows the size of the row.
+    /// Where landings crowd within this time, in seconds, they are taken as one; without it, a thirtieth of the longest step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortest_step_s: Option<f64>,
     /// Coulomb's coefficient of friction at every joint; without it joints do not slip.
@@ -144,6 +146,7 @@ impl FreeHinges {
             incipient_g,
             first,
             options: RowOptions::default(),
+            repeated: None,
         })
     }
 
@@ -201,29 +204,6 @@ impl FreeHinges {
         self.options.friction_coefficient
     }
 
-    /// The same with all steps so many times as long as those of samples, to see what depends on them.
-    #[must_use]
-    pub fn with_steps_times(&self, factor: f64, request: &Request) -> Self {
-        self.with_settings(&self.settings(request, true).times(factor))
-    }
-
-    /// The same with all steps so many times as long as where no samples are made, as in studies.
-    #[must_use]
-    pub fn with_coarse_steps_times(&self, factor: f64, request: &Request) -> Self {
-        self.with_settings(&self.settings(request, false).times(factor))
-    }
-
-    fn with_settings(&self, settings: &Settings) -> Self {
-        Self {
-            options: RowOptions {
-                longest_step_s: Some(settings.longest_step_s),
-                shortest_step_s: Some(settings.shortest_step_s),
-                ..self.options
-            },
-            ..self.clone()
-        }
-    }
-
     /// The blocks.
     #[must_use]
     pub const fn row(&self) -> &Row {
@@ -255,27 +235,23 @@ impl FreeHinges {
         }
     }
 
-    /// Steps for samples, or, ten times as coarse at landings, for the outcome alone.
-    fn settings(&self, request: &Request, with_samples: bool) -> Settings {
+    /// How a motion is computed.
+    fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (&self.row, request.gravity_m_s2, request.end_s);
-        let friction = self.options.friction_coefficient;
-        let mut settings = match (friction, with_samples) {
-            (None, true) => Settings::fine(row, gravity_m_s2, end_s),
-            (None, false) => Settings::coarse(row, gravity_m_s2, end_s),
-            (Some(_), true) => Settings::equal_fine(row, gravity_m_s2, end_s),
-            (Some(_), false) => Settings::equal_coarse(row, gravity_m_s2, end_s),
+        let mut settings = match self.options.friction_coefficient {
+            None => Settings::to_landings(row, gravity_m_s2, end_s),
+            Some(_) => Settings::equal(row, gravity_m_s2, end_s),
         };
         if let Some(longest_s) = self.options.longest_step_s {
-            settings.longest_step_s = longest_s;
-            settings.shortest_step_s = settings.shortest_step_s.min(longest_s);
+            settings = settings.times(longest_s / settings.longest_step_s);
         }
         if let Some(shortest_s) = self.options.shortest_step_s {
             settings.shortest_step_s = shortest_s;
             settings.longest_step_s = settings.longest_step_s.max(shortest_s);
         }
-        settings.output_step_s = with_samples.then_some(request.output_step_s);
-        settings.friction_coefficient = friction;
-        settings
+        settings.output_step_s = Some(request.output_step_s);
+        settings.friction_coefficient = self.options.friction_coefficient;
+        self.repeated.map_or(settings, |way| way.of(&settings))
     }
 
     /// Rotations of the blocks when the first mechanism is open so far.
@@ -331,6 +307,21 @@ impl FreeHinges {
 }
 
 impl Model for FreeHinges {
+    fn repetitions(&self) -> Vec<Repetition> {
+        let ways = match self.options.friction_coefficient {
+            None => [Repeated::DoubleSteps, Repeated::MergedLandings],
+            Some(_) => [Repeated::HalfSteps, Repeated::DoubleSteps],
+        };
+        let repetition = |way: Repeated| Repetition {
+            name: way.name(),
+            model: Box::new(Self {
+                repeated: Some(way),
+                ..self.clone()
+            }),
+        };
+        ways.map(repetition).into()
+    }
+
     fn bodies(&self) -> Vec<String> {
         (1..=self.row.blocks().len())
             .map(|block| block.to_string())
@@ -351,7 +342,7 @@ impl Model for FreeHinges {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
         request.check()?;
-        let settings = self.settings(request, recorder.is_some());
+        let settings = self.settings(request);
         let initial_rad = request
             .initial
             .map(|initial| self.released(initial))
@@ -483,6 +474,10 @@ fn opening(gaps_m: &[f64; 2]) -> Option<Option<Edge>> {
 }
 
 impl RowRecorder for Relay<'_, '_> {
+    fn wants_samples(&self) -> bool {
+        self.recorder.is_some()
+    }
+
     fn sample(&mut self, sample: &RowSample<'_>) -> ControlFlow<()> {
         let still = sample.open_joints == 0 && sample.slipping_joints == 0;
         let state = if still {

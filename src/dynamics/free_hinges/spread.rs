@@ -1,102 +1,142 @@
-//! How far a motion depends on the steps that it is computed with.
+//! How far a motion depends on the way it is computed.
 
+use super::Settings;
 use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Model as _, Request, SimulationError};
 
-use super::FreeHinges;
-use crate::dynamics::ground::GroundMotion;
-
-/// Half cycles are the same while their peaks differ by no more than this part of the largest.
+/// Peaks are the same while they differ by no more than this part of the largest.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
 
-/// How many times as long the steps of the repetitions are.
-pub const REPETITIONS: [f64; 2] = [0.5, 2.0];
+named! {
+    /// Other ways to compute the motion of a row.
+    pub enum Repeated {
+        /// With steps half as long.
+        HalfSteps = "half steps",
+        /// With steps twice as long.
+        DoubleSteps = "double steps",
+        /// With the landings that follow an impact within four shortest steps merged with each other. Real impacts last: in which order
+        /// landings follow within that time nobody knows.
+        MergedLandings = "landings merged",
+    }
+}
 
-/// A motion beside its repetitions with half and with double steps.
+/// The time after an impact in which landings are merged, over the shortest step.
+const MERGED_RATIO: f64 = 4.0;
+
+impl Repeated {
+    /// These settings, in this way.
+    pub(super) fn of(self, settings: &Settings) -> Settings {
+        match self {
+            Self::HalfSteps => settings.times(0.5),
+            Self::DoubleSteps => settings.times(2.0),
+            Self::MergedLandings => Settings {
+                shortest_step_s: (MERGED_RATIO * settings.shortest_step_s)
+                    .min(settings.longest_step_s),
+                merged_after: 0,
+                ..*settings
+            },
+        }
+    }
+}
+
+/// A motion beside its repetitions: what they agree in can be relied on, and nothing else.
 ///
-/// After the first change of side the order of impacts that almost coincide decides, and shorter steps need not
-/// converge: that belongs to the model. What the three agree in can be relied on, and nothing else.
+/// After the first change of side the order of impacts that almost coincide decides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
-    /// How it ended: itself, with half and with double steps.
-    pub outcomes: [Outcome; 3],
-    /// The half cycles that all three have.
+    /// How the repetitions were computed.
+    pub repeated: Vec<&'static str>,
+    /// How it ended: itself, then the repetitions.
+    pub outcomes: Vec<Outcome>,
+    /// The half cycles that all have.
     pub half_cycles: Vec<PeakSpread>,
     /// Half cycles from the first on that are the same: to one side, with peaks within [`SAME_PEAK_RATIO`].
     pub same_until_half_cycle: usize,
     /// When the first half cycle begins that is not, in seconds; `None` where all are the same.
     pub parts_at_s: Option<f64>,
+    /// The largest rotation of a block; `None` where it overturns in one of them.
+    pub largest: Option<PeakSpread>,
 }
 
-/// Peak of a half cycle, in radians: largest rotation of a block.
+/// A largest rotation of a block, in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakSpread {
     /// That of the motion itself.
     pub own_rad: f64,
-    /// The least of the three.
+    /// The least of all.
     pub min_rad: f64,
-    /// The largest of the three.
+    /// The largest of all.
     pub max_rad: f64,
 }
 
-impl Spread {
-    /// Compares a motion of a row with its repetitions.
+impl PeakSpread {
+    /// Of the motion itself, then its repetitions.
+    fn of(peaks_rad: &[f64]) -> Self {
+        Self {
+            own_rad: peaks_rad[0],
+            min_rad: peaks_rad.iter().copied().fold(f64::INFINITY, f64::min),
+            max_rad: peaks_rad.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    /// Whether all are within [`SAME_PEAK_RATIO`].
     #[must_use]
-    pub fn new(own: &Summary, half_steps: &Summary, double_steps: &Summary) -> Self {
-        let runs = [own, half_steps, double_steps];
-        let cycles = runs.map(|summary| {
-            let run = summary.free_hinges.as_deref();
-            run.map_or(&[][..], |run| &run.half_cycles)
-        });
-        let in_all = cycles[0].iter().zip(cycles[1]).zip(cycles[2]);
-        let triples = in_all.map(|((own, half), double)| [own, half, double]);
+    pub fn is_same(&self) -> bool {
+        self.max_rad - self.min_rad <= SAME_PEAK_RATIO * self.max_rad
+    }
+}
+
+impl Spread {
+    /// Compares a motion of a row with its repetitions, given with their names.
+    #[must_use]
+    pub fn new(own: &Summary, repetitions: &[(&'static str, Summary)]) -> Self {
+        let runs: Vec<&Summary> = std::iter::once(own)
+            .chain(repetitions.iter().map(|(_, summary)| summary))
+            .collect();
+        let cycles: Vec<_> = runs
+            .iter()
+            .map(|summary| {
+                let run = summary.free_hinges.as_deref();
+                run.map_or(&[][..], |run| &run.half_cycles)
+            })
+            .collect();
+        let in_all = cycles.iter().map(|cycles| cycles.len()).min().unwrap_or(0);
         let mut half_cycles = Vec::new();
         let mut same = 0;
-        for triple in triples {
-            let peaks_rad = triple.map(|cycle| cycle.peak_rad);
-            let peak = PeakSpread {
-                own_rad: peaks_rad[0],
-                min_rad: peaks_rad.into_iter().fold(f64::INFINITY, f64::min),
-                max_rad: peaks_rad.into_iter().fold(0.0, f64::max),
-            };
-            let to_one_side = triple.iter().all(|cycle| cycle.sway == triple[0].sway);
-            let close = peak.max_rad - peak.min_rad <= SAME_PEAK_RATIO * peak.max_rad;
-            if same == half_cycles.len() && to_one_side && close {
+        for index in 0..in_all {
+            let peaks_rad: Vec<f64> = cycles.iter().map(|cycles| cycles[index].peak_rad).collect();
+            let peak = PeakSpread::of(&peaks_rad);
+            let side = cycles[0][index].sway;
+            let to_one_side = cycles.iter().all(|cycles| cycles[index].sway == side);
+            if same == index && to_one_side && peak.is_same() {
                 same += 1;
             }
             half_cycles.push(peak);
         }
-        let most = cycles.map(<[_]>::len).into_iter().max().unwrap_or(0);
         let starts_s = cycles
             .iter()
-            .filter_map(|cycles| Some(cycles.get(same)?.start_s));
+            .filter_map(|cycles| Some(cycles.get(same)?.start_s))
+            .reduce(f64::min);
+        let stands = |summary: &&Summary| !matches!(summary.outcome, Outcome::Overturned(_));
+        let largest_rad: Vec<f64> = runs
+            .iter()
+            .map(|summary| summary.largest_rotation_rad())
+            .collect();
         Self {
-            outcomes: runs.map(|summary| summary.outcome),
+            repeated: repetitions.iter().map(|(name, _)| *name).collect(),
+            outcomes: runs.iter().map(|summary| summary.outcome).collect(),
             half_cycles,
             same_until_half_cycle: same,
-            parts_at_s: (same < most).then(|| starts_s.fold(f64::INFINITY, f64::min)),
+            parts_at_s: starts_s,
+            largest: runs
+                .iter()
+                .all(stands)
+                .then(|| PeakSpread::of(&largest_rad)),
         }
     }
 
-    /// Whether all three ended alike, to the same side if they overturned.
+    /// Whether all ended alike, to the same side if they overturned.
     #[must_use]
     pub fn same_outcome(&self) -> bool {
         self.outcomes.iter().all(|other| *other == self.outcomes[0])
-    }
-}
-
-impl FreeHinges {
-    /// What becomes of it with all steps so many times as long as for a history with samples.
-    ///
-    /// # Errors
-    /// Those of [`Model::simulate`](crate::dynamics::model::Model::simulate).
-    pub fn repeated(
-        &self,
-        factor: f64,
-        ground: &GroundMotion,
-        request: &Request,
-    ) -> Result<Summary, SimulationError> {
-        self.with_steps_times(factor, request)
-            .simulate(ground, request, None)
     }
 }
