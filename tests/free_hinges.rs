@@ -386,7 +386,8 @@ fn thresholds_of_single_pulses_are_the_measured_ones() {
         let row = arch(embrace, thickness, voussoirs, radius_m);
         let outcome = |factor: f64| {
             // Below the threshold the first half cycle is enough.
-            let settings = Settings::to_landings(&row, GRAVITY, if factor > 1.0 { 60.0 } else { 2.0 });
+            let settings =
+                Settings::to_landings(&row, GRAVITY, if factor > 1.0 { 60.0 } else { 2.0 });
             run(&row, &push(factor * threshold_g, duration_s), &settings)
         };
         let overturned = outcome(1.001);

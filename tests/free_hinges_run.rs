@@ -491,11 +491,11 @@ fn the_picture_shows_every_block_and_which_joints_are_open() {
 }
 
 #[test]
-fn what_half_and_double_steps_change_is_said_and_written() {
+fn what_repetitions_change_is_said_and_written() {
     let results = Results::of(&free(SEVEN), &[]);
     let summary = results.summary();
     let spread = &summary["spread"];
-    for which in ["own", "half_steps", "double_steps"] {
+    for which in ["own", "double_steps", "landings_merged"] {
         assert_eq!(spread["outcomes"][which], "rest");
     }
     let same = spread["same_until_half_cycle"].as_u64().unwrap();
@@ -521,7 +521,7 @@ fn what_half_and_double_steps_change_is_said_and_written() {
     let same = format!("peaks of the first {same} half cycles within 1 %");
     let said = &results.said;
     assert!(
-        said.contains("half and double steps: the same outcome"),
+        said.contains("repeated (double steps; landings merged): the same outcome"),
         "{said}"
     );
     assert!(said.contains(&same), "{said}");
@@ -551,7 +551,7 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
         });
     let (step_s, results, reason) = failed.expect("a repetition that fails");
     assert!(reason.starts_with("the repetition with "), "{reason}");
-    assert!(reason.contains(" times the steps failed: at "), "{reason}");
+    assert!(reason.contains(" failed: at "), "{reason}");
     let said = &results.said;
     let words = format!("  how far it depends on its steps is not known: {reason}\n");
     assert!(
@@ -592,11 +592,17 @@ fn a_spread_knows_other_outcomes() {
         model.simulate(&ground, &Request::default(), None).unwrap()
     };
     let (rests, falls) = (pulse(3.0), pulse(20.0));
-    let alike = Spread::new(&rests, &rests, &rests);
+    let alike = Spread::new(&rests, &[("double steps", rests.clone())]);
     assert!(alike.same_outcome());
     assert_eq!(alike.parts_at_s, None);
     assert_eq!(alike.same_until_half_cycle, alike.half_cycles.len());
-    let other = Spread::new(&rests, &rests, &falls);
+    let other = Spread::new(
+        &rests,
+        &[
+            ("double steps", rests.clone()),
+            ("half steps", falls.clone()),
+        ],
+    );
     assert!(!other.same_outcome());
     assert_eq!(other.same_until_half_cycle, 0);
     // They part in the first half cycle, which begins with the first step.

@@ -515,7 +515,10 @@ fn sure(spread: &Spread) -> String {
         let _ = if largest.is_same() {
             write!(text, "\n    largest rotation within {percent} %")
         } else {
-            write!(text, "\n    LARGEST ROTATION {min_rad:.6} to {max_rad:.6} rad")
+            write!(
+                text,
+                "\n    LARGEST ROTATION {min_rad:.6} to {max_rad:.6} rad"
+            )
         };
     }
     text.push('\n');

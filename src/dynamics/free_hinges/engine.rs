@@ -97,7 +97,10 @@ struct Crowd {
 impl Crowd {
     fn count(&mut self, time_s: f64, within_s: f64) {
         if self.impacts == 0 || time_s - self.first_s > within_s {
-            *self = Self { first_s: time_s, impacts: 0 };
+            *self = Self {
+                first_s: time_s,
+                impacts: 0,
+            };
         }
         self.impacts += 1;
     }
@@ -798,7 +801,8 @@ impl<'a> Engine<'a> {
         self.take_pieces();
         self.kicked_s = self.course.time;
         self.course.run.cost.impacts += 1;
-        self.crowd.count(self.course.time, self.settings.shortest_step_s);
+        self.crowd
+            .count(self.course.time, self.settings.shortest_step_s);
         Ok(())
     }
 
@@ -968,7 +972,7 @@ mod tests {
         ] {
             let ground =
                 GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
-            let settings = Settings::to_landings(&row, 9.81, 60.0);
+            let settings = Settings::to_landings(&row, 9.81, 60.0).times(3.0);
             let mut engine = Engine::new(&row, &ground, 9.81, &settings);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
