@@ -83,10 +83,9 @@ fn steps_over_a_record(bencher: Bencher, voussoirs: usize, friction_coefficient:
     let ground = record(0.5);
     let settings = Settings {
         longest_step_s: 1e-4,
-        shortest_step_s: 1e-4,
-        end_s: 25.0,
-        output_step_s: None,
+        shortest_step_s: 1e-5,
         friction_coefficient,
+        ..Settings::to_landings(&row, GRAVITY_M_S2, 25.0)
     };
     let steps = simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ())
         .map_or(1, |run| run.cost.steps);

@@ -254,11 +254,11 @@ impl<'a> Engine<'a> {
             });
         }
         self.placement.turn(rotations_rad);
-        self.close();
         let error_m = self.placement.closure_error();
         if error_m > LARGEST_CLOSURE_RATIO * self.thinnest {
             return Err(FreeHingeError::Open { error_m });
         }
+        self.close();
         let gaps = self.placement.gaps_m().iter();
         let active: Vec<Corners> = gaps.map(|gaps| gaps.map(|gap| gap == 0.0)).collect();
         let open = active
