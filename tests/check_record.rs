@@ -49,6 +49,10 @@ fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
     let mut comma = "Station X\nEpicentre; 12.5 E\ntime; acceleration\n".to_owned();
     let mut blanks = String::new();
     let mut single = "corrected acceleration, m/s2\n".to_owned();
+    let mut six = String::new();
+    let mut knet = "Origin Time       2024/01/02 03:04:05\nStation Code      XXX001\nSampling Freq(Hz) 200Hz\n\
+                    Duration Time(s)  2\nDir.              E-W\nScale Factor      10(gal)/1000000\nMemo.\n"
+        .to_owned();
     for (i, a) in sine.iter().enumerate() {
         let t = i as f64 * 0.005;
         let cm = 981.0 * a;
@@ -58,6 +62,15 @@ fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
         let _ = writeln!(comma, "{t:.3}; {cm:.12}");
         let _ = writeln!(blanks, "  {t:10.4}   {a:18.14}");
         let _ = writeln!(single, "{:.12}", 9.81 * a);
+        let end = |per_line: usize| {
+            if i % per_line == per_line - 1 {
+                "\n"
+            } else {
+                ""
+            }
+        };
+        let _ = write!(six, "{a:14.10}{}", end(6));
+        let _ = write!(knet, "{:>12.0}{}", 1e5 * cm, end(8));
     }
     for (name, text) in [
         ("g.AT2", &at2),
@@ -68,6 +81,8 @@ fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
         ("tabs.dat", &blanks.replace("   ", "\t")),
         ("single.csv", &single),
         ("nameless.xyz", &blanks),
+        ("six.txt", &six),
+        ("station.EW", &knet),
     ] {
         fs::write(folder.join(name), text).unwrap();
     }
@@ -82,6 +97,8 @@ fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
         ("blanks.txt", "unit = 'g'\n"),
         ("single.csv", "unit = 'm/s^2'\ndt_s = 0.005\n"),
         ("nameless.xyz", "format = 'csv'\nunit = 'g'\n"),
+        ("six.txt", "unit = 'g'\ndt_s = 0.005\n"),
+        ("station.EW", ""),
     ]
 }
 
@@ -130,6 +147,8 @@ fn a_record_is_told_alike_in_all_formats() {
             "gal.at2" => "AT2 file (PEER), accelerations in cm/s2",
             "esm.ASC" => "ASC file (ESM), accelerations in cm/s2",
             "single.csv" => "table, accelerations in m/s2",
+            "six.txt" => "table with several samples a row, accelerations in g",
+            "station.EW" => "file of K-NET, accelerations in cm/s2",
             _ => "table, accelerations in ",
         };
         assert!(said.starts_with(&format!("{file}: {unit}")), "{said}");

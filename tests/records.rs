@@ -10,6 +10,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use archrock::dynamics::ground::GroundVelocity;
 use archrock::scenario::Ground;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
 use common::{impact_times_s, pairs};
@@ -221,6 +222,152 @@ fn scales_units_and_starts() {
     );
 }
 
+/// Straight lines of velocity are constant accelerations, so that a step pair of accelerations has a velocity of three
+/// samples: the same history, to rounding.
+#[test]
+fn a_record_of_velocities_is_the_pulse_that_has_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let (a_g, duration_s) = (-0.35, 0.25);
+    let top_cm_s = 100.0 * a_g * G * duration_s;
+    // A uniform velocity before and after shakes nothing.
+    let table = format!("0.1,7\n0.35,{:?}\n0.85,7\n", 7.0 + top_cm_s);
+    let keys = "file = 'v.csv'\nunit = 'cm/s'\nquantity = 'velocity'";
+    let read = scenario(folder.path(), &[("v.csv", &table)], keys).unwrap();
+    let pulse = GroundMotion::pulse(Pulse::StepPair, a_g * G, duration_s, 0.1).unwrap();
+    let arch = semicircle();
+    let ((a, rows_a), (b, rows_b)) = (
+        run(&arch, read.ground_motion(), G, None, 10.0),
+        run(&arch, &pulse, G, None, 10.0),
+    );
+    assert_eq!(a.summary.outcome, b.summary.outcome);
+    assert!(a.summary.impacts > 3 && a.summary.peak_rotations_rad[0] > 0.01);
+    for (row_a, row_b) in pairs(&rows_a, &rows_b) {
+        for (x, y) in pairs(&row_a.rotations_rad, &row_b.rotations_rad) {
+            assert!((x - y).abs() < 1e-8, "{} s", row_a.time_s);
+        }
+    }
+    // The steepest line is the peak, and what is resolved reads back.
+    let Some(Ground::Record(record)) = &read.ground else {
+        panic!("a record")
+    };
+    assert!((record.main.peak_g(G) - 0.35).abs() < 1e-12);
+    let name = folder.path().join("s.toml").display().to_string();
+    assert_eq!(Scenario::parse(&read.to_toml(), &name), Ok(read));
+}
+
+/// The ground has the velocities of the samples at their times, and the displacements of the trapezoids below them.
+#[test]
+fn the_ground_has_the_recorded_velocities() {
+    let folder = tempfile::tempdir().unwrap();
+    let velocities: Vec<(f64, f64)> = synthetic(7, 3.0, 0.02)
+        .iter()
+        .enumerate()
+        .map(|(i, (t, v))| (t + 0.003 * (i as f64).sin(), v - 0.3))
+        .map(|(t, v)| (t.max(0.0), v))
+        .collect();
+    let mut table = String::new();
+    for (t, v) in &velocities {
+        let _ = writeln!(table, "{t:?} {v:?}");
+    }
+    let keys = "file = 'v.txt'\nunit = 'm/s'\nquantity = 'velocity'\nscale = -0.05\nstart_s = 0.7";
+    for (component, axis) in [("horizontal", 0), ("vertical", 1)] {
+        let keys = format!("{keys}\ncomponent = '{component}'");
+        let read = scenario(folder.path(), &[("v.txt", &table)], &keys).unwrap();
+        let velocity = GroundVelocity::new(read.ground_motion());
+        let times: Vec<f64> = velocities.iter().map(|(t, _)| 0.7 + t).collect();
+        let displacements = velocity.displacements_m(&times);
+        let mut expected_m = 0.0;
+        for (i, (t, v)) in velocities.iter().enumerate() {
+            let gained = |v: f64| -0.05 * (v - velocities[0].1);
+            if i > 0 {
+                let (t0, v0) = velocities[i - 1];
+                expected_m += 0.5 * (gained(*v) + gained(v0)) * (t - t0);
+            }
+            assert!(
+                (velocity.at(0.7 + t)[axis] - gained(*v)).abs() < 1e-11,
+                "{t}"
+            );
+            assert!((displacements[i][axis] - expected_m).abs() < 1e-11, "{t}");
+        }
+    }
+}
+
+/// A table as PEER writes its samples, with the header before it or not, is the motion of the AT2 file; so is one of
+/// six columns.
+#[test]
+fn rows_of_several_samples_are_the_samples_one_after_another() {
+    let folder = tempfile::tempdir().unwrap();
+    // 401 samples fill no lines of 5, 400 do.
+    for (count, header_counts) in [(401, false), (400, true), (400, false)] {
+        let record: Vec<_> = synthetic(5, 4.2, 0.01).into_iter().take(count).collect();
+        let text = at2(&record, "SYNTHETIC", &NGA_WEST2);
+        let reference = scenario(folder.path(), &[("a.at2", &text)], "file = 'a.at2'").unwrap();
+        let silent = Style {
+            counts: "many samples, one every {dt} s",
+            ..NGA_WEST2
+        };
+        let text = match header_counts {
+            true => text,
+            false => at2(&record, "SYNTHETIC", &silent),
+        };
+        let keys = "file = 'a.txt'\nunit = 'g'\ndt_s = 0.01\nskip_rows = 4";
+        let read = |keys: &str| scenario(folder.path(), &[("a.txt", &text)], keys);
+        if count == 401 || header_counts {
+            let found = read(keys).unwrap();
+            assert_eq!(found.ground_motion(), reference.ground_motion());
+            let Some(Ground::Record(record)) = &found.ground else {
+                panic!("a record")
+            };
+            assert!(record.main.wrapped);
+        } else {
+            let message = read(keys).unwrap_err();
+            assert!(
+                message.contains("a.txt:5: there are 5 columns"),
+                "{message}"
+            );
+        }
+        let found = read(&format!("{keys}\nwrapped = true")).unwrap();
+        assert_eq!(found.ground_motion(), reference.ground_motion());
+        let name = folder.path().join("s.toml").display().to_string();
+        assert_eq!(Scenario::parse(&found.to_toml(), &name), Ok(found));
+        // One column is read where it is chosen.
+        let first = read(&format!("{keys}\nacceleration_column = 1")).unwrap();
+        let Some(Ground::Record(first)) = &first.ground else {
+            panic!("a record")
+        };
+        assert_eq!(first.main.samples.len(), count.div_ceil(5));
+    }
+}
+
+/// Excel's "Unicode text" and old Macs' text are named.
+#[test]
+fn what_is_no_plain_text_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "t,a\n0,0\n1,1\n";
+    let utf_16 = |order: fn(u16) -> [u8; 2], mark: &[u16]| -> Vec<u8> {
+        let units = mark.iter().copied().chain(table.encode_utf16());
+        units.flat_map(order).collect()
+    };
+    for bytes in [
+        utf_16(u16::to_le_bytes, &[0xfeff]),
+        utf_16(u16::to_be_bytes, &[0xfeff]),
+        utf_16(u16::to_le_bytes, &[]),
+    ] {
+        fs::write(folder.path().join("a.csv"), bytes).unwrap();
+        for keys in [
+            "file = 'a.csv'\nunit = 'g'",
+            "file = 'a.csv'\nformat = 'at2'",
+        ] {
+            let message = scenario(folder.path(), &[], keys).unwrap_err();
+            assert!(
+                message.contains("a.csv:1: the file is UTF-16 text"),
+                "{message}"
+            );
+            assert!(message.contains("save it as UTF-8"), "{message}");
+        }
+    }
+}
+
 /// Faults of the keys and of the file, each with its place.
 #[test]
 fn faulty_records_are_input_errors() {
@@ -231,6 +378,9 @@ fn faulty_records_are_input_errors() {
         ("zero.csv", "0,0\n1,0\n"),
         ("early.csv", "-2,0\n1,0\n"),
         ("good.csv", "0,0\n1,1\n"),
+        ("six.csv", "0,1,2\n3,4,5\n"),
+        ("huge.csv", "0,0\n1,1e308\n"),
+        ("mac.csv", "0,0\r1,1\r"),
     ];
     for (keys, place, words) in [
         (
@@ -292,6 +442,62 @@ fn faulty_records_are_input_errors() {
             "file = 'good.csv'\nunit = 'g'\ntime_column = 'tt'",
             "6:8",
             "good.csv:1: there is no column named `tt`",
+        ),
+        (
+            "file = 'six.csv'\nunit = 'g'\ndt_s = 0.01",
+            "6:8",
+            "six.csv:1: there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`, if a row \
+             holds 3 samples",
+        ),
+        (
+            "file = 'six.csv'\nunit = 'g'",
+            "6:8",
+            "six.csv:1: there are 3 columns: give `acceleration_column`, the one to read; or, if a row holds 3",
+        ),
+        (
+            "file = 'six.csv'\nunit = 'g'\ndt_s = 0.01\nwrapped = true\nacceleration_column = 1",
+            "9:11",
+            "`wrapped = true` cannot be combined with `acceleration_column`",
+        ),
+        (
+            "file = 'six.csv'\nunit = 'g'\nwrapped = true",
+            "8:11",
+            "`wrapped = true` needs `dt_s`",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'cm/s'",
+            "7:8",
+            "`unit = 'cm/s'` is a unit of velocity; give `quantity = \"velocity\"`",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'g'\nquantity = 'velocity'",
+            "7:8",
+            "`unit = 'g'` is a unit of acceleration; leave out `quantity",
+        ),
+        (
+            "file = 'good.csv'\nunit = 'm/s'\nquantity = 'velocity'\nremove_mean = true",
+            "9:15",
+            "applies to accelerations",
+        ),
+        (
+            "file = 'x.NS2'\nquantity = 'velocity'",
+            "7:12",
+            "does not apply to a file of K-NET",
+        ),
+        (
+            "file = 'x.ud'\nunit = 'g'",
+            "7:8",
+            "does not apply to a file of K-NET, whose header has a Scale Factor",
+        ),
+        (
+            "file = 'huge.csv'\nunit = 'g'",
+            "6:8",
+            "huge.csv:2: `1e308` is out of range; samples must be at most 1e12 in magnitude",
+        ),
+        (
+            "file = 'mac.csv'\nunit = 'g'",
+            "6:8",
+            "mac.csv:1: the lines end with a carriage return alone (CR)",
         ),
         (
             "file = 'short.at2'\ntime_column = 1",

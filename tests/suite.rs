@@ -13,7 +13,7 @@ use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
 use archrock::output::suite::{Heading, draw, failures, to_json, write_fragility};
-use archrock::scenario::{Layout, Measure, Scenario};
+use archrock::scenario::{Form, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, PeakRotation};
 use archrock::studies::suite::{CaseRow, SuiteFragility};
 use program::{done, refused, scenarios};
@@ -48,7 +48,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn samples(path: &Path) -> Vec<(f64, f64)> {
-    let layout = Layout::At2 { unit: None };
+    let layout = Layout::from(Form::At2 { unit: None });
     layout.parse(&fs::read(path).unwrap()).unwrap().samples
 }
 

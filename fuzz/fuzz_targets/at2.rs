@@ -3,7 +3,7 @@
 
 mod common;
 
-use archrock::scenario::Layout;
+use archrock::scenario::Form;
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|contents: &[u8]| common::check(&Layout::At2 { unit: None }, contents));
+fuzz_target!(|contents: &[u8]| common::check(&Form::At2 { unit: None }.into(), contents));

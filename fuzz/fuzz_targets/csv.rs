@@ -3,7 +3,7 @@
 
 mod common;
 
-use archrock::scenario::{Decimal, Layout, TableColumn, TableLayout, Times, Unit};
+use archrock::scenario::{Decimal, Form, TableColumn, TableLayout, Times, Unit};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|input: &[u8]| {
@@ -20,14 +20,19 @@ fuzz_target!(|input: &[u8]| {
     } else {
         Times::Step(0.01)
     };
-    let layout = Layout::Csv(TableLayout {
+    let layout = Form::Csv(TableLayout {
         skip_rows: usize::from(settings >> 4 & 3),
         decimal: if settings & 128 == 0 {
             Decimal::Point
         } else {
             Decimal::Comma
         },
-        ..TableLayout::new(times, column(*settings, [2, 1, 3], "a"), Unit::Gravity)
+        // Not for a second column, which is what is left where there are two.
+        acceleration_column: Some(column(*settings, [2, 1, 3], "a"))
+            .filter(|column| *column != TableColumn::Number(2)),
+        // Counts where no column is chosen.
+        wrapped: settings & 4 != 0,
+        ..TableLayout::new(times, Unit::Gravity)
     });
-    common::check(&layout, contents);
+    common::check(&layout.into(), contents);
 });

@@ -268,8 +268,8 @@ impl Ground {
 /// Gravity under which a ground motion by itself is read.
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// Times in s and accelerations, in the unit of their file.
-type TimesAndAccelerations<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+/// Times in s and samples, in the unit of their file.
+type TimesAndSamples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 #[pymethods]
 impl Ground {
@@ -290,8 +290,16 @@ impl Ground {
         serde_json::to_string(&self.inner).map_err(refused)
     }
 
-    /// Times and accelerations of a record as in its file; `None` of a pulse.
-    fn samples<'py>(&self, py: Python<'py>) -> Option<TimesAndAccelerations<'py>> {
+    /// Unit of a record's samples; `None` of a pulse.
+    fn unit(&self) -> Option<&'static str> {
+        match &self.inner {
+            archrock::scenario::Ground::Record(record) => Some(record.main.unit.name()),
+            archrock::scenario::Ground::Pulse(_) => None,
+        }
+    }
+
+    /// Times and samples of a record as in its file; `None` of a pulse.
+    fn samples<'py>(&self, py: Python<'py>) -> Option<TimesAndSamples<'py>> {
         let archrock::scenario::Ground::Record(record) = &self.inner else {
             return None;
         };

@@ -116,6 +116,45 @@ def test_what_is_sent_does_not_need_its_files(tmp_path: Path) -> None:
     assert told.report_html() == history.report_html()
 
 
+def test_units_are_those_of_the_header(tmp_path: Path) -> None:
+    header = "SAMPLING_INTERVAL_S: 0.1\nUNITS: cm/s^2\n"
+    (tmp_path / "r.asc").write_text(header + "0\n98.1\n-49.05\n")
+    record = Record.read(tmp_path / "r.asc")
+    assert record.unit == "cm/s2" and record.acceleration.tolist() == [0.0, 98.1, -49.05]
+    same = Record(record.time, record.acceleration / 981, unit="g")
+    column = Column(4.0, 0.2)
+    suites = [archrock.suite(column, [one], scales=[1.0, 9.0], duration_s=1.0) for one in (record, same)]
+    peaks = [one.to_pandas()["peak_rotation_over_critical"].to_numpy() for one in suites]
+    assert peaks[0].max() > 0.0 and np.allclose(peaks[0], peaks[1], rtol=1e-9)
+
+
+def test_rows_of_several_samples_are_read(tmp_path: Path) -> None:
+    (tmp_path / "r.txt").write_text("0 0.1 0.2\n0.3 0.2 0.1\n0.0\n")
+    record = Record.read(tmp_path / "r.txt", unit="g", dt_s=0.1)
+    assert record.acceleration.tolist() == [0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.0]
+    (tmp_path / "r.txt").write_text("0 0.1 0.2\n0.3 0.2 0.1\n")
+    with pytest.raises(ValueError, match="there are 3 columns: give `acceleration_column`"):
+        Record.read(tmp_path / "r.txt", unit="g", dt_s=0.1)
+    record = Record.read(tmp_path / "r.txt", unit="g", dt_s=0.1, wrapped=True)
+    assert len(record.time) == 6
+
+
+def test_velocities_shake_as_the_accelerations_between_them() -> None:
+    """A triangle of velocity is a constant acceleration and its opposite: nearly so in steep lines."""
+    velocities = Record([0.0, 0.3, 0.6], [0.0, 150.0, 0.0], unit="cm/s", quantity="velocity")
+    assert velocities.unit == "cm/s" and velocities.velocity.tolist() == [0.0, 150.0, 0.0]
+    with pytest.raises(ValueError, match="is a record of velocity: see `velocity`"):
+        _ = velocities.acceleration
+    steep = Record([0.0, 0.3, 0.300001, 0.6], [5.0, 5.0, -5.0, -5.0], unit="m/s2")
+    column = Column(4.0, 0.8)
+    histories = [simulate(column, one, duration_s=3.0) for one in (velocities, steep)]
+    peaks = [np.abs(history.rotations).max() for history in histories]
+    assert peaks[0] > 0.01 and abs(peaks[0] / peaks[1] - 1.0) < 1e-4
+    assert pickle.loads(pickle.dumps(velocities)) == velocities
+    with pytest.raises(ValueError, match='give `quantity = "velocity"`'):
+        Record([0.0, 1.0], [0.0, 1.0], unit="cm/s")
+
+
 @pytest.mark.parametrize(
     "described",
     [
@@ -175,6 +214,8 @@ def test_records_are_read_as_by_the_program() -> None:
     assert record.unit == "g" and record.name == "wave-1.at2"
     assert len(record.time) == len(record.acceleration) > 100
     same = Record(record.time, record.acceleration, unit="g", scale=2.0)
+    with pytest.raises(ValueError, match="'wave-1.at2' is a record of acceleration: see `acceleration`"):
+        _ = record.velocity
     column = Column(4.0, 0.8)
     assert simulate(column, same).rotations.tobytes() == simulate(column, record).rotations.tobytes()
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
 use archrock::output::record as output;
-use archrock::scenario::{Format, Layout, Sampling, Series, Unit};
+use archrock::scenario::{Form, Format, Layout, Recorded, Sampling, Series};
 
 use super::figure::FigureOption;
 use super::scenario_file::SetOption;
@@ -13,7 +13,7 @@ use super::{Failure, commands, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, or tables in CSV and TXT).
+    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, or tables in CSV and TXT).
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -51,7 +51,7 @@ pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 }
 
 fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String, Failure> {
-    if Format::is_of_record(file) || is_format_given(arguments) {
+    if Format::of_file(file).is_some() || is_format_given(arguments) {
         return check_record(file, arguments);
     }
     if arguments.plot.is_some() {
@@ -75,11 +75,7 @@ fn is_format_given(arguments: &Arguments) -> bool {
 fn check_record(file: &Path, arguments: &Arguments) -> Result<String, Failure> {
     // Of several files, tables may need keys that others do not have.
     let several = arguments.files.len() > 1;
-    let is_table = file.extension().is_none_or(|ending| {
-        !["at2", "asc"]
-            .iter()
-            .any(|other| ending.eq_ignore_ascii_case(other))
-    });
+    let is_table = Format::of_file(file).is_none_or(|format| format == Format::Csv);
     let keys = arguments.set.assignments().iter();
     let keys: Vec<_> = keys
         .filter(|assignment| is_table || !several || !Layout::is_of_tables(assignment.key()))
@@ -114,6 +110,11 @@ fn record_text(file: &Path, series: &Series, intensity: &Intensity) -> String {
         "  peak acceleration {:.4} g = {value:.4} m/s2 at {time_s:.3} s",
         value / GRAVITY_M_S2
     );
+    let mean_g = series.mean_g(GRAVITY_M_S2);
+    let _ = match series.layout.remove_mean {
+        true => writeln!(text, "  mean acceleration removed"),
+        false => writeln!(text, "  mean acceleration {mean_g:.3e} g"),
+    };
     for (what, peak, unit) in [
         ("velocity", intensity.velocity_m_s, "m/s"),
         ("displacement", intensity.displacement_m, "m"),
@@ -140,17 +141,18 @@ fn record_text(file: &Path, series: &Series, intensity: &Intensity) -> String {
 
 /// Format and unit.
 fn kind(series: &Series) -> String {
-    let format = match series.layout {
-        Layout::At2 { .. } => "AT2 file (PEER)",
-        Layout::Asc => "ASC file (ESM)",
-        Layout::Csv(_) => "table",
+    let format = match series.layout.form {
+        Form::At2 { .. } => "AT2 file (PEER)",
+        Form::Asc => "ASC file (ESM)",
+        Form::Knet => "file of K-NET",
+        Form::Csv(_) if series.wrapped => "table with several samples a row",
+        Form::Csv(_) => "table",
     };
-    let unit = match series.unit {
-        Unit::Gravity => "g",
-        Unit::MetrePerS2 => "m/s2",
-        Unit::CentimetrePerS2 => "cm/s2",
+    let quantity = match series.layout.quantity {
+        Recorded::Acceleration => "accelerations",
+        Recorded::Velocity => "velocities",
     };
-    format!("{format}, accelerations in {unit}")
+    format!("{format}, {quantity} in {}", series.unit.name())
 }
 
 /// Number, steps and length of the samples.

@@ -62,8 +62,8 @@ pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
 pub use map::{Axis, Map, Quantity};
 pub use record::{
-    Component, Contents, Decimal, Format, Layout, LineFault, Record, Sampling, Scaling, Series,
-    TableColumn, TableLayout, Times, Unit,
+    Component, Contents, Decimal, Form, Format, Layout, LineFault, Record, Recorded, Sampling,
+    Scaling, Series, TableColumn, TableLayout, Times, Unit,
 };
 pub use sequence::{Sequence, Spacing};
 pub use simulation::Simulation;

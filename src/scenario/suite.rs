@@ -21,7 +21,7 @@ use std::sync::Arc;
 use glob::MatchOptions;
 use serde::ser::{Error as _, Serialize, SerializeMap as _, Serializer};
 
-use super::record::{self, Format, Layout, Record, Scaling, Series};
+use super::record::{self, Form, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::table::{Number, OneOrMore, Reading, Switch, Table, Text};
 use super::{Component, Ground, Scenario, Simulation};
@@ -143,10 +143,16 @@ impl Suite {
                      element,
                      format,
                  }| {
-                    let layout = match format {
-                        Format::At2 if layout.format() != Format::At2 => Layout::At2 { unit: None },
-                        Format::Asc => Layout::Asc,
-                        Format::At2 | Format::Csv => layout.clone(),
+                    let form = match format {
+                        format if format == layout.format() => layout.form.clone(),
+                        Format::At2 => Form::At2 { unit: None },
+                        Format::Asc => Form::Asc,
+                        Format::Knet => Form::Knet,
+                        Format::Csv => layout.form.clone(),
+                    };
+                    let layout = Layout {
+                        form,
+                        ..layout.clone()
                     };
                     Series::of_file(folder, file.clone(), layout)
                         .and_then(|series| suits(&series, strongest, simulation).map(|()| series))

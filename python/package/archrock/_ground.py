@@ -15,7 +15,8 @@ from ._tables import Tables, arguments, to_toml
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-Unit = Literal["g", "m/s2", "cm/s2"]
+Unit = Literal["g", "m/s2", "cm/s2", "m/s", "cm/s"]
+Quantity = Literal["acceleration", "velocity"]
 
 
 class Ground(Described):
@@ -271,8 +272,10 @@ class Record(Ground):
     Args:
         time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
             array.
-        acceleration: accelerations in ``unit``, shape ``(samples,)``.
-        unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``.
+        acceleration: accelerations in ``unit``, or whatever ``quantity`` says, shape ``(samples,)``.
+        unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``; ``"m/s"`` or ``"cm/s"`` of velocities.
+        quantity: what the samples are. Between samples of ``"velocity"`` the acceleration is constant.
+        remove_mean: whether accelerations are taken without their mean over the time of the record.
         name: what it is called in results and messages.
         scale: factor on the accelerations; or give ``peak_g``.
         peak_g: peak acceleration to scale to, in units of gravity.
@@ -294,6 +297,8 @@ class Record(Ground):
         acceleration: npt.ArrayLike,
         *,
         unit: Unit,
+        quantity: Quantity | None = None,
+        remove_mean: bool | None = None,
         name: str = "record",
         scale: float | None = None,
         peak_g: float | None = None,
@@ -305,7 +310,15 @@ class Record(Ground):
             raise TypeError(f"`name` must be a text, not {type(name).__name__}")
         if not isinstance(vertical, (Record, type(None))):
             raise TypeError(f"`vertical` must be a Record, not {type(vertical).__name__}")
-        table: Tables = {"file": name, "format": "csv", "unit": unit, "scale": scale, "peak_g": peak_g}
+        table: Tables = {
+            "file": name,
+            "format": "csv",
+            "unit": unit,
+            "quantity": quantity,
+            "remove_mean": remove_mean,
+            "scale": scale,
+            "peak_g": peak_g,
+        }
         files = {name: _csv(time, acceleration)}
         if vertical is not None:
             table["vertical"], held = vertical._as_vertical(name)
@@ -338,8 +351,8 @@ class Record(Ground):
             path: the file; its contents are kept.
             vertical: a record of the vertical component beside this one.
             keys: keys of ``[ground.record]``: of tables at least ``unit``, perhaps ``time_column`` and
-                ``acceleration_column``; ``format``, where the ending does not tell it; ``scale`` or ``peak_g``,
-                ``start_s``, ``component``.
+                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, where the ending does not tell it;
+                ``quantity``, ``remove_mean``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
 
         Raises:
             OSError: when the file cannot be read.
@@ -379,9 +392,16 @@ class Record(Ground):
 
     @property
     def unit(self) -> str:
-        """Unit of :attr:`acceleration`."""
-        unit: str = self._tables["record"].get("unit", "g")
+        """Unit of the samples in their file."""
+        unit = self._native.unit()
+        assert unit is not None, "a record has a unit"
         return unit
+
+    @property
+    def quantity(self) -> str:
+        """What the samples are: ``"acceleration"`` or ``"velocity"``."""
+        quantity: str = self._tables["record"].get("quantity", "acceleration")
+        return quantity
 
     def _samples(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         samples = self._native.samples()
@@ -395,7 +415,25 @@ class Record(Ground):
 
     @property
     def acceleration(self) -> npt.NDArray[np.float64]:
-        """Accelerations in :attr:`unit`, not scaled, shape ``(samples,)``."""
+        """Accelerations in :attr:`unit`, not scaled, shape ``(samples,)``.
+
+        Raises:
+            ValueError: of a record of velocities.
+        """
+        return self._of("acceleration")
+
+    @property
+    def velocity(self) -> npt.NDArray[np.float64]:
+        """Velocities in :attr:`unit`, not scaled, shape ``(samples,)``.
+
+        Raises:
+            ValueError: of a record of accelerations.
+        """
+        return self._of("velocity")
+
+    def _of(self, quantity: Quantity) -> npt.NDArray[np.float64]:
+        if self.quantity != quantity:
+            raise ValueError(f"{self.name!r} is a record of {self.quantity}: see `{self.quantity}`")
         return self._samples()[1]
 
     def __repr__(self) -> str:

@@ -376,11 +376,12 @@ def suite_scenario(
             )
         if record.name in files:
             raise ValueError(f"{record.name!r} is the name of two records: give each its own")
-        files[record.name] = _csv(record.time, record.acceleration)
+        files[record.name] = _csv(*record._samples())
     table = {
         "records": sorted(files),
         "format": "csv",
         "unit": next(iter(units), "g"),
+        "quantity": next((record.quantity for record in records), None),
         "peaks_g": peaks_g,
         "scales": scales,
         "both_signs": both_signs,

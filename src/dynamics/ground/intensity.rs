@@ -48,7 +48,7 @@ pub struct Intensity {
 }
 
 impl Intensity {
-    /// That of samples, times in s, increasing, and accelerations in m/s2; gravity in m/s2 counts for the Arias
+    /// That of samples, times in s, increasing but where the acceleration jumps, and accelerations in m/s2; gravity in m/s2 counts for the Arias
     /// intensity.
     #[must_use]
     pub fn of(samples: &[(f64, f64)], gravity_m_s2: f64) -> Self {
@@ -125,7 +125,11 @@ impl Line {
             start_s: from.0,
             duration_s,
             acceleration: from.1,
-            slope: (to.1 - from.1) / duration_s,
+            slope: if duration_s > 0.0 {
+                (to.1 - from.1) / duration_s
+            } else {
+                0.0
+            },
         }
     }
 

@@ -67,7 +67,12 @@ impl GroundMotion {
         Ok(Self::polylines(horizontal, vertical, start_s))
     }
 
-    fn polylines(horizontal: &[(f64, f64)], vertical: &[(f64, f64)], start_s: f64) -> Self {
+    /// The same of samples that are known to be like that; where the acceleration jumps, there are two of one time.
+    pub(crate) fn polylines(
+        horizontal: &[(f64, f64)],
+        vertical: &[(f64, f64)],
+        start_s: f64,
+    ) -> Self {
         let mut corners: Vec<f64> = horizontal.iter().chain(vertical).map(|s| s.0).collect();
         corners.sort_unstable_by(f64::total_cmp);
         corners.dedup_by(|later, earlier| *later - *earlier < MIN_CORNER_SPACING_S);

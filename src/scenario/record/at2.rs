@@ -1,11 +1,11 @@
-//! The AT2 files of the PEER ground motion databases.
+//! The AT2 and VT2 files of the PEER ground motion databases.
 //!
 //! A header of a few lines, the last of which gives the number of samples and their spacing in one of
-//! many wordings, and then the accelerations, in units of gravity unless a line says otherwise, as Fortran wrote
+//! many wordings, and then the accelerations, in units of gravity unless a line says otherwise, or velocities, as Fortran wrote
 //! them: several to a line, of fixed width, so that a minus sign may be all that parts two of them.
 
 use super::layout::{Contents, too_long};
-use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Unit, number};
+use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Recorded, Unit, number, sample};
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
@@ -14,9 +14,23 @@ const MAX_HEADER_LINES: usize = 64;
 /// Only so many characters of each line are searched.
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
-/// Reads the samples; the first is at time zero. `unit` is that of the accelerations whatever the header says.
-pub(super) fn parse(text: &str, unit: Option<Unit>) -> Result<Contents, LineFault> {
-    let header = Header::parse(text, unit)?;
+/// Reads the samples; the first is at time zero. `unit` is theirs whatever the header says.
+pub(super) fn parse(
+    text: &str,
+    unit: Option<Unit>,
+    quantity: Recorded,
+) -> Result<Contents, LineFault> {
+    let header = Header::parse(text, unit, quantity)?;
+    let Some(unit) = unit.or(header.unit).or(match quantity {
+        Recorded::Acceleration => Some(Unit::Gravity),
+        Recorded::Velocity => None,
+    }) else {
+        return Err(LineFault {
+            line: header.line,
+            message: "the header names no unit up to here; give `unit`: what the velocities are in"
+                .to_owned(),
+        });
+    };
     let mut samples = Vec::new();
     let mut last_line = header.line;
     for (index, line) in text.lines().enumerate().skip(header.line) {
@@ -35,10 +49,10 @@ pub(super) fn parse(text: &str, unit: Option<Unit>) -> Result<Contents, LineFaul
                 );
                 return Err(fault(message));
             }
-            let acceleration = number(word).map_err(fault)?;
+            let value = sample(word).map_err(fault)?;
             // Counts below 2^53 are exact.
             #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
-            samples.push((samples.len() as f64 * header.step_s, acceleration));
+            samples.push((samples.len() as f64 * header.step_s, value));
         }
     }
     if samples.len() < header.count {
@@ -54,7 +68,8 @@ pub(super) fn parse(text: &str, unit: Option<Unit>) -> Result<Contents, LineFaul
     }
     Ok(Contents {
         samples,
-        unit: unit.or(header.unit).unwrap_or(Unit::Gravity),
+        unit,
+        wrapped: false,
     })
 }
 
@@ -88,7 +103,7 @@ struct Header {
     /// Number of samples.
     count: usize,
     step_s: f64,
-    /// Unit of the accelerations, where it is named.
+    /// Their unit, where it is named.
     unit: Option<Unit>,
 }
 
@@ -101,7 +116,7 @@ enum Item {
 }
 
 impl Header {
-    fn parse(text: &str, known: Option<Unit>) -> Result<Self, LineFault> {
+    fn parse(text: &str, known: Option<Unit>, quantity: Recorded) -> Result<Self, LineFault> {
         let mut items = Vec::new();
         let mut unit = None;
         for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
@@ -114,16 +129,22 @@ impl Header {
                     message,
                 })
             };
-            if let Some(what) = wrong_quantity(line) {
+            if let Some(what) = wrong_quantity(line, quantity) {
                 return fault(what);
             }
             if let Some(named) = unit_named(line) {
                 unit = Unit::written(named).or(known);
                 if unit.is_none() {
                     return fault(format!(
-                        "the unit is {}; give `unit`: what the accelerations are in",
+                        "the unit is {}; give `unit`: what the samples are in",
                         excerpt(named)
                     ));
+                }
+                if let (Some(unit), None) = (unit, known)
+                    && unit.quantity() != quantity
+                {
+                    let other = unit.other_quantity();
+                    return fault(format!("the unit is {}, {other}", excerpt(named)));
                 }
             }
             let here = Item::all(line);
@@ -169,7 +190,8 @@ impl Header {
         let max_count = MAX_SAMPLES as f64;
         if !(count.fract() == 0.0 && (2.0..=max_count).contains(&count)) {
             return Err(format!(
-                "NPTS is {count}; must be a whole number from 2 to {MAX_SAMPLES}"
+                "NPTS is {}; must be a whole number from 2 to {MAX_SAMPLES}",
+                plain(count)
             ));
         }
         if (count - 1.0) * step_s > MAX_TIME_S {
@@ -243,17 +265,23 @@ fn leading_number(word: &str) -> Option<f64> {
 }
 
 /// Why a line of the header says that the file holds something else than accelerations.
-fn wrong_quantity(line: &str) -> Option<String> {
+fn wrong_quantity(line: &str, wanted: Recorded) -> Option<String> {
     let line = line.to_ascii_uppercase();
-    for quantity in ["VELOCITY", "DISPLACEMENT"] {
-        if line.contains(&format!("{quantity} TIME")) {
-            return Some(format!(
-                "the file holds a {} history; must be an acceleration history",
-                quantity.to_ascii_lowercase()
-            ));
-        }
+    let holds = |name: &str| line.contains(&format!("{} TIME", name.to_ascii_uppercase()));
+    if holds("displacement") {
+        let wrong =
+            "the file holds a displacement history; must be an acceleration or velocity history";
+        return Some(wrong.to_owned());
     }
-    None
+    let other = Recorded::ALL.iter().find(|quantity| holds(quantity.name()));
+    let other = other.filter(|quantity| **quantity != wanted)?;
+    let wrong = match other {
+        Recorded::Velocity => "the file holds a velocity history: give `quantity = \"velocity\"`",
+        Recorded::Acceleration => {
+            "the file holds an acceleration history: leave out `quantity = \"velocity\"`"
+        }
+    };
+    Some(wrong.to_owned())
 }
 
 /// The unit that a line of the header names.
@@ -268,9 +296,13 @@ fn unit_named(line: &str) -> Option<&str> {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::{assert_fault, parse};
-    use crate::scenario::record::{Layout, Unit};
+    use crate::scenario::record::{Form, Layout, Recorded, Unit};
 
-    const AT2: Layout = Layout::At2 { unit: None };
+    const AT2: Layout = Layout {
+        form: Form::At2 { unit: None },
+        quantity: Recorded::Acceleration,
+        remove_mean: false,
+    };
 
     #[test]
     fn headers_of_all_wordings_are_read() {
@@ -355,13 +387,21 @@ mod tests {
         fault("NPTS= 1, DT= .1", 1, "NPTS is 1;");
         fault("NPTS= 99999999999, DT= .1", 1, "from 2 to 1800000");
         fault("NPTS= -5, DT= .1", 1, "NPTS is -5;");
+        fault("NPTS= 1e308, DT= .1", 1, "NPTS is 1e308;");
+        fault(&format!("{head}1\n1e308"), 6, "`1e308` is out of range");
         fault("NPTS= 5, DT= 0", 1, "DT is 0 s");
         fault("NPTS= 5, DT= -.1", 1, "DT is -0.1 s");
         fault("NPTS= 5, DT= 1e6", 1, "record of 4e6 s; at most 1e6 s");
         fault(
             "A\nVELOCITY TIME HISTORY IN UNITS OF CM/S",
             2,
-            "a velocity history",
+            "the file holds a velocity history: give `quantity = \"velocity\"`",
+        );
+        fault("UNITS OF CM/S\nNPTS 2 DT 1\n1 2", 1, "a unit of velocity");
+        fault(
+            "DISPLACEMENT TIME SERIES IN UNITS OF CM",
+            1,
+            "a displacement history",
         );
         fault("A\nUNITS OF MG\nNPTS 2 DT 1\n1 2", 2, "the unit is MG;");
     }
@@ -370,7 +410,7 @@ mod tests {
     fn accelerations_may_be_in_other_units() {
         let unit = |header: &str, key: Option<Unit>| {
             let text = format!("A\n{header}\nNPTS= 2, DT= .01\n1 2\n");
-            let layout = Layout::At2 { unit: key };
+            let layout = Layout::from(Form::At2 { unit: key });
             layout.parse(text.as_bytes()).unwrap().unit
         };
         for (header, named) in [
@@ -387,5 +427,23 @@ mod tests {
             unit("UNITS OF MG", Some(Unit::CentimetrePerS2)),
             Unit::CentimetrePerS2
         );
+    }
+
+    #[test]
+    fn velocities_are_read_where_they_are_announced() {
+        let velocities = |unit| Layout {
+            quantity: Recorded::Velocity,
+            ..Layout::from(Form::At2 { unit })
+        };
+        let text = "A\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01\n1 2\n";
+        let contents = velocities(None).parse(text.as_bytes()).unwrap();
+        assert_eq!(contents.unit, Unit::CentimetrePerS);
+        assert_eq!(contents.samples, [(0.0, 1.0), (0.01, 2.0)]);
+        let nameless = "A\nNPTS= 2, DT= .01\n1 2\n";
+        assert_fault(nameless, &velocities(None), 2, "names no unit");
+        let contents = velocities(Some(Unit::MetrePerS)).parse(nameless.as_bytes());
+        assert_eq!(contents.unwrap().unit, Unit::MetrePerS);
+        let text = "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 2, DT= .01\n1 2\n";
+        assert_fault(text, &velocities(None), 1, "leave out `quantity");
     }
 }

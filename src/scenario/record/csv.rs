@@ -1,12 +1,14 @@
-//! Tables of accelerations, with times or at even steps: columns parted by commas, semicolons, tabs or blanks.
+//! Tables of samples, with times or at even steps: columns parted by commas, semicolons, tabs or blanks.
+
+mod wrapped;
 
 use std::borrow::Cow;
 use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
-use super::layout::{COLUMN_NUMBER, Decimal, TableColumn, TableLayout, Times, evenly};
-use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, number};
+use super::layout::{COLUMN_NUMBER, Contents, Decimal, TableColumn, TableLayout, Times, evenly};
+use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, in_range, number};
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
@@ -14,14 +16,27 @@ use crate::scenario::error::excerpt;
 ///
 /// Blank lines and lines that begin with `#` are skipped. The first of the others may hold the names of
 /// the columns, and must where a column is chosen by name.
-pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Samples, LineFault> {
-    let text = without_first(text, layout.skip_rows);
-    let mut rows = Rows::new(&text, layout.decimal);
+pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Contents, LineFault> {
+    let table = without_first(text, layout.skip_rows);
+    let contents = |samples, wrapped| Contents {
+        samples,
+        unit: layout.unit,
+        wrapped,
+    };
+    if let (Times::Step(step_s), None) = (&layout.times, &layout.acceleration_column)
+        && (layout.wrapped || wrapped::is_shown(text, &table, layout))
+    {
+        let samples = wrapped::parse(&table, *step_s, layout.decimal)?;
+        return Ok(contents(samples, true));
+    }
+    Ok(contents(parse_columns(&table, layout)?, false))
+}
+
+/// Reads a table with a sample a row.
+fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault> {
+    let mut rows = Rows::new(text, layout.decimal);
     let Some(first) = rows.next()? else {
-        return Err(LineFault {
-            line: text.lines().count().min(layout.skip_rows).max(1),
-            message: "there are no samples".to_owned(),
-        });
+        return Err(nothing(text));
     };
     let columns = Columns::find(layout, &first)?;
     let mut step_s = None;
@@ -43,12 +58,13 @@ pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Samples, LineFau
         let values = columns.values(&row);
         let [time_s, acceleration] = values.map_err(|message| {
             let hint = if samples.is_empty() {
-                columns.where_numbers_begin(&mut rows)
+                rows.where_they_begin(|row| columns.values(row).is_ok())
             } else {
                 String::new()
             };
             fault(format!("{message}{hint}"))
         })?;
+        columns.check_count(&row).map_err(fault)?;
         if samples.len() == MAX_SAMPLES {
             return Err(fault(format!(
                 "more than {MAX_SAMPLES} samples, too many for a record"
@@ -84,6 +100,15 @@ pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Samples, LineFau
             evenly(step_s, accelerations)
                 .map_err(|wrong| fault(format!("`dt_s` and the number of samples {wrong}")))
         }
+    }
+}
+
+/// That a table has no rows.
+fn nothing(text: &str) -> LineFault {
+    let lines_that_are_not = |line: &&str| line.is_empty();
+    LineFault {
+        line: text.lines().take_while(lines_that_are_not).count().max(1),
+        message: "there are no samples".to_owned(),
     }
 }
 
@@ -124,6 +149,8 @@ struct Columns {
     /// `None` for times at even steps.
     time: Option<usize>,
     acceleration: usize,
+    /// Whether that was chosen; if not, there are no others.
+    is_chosen: bool,
     decimal: Decimal,
     /// Whether one is chosen by its name.
     by_name: bool,
@@ -140,11 +167,16 @@ impl Columns {
             Times::Column(column) => Some(column),
             Times::Step(_) => None,
         };
+        let chosen = layout.acceleration_column.as_ref();
         let is_name = |column: &&TableColumn| matches!(column, TableColumn::Name(_));
-        let by_name = time.iter().any(is_name) || is_name(&&layout.acceleration_column);
+        let by_name = time.iter().chain(&chosen).any(is_name);
         let columns = Self {
             time: time.map(index).transpose()?,
-            acceleration: index(&layout.acceleration_column)?,
+            acceleration: match chosen {
+                Some(column) => index(column)?,
+                None => usize::from(time.is_some()),
+            },
+            is_chosen: chosen.is_some(),
             decimal: layout.decimal,
             by_name,
             has_names: by_name,
@@ -170,7 +202,25 @@ impl Columns {
             None => Err(self.no_column(index, row)),
         };
         let time_s = self.time.map_or(Ok(0.0), value)?;
-        Ok([time_s, value(self.acceleration)?])
+        Ok([time_s, in_range(value(self.acceleration)?)?])
+    }
+
+    /// Refuses columns among which none was chosen.
+    fn check_count(&self, row: &Row<'_>) -> Result<(), String> {
+        let (count, samples) = (row.count(), row.count() - usize::from(self.time.is_some()));
+        if self.is_chosen || samples <= 1 {
+            return Ok(());
+        }
+        Err(match self.time {
+            None => format!(
+                "there are {count} columns: give `acceleration_column`, the one to read, or `wrapped = true`, if a \
+                 row holds {count} samples, one after another"
+            ),
+            Some(_) => format!(
+                "there are {count} columns: give `acceleration_column`, the one to read; or, if a row holds {count} \
+                 samples, one after another, `dt_s` and `wrapped = true`"
+            ),
+        })
     }
 
     fn no_column(&self, index: usize, row: &Row<'_>) -> String {
@@ -188,32 +238,23 @@ impl Columns {
     }
 
     fn number(&self, cell: &str) -> Result<f64, String> {
+        self.decimal.number(cell)
+    }
+}
+
+impl Decimal {
+    /// The number in a cell.
+    fn number(self, cell: &str) -> Result<f64, String> {
         let commas = cell.matches(',').count();
-        match self.decimal {
-            Decimal::Comma if commas == 1 && !cell.contains('.') => number(&cell.replace(',', "."))
+        match self {
+            Self::Comma if commas == 1 && !cell.contains('.') => number(&cell.replace(',', "."))
                 .map_err(|_| format!("`{}` is not a finite number", excerpt(cell))),
-            Decimal::Point if commas == 1 && number(&cell.replace(',', ".")).is_ok() => {
-                Err(format!(
-                    "`{}` is not a finite number; if the comma is its decimal mark, give `decimal = \"comma\"`",
-                    excerpt(cell)
-                ))
-            }
+            Self::Point if commas == 1 && number(&cell.replace(',', ".")).is_ok() => Err(format!(
+                "`{}` is not a finite number; if the comma is its decimal mark, give `decimal = \"comma\"`",
+                excerpt(cell)
+            )),
             _ => number(cell),
         }
-    }
-
-    /// Says which row begins the numbers, where one does, to follow what is wrong with the first row.
-    fn where_numbers_begin(&self, rows: &mut Rows<'_>) -> String {
-        while let Ok(Some(row)) = rows.next() {
-            if self.values(&row).is_ok() {
-                return format!(
-                    "; numbers begin on line {}: give `skip_rows = {}` if the table does",
-                    row.line,
-                    row.line - 1
-                );
-            }
-        }
-        String::new()
     }
 }
 
@@ -322,6 +363,20 @@ impl<'a> Rows<'a> {
         }
     }
 
+    /// Says which row begins the table, where one does, to follow what is wrong with the first row.
+    fn where_they_begin(&mut self, is_of_table: impl Fn(&Row<'_>) -> bool) -> String {
+        while let Ok(Some(row)) = self.next() {
+            if is_of_table(&row) {
+                return format!(
+                    "; numbers begin on line {}: give `skip_rows = {}` if the table does",
+                    row.line,
+                    row.line - 1
+                );
+            }
+        }
+        String::new()
+    }
+
     /// Refuses names between blanks that are not as many as the columns, because one of them has a blank.
     fn check_names(&self, header: &Row<'_>, row: &Row<'_>, by_name: bool) -> Result<(), LineFault> {
         let [names, columns] = [header, row].map(|row| row.cells().count());
@@ -342,6 +397,12 @@ impl Row<'_> {
         // Several blanks part no more than one does.
         let cells = cells.filter(|cell| !(self.by_blanks && cell.trim().is_empty()));
         cells.map(|cell| cell.trim().trim_matches('"').trim())
+    }
+
+    /// How many there are up to the last that is not empty.
+    fn count(&self) -> usize {
+        let filled = self.cells().zip(1..).filter(|(cell, _)| !cell.is_empty());
+        filled.last().map_or(0, |(_, count)| count)
     }
 
     fn fault(&self, message: String) -> LineFault {
@@ -379,16 +440,19 @@ impl TableColumn {
 mod tests {
     use crate::scenario::record::tests::parse;
     use crate::scenario::record::tests::{assert_fault, csv_layout};
-    use crate::scenario::record::{Decimal, Layout, TableColumn, TableLayout, Times, Unit};
+    use crate::scenario::record::{Decimal, Form, Layout, TableColumn, TableLayout, Times, Unit};
+
+    fn csv(layout: TableLayout) -> Layout {
+        Form::Csv(layout).into()
+    }
 
     #[test]
     fn tables_of_all_kinds_are_read() {
         let columns = |time, acceleration| {
-            Layout::Csv(TableLayout::new(
-                Times::Column(time),
-                acceleration,
-                Unit::Gravity,
-            ))
+            csv(TableLayout {
+                acceleration_column: Some(acceleration),
+                ..TableLayout::new(Times::Column(time), Unit::Gravity)
+            })
         };
         let name = |name: &str| TableColumn::Name(name.to_owned());
         let number = TableColumn::Number;
@@ -448,18 +512,17 @@ mod tests {
         fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
         fault("t,a\n0,1\n", 2, "number of samples is 1");
         // A first row that is half a number is not a header.
-        assert_fault("0,1x\n1,2\n", &Layout::Csv(numbered()), 1, "`1x`");
+        assert_fault("0,1x\n1,2\n", &csv(numbered()), 1, "`1x`");
     }
 
     /// Times in the first column and accelerations in the second.
     fn numbered() -> TableLayout {
-        let [time, acceleration] = [1, 2].map(TableColumn::Number);
-        TableLayout::new(Times::Column(time), acceleration, Unit::Gravity)
+        TableLayout::new(Times::Column(TableColumn::Number(1)), Unit::Gravity)
     }
 
     #[test]
     fn columns_may_be_parted_by_blanks() {
-        let layout = Layout::Csv(numbered());
+        let layout = csv(numbered());
         for text in [
             "0 1\n0.5 -2\n",
             "  0.0     1.0E+00\n  0.5    -2.0E+00  \n",
@@ -474,8 +537,8 @@ mod tests {
                 "{text}"
             );
         }
-        let named = Layout::Csv(TableLayout {
-            acceleration_column: TableColumn::Name("acc".to_owned()),
+        let named = csv(TableLayout {
+            acceleration_column: Some(TableColumn::Name("acc".to_owned())),
             ..numbered()
         });
         let text = "time  acc\n0 1\n0.5 -2\n";
@@ -487,10 +550,7 @@ mod tests {
 
     #[test]
     fn a_single_column_has_even_steps() {
-        let layout = |step_s| {
-            let first = TableColumn::Number(1);
-            Layout::Csv(TableLayout::new(Times::Step(step_s), first, Unit::Gravity))
-        };
+        let layout = |step_s| csv(TableLayout::new(Times::Step(step_s), Unit::Gravity));
         for text in [
             "1\n-2\n3\n",
             "acc in g\n1\n-2\n3",
@@ -511,14 +571,14 @@ mod tests {
         fault("1\n", 1, "number of samples is 1");
         let message =
             "there is no column 2 in `1`; if the file has accelerations only, give `dt_s`";
-        assert_fault("1\n2\n", &Layout::Csv(numbered()), 1, message);
+        assert_fault("1\n2\n", &csv(numbered()), 1, message);
     }
 
     #[test]
     fn lines_before_the_table_are_skipped_and_hinted_at() {
         let text = "Station X; 12.5 E\nDate; 2009\n\nt; a\n0; 1\n0.5; -2\n";
         let skipping = |skip_rows| {
-            Layout::Csv(TableLayout {
+            csv(TableLayout {
                 skip_rows,
                 ..numbered()
             })
@@ -526,8 +586,8 @@ mod tests {
         let expected = Ok(vec![(0.0, 1.0), (0.5, -2.0)]);
         assert_eq!(parse(text, &skipping(3)), expected);
         assert_eq!(parse(text, &skipping(4)), expected);
-        let named = Layout::Csv(TableLayout {
-            acceleration_column: TableColumn::Name("a".to_owned()),
+        let named = csv(TableLayout {
+            acceleration_column: Some(TableColumn::Name("a".to_owned())),
             skip_rows: 3,
             ..numbered()
         });
@@ -547,7 +607,7 @@ mod tests {
 
     #[test]
     fn decimal_commas_are_read_where_they_are_announced() {
-        let comma = Layout::Csv(TableLayout {
+        let comma = csv(TableLayout {
             decimal: Decimal::Comma,
             ..numbered()
         });
@@ -565,7 +625,7 @@ mod tests {
         }
         assert_fault("0;1\n1;1,2,3", &comma, 2, "`1,2,3` is not a finite number");
         assert_fault("0;1\n1;1.2,3", &comma, 2, "`1.2,3` is not a finite number");
-        let point = Layout::Csv(numbered());
+        let point = csv(numbered());
         assert_fault("0;1\n1;1,2", &point, 2, "give `decimal = \"comma\"`");
     }
 }

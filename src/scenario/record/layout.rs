@@ -8,8 +8,8 @@ use serde::Serialize;
 use toml::de::DeValue;
 
 use super::unit::AnyUnit;
-use super::{LineFault, MAX_TIME_S, MIN_STEP_S, Samples, Unit, asc, at2, csv};
-use crate::scenario::table::{Count, Number, OneOf, Reading, Rule, Table};
+use super::{LineFault, MAX_TIME_S, MIN_STEP_S, Samples, Unit, asc, at2, csv, knet};
+use crate::scenario::table::{Count, Number, OneOf, Reading, Rule, Switch, Table};
 
 named! {
     /// Format of a record's file.
@@ -18,15 +18,31 @@ named! {
         At2 = "at2",
         /// Engineering Strong Motion database.
         Asc = "asc",
-        /// A table with a column of accelerations, and one of times or even steps.
+        /// K-NET and KiK-net.
+        Knet = "knet",
+        /// A table with a column of samples and one of times, or with samples at even steps.
         Csv = "csv",
     }
 }
 
 named! {
+    /// What the samples of a record are.
+    #[derive(Default)]
+    pub enum Recorded {
+        /// Accelerations, joined by straight lines.
+        #[default]
+        Acceleration = "acceleration",
+        /// Velocities, joined by straight lines: the acceleration is constant between samples.
+        Velocity = "velocity",
+    }
+}
+
+named! {
     /// What parts the whole of a number from its fraction.
+    #[derive(Default)]
     pub enum Decimal {
         /// `0.12`.
+        #[default]
         Point = "point",
         /// `0,12`; commas then part no columns.
         Comma = "comma",
@@ -60,34 +76,36 @@ pub struct TableLayout {
     /// Times.
     #[serde(flatten)]
     pub times: Times,
-    /// Accelerations.
-    pub acceleration_column: TableColumn,
+    /// Accelerations, or velocities. `None`: there is but one column of them; of several, a row holds as many samples,
+    /// where the table shows that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acceleration_column: Option<TableColumn>,
+    /// Whether a row holds several samples, one after another, whatever the table shows; counts at even steps, where no
+    /// column is chosen.
+    #[serde(skip_serializing_if = "is_default")]
+    pub wrapped: bool,
     /// Their unit.
     pub unit: Unit,
     /// Lines before the table.
-    #[serde(skip_serializing_if = "is_none")]
+    #[serde(skip_serializing_if = "is_default")]
     pub skip_rows: usize,
     /// How numbers are written.
-    #[serde(skip_serializing_if = "is_point")]
+    #[serde(skip_serializing_if = "is_default")]
     pub decimal: Decimal,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
-const fn is_none(rows: &usize) -> bool {
-    *rows == 0
-}
-
-fn is_point(decimal: &Decimal) -> bool {
-    *decimal == Decimal::Point
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl TableLayout {
-    /// A table that begins on the first line, with decimal points.
+    /// A table that begins on the first line, with decimal points and the samples where it shows them.
     #[must_use]
-    pub const fn new(times: Times, acceleration_column: TableColumn, unit: Unit) -> Self {
+    pub const fn new(times: Times, unit: Unit) -> Self {
         Self {
             times,
-            acceleration_column,
+            acceleration_column: None,
+            wrapped: false,
             unit,
             skip_rows: 0,
             decimal: Decimal::Point,
@@ -95,29 +113,59 @@ impl TableLayout {
     }
 }
 
-/// How a file is read.
+/// How a file is written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "format", rename_all = "snake_case")]
-pub enum Layout {
+pub enum Form {
     /// As an AT2 file.
     At2 {
-        /// Unit of its accelerations; `None`: the one that its header names, or gravity.
+        /// Unit of its samples; `None`: the one that its header names, or gravity.
         #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<Unit>,
     },
     /// As an ASC file, whose header says all.
     Asc,
+    /// As a file of K-NET, whose header says all.
+    Knet,
     /// As a table.
     Csv(TableLayout),
+}
+
+/// How a file is read.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Layout {
+    /// How it is written.
+    #[serde(flatten)]
+    pub form: Form,
+    /// What its samples are.
+    #[serde(skip_serializing_if = "is_default")]
+    pub quantity: Recorded,
+    /// Whether accelerations are read without their mean over the time of the record.
+    #[serde(skip_serializing_if = "is_default")]
+    pub remove_mean: bool,
+}
+
+impl From<Form> for Layout {
+    /// Accelerations as they are in the file.
+    fn from(form: Form) -> Self {
+        Self {
+            form,
+            quantity: Recorded::Acceleration,
+            remove_mean: false,
+        }
+    }
 }
 
 /// What is in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
-    /// Times in s, increasing by at least a microsecond, and accelerations. There are from 2 to 1 800 000, all finite.
+    /// Times in s, increasing by at least a microsecond, and accelerations or velocities. There are from 2 to 1 800 000,
+    /// of a magnitude of at most 1e12.
     pub samples: Vec<(f64, f64)>,
-    /// Unit of the accelerations.
+    /// Their unit.
     pub unit: Unit,
+    /// Whether a row of a table holds several of them.
+    pub wrapped: bool,
 }
 
 const STEP_S: Number = Number(Included(MIN_STEP_S), Included(MAX_TIME_S));
@@ -131,10 +179,11 @@ const SKIPPED: Count = Count {
 };
 
 /// The keys that only tables have.
-const TABLE_KEYS: [&str; 5] = [
+const TABLE_KEYS: [&str; 6] = [
     "time_column",
     "dt_s",
     "acceleration_column",
+    "wrapped",
     "skip_rows",
     "decimal",
 ];
@@ -148,20 +197,21 @@ impl Format {
             .unwrap_or_default()
             .to_ascii_lowercase();
         match ending.as_str() {
-            "at2" => Ok(Self::At2),
+            "at2" | "vt2" => Ok(Self::At2),
             "asc" => Ok(Self::Asc),
+            "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
             "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
             _ => Err(
-                "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\" or \"csv\"",
+                "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\", \"knet\" or \
+                 \"csv\"",
             ),
         }
     }
 
-    /// Whether the ending of a file's name is that of a record.
+    /// The format that the ending of a file's name tells; `None`: it is not that of a record.
     #[must_use]
-    pub fn is_of_record(file: &Path) -> bool {
-        file.to_str()
-            .is_some_and(|file| Self::of_ending(file).is_ok())
+    pub fn of_file(file: &Path) -> Option<Self> {
+        Self::of_ending(file.to_str()?).ok()
     }
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Reading<Option<Self>> {
@@ -180,17 +230,25 @@ impl Layout {
     ///
     /// The first thing that is wrong with them.
     pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
-        // Headers may be in any encoding; the numbers are the same in all of them.
-        let text = String::from_utf8_lossy(bytes);
-        let text = text.trim_start_matches('\u{feff}');
-        match self {
-            Self::At2 { unit } => at2::parse(text, *unit),
-            Self::Asc => asc::parse(text),
-            Self::Csv(layout) => Ok(Contents {
-                samples: csv::parse(text, layout)?,
-                unit: layout.unit,
-            }),
+        let text = legible(bytes)?;
+        let mut contents = match &self.form {
+            Form::At2 { unit } => at2::parse(&text, *unit, self.quantity),
+            Form::Asc => asc::parse(&text, self.quantity),
+            Form::Knet => knet::parse(&text),
+            Form::Csv(layout) => csv::parse(&text, layout),
+        }?;
+        let unit = contents.unit;
+        if unit.quantity() != self.quantity {
+            return Err(LineFault {
+                line: 1,
+                message: format!("the unit is {:?}, {}", unit.name(), unit.other_quantity()),
+            });
         }
+        if self.remove_mean {
+            let mean = mean(&contents.samples);
+            contents.samples.iter_mut().for_each(|s| s.1 -= mean);
+        }
+        Ok(contents)
     }
 
     pub(in crate::scenario) fn read(
@@ -200,6 +258,7 @@ impl Layout {
         let dt_s = table.optional("dt_s", &STEP_S);
         let time_column = table.optional("time_column", &AnyColumn);
         let acceleration_column = table.optional("acceleration_column", &AnyColumn);
+        let wrapped = table.or("wrapped", &Switch, false);
         let skip_rows = table.or("skip_rows", &SKIPPED, 0);
         let decimals = OneOf {
             all: Decimal::ALL,
@@ -207,21 +266,49 @@ impl Layout {
         };
         let decimal = table.or("decimal", &decimals, Decimal::Point);
         let unit = table.optional("unit", &AnyUnit);
+        let quantities = OneOf {
+            all: Recorded::ALL,
+            name: Recorded::name,
+        };
+        let quantity = table.or("quantity", &quantities, Recorded::Acceleration);
+        let remove_mean = table.or("remove_mean", &Switch, false);
         let format = format?;
         if format != Format::Csv
             && let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key))
         {
             return Err(table.wrong(key, "applies to `format = \"csv\"` only"));
         }
-        match format {
-            Format::At2 => Ok(Self::At2 { unit: unit? }),
+        let (unit, quantity, remove_mean) = (unit?, quantity?, remove_mean?);
+        if let Some(unit) = unit
+            && unit.quantity() != quantity
+        {
+            return Err(table.wrong("unit", format!("is {}", unit.other_quantity())));
+        }
+        if quantity == Recorded::Velocity {
+            if format == Format::Knet {
+                let wrong = "does not apply to a file of K-NET, which holds accelerations";
+                return Err(table.wrong("quantity", wrong));
+            }
+            if remove_mean {
+                let wrong =
+                    "applies to accelerations: a uniform velocity shakes nothing; leave it out";
+                return Err(table.wrong("remove_mean", wrong));
+            }
+        }
+        let form = match format {
+            Format::At2 => Ok(Form::At2 { unit }),
             Format::Asc if table.gives("unit") => Err(table.wrong(
                 "unit",
                 "does not apply to an ASC file, whose header has UNITS",
             )),
-            Format::Asc => Ok(Self::Asc),
+            Format::Asc => Ok(Form::Asc),
+            Format::Knet if table.gives("unit") => Err(table.wrong(
+                "unit",
+                "does not apply to a file of K-NET, whose header has a Scale Factor",
+            )),
+            Format::Knet => Ok(Form::Knet),
             Format::Csv => {
-                let unit = match unit? {
+                let unit = match unit {
                     Some(unit) => Ok(unit),
                     None => table.required("unit", &AnyUnit),
                 };
@@ -229,22 +316,34 @@ impl Layout {
                     let wrong = "cannot be combined with `time_column`; give one of them";
                     return Err(table.wrong("dt_s", wrong));
                 }
-                let (times, acceleration_column) = match dt_s? {
-                    Some(step_s) => (Times::Step(step_s), acceleration_column?.unwrap_or(FIRST)),
-                    None => {
-                        let times = Times::Column(time_column?.unwrap_or(FIRST));
-                        (times, acceleration_column?.unwrap_or(SECOND))
-                    }
+                let times = match dt_s? {
+                    Some(step_s) => Times::Step(step_s),
+                    None => Times::Column(time_column?.unwrap_or(TableColumn::Number(1))),
                 };
-                Ok(Self::Csv(TableLayout {
+                let (acceleration_column, wrapped) = (acceleration_column?, wrapped?);
+                if wrapped && acceleration_column.is_some() {
+                    let wrong = "cannot be combined with `acceleration_column`; give one of them";
+                    return Err(table.wrong("wrapped", wrong));
+                }
+                if wrapped && matches!(times, Times::Column(_)) {
+                    let wrong = "needs `dt_s`: rows of several samples have no column of times";
+                    return Err(table.wrong("wrapped", wrong));
+                }
+                Ok(Form::Csv(TableLayout {
                     times,
                     acceleration_column,
+                    wrapped,
                     unit: unit?,
                     skip_rows: skip_rows?,
                     decimal: decimal?,
                 }))
             }
-        }
+        };
+        Ok(Self {
+            form: form?,
+            quantity,
+            remove_mean,
+        })
     }
 
     /// Whether a key of `[ground.record]` is of tables only.
@@ -255,16 +354,48 @@ impl Layout {
 
     /// The format of the file.
     pub(in crate::scenario) const fn format(&self) -> Format {
-        match self {
-            Self::At2 { .. } => Format::At2,
-            Self::Asc => Format::Asc,
-            Self::Csv(_) => Format::Csv,
+        match self.form {
+            Form::At2 { .. } => Format::At2,
+            Form::Asc => Format::Asc,
+            Form::Knet => Format::Knet,
+            Form::Csv(_) => Format::Csv,
         }
     }
 }
 
-const FIRST: TableColumn = TableColumn::Number(1);
-const SECOND: TableColumn = TableColumn::Number(2);
+/// The text of a file. Headers may be in any encoding that has the digits where ASCII has them.
+pub(super) fn legible(bytes: &[u8]) -> Result<String, LineFault> {
+    let fault = |message: &str| LineFault {
+        line: 1,
+        message: message.to_owned(),
+    };
+    let is_utf_16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
+    // Without a mark, every other byte of numbers in UTF-16 is zero.
+    if is_utf_16 || bytes.iter().take(100).any(|byte| *byte == 0) {
+        return Err(fault(
+            "the file is UTF-16 text, as some programs export it, or no text: save it as UTF-8 or plain text",
+        ));
+    }
+    if bytes.contains(&b'\r') && !bytes.contains(&b'\n') {
+        return Err(fault(
+            "the lines end with a carriage return alone (CR), as on old Macs: save the file with line ends LF or CR LF",
+        ));
+    }
+    let text = String::from_utf8_lossy(bytes);
+    Ok(text.trim_start_matches('\u{feff}').to_owned())
+}
+
+/// The mean over time of samples that are joined by straight lines.
+pub(super) fn mean(samples: &[(f64, f64)]) -> f64 {
+    let [Some(first), Some(last)] = [samples.first(), samples.last()] else {
+        return 0.0;
+    };
+    let areas = samples.windows(2).map(|pair| {
+        let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
+        0.5 * (a0 + a1) * (t1 - t0)
+    });
+    areas.sum::<f64>() / (last.0 - first.0)
+}
 
 /// Name or number of a column.
 struct AnyColumn;

@@ -3,7 +3,9 @@
 //! ```toml
 //! [ground.record]
 //! file = "north.at2"            # relative to the scenario file
-//! format = "at2"                # or "asc" or "csv"; from the file extension when left out
+//! format = "at2"                # or "asc", "knet" or "csv"; from the file extension when left out
+//! quantity = "acceleration"     # or "velocity": what the samples are
+//! remove_mean = false           # whether accelerations are read without their mean
 //! component = "horizontal"      # or "vertical": where the file's accelerations point, positive to the
 //!                               # right or upwards
 //! scale = 1.0                   # or peak_g = 0.5, the peak to scale to
@@ -13,18 +15,21 @@
 //! file = "up.csv"
 //! time_column = 1               # of tables: number or name of the column
 //! acceleration_column = "up"
-//! unit = "cm/s2"                # of tables, and required there: "g", "m/s2" or "cm/s2"
+//! unit = "cm/s2"                # of tables, and required there: "g", "m/s2" or "cm/s2"; "m/s" or "cm/s" of velocities
 //! ```
 //!
-//! How files are read is in [`Layout`]. Samples are joined by straight lines; outside them the acceleration is
-//! zero. Units of gravity are those of the simulation, `gravity_m_s2`.
+//! How files are read is in [`Layout`]. Samples are joined by straight lines, so that the acceleration of a record of
+//! velocities is constant from one to the next; outside them the acceleration is zero. Units of gravity are those of
+//! the simulation, `gravity_m_s2`.
 
 mod asc;
 mod at2;
 mod csv;
+mod knet;
 mod layout;
 mod unit;
 
+use std::borrow::Cow;
 use std::fmt;
 use std::fs;
 use std::io::Read as _;
@@ -32,7 +37,9 @@ use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
 use std::sync::Arc;
 
-pub use layout::{Contents, Decimal, Format, Layout, TableColumn, TableLayout, Times};
+pub use layout::{
+    Contents, Decimal, Form, Format, Layout, Recorded, TableColumn, TableLayout, Times,
+};
 use serde::Serialize;
 pub use unit::Unit;
 
@@ -44,7 +51,7 @@ use super::table::{self, Number, OneOf, Reading, Table, Text};
 use crate::argument::{plain, short};
 use crate::dynamics::ground::GroundMotion;
 
-/// Times in s and accelerations.
+/// Times in s, and accelerations or velocities.
 type Samples = Vec<(f64, f64)>;
 
 /// Largest file.
@@ -55,6 +62,8 @@ const MAX_SAMPLES: usize = 1_800_000;
 const MAX_TIME_S: f64 = 1e6;
 /// Least spacing of samples: a jump may take a microsecond.
 const MIN_STEP_S: f64 = 1e-6;
+/// Largest sample in any unit: no product or square of what follows from it leaves the range of an `f64`.
+const MAX_SAMPLE: f64 = 1e12;
 
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
 pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(MAX_ACCELERATION_G));
@@ -81,7 +90,7 @@ pub enum Scaling {
     PeakG(f64),
 }
 
-/// Accelerations along one direction, from a file.
+/// A motion along one direction, from a file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
     /// The file, relative to that of the scenario.
@@ -92,10 +101,13 @@ pub struct Series {
     /// How strong it is.
     #[serde(flatten)]
     pub scaling: Scaling,
-    /// Unit of the accelerations in the file.
+    /// Unit of the samples in the file.
     #[serde(skip)]
     pub unit: Unit,
-    /// Times in s, increasing, and accelerations as in the file.
+    /// Whether a row of the table holds several samples.
+    #[serde(skip)]
+    pub wrapped: bool,
+    /// Times in s, increasing, and accelerations or velocities as in the file, perhaps without their mean.
     #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
 }
@@ -127,9 +139,6 @@ pub struct Record {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertical: Option<Series>,
 }
-
-/// Why the samples of a file make a ground motion.
-const READ: &str = "what was read and checked is a ground motion";
 
 impl Record {
     /// The records, the horizontal one first.
@@ -164,15 +173,14 @@ impl Record {
     pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let main = self.main.accelerations_m_s2(gravity_m_s2);
         match (self.component, &self.vertical) {
-            (Component::Vertical, _) => GroundMotion::record(&[], &main, self.start_s),
+            (Component::Vertical, _) => GroundMotion::polylines(&[], &main, self.start_s),
             (Component::Horizontal, vertical) => {
                 let vertical = vertical
                     .as_ref()
                     .map_or_else(Vec::new, |series| series.accelerations_m_s2(gravity_m_s2));
-                GroundMotion::record(&main, &vertical, self.start_s)
+                GroundMotion::polylines(&main, &vertical, self.start_s)
             }
         }
-        .expect(READ)
     }
 
     /// Reads `[ground.record]` and builds its motion.
@@ -229,12 +237,17 @@ impl Series {
     }
 
     fn new(file: String, layout: Layout, contents: Contents) -> Self {
-        let Contents { samples, unit } = contents;
+        let Contents {
+            samples,
+            unit,
+            wrapped,
+        } = contents;
         Self {
             file,
             layout,
             scaling: Scaling::Factor(1.0),
             unit,
+            wrapped,
             samples: samples.into(),
         }
     }
@@ -335,25 +348,48 @@ impl Series {
         self.samples.last().map_or(0.0, |sample| sample.0)
     }
 
-    /// Times in s, on the clock of the file, and accelerations in m/s2 as scaled.
+    /// Times in s, on the clock of the file, and accelerations in m/s2 as scaled, joined by straight lines. Where they
+    /// jump there are two at a time.
     #[must_use]
     pub fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Vec<(f64, f64)> {
         let factor = self.factor(gravity_m_s2);
         let scaled = |&(time_s, acceleration): &(f64, f64)| (time_s, acceleration * factor);
-        self.samples.iter().map(scaled).collect()
+        self.accelerations().iter().map(scaled).collect()
     }
 
-    /// What a number of the file is multiplied by to be in m/s2.
+    /// The same in the unit of the file, over seconds if that is one of velocity.
+    fn accelerations(&self) -> Cow<'_, [(f64, f64)]> {
+        match self.unit.quantity() {
+            Recorded::Acceleration => Cow::Borrowed(&*self.samples),
+            Recorded::Velocity => {
+                let constants = self.samples.windows(2).flat_map(|pair| {
+                    let [(from_s, from), (to_s, to)] = [pair[0], pair[1]];
+                    let acceleration = (to - from) / (to_s - from_s);
+                    [(from_s, acceleration), (to_s, acceleration)]
+                });
+                Cow::Owned(constants.collect())
+            }
+        }
+    }
+
+    /// What an acceleration in the unit of the file is multiplied by to be in m/s2.
     fn factor(&self, gravity_m_s2: f64) -> f64 {
         match self.scaling {
-            Scaling::Factor(factor) => factor * self.unit.in_m_s2(gravity_m_s2),
+            Scaling::Factor(factor) => factor * self.unit.in_si(gravity_m_s2),
             Scaling::PeakG(peak_g) => peak_g * gravity_m_s2 / self.peak(),
         }
     }
 
-    /// Largest magnitude in the file.
+    /// Largest magnitude of the acceleration in the unit of the file.
     fn peak(&self) -> f64 {
-        self.samples.iter().map(|s| s.1.abs()).fold(0.0, f64::max)
+        let accelerations = self.accelerations();
+        accelerations.iter().map(|s| s.1.abs()).fold(0.0, f64::max)
+    }
+
+    /// Mean of the accelerations over the time of the record as scaled, in units of gravity.
+    #[must_use]
+    pub fn mean_g(&self, gravity_m_s2: f64) -> f64 {
+        layout::mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
     }
 
     fn read(
@@ -451,8 +487,8 @@ fn read_contents(path: &Path, layout: &Layout) -> Result<Contents, FileFault> {
 /// Rows of so many numbers in a file, each with its line, or what is wrong with it. The first may hold names.
 pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f64; N])>, String> {
     let bytes = read_bytes(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    csv::numbers(text.trim_start_matches('\u{feff}')).map_err(|fault| faulty(path, &fault))
+    let numbers = layout::legible(&bytes).and_then(|text| csv::numbers(&text));
+    numbers.map_err(|fault| faulty(path, &fault))
 }
 
 /// That a line of a file is wrong.
@@ -492,6 +528,23 @@ fn number(word: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("`{}` is not a finite number", excerpt(word)))
 }
 
+/// A sample as programs write it.
+fn sample(word: &str) -> Result<f64, String> {
+    in_range(number(word)?)
+}
+
+/// Refuses a sample that is none.
+fn in_range(value: f64) -> Result<f64, String> {
+    if value.abs() <= MAX_SAMPLE {
+        return Ok(value);
+    }
+    Err(format!(
+        "`{}` is out of range; samples must be at most {} in magnitude",
+        plain(value),
+        short(MAX_SAMPLE)
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -499,11 +552,11 @@ mod tests {
 
     pub(super) fn csv_layout() -> Layout {
         let number = TableColumn::Number(1);
-        Layout::Csv(TableLayout::new(
-            Times::Column(number),
-            TableColumn::Name("a".to_owned()),
-            Unit::Gravity,
-        ))
+        Form::Csv(TableLayout {
+            acceleration_column: Some(TableColumn::Name("a".to_owned())),
+            ..TableLayout::new(Times::Column(number), Unit::Gravity)
+        })
+        .into()
     }
 
     pub(super) fn parse(text: &str, layout: &Layout) -> Result<Samples, LineFault> {
@@ -533,13 +586,20 @@ mod tests {
                     times: Times::Step(0.01),
                     skip_rows: 1,
                     decimal: Decimal::Comma,
-                    ..TableLayout::new(Times::Step(0.01), TableColumn::Number(1), Unit::Gravity)
+                    ..TableLayout::new(Times::Step(0.01), Unit::Gravity)
+                };
+                let wrapped = TableLayout {
+                    wrapped: true,
+                    skip_rows: 0,
+                    ..blanks.clone()
                 };
                 let layouts = [
-                    Layout::At2 { unit: None },
-                    Layout::Asc,
+                    Form::At2 { unit: None }.into(),
+                    Form::Asc.into(),
+                    Form::Knet.into(),
                     csv_layout(),
-                    Layout::Csv(blanks),
+                    Form::Csv(blanks).into(),
+                    Form::Csv(wrapped).into(),
                 ];
                 for layout in layouts {
                     match parse(text, &layout) {
@@ -560,6 +620,10 @@ mod tests {
     }
 
     const WORDS: &[&str] = &[
+        "Sampling Freq(Hz) 10Hz\n",
+        "Scale Factor 3920(gal)/6182761\n",
+        "Memo.\n",
+        "1e308",
         "NPTS",
         "DT",
         "=",

@@ -1,11 +1,12 @@
-//! Units of recorded accelerations.
+//! Units of recorded accelerations and velocities.
 
 use toml::de::DeValue;
 
+use super::Recorded;
 use crate::scenario::table::{OneOf, Rule};
 
 named! {
-    /// Unit of the accelerations in a file.
+    /// Unit of the samples in a file.
     pub enum Unit {
         /// Gravity of the simulation.
         Gravity = "g",
@@ -13,15 +14,41 @@ named! {
         MetrePerS2 = "m/s2",
         /// Centimetres per second squared, gal.
         CentimetrePerS2 = "cm/s2",
+        /// Metres per second.
+        MetrePerS = "m/s",
+        /// Centimetres per second.
+        CentimetrePerS = "cm/s",
     }
 }
 
 impl Unit {
-    pub(super) const fn in_m_s2(self, gravity_m_s2: f64) -> f64 {
+    /// What it is a unit of.
+    #[must_use]
+    pub const fn quantity(self) -> Recorded {
+        match self {
+            Self::Gravity | Self::MetrePerS2 | Self::CentimetrePerS2 => Recorded::Acceleration,
+            Self::MetrePerS | Self::CentimetrePerS => Recorded::Velocity,
+        }
+    }
+
+    /// In m/s2, or m/s.
+    pub(super) const fn in_si(self, gravity_m_s2: f64) -> f64 {
         match self {
             Self::Gravity => gravity_m_s2,
-            Self::MetrePerS2 => 1.0,
-            Self::CentimetrePerS2 => 0.01,
+            Self::MetrePerS2 | Self::MetrePerS => 1.0,
+            Self::CentimetrePerS2 | Self::CentimetrePerS => 0.01,
+        }
+    }
+
+    /// That it is a unit of the other quantity than asked for, and what to change.
+    pub(super) const fn other_quantity(self) -> &'static str {
+        match self.quantity() {
+            Recorded::Velocity => {
+                "a unit of velocity; give `quantity = \"velocity\"` if the record is one of velocities"
+            }
+            Recorded::Acceleration => {
+                "a unit of acceleration; leave out `quantity = \"velocity\"` if the record is one of accelerations"
+            }
         }
     }
 
@@ -36,6 +63,8 @@ impl Unit {
             "g" => Some(Self::Gravity),
             "m/s2" | "m/s/s" => Some(Self::MetrePerS2),
             "cm/s2" | "cm/s/s" | "gal" | "gals" => Some(Self::CentimetrePerS2),
+            "m/s" => Some(Self::MetrePerS),
+            "cm/s" => Some(Self::CentimetrePerS),
             _ => None,
         }
     }
@@ -85,12 +114,14 @@ mod tests {
                     "(cm/sec^2)",
                 ],
             ),
+            (Unit::MetrePerS, &["m/s", "M/SEC"]),
+            (Unit::CentimetrePerS, &["cm/s", "CM/SEC", "(cm/s)"]),
         ] {
             for text in texts {
                 assert_eq!(Unit::written(text), Some(unit), "{text}");
             }
         }
-        for text in ["", "mg", "cm/s", "mm/s2", "g/10", "in/s2"] {
+        for text in ["", "mg", "cm", "mm/s", "mm/s2", "g/10", "in/s2"] {
             assert_eq!(Unit::written(text), None, "{text}");
         }
     }

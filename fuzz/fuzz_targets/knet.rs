@@ -1,0 +1,9 @@
+//! The reader of files of K-NET.
+#![no_main]
+
+mod common;
+
+use archrock::scenario::Form;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|contents: &[u8]| common::check(&Form::Knet.into(), contents));

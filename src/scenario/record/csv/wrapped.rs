@@ -1,0 +1,218 @@
+//! Tables whose rows hold several samples, one after another.
+
+use super::super::layout::{Decimal, TableLayout, evenly};
+use super::super::{LineFault, MAX_SAMPLES, Samples, in_range};
+use super::{Row, Rows, nothing};
+
+/// Whether the table shows that its rows hold several samples: all rows but the last are equally long and that is
+/// shorter, or the number of all samples stands before the table, `text` with its first lines skipped, or in a comment.
+pub(super) fn is_shown(text: &str, table: &str, layout: &TableLayout) -> bool {
+    let Some((names, lengths)) = lengths(table, layout.decimal) else {
+        return false;
+    };
+    let [full @ .., last] = &*lengths else {
+        return false;
+    };
+    if let [length, ..] = full
+        && full.iter().all(|other| other == length)
+        && last < length
+    {
+        return true;
+    }
+    if lengths.iter().all(|length| *length == 1) {
+        return false;
+    }
+    let comments = table.lines().filter(|line| line.trim().starts_with('#'));
+    let skipped = text.lines().take(layout.skip_rows);
+    let announced: Vec<_> = skipped
+        .chain(comments)
+        .chain(names.as_deref())
+        .flat_map(|line| line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c)))
+        .filter_map(|word| word.parse::<usize>().ok())
+        .collect();
+    // Rows that are announced are rows.
+    announced.contains(&lengths.iter().sum()) && !announced.contains(&lengths.len())
+}
+
+/// A first row of names, and how many numbers are in each of the others; `None`: some are no numbers.
+fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)> {
+    let mut rows = Rows::new(table, decimal);
+    let mut names = None;
+    let mut lengths = Vec::new();
+    while let Some(row) = rows.next().ok()? {
+        if lengths.is_empty() && names.is_none() && has_no_number(&row, decimal) {
+            names = Some(row.text.to_owned());
+        } else if is_of_numbers(&row, decimal) {
+            lengths.push(row.count());
+        } else {
+            return None;
+        }
+    }
+    Some((names, lengths))
+}
+
+/// Reads the samples of all rows. A first row without any number holds names.
+pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Result<Samples, LineFault> {
+    let mut rows = Rows::new(table, decimal);
+    let mut samples = Vec::new();
+    let mut last = nothing(table);
+    let mut is_first = true;
+    while let Some(row) = rows.next()? {
+        last.line = row.line;
+        if std::mem::take(&mut is_first) && has_no_number(&row, decimal) {
+            continue;
+        }
+        for cell in row.cells().take(row.count()) {
+            let value = decimal.number(cell).and_then(in_range);
+            let value = value.map_err(|message| {
+                let hint = if samples.is_empty() {
+                    rows.where_they_begin(|row| is_of_numbers(row, decimal))
+                } else {
+                    String::new()
+                };
+                row.fault(format!("{message}{hint}"))
+            })?;
+            if samples.len() == MAX_SAMPLES {
+                return Err(row.fault(format!(
+                    "more than {MAX_SAMPLES} samples, too many for a record"
+                )));
+            }
+            samples.push(value);
+        }
+    }
+    let fault = |message| LineFault { message, ..last };
+    match samples.len() {
+        0 => Err(last),
+        1 => Err(fault(
+            "the number of samples is 1; must be at least 2".to_owned(),
+        )),
+        _ => evenly(step_s, samples)
+            .map_err(|wrong| fault(format!("`dt_s` and the number of samples {wrong}"))),
+    }
+}
+
+fn is_of_numbers(row: &Row<'_>, decimal: Decimal) -> bool {
+    let mut cells = row.cells().take(row.count());
+    cells.all(|cell| decimal.number(cell).is_ok())
+}
+
+fn has_no_number(row: &Row<'_>, decimal: Decimal) -> bool {
+    row.cells().all(|cell| decimal.number(cell).is_err())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scenario::record::tests::{assert_fault, parse};
+    use crate::scenario::record::{Decimal, Form, Layout, TableColumn, TableLayout, Times, Unit};
+
+    fn table() -> TableLayout {
+        TableLayout::new(Times::Step(0.5), Unit::Gravity)
+    }
+
+    fn csv(layout: TableLayout) -> Layout {
+        Form::Csv(layout).into()
+    }
+
+    fn wrapped() -> TableLayout {
+        TableLayout {
+            wrapped: true,
+            ..table()
+        }
+    }
+
+    #[track_caller]
+    fn assert_reads(text: &str, layout: TableLayout) {
+        let expected = [1.0, -2.0, 3.0, 4.0, 5.0, 6.0];
+        let found = parse(text, &csv(layout)).unwrap();
+        let times_s = (0..6).map(|i| 0.5 * f64::from(i));
+        let expected: Vec<_> = times_s.zip(expected).collect();
+        assert_eq!(found, expected, "{text}");
+    }
+
+    #[test]
+    fn rows_of_several_samples_are_read_where_that_is_said() {
+        for text in [
+            "1 -2 3\n4 5 6\n",
+            "  1.0E+00 -2.0 3.\r\n\r\n 4 5 6",
+            "1,-2,3,\n4,5,6,\n",
+            "1;-2;3;4\n5;6\n",
+            "acceleration in g\n1 -2\n3 4\n# half\n5 6\n",
+            "1\n-2\n3\n4\n5\n6\n",
+            "1 -2 3 4 5 6",
+        ] {
+            assert_reads(text, wrapped());
+        }
+        let comma = TableLayout {
+            decimal: Decimal::Comma,
+            ..wrapped()
+        };
+        assert_reads("1,0 -2,0 3,0\n4,0 5,0 6,0\n", comma);
+    }
+
+    #[test]
+    fn rows_of_several_samples_are_seen() {
+        // The last line is shorter.
+        assert_reads("1 -2 3 4\n5 6\n", table());
+        assert_reads("acceleration in g\n1,-2,3,4,5\n6\n", table());
+        // The number of samples stands before them.
+        let skipping = |skip_rows| TableLayout {
+            skip_rows,
+            ..table()
+        };
+        let header = "PEER 1999\nNPTS=   6, DT= .5 SEC\n";
+        assert_reads(&format!("{header}1 -2 3\n4 5 6\n"), skipping(2));
+        assert_reads("# 6 samples\n1 -2 3\n4 5 6\n", table());
+        assert_reads("acceleration (6)\n1 -2 3\n4 5 6\n", table());
+    }
+
+    #[test]
+    fn columns_are_not_taken_for_samples() {
+        let fault = |text: &str, layout: TableLayout, line, words| {
+            assert_fault(text, &csv(layout), line, words);
+        };
+        let say =
+            "there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`";
+        for text in [
+            "1 -2 3\n4 5 6\n",
+            // Two rows of three are announced, or nothing.
+            "# 2 rows of 3, 6 in all\n1 -2 3\n4 5 6\n",
+            "# 7 samples\n1 -2 3\n4 5 6\n",
+            // The last line is longer, or a line before it is shorter.
+            "1 -2 3\n4 5 6 7\n",
+            "1 -2 3\n4 5\n6\n",
+        ] {
+            let line = if text.starts_with('#') { 2 } else { 1 };
+            fault(text, table(), line, say);
+        }
+        let times = TableLayout {
+            times: Times::Column(TableColumn::Number(1)),
+            ..table()
+        };
+        let say = "there are 3 columns: give `acceleration_column`, the one to read; or, if a row holds 3 samples";
+        fault("0 -2 3\n4 5 6\n", times.clone(), 1, say);
+        // A column that is empty is none.
+        assert_eq!(parse("0,1,\n1,2,\n", &csv(times)).unwrap().len(), 2);
+        // One that is chosen is read, whatever the last line is.
+        let second = TableLayout {
+            acceleration_column: Some(TableColumn::Number(2)),
+            ..table()
+        };
+        let found = parse("1 -2 3\n4 5\n", &csv(second)).unwrap();
+        assert_eq!(found, [(0.0, -2.0), (0.5, 5.0)]);
+    }
+
+    #[test]
+    fn faults_of_wrapped_tables_have_lines() {
+        let fault = |text: &str, line, words| assert_fault(text, &csv(wrapped()), line, words);
+        fault("", 1, "no samples");
+        fault("a b\n", 1, "no samples");
+        fault("1\n", 1, "number of samples is 1");
+        fault("1 2\n3 x\n", 2, "`x` is not a finite number");
+        fault("1 2\n\n3 1e308\n", 3, "`1e308` is out of range");
+        fault(
+            "PEER\nNPTS= 4\n1 2\n3 4\n",
+            2,
+            "`NPTS=` is not a finite number; numbers begin on line 3: give `skip_rows = 2`",
+        );
+    }
+}
