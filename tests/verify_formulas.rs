@@ -425,18 +425,24 @@ fn c8_7_1_2_1_8_a_spectrum_of_points_counts_up_to_its_largest_displacement() {
     assert!(late.peak_g().is_err() && points().peak_g() == Ok(0.29));
     for (rows, error) in [
         (vec![(0.0, 1.0)], PointError::TooFew),
-        (vec![(0.0, 1.0), (0.0, 2.0)], PointError::Order { row: 2 }),
+        (
+            vec![(0.0, 1.0), (0.0, 2.0)],
+            PointError::Order {
+                row: 1,
+                period_s: 0.0,
+            },
+        ),
         (
             vec![(0.0, 1.0), (1.0, 0.0)],
             PointError::Acceleration {
-                row: 2,
+                row: 1,
                 acceleration_g: 0.0,
             },
         ),
         (
             vec![(-1.0, 1.0), (1.0, 0.5)],
             PointError::Period {
-                row: 1,
+                row: 0,
                 period_s: -1.0,
             },
         ),
@@ -622,6 +628,7 @@ fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
         q_rad: part,
         acceleration_g: 0.1 + part * part,
         poses: vec![Pose::about(Vector2::zeros(), Vector2::zeros(), -part)],
+        hinges_m: Vec::new(),
         friction: 0.0,
     };
     let body = Carried {

@@ -98,7 +98,7 @@ fn words(sides: &[Capacity; 2], masses: &str, gravity_m_s2: f64) -> String {
         .map(|x| if x.abs() < 5e-5 { 0.0 } else { x });
     let mut text = format!(
         "quasi-static capacity of the first mechanism, control point at x {:.4} m, y {:.4} m\n\
-         masses at the centres of {masses}, not of the rigid bodies of the mechanism\n",
+         masses at the centres of {masses}; `archrock verify` takes the rigid bodies of the mechanism\n",
         control.x, control.y
     );
     for side in sides {

@@ -19,6 +19,7 @@ mod spectrum;
 mod study;
 mod suite;
 mod threshold;
+mod verify;
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -69,6 +70,8 @@ enum Command {
     Impact(impact::Arguments),
     /// Find the quasi-static capacity curve of the first mechanism and its equivalent oscillator.
     Capacity(capacity::Arguments),
+    /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
+    Verify(verify::Arguments),
     /// Chart the incipient acceleration and the restitution against thickness for several embrace angles.
     Chart(chart::Arguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
@@ -160,6 +163,7 @@ pub fn main() -> ExitCode {
         }
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),
+        Command::Verify(verify) => verify::verify(&verify, arguments.quiet),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => map::map(&map, arguments.quiet),
         Command::Spectrum(spectrum) => spectrum::spectrum(&spectrum, arguments.quiet),

@@ -35,6 +35,8 @@ pub struct Displaced {
     pub acceleration_g: f64,
     /// Poses of its bodies from left to right, in metres, in the frame of the ground.
     pub poses: Vec<Pose>,
+    /// Positions of its hinges from left to right, likewise.
+    pub hinges_m: Vec<Vector2<f64>>,
     /// Friction coefficient without which it would slide there, held at rest by that acceleration.
     pub friction: f64,
 }
@@ -57,16 +59,24 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
     for pose in &mut poses {
         *pose = pose.scaled(structure.length_m());
     }
+    for hinge in &mut hinges {
+        *hinge *= structure.length_m();
+    }
     if sway == Sway::Left {
         poses.reverse();
+        hinges.reverse();
         for pose in &mut poses {
             *pose = pose.mirrored();
+        }
+        for hinge in &mut hinges {
+            hinge.x = -hinge.x;
         }
     }
     Some(Displaced {
         q_rad,
         acceleration_g,
         poses,
+        hinges_m: hinges,
         friction: structure.demand(&link.mechanism, &held).friction,
     })
 }
@@ -172,6 +182,8 @@ pub struct CurvePoint {
     pub oscillator_acceleration_g: f64,
     /// Its secant period in seconds; `None` at the unstable equilibrium, where it grows beyond bounds.
     pub secant_period_s: Option<f64>,
+    /// Friction coefficient without which it would slide there.
+    pub friction: f64,
 }
 
 /// The capacity of the first mechanism to a side.
@@ -285,6 +297,7 @@ impl Capacity {
                     acceleration_g,
                     oscillator_displacement_m,
                     oscillator_acceleration_g,
+                    friction: here.friction,
                     secant_period_s: (!last).then(|| 2.0 * std::f64::consts::PI * square_s2.sqrt()),
                 }
             })
@@ -317,20 +330,27 @@ impl Capacity {
         self.curve.last().expect("a curve has points")
     }
 
-    /// The secant period, in seconds, at this part of the ultimate displacement, between 0 and 1: on straight lines
-    /// between the points of the curve.
+    /// The acceleration of the oscillator, in g, where it is displaced by this part of `d0*`, between 0 and 1: on straight
+    /// lines between the points of the curve.
+    #[must_use]
+    pub fn oscillator_acceleration_g(&self, part: f64) -> f64 {
+        let wanted_m = part * self.end().oscillator_displacement_m;
+        let mut pairs = self.curve.windows(2);
+        let pair = pairs.find(|pair| pair[1].oscillator_displacement_m >= wanted_m);
+        let Some([low, high]) = pair else {
+            return self.end().oscillator_acceleration_g;
+        };
+        let share = (wanted_m - low.oscillator_displacement_m)
+            / (high.oscillator_displacement_m - low.oscillator_displacement_m);
+        low.oscillator_acceleration_g
+            + share * (high.oscillator_acceleration_g - low.oscillator_acceleration_g)
+    }
+
+    /// The secant period, in seconds, at this part of the ultimate displacement, between 0 and 1; `None` at its end.
     #[must_use]
     pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
         let wanted_m = part * self.end().oscillator_displacement_m;
-        let pair = self
-            .curve
-            .windows(2)
-            .find(|pair| pair[1].oscillator_displacement_m >= wanted_m)?;
-        let [low, high] = [&pair[0], &pair[1]];
-        let share = (wanted_m - low.oscillator_displacement_m)
-            / (high.oscillator_displacement_m - low.oscillator_displacement_m);
-        let acceleration_g = low.oscillator_acceleration_g
-            + share * (high.oscillator_acceleration_g - low.oscillator_acceleration_g);
+        let acceleration_g = self.oscillator_acceleration_g(part);
         (acceleration_g > 0.0).then(|| {
             2.0 * std::f64::consts::PI * (wanted_m / (gravity_m_s2 * acceleration_g)).sqrt()
         })

@@ -36,6 +36,8 @@ pub struct RowOnset {
     pub acceleration_g: f64,
     /// The mechanism that starts, from left to right.
     pub openings: Vec<Opening>,
+    /// Velocities of its blocks from left to right, in metres and up to a common factor; their pole is the origin.
+    pub velocities: Vec<Twist>,
 }
 
 /// Why a row has no onset.
@@ -84,6 +86,7 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
         found = Some(RowOnset {
             acceleration_g,
             openings: trial.openings(),
+            velocities: trial.program.velocities().to_vec(),
         });
         load = Vector2::new(sway.sign() * acceleration_g, -1.0);
     }

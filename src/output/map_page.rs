@@ -101,7 +101,7 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -
 fn command(map: &OverturningMap<'_>) -> String {
     let scenario = map.scenario();
     let mut table = scenario.to_json();
-    for study in ["map", "suite", "spectrum"] {
+    for study in ["map", "suite", "spectrum", "demand", "verify"] {
         if let Some(table) = table.as_object_mut() {
             table.shift_remove(study);
         }

@@ -45,6 +45,7 @@ mod table;
 mod toml_text;
 mod unlikely;
 mod variant;
+mod verify;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -74,6 +75,10 @@ pub use structure::{ModelError, Structure};
 pub use suite::{Measure, Suite};
 use table::{Reading, Table, Text};
 pub(crate) use toml_text::toml_text;
+pub use verify::{
+    BEHAVIOUR_FACTOR, BuildingMode, ByState, CONFIDENCE_FACTOR, CodeDemand, Demand, FreeStanding,
+    Height, LimitState, ModeState, PointDemand, Relief, Sides, StateRule, Verify,
+};
 
 named! {
     /// A model of motion.
@@ -132,6 +137,12 @@ pub struct Scenario {
     /// Which records shake the structure for its fragility.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub suite: Option<Suite>,
+    /// What is demanded of it in a check.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub demand: Option<Demand>,
+    /// How it is checked; `None`: by the defaults.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verify: Option<Verify>,
     /// The motion of `ground`, built when that was read.
     #[serde(skip)]
     motion: Arc<GroundMotion>,
@@ -213,6 +224,16 @@ impl Scenario {
         let suite = table.table("suite", |table| {
             Suite::read(table, folder, simulation.as_ref().ok())
         });
+        let verify = table.table("verify", Verify::read);
+        let demand = table.table("demand", |table| {
+            let factor =
+                |verify: &Option<Verify>| verify.clone().unwrap_or_default().confidence_factor;
+            Demand::read(
+                table,
+                folder,
+                verify.as_ref().map(factor).map_err(|reported| *reported),
+            )
+        });
         let (steps, structure) = (steps?, structure?);
         if let Some(options) = steps.filter(|_| free) {
             free_hinges::carries(table, &structure, options)?;
@@ -228,6 +249,8 @@ impl Scenario {
             map: map?,
             spectrum: spectrum?,
             suite: suite?,
+            demand: demand?,
+            verify: verify?,
             motion: Arc::new(motion),
         })
     }

@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use crate::dynamics::model::MechanismModel;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};
 use crate::mechanics::chain::Hinge;
@@ -47,17 +48,7 @@ pub fn capacity(
         None => crown(&scenario.structure),
     };
     let side = |sway| {
-        let hinges: Vec<f64> = model
-            .hinges_after(0, sway)
-            .iter()
-            .map(place_of_hinge)
-            .collect();
-        let bodies = model.bodies().len();
-        let carried = |place: f64, at_m| {
-            let before = hinges.iter().filter(|hinge| **hinge < place).count();
-            let body = before.checked_sub(1).filter(|body| *body < bodies);
-            Carried { at_m, body }
-        };
+        let carried = carrying(&*model, sway);
         let masses: Vec<(f64, Carried)> = parts
             .iter()
             .map(|(place, mass_kg, centre_m)| (*mass_kg, carried(*place, *centre_m)))
@@ -72,6 +63,27 @@ pub fn capacity(
         Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
     };
     Ok([side(Sway::Right)?, side(Sway::Left)?])
+}
+
+/// The crown as a point of the first mechanism to a side.
+pub(super) fn crown_of(structure: &Structure, model: &dyn MechanismModel, sway: Sway) -> Carried {
+    let (place, at_m) = crown(structure);
+    carrying(model, sway)(place, at_m)
+}
+
+/// What carries a point, given with its place along the structure, in the first mechanism to a side.
+fn carrying(
+    model: &dyn MechanismModel,
+    sway: Sway,
+) -> impl Fn(f64, Vector2<f64>) -> Carried + use<> {
+    let hinges = model.hinges_after(0, sway);
+    let hinges: Vec<f64> = hinges.iter().map(place_of_hinge).collect();
+    let bodies = model.bodies().len();
+    move |place, at_m| {
+        let before = hinges.iter().filter(|hinge| **hinge < place).count();
+        let body = before.checked_sub(1).filter(|body| *body < bodies);
+        Carried { at_m, body }
+    }
 }
 
 /// Where along the structure a hinge is: an angle, or a joint.

@@ -12,6 +12,7 @@
 //! - [`suite`]: what records overturn, at several levels, and the [`fragility`] curve of that;
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
+//! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, which tells itself: numbers, words and page;
 //! - [`survey`]: arches of many shapes compared, without a history.
 
 pub mod boundary;
@@ -27,3 +28,4 @@ pub mod suite;
 pub mod survey;
 pub mod survival;
 pub mod threshold;
+pub mod verify;

@@ -12,36 +12,49 @@ pub struct PointSpectrum {
     damping_percent: f64,
 }
 
-/// Why points make no spectrum.
+/// Why points make no spectrum. Rows are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum PointError {
     /// There are none, or one.
     #[error("has fewer than two rows; give a row for each corner of the spectrum")]
     TooFew,
     /// A period is negative, or no number.
-    #[error("has the period {period_s:?} s in row {row}; periods must be numbers of at least 0")]
+    #[error("the period {period_s:?} s must be a number of at least 0")]
     Period {
-        /// Which, from 1 on.
+        /// Which.
         row: usize,
         /// The period.
         period_s: f64,
     },
     /// Periods do not rise.
-    #[error("has in row {row} a period that is not above that before; sort the rows by period")]
+    #[error("the period {period_s:?} s is not above the one before; sort the rows by period")]
     Order {
-        /// Which, from 1 on.
+        /// Which.
         row: usize,
+        /// The period.
+        period_s: f64,
     },
     /// An acceleration is not positive.
-    #[error(
-        "has the acceleration {acceleration_g:?} g in row {row}; accelerations must be numbers above 0"
-    )]
+    #[error("the acceleration {acceleration_g:?} g must be a number above 0")]
     Acceleration {
-        /// Which, from 1 on.
+        /// Which.
         row: usize,
         /// The acceleration.
         acceleration_g: f64,
     },
+}
+
+impl PointError {
+    /// The row that is wrong, from 0.
+    #[must_use]
+    pub const fn row(&self) -> Option<usize> {
+        match self {
+            Self::TooFew => None,
+            Self::Period { row, .. } | Self::Order { row, .. } | Self::Acceleration { row, .. } => {
+                Some(*row)
+            }
+        }
+    }
 }
 
 /// A period at which nothing is known.
@@ -64,12 +77,12 @@ impl PointSpectrum {
             return Err(PointError::TooFew);
         }
         let mut before_s = f64::NEG_INFINITY;
-        for (row, (period_s, acceleration_g)) in (1..).zip(points.iter().copied()) {
+        for (row, (period_s, acceleration_g)) in (0..).zip(points.iter().copied()) {
             if !(period_s >= 0.0 && period_s.is_finite()) {
                 return Err(PointError::Period { row, period_s });
             }
             if period_s <= before_s {
-                return Err(PointError::Order { row });
+                return Err(PointError::Order { row, period_s });
             }
             if !(acceleration_g > 0.0 && acceleration_g.is_finite()) {
                 return Err(PointError::Acceleration {

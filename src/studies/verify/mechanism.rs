@@ -1,0 +1,219 @@
+//! The mechanism to a side as a chain of rigid bodies: what starts it, its masses, and its capacity curve where it has one.
+
+use nalgebra::Vector2;
+
+use crate::dynamics::free_hinges::RowOptions;
+use crate::dynamics::model::MechanismModel;
+use crate::mechanics::blocks::Row;
+use crate::mechanics::capacity::{Capacity, Carried, Control};
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::stability::{RowOnset, onset};
+use crate::mechanics::sway::Sway;
+use crate::mechanics::virtual_work::{
+    MovingBody, Participation, load_multiplier, per_displacement_of_centre,
+};
+use crate::scenario::Structure;
+use crate::studies::capacity;
+
+/// A hinge and where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedHinge {
+    /// The hinge.
+    pub hinge: Hinge,
+    /// Its position in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+}
+
+/// The mechanism that starts to a side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mechanism {
+    /// To which side.
+    pub sway: Sway,
+    /// Its hinges from left to right.
+    pub hinges: Vec<PlacedHinge>,
+    /// Its rigid bodies from left to right; their common centre is displaced by one.
+    pub bodies: Vec<MovingBody>,
+    /// The body that each block of a row belongs to, where it has no curve.
+    pub body_of_block: Vec<Option<usize>>,
+    /// Load multiplier [C8.7.1.1].
+    pub alpha0: f64,
+    /// Masses that take part [C8.7.1.5].
+    pub participation: Participation,
+    /// Its way to the unstable equilibrium, or why that is not known.
+    pub way: Result<Way, String>,
+}
+
+/// A mechanism on its way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    /// The control point is the common centre of its bodies.
+    pub centre: Capacity,
+    /// The control point is the crown; `None` where that does not move to that side.
+    pub crown: Option<Capacity>,
+}
+
+impl Way {
+    /// The largest friction coefficient that it needs up to a part of the ultimate displacement.
+    #[must_use]
+    pub fn friction_up_to(&self, part: f64) -> f64 {
+        let end_m = part * self.centre.end().oscillator_displacement_m;
+        let points = self.centre.curve.iter();
+        points
+            .take_while(|point| point.oscillator_displacement_m <= end_m)
+            .map(|point| point.friction)
+            .fold(0.0, f64::max)
+    }
+}
+
+impl Mechanism {
+    fn new(
+        sway: Sway,
+        hinges: Vec<PlacedHinge>,
+        bodies: Vec<MovingBody>,
+        body_of_block: Vec<Option<usize>>,
+        way: Result<Way, String>,
+    ) -> Self {
+        Self {
+            sway,
+            hinges,
+            alpha0: load_multiplier(&bodies),
+            participation: Participation::of_bodies(&bodies),
+            bodies: per_displacement_of_centre(bodies),
+            body_of_block,
+            way,
+        }
+    }
+
+    /// That of a model that moves as one mechanism, to a side.
+    fn of_model(
+        structure: &Structure,
+        model: &dyn MechanismModel,
+        sway: Sway,
+        gravity_m_s2: f64,
+    ) -> Option<Self> {
+        let bodies = model.moving_bodies(sway)?;
+        let at_rest = model.displaced(sway, 0.0)?;
+        let named = model.hinges_after(0, sway).into_iter();
+        let hinges: Vec<PlacedHinge> = named
+            .zip(at_rest.hinges_m)
+            .map(|(hinge, at_m)| PlacedHinge { hinge, at_m })
+            .collect();
+        let masses: Vec<(f64, Carried)> = (0..)
+            .zip(&bodies)
+            .map(|(index, body)| {
+                let at_m = body.centre_m;
+                let body_of = Some(index);
+                (
+                    body.mass_kg,
+                    Carried {
+                        at_m,
+                        body: body_of,
+                    },
+                )
+            })
+            .collect();
+        let curve = |control| {
+            let displaced = |part| {
+                let displaced = model.displaced(sway, part);
+                displaced.expect("a structure has its first mechanism")
+            };
+            Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
+        };
+        let crown = capacity::crown_of(structure, model, sway);
+        let way = curve(Control::centre_of(&masses))
+            .map(|centre| Way {
+                centre,
+                crown: curve(Control::point(crown)).ok(),
+            })
+            .map_err(|error| error.to_string());
+        Some(Self::new(sway, hinges, bodies, Vec::new(), way))
+    }
+
+    /// That of a row by limit analysis, at rest.
+    fn of_onset(row: &Row, sway: Sway, onset: &RowOnset, why_no_way: &str) -> Self {
+        let opens = |joint: usize| onset.openings.iter().any(|open| open.joint == joint);
+        let fastest = |block: usize| {
+            let twist = onset.velocities[block];
+            twist.at(row.blocks()[block].centre_m).norm() + twist.rate.abs() * row.size_m()
+        };
+        let blocks = row.blocks().len();
+        let most = (0..blocks).map(fastest).fold(0.0, f64::max);
+        let mut body_of_block = vec![None; blocks];
+        let mut bodies: Vec<(f64, Vector2<f64>, usize)> = Vec::new();
+        let mut current = None;
+        for (block, body_of) in body_of_block.iter_mut().enumerate() {
+            if opens(block) {
+                current = None;
+            }
+            // What no joint parts from the supports stands still.
+            if fastest(block) <= 1e-7 * most {
+                current = None;
+                continue;
+            }
+            let index = *current.get_or_insert_with(|| {
+                bodies.push((0.0, Vector2::zeros(), block));
+                bodies.len() - 1
+            });
+            let own = &row.blocks()[block];
+            bodies[index].0 += own.mass_kg;
+            bodies[index].1 += own.centre_m * own.mass_kg;
+            *body_of = Some(index);
+        }
+        let bodies = bodies.into_iter().map(|(mass_kg, first, block)| {
+            let (centre_m, twist) = (first / mass_kg, onset.velocities[block]);
+            let velocity = twist.at(centre_m);
+            MovingBody {
+                mass_kg,
+                centre_m,
+                displacement: Vector2::new(sway.sign() * velocity.x, velocity.y),
+                rotation: -sway.sign() * twist.rate,
+            }
+        });
+        let hinges = onset.openings.iter().map(|open| PlacedHinge {
+            hinge: Hinge::Joint {
+                joint: open.joint,
+                edge: open.hinge,
+            },
+            at_m: row.joints()[open.joint].corner_m(open.hinge.unwrap_or(Edge::Intrados)),
+        });
+        Self::new(
+            sway,
+            hinges.collect(),
+            bodies.collect(),
+            body_of_block,
+            Err(why_no_way.to_owned()),
+        )
+    }
+}
+
+/// The mechanisms of a structure to these sides.
+///
+/// # Errors
+/// In words, when it does not stand, or no push moves it to a side.
+pub(super) fn mechanisms(
+    structure: &Structure,
+    sides: &[Sway],
+    gravity_m_s2: f64,
+) -> Result<Vec<Mechanism>, String> {
+    use crate::mechanics::four_link::impact::ImpactModel;
+    let none = |sway: Sway| format!("no push moves it to the {}", sway.name());
+    let model = match structure.model(ImpactModel::MaxRestitution) {
+        Ok(model) => {
+            let of = |sway: &Sway| {
+                Mechanism::of_model(structure, &*model, *sway, gravity_m_s2)
+                    .ok_or_else(|| none(*sway))
+            };
+            return sides.iter().map(of).collect();
+        }
+        Err(why) => why.to_string(),
+    };
+    let rows = structure.free_hinges(RowOptions::default());
+    let rows = rows.map_err(|error| error.to_string())?;
+    let of = |sway: &Sway| match onset(rows.row(), *sway) {
+        Ok(Some(found)) => Ok(Mechanism::of_onset(rows.row(), *sway, &found, &model)),
+        Ok(None) => Err(none(*sway)),
+        Err(error) => Err(error.to_string()),
+    };
+    sides.iter().map(of).collect()
+}

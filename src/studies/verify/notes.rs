@@ -1,0 +1,151 @@
+//! What a check decides, assumes and leaves out, in the words of its page.
+
+use super::{Check, Spectrum};
+use crate::scenario::{CONFIDENCE_FACTOR, Scenario, Sides, Structure};
+
+/// Friction coefficient that the Circolare names for walls (C8.7.1.2.1.2).
+pub const FRICTION: f64 = 0.577;
+
+/// Where the text leaves room, what this check does; with a name for each.
+#[must_use]
+pub fn decisions(check: &Check) -> Vec<(&'static str, String)> {
+    let settings = &check.settings;
+    let has_curve = check.mechanisms.iter().any(|one| one.way.is_ok());
+    let mut notes = vec![(
+        "D1",
+        "The blocks of the formulas are the rigid bodies of the mechanism, each lumped at its centre of gravity with what it \
+         carries. Voussoirs lumped one by one would give a smaller e* and larger capacities."
+            .to_owned(),
+    )];
+    if has_curve {
+        notes.push((
+            "D2",
+            "The control point is the common centre of the masses that move, so that d = d_C/e*. The ratio with the crown (or \
+             the top) as control point is printed beside."
+                .to_owned(),
+        ));
+    }
+    if !check.by_the_code() {
+        notes.push((
+            "-",
+            "The spectra and what makes the limit states are the engineer's: no clause is named. The largest spectral displacement \
+             up to the period counts; accelerations are divided as each state says, and displacements after the period is known."
+                .to_owned(),
+        ));
+    }
+    if check.by_the_code() && has_curve {
+        notes.push((
+            "D3",
+            "The ground acceleration that is borne is a_g d/S_D(T): the spectrum keeps its shape. Where S_S and T_D follow a_g \
+             (on the ground), the result is printed beside."
+                .to_owned(),
+        ));
+    }
+    if check
+        .states
+        .iter()
+        .any(|one| matches!(one.spectrum, Spectrum::Floor(..)))
+    {
+        notes.push((
+            "D4",
+            "In the factor f of [C7.2.6] the damping of the building is a fraction; in per cent f would be below 1. The term 0.0004 \
+             xi\u{b2} of [C7.2.7] takes per cent."
+                .to_owned(),
+        ));
+        notes.push((
+            "D5",
+            "At a height the damage limit state takes a_Z of [C7.2.8]. In addition to the text, on the safe side, a_Z is at least \
+             a_g S and S_eZ at least S_e at every period."
+                .to_owned(),
+        ));
+    }
+    if check.by_the_code() {
+        notes.push((
+            "D6",
+            format!(
+                "The simplified check of SLV takes q = {} times a_g,SLD as found with the spectrum of SLD.",
+                settings.behaviour_factor
+            ),
+        ));
+    }
+    notes.push((
+        "D7",
+        "On rigid ground the bodies begin to move at alpha_0 g (A_L), which is less than a_0 = alpha_0 g/e*; both are printed. FC \
+         1.35 covers e* above 0.74."
+            .to_owned(),
+    ));
+    notes.push((
+        "D8",
+        match settings.sides {
+            Sides::Both => "Both sides are checked, and the worse counts.".to_owned(),
+            side => format!(
+                "Only the side asked for is checked, {}: the engineer states that the other is held.",
+                side.name()
+            ),
+        },
+    ));
+    if settings.confidence_factor != CONFIDENCE_FACTOR {
+        notes.push((
+            "FC",
+            format!(
+                "FC = {} is the engineer's. Where alpha_0 takes no account of the compressive strength the Circolare has that of \
+                 LC1, 1.35, whatever is known.",
+                settings.confidence_factor
+            ),
+        ));
+    }
+    if let Some(t0_s) = check.t0_s {
+        notes.push((
+            "T0",
+            format!("Free to vibrate before it moves, with T_0 = {t0_s:.4} s and 5 % damping; SLD takes a_0/FC for a_y/FC."),
+        ));
+    } else {
+        notes.push((
+            "T0",
+            "Rigid until it moves: held all along. For a wall or parapet free to vibrate give free_standing.".to_owned(),
+        ));
+    }
+    notes
+}
+
+/// What is assumed.
+#[must_use]
+pub fn assumptions(check: &Check) -> Vec<String> {
+    let mut lines = vec![
+        "The masonry does not disintegrate; the bodies are rigid, without tension between them, of unlimited compressive strength; \
+         they move in one plane."
+            .to_owned(),
+        "The mechanism is the one of the least multiplier among all with hinges at the joints that are given.".to_owned(),
+    ];
+    let frictions = check.mechanisms.iter().map(|one| {
+        let side = one.sway.name();
+        match &one.way {
+            Ok(way) => {
+                let friction = way.friction_up_to(check.furthest_part());
+                let against = if friction <= FRICTION { "below" } else { "ABOVE" };
+                format!(
+                    "No joint slides: to the {side} that needs a friction coefficient of {friction:.3}, {against} {FRICTION}."
+                )
+            }
+            Err(_) => format!("No joint slides: to the {side} the friction that this needs is not computed."),
+        }
+    });
+    lines.extend(frictions);
+    lines
+}
+
+/// What is left out.
+#[must_use]
+pub fn not_covered(scenario: &Scenario) -> Vec<String> {
+    let mut lines = vec![
+        "Vertical ground motion: C8.7.1.2.1 has no vertical term.".to_owned(),
+        "Ties, thrust of fill (its weight counts where it is given), crushing, soil and foundations, torsional hinges.".to_owned(),
+        "The choice of the mechanism beyond the joints that are given, and the building as a whole.".to_owned(),
+    ];
+    if !matches!(scenario.structure, Structure::Column(_)) {
+        lines[0] = "Vertical ground motion: \u{a7} 7.2.2 asks for it for structures that thrust, where a_g is at least 0.15 g \
+                    (\u{a7} 3.2.3.1); C8.7.1.2.1 has no vertical term."
+            .to_owned();
+    }
+    lines
+}

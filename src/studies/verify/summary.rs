@@ -1,0 +1,247 @@
+//! The check as JSON: every number, in full.
+
+use serde_json::{Map, Value, json};
+
+use super::{
+    Activation, ByDisplacement, Check, Margin, Mechanism, SideCheck, Simplified, Spectrum,
+    StateCheck, notes,
+};
+use crate::dynamics::demand::ground::GroundSpectrum;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
+use crate::output::OutputError;
+use crate::scenario::Scenario;
+
+/// All numbers of a check of a scenario.
+///
+/// # Errors
+/// When one is not finite, which is a defect.
+pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError> {
+    let states: Map<String, Value> = check
+        .states
+        .iter()
+        .map(|one| (one.state.name().to_owned(), state(check, one)))
+        .collect();
+    let mechanisms: Map<String, Value> = check
+        .mechanisms
+        .iter()
+        .map(|one| (one.sway.name().to_owned(), mechanism(check, one)))
+        .collect();
+    let decisions = notes::decisions(check).into_iter();
+    let decisions: Vec<Value> = decisions
+        .map(|(name, text)| json!({ "name": name, "text": text }))
+        .collect();
+    let zeta_e = check.zeta_e();
+    let numbers = check.states.iter().flat_map(|one| &one.sides);
+    let margins = numbers.filter_map(|side| Some(side.governing()?.1.zeta_e));
+    if !margins.chain([zeta_e]).all(f64::is_finite) {
+        return Err(OutputError::NotFinite {
+            what: "zeta_e".to_owned(),
+        });
+    }
+    Ok(json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "title": scenario.title,
+        "formulas": check.by_the_code().then_some("Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018"),
+        "scenario_sha256": scenario_sha256(scenario),
+        "zeta_e": zeta_e,
+        "verdict": check.states.iter().map(|one| (one.state.name().to_owned(), verdict(one).into())).collect::<Map<_, _>>(),
+        "confidence_factor": check.settings.confidence_factor,
+        "behaviour_factor": check.settings.behaviour_factor,
+        "sides": check.settings.sides.name(),
+        "t0_s": check.t0_s,
+        "gravity_m_s2": check.gravity_m_s2,
+        "mechanisms": mechanisms,
+        "states": states,
+        "decisions": decisions,
+        "assumptions": notes::assumptions(check),
+        "not_covered": notes::not_covered(scenario),
+        "scenario": scenario.to_json(),
+    }))
+}
+
+/// SHA-256 of the scenario with every default written out, as `archrock check` prints it.
+#[must_use]
+pub fn scenario_sha256(scenario: &Scenario) -> String {
+    use sha2::{Digest as _, Sha256};
+    let digest = Sha256::digest(scenario.to_toml().as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The verdict in a word.
+pub(super) fn verdict(state: &StateCheck) -> &'static str {
+    match state.governing() {
+        Some((.., margin)) if margin.passes() => "passed",
+        Some(_) => "not_passed",
+        None => "not_checked",
+    }
+}
+
+fn mechanism(check: &Check, mechanism: &Mechanism) -> Value {
+    let hinges = mechanism.hinges.iter().map(|placed| {
+        let mut hinge = match placed.hinge {
+            Hinge::Section { angle_rad, edge } => {
+                json!({ "angle_deg": angle_rad.to_degrees(), "edge": edge.name() })
+            }
+            Hinge::Toe(side) => json!({ "toe": side.name() }),
+            Hinge::Joint { joint, edge } => json!({ "joint": joint, "edge": edge.map(Edge::name) }),
+        };
+        hinge["x_m"] = (placed.at_m.x + 0.0).into();
+        hinge["y_m"] = (placed.at_m.y + 0.0).into();
+        hinge
+    });
+    let bodies = mechanism.bodies.iter().map(|body| {
+        json!({
+            "mass_kg": body.mass_kg,
+            "weight_kn": body.mass_kg * check.gravity_m_s2 / 1000.0,
+            "x_m": body.centre_m.x + 0.0,
+            "y_m": body.centre_m.y + 0.0,
+            "delta_x": body.displacement.x,
+            "delta_y": body.displacement.y,
+            "rotation_per_m": body.rotation,
+        })
+    });
+    let participation = &mechanism.participation;
+    let way = mechanism.way.as_ref().ok();
+    let end = way.map(|way| *way.centre.end());
+    let crown = way.and_then(|way| way.crown.as_ref());
+    let yielding = way.and_then(|way| check.yielding(way));
+    let curve = way.map(|way| {
+        let points = way.centre.curve.iter();
+        let points = points.map(|point| {
+            json!([
+                point.oscillator_displacement_m,
+                point.oscillator_acceleration_g
+            ])
+        });
+        points.collect::<Vec<_>>()
+    });
+    json!({
+        "hinges": hinges.collect::<Vec<_>>(),
+        "bodies": bodies.collect::<Vec<_>>(),
+        "alpha0": mechanism.alpha0,
+        "moving_mass_kg": participation.moving_mass_kg,
+        "e_star": participation.mass_fraction,
+        "m_star_kg": participation.participating_mass_kg,
+        "a0_over_fc_g": check.activation_g(mechanism),
+        "d_c0_m": end.map(|end| end.displacement_m),
+        "d0_m": end.map(|end| end.oscillator_displacement_m),
+        "d_c0_crown_m": crown.map(|crown| crown.end().displacement_m),
+        "d0_crown_m": crown.map(|crown| crown.end().oscillator_displacement_m),
+        "d_y_m": yielding.map(|both| both.0),
+        "a_y_over_fc_g": yielding.map(|both| both.1),
+        "friction": way.map(|way| way.friction_up_to(check.furthest_part())),
+        "curve_m_g": curve,
+        "no_curve": mechanism.way.as_ref().err(),
+    })
+}
+
+fn state(check: &Check, one: &StateCheck) -> Value {
+    let sides = one
+        .sides
+        .iter()
+        .map(|each| (each.sway.name().to_owned(), side(each)));
+    let mut state = json!({
+        "verdict": verdict(one),
+        "zeta_e": one.governing().map(|(.., margin)| margin.zeta_e),
+        "side": one.governing().map(|(sway, ..)| sway.name()),
+        "method": one.governing().map(|(_, method, _)| method.name()),
+        "demand": demand(check, one),
+        "rule": one.rule,
+    });
+    if let Some(state) = state.as_object_mut() {
+        state.extend(sides);
+    }
+    state
+}
+
+fn demand(check: &Check, one: &StateCheck) -> Value {
+    match &one.spectrum {
+        Spectrum::Ground(ground) => parameters(check, ground),
+        Spectrum::Floor(ground, floor) => {
+            let mut demand = parameters(check, ground);
+            let damping = one.rule.map_or(5.0, |rule| rule.damping_percent);
+            let modes = floor.modes().iter().map(|mode| {
+                json!({
+                    "t_s": mode.t_s,
+                    "damping_percent": mode.damping_percent,
+                    "gamma": mode.gamma,
+                    "psi": mode.psi,
+                    "acceleration_g": ground.acceleration_g(mode.t_s, mode.damping_percent),
+                    "a_z_g": mode.peak_g(ground),
+                    "f": mode.amplification(damping),
+                })
+            });
+            demand["modes"] = modes.collect();
+            demand["a_z_g"] = floor.peak_g().into();
+            demand
+        }
+        Spectrum::Points(points) => json!({
+            "spectrum": points.spectrum,
+            "damping_percent": points.damping_percent,
+            "points_s_g": points.points.points(),
+        }),
+    }
+}
+
+fn parameters(check: &Check, ground: &GroundSpectrum) -> Value {
+    json!({
+        "soil": ground.site.soil.name(),
+        "ag_g": ground.hazard.ag_g,
+        "f0": ground.hazard.f0,
+        "tc_star_s": ground.hazard.tc_star_s,
+        "s_s": ground.s_s,
+        "s_t": ground.site.topographic_factor,
+        "s": ground.s(),
+        "c_c": ground.c_c,
+        "t_b_s": ground.t_b_s,
+        "t_c_s": ground.t_c_s,
+        "t_d_s": ground.t_d_s,
+        "t_e_s": ground.t_e_s,
+        "peak_g": ground.peak_g(),
+        "peak_displacement_m": ground.peak_displacement_m(check.gravity_m_s2),
+    })
+}
+
+fn side(side: &SideCheck) -> Value {
+    json!({
+        "zeta_e": side.governing().map(|(_, margin)| margin.zeta_e),
+        "activation": side.activation.as_ref().map(activation),
+        "simplified": side.simplified.as_ref().map(simplified),
+        "displacement": side.displacement.as_ref().map(displacement),
+    })
+}
+
+fn with_margin(mut value: Value, margin: &Margin) -> Value {
+    value["ag_capacity_g"] = margin.ag_capacity_g.into();
+    value["ag_g"] = margin.ag_g.into();
+    value["zeta_e"] = margin.zeta_e.into();
+    value["passed"] = margin.passes().into();
+    value
+}
+
+fn activation(one: &Activation) -> Value {
+    let value = json!({ "capacity_g": one.capacity_g, "demand_g": one.demand_g });
+    with_margin(value, &one.margin)
+}
+
+fn simplified(one: &Simplified) -> Value {
+    let value = json!({ "activation_ag_g": one.activation_ag_g, "q": one.behaviour_factor });
+    with_margin(value, &one.margin)
+}
+
+fn displacement(one: &ByDisplacement) -> Value {
+    let value = json!({
+        "capacity_m": one.capacity_m,
+        "acceleration_g": one.acceleration_g,
+        "period_s": one.period_s,
+        "demand_m": one.demand_m,
+        "demand_acceleration_g": one.demand_g,
+        "by_displacement_ag_g": one.displacement.ag_capacity_g,
+        "activation_governs": one.activation_ag_g.is_some(),
+        "ag_capacity_following_g": one.ag_following_g,
+        "zeta_e_crown": one.zeta_e_crown,
+    });
+    with_margin(value, &one.margin)
+}

@@ -1,0 +1,525 @@
+//! The check by the Circolare 7/2019 as a whole: worked numbers that were computed apart from this program, both sides, on the
+//! ground and at a height; spectra from files; what cannot be checked, and why.
+#![allow(clippy::unwrap_used)]
+
+mod program;
+
+use archrock::scenario::LimitState;
+use archrock::studies::verify::{
+    ByDisplacement, Check, Method, NoCheck, SideCheck, to_json, words,
+};
+use archrock::{Scenario, Sway};
+use program::{archrock, printed as print_of, refused, scenarios};
+use serde_json::Value;
+
+const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
+const SEMICIRCLE: &str = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
+const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n\
+    [demand.sld]\nag_g = 0.10\nf0 = 2.40\ntc_star_s = 0.28\n\
+    [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n\
+    [demand.slc]\nag_g = 0.32\nf0 = 2.45\ntc_star_s = 0.36\n";
+const HEIGHT: &str = "[demand.height]\nmodes = [{ gamma = 1.2857142857142858, psi = 0.75, \
+    sld = { t_s = 0.30, damping_percent = 5 }, slv = { t_s = 0.45, damping_percent = 10 }, \
+    slc = { t_s = 0.60, damping_percent = 15 } }]\n";
+
+fn scenario(text: &str) -> Scenario {
+    Scenario::parse(text, "a.toml").unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn on_piers() -> String {
+    std::fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap()
+}
+
+fn check(text: &str) -> Check {
+    Check::new(&scenario(text)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn side(check: &Check, state: LimitState, sway: Sway) -> &SideCheck {
+    let one = check.states.iter().find(|one| one.state == state).unwrap();
+    one.sides.iter().find(|side| side.sway == sway).unwrap()
+}
+
+fn displacement(check: &Check, state: LimitState, sway: Sway) -> ByDisplacement {
+    side(check, state, sway).displacement.unwrap()
+}
+
+/// Asserts a number to its last printed digit: half a unit, and a millionth for the straight lines between a hundred points of
+/// the curve.
+#[track_caller]
+fn printed(value: f64, expected: &str) {
+    let digits = expected.split_once('.').map_or(0, |(_, after)| after.len());
+    let unit = 0.1_f64.powi(i32::try_from(digits).unwrap());
+    let known: f64 = expected.parse().unwrap();
+    let allowed = 0.5 * unit + 5e-6 * known;
+    assert!((value - known).abs() < allowed, "{value:?} {expected}");
+}
+
+/// The structures, each with a side.
+fn cases() -> [(String, Sway); 4] {
+    [
+        (COLUMN.to_owned(), Sway::Right),
+        (SEMICIRCLE.to_owned(), Sway::Right),
+        (on_piers(), Sway::Right),
+        (on_piers(), Sway::Left),
+    ]
+}
+
+#[test]
+fn c8_7_1_2_1_5_and_7_activation_and_its_multiple() {
+    let expected = [
+        ["0.14815", "0.12346", "0.05308", "0.98765", "0.42465"],
+        ["0.12192", "0.10160", "0.04368", "0.81283", "0.34948"],
+        ["0.22241", "0.18534", "0.07969", "1.48272", "0.63750"],
+        ["0.12906", "0.10755", "0.04624", "0.86037", "0.36992"],
+    ];
+    for ((structure, sway), [a0, ground, height, zeta, zeta_height]) in cases().iter().zip(expected)
+    {
+        let at_ground = check(&format!("{structure}{DEMAND}"));
+        let at_height = check(&format!("{structure}{DEMAND}{HEIGHT}"));
+        printed(
+            at_ground.activation_g(at_ground.mechanism(*sway).unwrap()),
+            a0,
+        );
+        for (check, ag_g, zeta_e) in [(at_ground, ground, zeta), (at_height, height, zeta_height)] {
+            let sld = side(&check, LimitState::Sld, *sway).activation.unwrap();
+            printed(sld.margin.ag_capacity_g.unwrap(), ag_g);
+            let slv = side(&check, LimitState::Slv, *sway).simplified.unwrap();
+            printed(slv.margin.zeta_e, zeta_e);
+            assert!(side(&check, LimitState::Slc, *sway).simplified.is_none());
+        }
+    }
+}
+
+#[test]
+fn c8_7_1_2_1_8_displacements_on_the_ground_and_at_a_height() {
+    // d, a, T; on the ground: demand, a_g borne, zeta_E, a_g where the shape follows; at the height: demand, a_g borne, zeta_E.
+    let expected = [
+        [
+            "0.16000", "0.087773", "2.27513", "0.16391", "0.24404", "0.97616", "0.24254",
+            "0.20832", "0.19201", "0.76805",
+        ],
+        [
+            "0.24000", "0.058288", "3.17509", "0.24177", "0.31766", "0.99269", "0.31798",
+            "0.37680", "0.20382", "0.63694",
+        ],
+        [
+            "0.04981", "0.070051", "1.42097", "0.10237", "0.12165", "0.48659", "0.11759",
+            "0.15994", "0.07786", "0.31144",
+        ],
+        [
+            "0.07472", "0.045812", "1.99832", "0.16775", "0.14253", "0.44541", "0.12904",
+            "0.27681", "0.08638", "0.26992",
+        ],
+        [
+            "0.17597", "0.128656", "1.97073", "0.14198", "0.30985", "1.23940", "0.33258",
+            "0.19117", "0.23012", "0.92049",
+        ],
+        [
+            "0.26395", "0.085181", "2.75443", "0.23123", "0.36529", "1.14153", "0.38986",
+            "0.34212", "0.24688", "0.77152",
+        ],
+        [
+            "0.05457", "0.073256", "1.45435", "0.10478", "0.13020", "0.52080", "0.12586",
+            "0.16183", "0.08430", "0.33718",
+        ],
+        [
+            "0.08185", "0.047724", "2.04921", "0.17202", "0.15226", "0.47581", "0.13785",
+            "0.28136", "0.09309", "0.29091",
+        ],
+    ];
+    let mut rows = expected.iter();
+    for (structure, sway) in cases() {
+        let ground = check(&format!("{structure}{DEMAND}"));
+        let height = check(&format!("{structure}{DEMAND}{HEIGHT}"));
+        for state in [LimitState::Slv, LimitState::Slc] {
+            let [d, a, t, demand, ag, zeta, following, demand_h, ag_h, zeta_h] =
+                rows.next().unwrap();
+            let own = displacement(&ground, state, sway);
+            printed(own.capacity_m, d);
+            printed(own.acceleration_g, a);
+            printed(own.period_s, t);
+            printed(own.demand_m, demand);
+            printed(own.displacement.ag_capacity_g.unwrap(), ag);
+            printed(own.margin.zeta_e, zeta);
+            printed(own.ag_following_g.unwrap(), following);
+            let above = displacement(&height, state, sway);
+            assert_eq!(
+                (above.capacity_m, above.period_s),
+                (own.capacity_m, own.period_s)
+            );
+            printed(above.demand_m, demand_h);
+            printed(above.displacement.ag_capacity_g.unwrap(), ag_h);
+            printed(above.margin.zeta_e, zeta_h);
+            assert_eq!(above.ag_following_g, None);
+        }
+    }
+}
+
+#[test]
+fn c8_7_1_2_1_the_control_point_at_the_crown() {
+    let d0 = ["0.39612", "0.13007", "0.48103", "0.14566"];
+    let zeta_e = ["0.97332", "0.49300", "1.27654", "0.53135"];
+    for (((structure, sway), d0), zeta_e) in cases().iter().zip(d0).zip(zeta_e) {
+        let check = check(&format!("{structure}{DEMAND}"));
+        let way = check.mechanism(*sway).unwrap().way.as_ref().unwrap();
+        let crown = way.crown.as_ref().unwrap();
+        printed(crown.end().oscillator_displacement_m, d0);
+        let own = displacement(&check, LimitState::Slv, *sway);
+        printed(own.zeta_e_crown.unwrap(), zeta_e);
+        // The displacement of the crown itself does not depend on how masses are grouped.
+        let scenario = scenario(&format!("{structure}{DEMAND}"));
+        let grouped = archrock::studies::capacity::capacity(&scenario, None).unwrap();
+        let grouped = grouped.iter().find(|one| one.sway == *sway).unwrap();
+        let ratio = grouped.end().displacement_m / crown.end().displacement_m;
+        assert!((ratio - 1.0).abs() < 1e-12);
+    }
+}
+
+/// The worse side counts; where a wall holds the other, one.
+#[test]
+fn the_worse_side_counts_unless_one_is_held() {
+    let text = format!("{}{DEMAND}", on_piers());
+    let both = check(&text);
+    let slv = both
+        .states
+        .iter()
+        .find(|one| one.state == LimitState::Slv)
+        .unwrap();
+    let (sway, method, margin) = slv.governing().unwrap();
+    assert_eq!((sway, method), (Sway::Left, Method::Displacement));
+    printed(margin.zeta_e, "0.52080");
+    printed(both.zeta_e(), "0.47581");
+    let right = check(&format!("{text}[verify]\nsides = 'right'\n"));
+    assert_eq!(right.mechanisms.len(), 1);
+    printed(right.zeta_e(), "1.14153");
+    assert!(words(&right).contains("SLV  passed: zeta_E 1.23940 to the right, by displacement"));
+}
+
+/// T_0 of C8.7.1.7, the acceleration at which it is demanded, and where the elastic branch ends. What is softer than it moves
+/// later has no other displacement.
+#[test]
+fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
+    let text = format!("{COLUMN}{DEMAND}");
+    let given =
+        "[verify.free_standing]\nkappa = 6.2\nlength_m = 4\nthickness_m = 0.8\nmodulus_gpa = 1.5\n";
+    let free = check(&format!("{text}{given}"));
+    printed(free.t0_s.unwrap(), "0.14318");
+    let sld = side(&free, LimitState::Sld, Sway::Right)
+        .activation
+        .unwrap();
+    printed(sld.demand_g, "0.288");
+    printed(sld.margin.ag_capacity_g.unwrap(), "0.05144");
+    let way = free.mechanisms[0].way.as_ref().unwrap();
+    let (d_y_m, a_y_g) = free.yielding(way).unwrap();
+    printed(d_y_m, "0.000753");
+    let circular = free.t0_s.unwrap() / (2.0 * std::f64::consts::PI);
+    assert!((d_y_m / (circular * circular * 9.81) / a_y_g - 1.0).abs() < 1e-9);
+    let held = check(&text);
+    let slv = |check: &Check| {
+        displacement(check, LimitState::Slv, Sway::Left)
+            .margin
+            .zeta_e
+    };
+    assert_eq!(slv(&free), slv(&held));
+    let known = check(&format!(
+        "{text}[verify]\nfree_standing = {{ t0_s = 0.14318 }}\n"
+    ));
+    let ag_g = |check: &Check| {
+        side(check, LimitState::Sld, Sway::Left)
+            .activation
+            .unwrap()
+            .margin
+            .ag_capacity_g
+            .unwrap()
+    };
+    assert!((ag_g(&known) / ag_g(&free) - 1.0).abs() < 1e-9);
+}
+
+/// A stout column bears less displacement than it takes to start it: then that counts.
+#[test]
+fn c8_7_1_2_1_8_what_starts_later_than_it_falls_counts_by_its_start() {
+    let text = format!("[column]\nheight_m = 0.3\nwidth_m = 0.12\n{DEMAND}");
+    let check = check(&text);
+    let slv = displacement(&check, LimitState::Slv, Sway::Right);
+    let start_g = slv.activation_ag_g.unwrap();
+    assert!(start_g > slv.displacement.ag_capacity_g.unwrap());
+    assert!((slv.margin.zeta_e - start_g / 0.25).abs() < 1e-12);
+    let said = words(&check);
+    assert!(said.contains("the activation counts"), "{said}");
+}
+
+/// The tables of the file and the code's own numbers for it: FC 1.35, 0.4 d0, 1.68, 8 %.
+const POINTS: &str =
+    "period_s,acceleration_g\n0,0.29\n0.15,0.70\n0.5,0.70\n1,0.35\n2,0.20\n2.6,0.08\n4,0.03\n";
+
+fn in_folder(structure: &str, demand: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("slv.csv"), POINTS).unwrap();
+    std::fs::write(folder.path().join("a.toml"), format!("{structure}{demand}")).unwrap();
+    folder
+}
+
+#[test]
+fn a_spectrum_of_points_names_no_clause() {
+    let demand = "[demand.slv]\nspectrum = 'slv.csv'\n[demand.sld]\nspectrum = 'slv.csv'\n";
+    let folder = in_folder(COLUMN, demand);
+    let path = folder.path().join("a.toml");
+    let scenario = Scenario::read(&path).unwrap();
+    let check = Check::new(&scenario).unwrap();
+    let slv = displacement(&check, LimitState::Slv, Sway::Right);
+    printed(slv.demand_m, "0.17435");
+    printed(slv.displacement.zeta_e, "0.91768");
+    let sld = side(&check, LimitState::Sld, Sway::Right)
+        .activation
+        .unwrap();
+    assert!(
+        (
+            sld.demand_g,
+            side(&check, LimitState::Slv, Sway::Left).simplified
+        ) == (0.29, None)
+    );
+    let json = to_json(&scenario, &check).unwrap();
+    assert_eq!(json["formulas"], Value::Null);
+    assert!(words(&check).contains("no clause is named"));
+    // What is resolved is read back the same, in its folder.
+    let resolved = folder.path().join("b.toml");
+    std::fs::write(&resolved, scenario.to_toml()).unwrap();
+    assert_eq!(Scenario::read(&resolved).unwrap(), scenario);
+    // Other rules: a without FC, T by 1.6 pi, d divided.
+    let rule = "state = { part_of_d0 = 0.4, period_factor = 1.6, damping_percent = 5, divide_acceleration = 1, \
+                divide_displacement = 1.55 }\n";
+    let folder = in_folder(
+        COLUMN,
+        &format!("[demand.slv]\nspectrum = 'slv.csv'\n{rule}"),
+    );
+    let check = Check::new(&Scenario::read(&folder.path().join("a.toml")).unwrap()).unwrap();
+    let other = displacement(&check, LimitState::Slv, Sway::Right);
+    assert!((other.capacity_m * 1.55 / slv.capacity_m - 1.0).abs() < 1e-12);
+    let period_s = slv.period_s / 1.68 * 1.6 / 1.35_f64.sqrt();
+    assert!((other.period_s / period_s - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn spectra_of_points_are_refused_where_they_end() {
+    let short = POINTS.replace("2.6,0.08\n4,0.03\n", "");
+    let early = POINTS.replace("0,0.29\n0.15", "0.15");
+    for (points, demand, words) in [
+        (
+            &*short,
+            "[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["[demand.slv]", "from 0.0 to 2.0 s", "add rows"][..],
+        ),
+        (
+            &*early,
+            "[demand.slv]\nspectrum = 'slv.csv'\n[demand.sld]\nspectrum = 'slv.csv'\n",
+            &["[demand.sld]", "needed at 0.0 s"],
+        ),
+        (
+            "period_s,acceleration_g\n0,0.3\n",
+            "[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["a.toml:5:12", "fewer than two rows"],
+        ),
+        (
+            "period_s,acceleration_g\n0,0.3\n1,0.2\n1,0.1\n",
+            "[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["a.toml:5:12", "slv.csv:4", "not above the one before"],
+        ),
+        (
+            POINTS,
+            "[demand]\nsoil = 'B'\n[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["a.toml:5:8", "`soil = 'B'` goes with ag_g"],
+        ),
+        (
+            POINTS,
+            "[demand.sld]\nspectrum = 'slv.csv'\n",
+            &["nothing to check beyond damage"],
+        ),
+        (
+            POINTS,
+            "[demand.slv]\nspectrum = 'other.csv'\n",
+            &["a.toml:5:12", "cannot be read"],
+        ),
+    ] {
+        let folder = in_folder(COLUMN, demand);
+        std::fs::write(folder.path().join("slv.csv"), points).unwrap();
+        refused(folder.path(), &["verify", "a.toml"], words);
+    }
+}
+
+/// Each with its place, clause and range.
+#[test]
+fn what_is_out_of_the_range_of_the_code_is_refused() {
+    for (from, to, words) in [
+        (
+            "f0 = 2.40",
+            "f0 = 2.1",
+            &["a.toml:9:6", "2.2 (NTC 2018, § 3.2.1)"][..],
+        ),
+        (
+            "ag_g = 0.25",
+            "ag_g = 0.9",
+            &["a.toml:12:8", "at most 0.85 on soil B", "§ 3.2.3.2"],
+        ),
+        ("ag_g = 0.25", "ag_g = 25", &["a.toml:12:8", "out of range"]),
+        (
+            "tc_star_s = 0.35",
+            "tc_star_s = 3.5",
+            &["a.toml:14:13", "Tab. 3.2.IV"],
+        ),
+        (
+            "soil = 'B'",
+            "soil = 'S1'",
+            &["a.toml:5:8", "one of \"A\", \"B\", \"C\", \"D\", \"E\""],
+        ),
+        (
+            "topography = 'T1'",
+            "topographic_factor = 0.5",
+            &["a.toml:6:22", "from 1 to 2"],
+        ),
+        ("topography = 'T1'", "", &["topography, topographic_factor"]),
+        (
+            "tc_star_s = 0.35",
+            "tc_star = 0.35",
+            &["did you mean `tc_star_s`", "lacks `tc_star_s`"],
+        ),
+        (
+            "slv = { t_s = 0.45, damping_percent = 10 }, ",
+            "",
+            &["lacks `slv`", "damping_percent"],
+        ),
+        (
+            "damping_percent = 15",
+            "damping_percent = 50",
+            &["out of range", "at most 30"],
+        ),
+        ("modes", "modi", &["lacks `modes`"]),
+    ] {
+        let text = format!("{COLUMN}{DEMAND}{HEIGHT}");
+        assert!(text.contains(from), "{from}");
+        let folder = in_folder(&text.replacen(from, to, 1), "");
+        refused(folder.path(), &["verify", "a.toml"], words);
+    }
+    let folder = in_folder(COLUMN, "");
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["a.toml: the scenario has no [demand]", "[demand.slv]"],
+    );
+    let folder = in_folder(
+        COLUMN,
+        &format!("{DEMAND}[verify]\nconfidence_factor = 0.9\n"),
+    );
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["a.toml:20:21", "from 1 to 2"],
+    );
+}
+
+/// A thick shallow arch starts with another mechanism than four links, and drums with any: there are the damage limit state and
+/// its multiple, by the static limit analysis.
+#[test]
+fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
+    let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
+    let drums = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hinges]\n";
+    for structure in [lintel, drums] {
+        let check = check(&format!("{structure}{DEMAND}"));
+        for mechanism in &check.mechanisms {
+            assert!(mechanism.way.is_err());
+            // The virtual work of the bodies gives the push of the limit analysis back.
+            let model = scenario(structure).model().unwrap();
+            let incipient_g = model.incipient_acceleration_g(mechanism.sway).unwrap();
+            assert!((mechanism.alpha0 / incipient_g - 1.0).abs() < 1e-9);
+        }
+        let slv = check
+            .states
+            .iter()
+            .find(|one| one.state == LimitState::Slv)
+            .unwrap();
+        assert_eq!(slv.governing().unwrap().1, Method::Simplified);
+        let slc = check
+            .states
+            .iter()
+            .find(|one| one.state == LimitState::Slc)
+            .unwrap();
+        assert_eq!(slc.governing(), None);
+        let said = words(&check);
+        assert!(
+            said.contains("SLC  not checked: there is no capacity curve"),
+            "{said}"
+        );
+        let only = DEMAND.split_once("[demand.slc]").unwrap().1;
+        let only =
+            format!("{structure}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
+        let error = Check::new(&scenario(&only)).unwrap_err();
+        assert!(matches!(error, NoCheck::NoCurve(_)));
+        assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
+    }
+    // A stack of drums that turns about its base is the column.
+    let [drums, column] = [drums, COLUMN].map(|structure| check(&format!("{structure}{DEMAND}")));
+    let (drums, column) = (&drums.mechanisms[0], &column.mechanisms[0]);
+    assert!((drums.alpha0 / column.alpha0 - 1.0).abs() < 1e-9);
+    assert_eq!(drums.bodies.len(), 1);
+    assert!((drums.bodies[0].displacement - column.bodies[0].displacement).norm() < 1e-9);
+}
+
+#[test]
+fn what_does_not_stand_is_refused() {
+    let thin = SEMICIRCLE.replace("0.15", "0.08");
+    let folder = in_folder(&thin, DEMAND);
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["cannot carry its own weight"],
+    );
+}
+
+/// The command: words, JSON with the same numbers, files; a verdict is no failure.
+#[test]
+fn the_command_says_and_writes_the_check() {
+    let folder = in_folder(SEMICIRCLE, DEMAND);
+    let said = print_of(folder.path(), &["verify", "a.toml"]);
+    assert!(
+        said.contains("SLV  not passed: zeta_E 0.48659 to the right, by displacement"),
+        "{said}"
+    );
+    let output = archrock(folder.path(), &["verify", "a.toml", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let file = std::fs::read(folder.path().join("results/a/verify.json")).unwrap();
+    assert_eq!(file, output.stdout);
+    assert_eq!(json["verdict"]["slv"], "not_passed");
+    assert_eq!(json["verdict"]["sld"], "passed");
+    let scenario = Scenario::read(&folder.path().join("a.toml")).unwrap();
+    let check = Check::new(&scenario).unwrap();
+    assert_eq!(json["zeta_e"], check.zeta_e());
+    let own = displacement(&check, LimitState::Slv, Sway::Right);
+    assert_eq!(
+        json["states"]["slv"]["right"]["displacement"]["demand_m"],
+        own.demand_m
+    );
+    assert_eq!(json["states"]["slv"]["demand"]["s_s"], 1.16);
+    // The hash is that of what `check` prints.
+    let resolved = print_of(folder.path(), &["check", "a.toml"]);
+    assert_eq!(resolved, scenario.to_toml());
+    assert_eq!(json["scenario_sha256"].as_str().unwrap().len(), 64);
+    // alpha0 by hand, from the table of the bodies.
+    let bodies = json["mechanisms"]["right"]["bodies"].as_array().unwrap();
+    let sum = |key: &str| -> f64 {
+        let each = bodies
+            .iter()
+            .map(|body| body["weight_kn"].as_f64().unwrap() * body[key].as_f64().unwrap());
+        each.sum()
+    };
+    let alpha0 = json["mechanisms"]["right"]["alpha0"].as_f64().unwrap();
+    assert!((sum("delta_y") / sum("delta_x") / alpha0 - 1.0).abs() < 1e-12);
+    assert!(!said.contains("complian") && !json.to_string().contains("complian"));
+    // Resolved scenarios read back the same.
+    for text in [
+        DEMAND.to_owned(),
+        format!("{DEMAND}{HEIGHT}[verify]\nsides = 'left'\nfree_standing = {{ t0_s = 0.1 }}\n"),
+    ] {
+        let own = self::scenario(&format!("{COLUMN}{text}"));
+        assert_eq!(self::scenario(&own.to_toml()), own);
+    }
+}
