@@ -62,7 +62,8 @@ pub mod studies;
 pub use argument::ArgumentError;
 pub use dynamics::ground::{GroundError, GroundMotion, Pulse, WaveTrain};
 pub use dynamics::history::{
-    Event, EventKind, History, Impact, OpenHinge, Outcome, Sample, Samples, State, Summary,
+    Event, EventKind, History, Impact, MEMORY_BYTES, MemoryError, OpenHinge, Outcome, Sample,
+    Samples, Shape, State, Summary,
 };
 pub use dynamics::model::{Initial, MechanismModel, Model, Recorder, Request, SimulationError};
 pub use mechanics::arch::Arch;

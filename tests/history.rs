@@ -517,3 +517,72 @@ fn the_time_of_overturning_is_the_last_passage_outwards() {
         "{overturned} {passed_before}"
     );
 }
+
+/// Bytes of all lists of samples as they are.
+fn bytes(samples: &archrock::Samples) -> usize {
+    fn of<T>(list: &[T]) -> usize {
+        size_of_val(list)
+    }
+    of(&samples.time_s)
+        + of(&samples.ground_acceleration_m_s2)
+        + of(&samples.vertical_acceleration_m_s2)
+        + of(&samples.phase)
+        + of(&samples.state)
+        + of(&samples.rotations_rad)
+        + of(&samples.rates_rad_s)
+        + of(&samples.poses)
+        + of(&samples.hinges)
+        + of(&samples.first_hinge)
+        + of(&samples.demand)
+        + of(&samples.energy_j)
+        + of(&samples.energy_ratio)
+        + of(&samples.rotation_over_critical)
+        + of(&samples.gaps_m)
+        + of(&samples.offsets_m)
+}
+
+#[test]
+fn the_memory_of_a_history_is_known_before_and_bounded() {
+    let column = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
+    let arch =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 9\n";
+    for (structure, free) in [
+        (column.to_owned(), ""),
+        (arch.to_owned(), ""),
+        (arch.to_owned(), "[free_hinges]\n"),
+        (
+            format!("{column}drums = 5\n"),
+            "[free_hinges]\nfriction_coefficient = 0.6\n",
+        ),
+    ] {
+        let text = format!(
+            "{structure}{free}[ground.one_sine]\namplitude_g = 0.4\nduration_s = 0.4\n\
+             [simulation]\nduration_s = 1\noutput_step_s = 1e-3\n"
+        );
+        let scenario = archrock::Scenario::parse(&text, "s.toml").unwrap();
+        let (model, request) = (scenario.model().unwrap(), scenario.request());
+        let history = model.history(scenario.ground_motion(), &request).unwrap();
+        let count = request.most_samples();
+        assert!((1001..=1003).contains(&count) && history.samples.len() as u64 <= count);
+        // All that may be open is not always open: that is what the bound is off by.
+        let needed = model.shape().bytes(count);
+        let taken = bytes(&history.samples) as u64;
+        assert!(taken <= needed && needed < 2 * taken, "{taken} {needed}");
+        let within = |bytes| model.history_within(bytes, scenario.ground_motion(), &request);
+        // The events need something too.
+        let Err(archrock::SimulationError::Memory(error)) = within(needed) else {
+            panic!("the events have no room")
+        };
+        assert!(error.needed_bytes > needed && error.allowed_bytes == needed);
+        assert_eq!(within(needed + 1_000_000).unwrap(), history);
+        let Err(archrock::SimulationError::Memory(error)) = within(needed - 1) else {
+            panic!("the samples have no room")
+        };
+        assert_eq!(error.needed_bytes, needed);
+        let words = error.to_string();
+        assert!(
+            words.contains(" MB of memory, and ") && words.contains("output_step_s"),
+            "{words}"
+        );
+    }
+}

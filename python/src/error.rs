@@ -3,16 +3,22 @@
 use std::any::Any;
 use std::fmt::Display;
 
+use archrock::MemoryError;
 use archrock::output::OutputError;
 use archrock::scenario::ScenarioErrors;
 use archrock::studies::part::PartError;
 use archrock::studies::runner::RunnerError;
 use pyo3::PyErr;
-use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 
 /// What the library refuses, in its words.
 pub fn refused(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// What would not fit into memory.
+pub fn too_large(error: MemoryError) -> PyErr {
+    PyMemoryError::new_err(format!("{error}, by `memory_gb`"))
 }
 
 /// What is wrong with a scenario: with places, where a person wrote its text; else the messages alone.

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use archrock::dynamics::free_hinges::spread::{REPETITIONS, Spread};
-use archrock::dynamics::history::{Samples, Summary};
+use archrock::dynamics::history::{Recording, Samples, Summary};
 use archrock::mechanics::chain::Demand;
 use archrock::output::report::Report;
 use archrock::output::scene::Scene;
@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use serde_json::{Value, json};
 
-use crate::error::{not_written, panicked, refused};
+use crate::error::{not_written, panicked, refused, too_large};
 use crate::scenario::{Ground, Scenario, Standing};
 
 /// How often a history looks for signals.
@@ -55,20 +55,19 @@ impl Signals {
 }
 
 /// Collects samples and events.
-struct Recording {
-    samples: Samples,
-    events: Vec<Event>,
+struct Watched {
+    recording: Recording,
     signals: Signals,
 }
 
-impl Recorder for Recording {
+impl Recorder for Watched {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        self.samples.push(sample);
+        self.recording.sample(sample)?;
         self.signals.go_on()
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.events.push(event.clone());
+        self.recording.event(event)?;
         self.signals.go_on()
     }
 }
@@ -150,8 +149,13 @@ fn simulate<R: Recorder + Send>(
 }
 
 impl History {
-    /// The history of a scenario, on other ground than its own if that is given.
-    pub fn of(py: Python<'_>, scenario: &Scenario, ground: Option<&Ground>) -> PyResult<Self> {
+    /// The history of a scenario, on other ground than its own if that is given, in so much memory.
+    pub fn of(
+        py: Python<'_>,
+        scenario: &Scenario,
+        ground: Option<&Ground>,
+        memory_bytes: u64,
+    ) -> PyResult<Self> {
         let inner = &scenario.inner;
         let other = ground.map(|ground| ground.motion(inner.simulation.gravity_m_s2));
         let motion = match &other {
@@ -162,17 +166,16 @@ impl History {
             }
         };
         let standing = scenario.standing(py)?;
-        let mut recording = Recording {
-            samples: Samples::default(),
-            events: Vec::new(),
+        let (shape, most_samples) = (standing.model().shape(), inner.request().most_samples());
+        let recording = Recording::new(shape, most_samples, memory_bytes).map_err(too_large)?;
+        let mut watched = Watched {
+            recording,
             signals: Signals::new(),
         };
-        let summary = simulate(py, standing, inner, motion, &mut recording, |recording| {
-            recording.signals.raised.take()
+        let summary = simulate(py, standing, inner, motion, &mut watched, |watched| {
+            watched.signals.raised.take()
         })?;
-        let Recording {
-            samples, events, ..
-        } = recording;
+        let (samples, events) = watched.recording.finish().map_err(too_large)?;
         let count = samples.len();
         let each = |all: usize| all.checked_div(count).unwrap_or(0);
         Ok(Self {

@@ -16,10 +16,18 @@ use pyo3::prelude::*;
 /// The module `archrock._native`.
 #[pymodule]
 mod _native {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use crate::history::History;
     #[pymodule_export]
     use crate::scenario::{Ground, Scenario};
     #[pymodule_export]
     use crate::studies::{compute_part, merge, save, study, threshold};
+
+    /// Memory that a history may take where nothing else is said, in units of 1e9 bytes.
+    #[pymodule_init]
+    fn constants(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("MEMORY_GB", archrock::MEMORY_BYTES as f64 / 1e9)
+    }
 }

@@ -204,9 +204,20 @@ impl Scenario {
         self.inner == other.inner
     }
 
-    /// Simulates it, on other ground than its own if that is given.
-    fn run(&self, py: Python<'_>, ground: Option<&Ground>) -> PyResult<History> {
-        History::of(py, self, ground)
+    /// Simulates it, on other ground than its own if that is given, in so much memory.
+    fn run(
+        &self,
+        py: Python<'_>,
+        ground: Option<&Ground>,
+        memory_bytes: u64,
+    ) -> PyResult<History> {
+        History::of(py, self, ground, memory_bytes)
+    }
+
+    /// Bytes that the samples of its history take at most.
+    fn memory_bytes(&self, py: Python<'_>) -> PyResult<u64> {
+        let shape = self.standing(py)?.model().shape();
+        Ok(shape.bytes(self.inner.request().most_samples()))
     }
 
     /// The push that starts it to either side, as `archrock limit --format json`.

@@ -136,6 +136,28 @@ def test_memory_is_steady_over_ten_thousand_calls() -> None:
     assert resident_bytes() - before < 4_000_000
 
 
+def test_a_history_too_large_for_memory_is_refused(arch: Arch, pulse: Pulse) -> None:
+    drums = Column(40.0, 8.0, drums=400)
+    long: dict[str, Any] = {"model": "free_hinges", "duration_s": 1_000.0, "output_step_s": 0.005}
+    # At least the four numbers and more of every drum in every sample, each of eight bytes.
+    needed_gb = Scenario.of(drums, pulse, **long).memory_gb()
+    assert 400 * 200_000 * 5 * 8 / 1e9 < needed_gb < 20.0
+    with pytest.raises(MemoryError, match=f"takes {needed_gb:.1f} GB of memory, and 4.0 GB are allowed"):
+        simulate(drums, pulse, **long)
+    with pytest.raises(MemoryError, match=r"and 0\.1 MB are allowed: .*by `memory_gb`"):
+        Scenario.of(arch, pulse, duration_s=2.0).run(memory_gb=1e-4)
+
+    settings: dict[str, Any] = {"duration_s": 2.0, "output_step_s": 1e-3}
+    needed_gb = Scenario.of(arch, pulse, **settings).memory_gb()
+    history = simulate(arch, pulse, **settings, memory_gb=2.0 * needed_gb)
+    assert history == simulate(arch, pulse, **settings)
+    arrays = (history.time, history.rotations, history.rates, history.poses, history.energy_j, history.gaps)
+    assert 0.3 * needed_gb < sum(array.nbytes for array in arrays) / 1e9 < needed_gb
+    for bound in (0.0, -1.0, float("nan"), 1e7):
+        with pytest.raises(ValueError, match="`memory_gb = "):
+            simulate(arch, pulse, memory_gb=bound)
+
+
 NAN, INFINITE = float("nan"), float("inf")
 ODD: list[Any] = [
     NAN, INFINITE, -INFINITE, 0, -0.0, -1, 1e308, 1e-308, 5e-324, 10**30, -(10**400), 2**63, True, None,
@@ -149,7 +171,7 @@ def refused(call: Callable[[], Any]) -> bool:
     """Whether a call raises an exception of those that are promised; anything else is let through."""
     try:
         call()
-    except (ValueError, TypeError, OSError, OverflowError):
+    except (ValueError, TypeError, OSError, OverflowError, MemoryError):
         return True
     except Exception as error:
         raise AssertionError(f"{call.__defaults__}: {error!r}") from error
@@ -183,6 +205,7 @@ def test_arguments_that_nobody_means_are_exceptions(arch: Arch, pulse: Pulse) ->
                 "restitution": None,
                 "gravity_m_s2": 9.81,
                 "initial_sway": None,
+                "memory_gb": 1.0,
             },
         ),
         (overturning_map, {"of": arch, "ground": pulse, "axes": {"duration_s": [0.1], "amplitude_g": [0.2]}}),

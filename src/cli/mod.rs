@@ -124,9 +124,9 @@ impl From<ScenarioErrors> for Failure {
 impl From<SimulationError> for Failure {
     fn from(error: SimulationError) -> Self {
         match error {
-            SimulationError::Argument(_) | SimulationError::FreeFall { .. } => {
-                Self::Input(error.to_string())
-            }
+            SimulationError::Argument(_)
+            | SimulationError::FreeFall { .. }
+            | SimulationError::Memory(_) => Self::Input(error.to_string()),
             SimulationError::Engine(_) | SimulationError::FreeHinges(_) => {
                 Self::Work(error.to_string())
             }

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
+use thiserror::Error;
 
 use super::free_hinges::Run;
 pub use super::hybrid::integrator::Cost;
@@ -183,6 +184,27 @@ pub struct Event {
     pub hinges: Vec<Hinge>,
     /// The impact, where the event is one, also one that leads to rest.
     pub impact: Option<Impact>,
+}
+
+impl Event {
+    /// Memory that it takes.
+    fn bytes(&self) -> u64 {
+        let impact = self.impact.as_ref();
+        let numbers = [&self.rotations_rad, &self.rates_rad_s]
+            .into_iter()
+            .chain(impact.map(|impact| &impact.rates_before_rad_s))
+            .chain(impact.map(|impact| &impact.rates_after_rad_s));
+        let hinges = [&self.hinges]
+            .into_iter()
+            .chain(impact.map(|impact| &impact.closed))
+            .chain(impact.map(|impact| &impact.opened));
+        let impulses = impact.map_or(0, |impact| impact.impulses_n_s.len());
+        let bytes = size_of::<Self>()
+            + numbers.map(|list| size_of_val(&list[..])).sum::<usize>()
+            + hinges.map(|list| size_of_val(&list[..])).sum::<usize>()
+            + impulses * size_of::<Vector2<f64>>();
+        bytes as u64
+    }
 }
 
 /// What an impact did.
@@ -410,11 +432,105 @@ fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
     }
 }
 
-/// Collects all samples and events.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Recording {
-    pub(super) samples: Samples,
-    pub(super) events: Vec<Event>,
+/// What the samples of a model tell of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Number of bodies.
+    pub bodies: usize,
+    /// Number of joints that have gaps.
+    pub joints: usize,
+    /// Number of joints that have offsets.
+    pub slipping: usize,
+}
+
+impl Shape {
+    /// Bytes of so many samples at most: as if all hinges were open all the time.
+    #[must_use]
+    pub fn bytes(self, samples: u64) -> u64 {
+        // Times, two accelerations, energies; events so far and where the hinges begin; what may not be known.
+        let alone = 4 * size_of::<f64>()
+            + 2 * size_of::<usize>()
+            + 2 * size_of::<Option<f64>>()
+            + size_of::<State>()
+            + size_of::<Demand>();
+        let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
+        // Links have as many hinges more than bodies, at most one, as a row between supports has joints.
+        let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
+        let by_joint = self.joints * size_of::<[f64; 2]>() + self.slipping * size_of::<f64>();
+        let each = alone + self.bodies * by_body + hinges + by_joint;
+        samples.saturating_mul(each as u64)
+    }
+}
+
+/// Memory that a history may take where nothing else is said, in bytes.
+pub const MEMORY_BYTES: u64 = 4_000_000_000;
+
+/// A history takes more memory than it may.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "a history of so many samples and events takes {} of memory, and {} are allowed: take a longer output_step_s or a \
+     shorter duration_s, or allow more",
+    in_words(*.needed_bytes), in_words(*.allowed_bytes)
+)]
+pub struct MemoryError {
+    /// What it needs, or needs already.
+    pub needed_bytes: u64,
+    /// What it may take.
+    pub allowed_bytes: u64,
+}
+
+/// A size that people read.
+fn in_words(bytes: u64) -> String {
+    let megabytes = bytes as f64 / 1e6;
+    if megabytes < 1e3 {
+        format!("{megabytes:.1} MB")
+    } else {
+        format!("{:.1} GB", megabytes / 1e3)
+    }
+}
+
+/// Collects all samples and events, as long as they do not take more memory than they may.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    samples: Samples,
+    events: Vec<Event>,
+    /// What all samples and the events so far take.
+    memory: MemoryError,
+}
+
+impl Recording {
+    /// For so many samples at most, which with the events may take so much memory.
+    ///
+    /// # Errors
+    /// When the samples alone may take more.
+    pub fn new(shape: Shape, samples: u64, allowed_bytes: u64) -> Result<Self, MemoryError> {
+        let recording = Self {
+            samples: Samples::default(),
+            events: Vec::new(),
+            memory: MemoryError {
+                needed_bytes: shape.bytes(samples),
+                allowed_bytes,
+            },
+        };
+        recording.check()?;
+        Ok(recording)
+    }
+
+    const fn check(&self) -> Result<(), MemoryError> {
+        if self.memory.needed_bytes > self.memory.allowed_bytes {
+            return Err(self.memory);
+        }
+        Ok(())
+    }
+
+    /// All that was collected.
+    ///
+    /// # Errors
+    /// When it took too much memory, which ended the history.
+    pub fn finish(self) -> Result<(Samples, Vec<Event>), MemoryError> {
+        self.check()?;
+        Ok((self.samples, self.events))
+    }
 }
 
 impl Recorder for Recording {
@@ -424,6 +540,10 @@ impl Recorder for Recording {
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.memory.needed_bytes += event.bytes();
+        if self.check().is_err() {
+            return ControlFlow::Break(());
+        }
         self.events.push(event.clone());
         ControlFlow::Continue(())
     }

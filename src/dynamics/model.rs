@@ -8,7 +8,9 @@ use thiserror::Error;
 
 use super::free_hinges::FreeHingeError;
 use super::ground::GroundMotion;
-use super::history::{Event, History, Recording, Sample, Summary};
+use super::history::{
+    Event, History, MEMORY_BYTES, MemoryError, Recording, Sample, Shape, Summary,
+};
 pub use super::hybrid::engine::EngineError;
 use crate::argument::{ArgumentError, above, within};
 use crate::mechanics::capacity::Displaced;
@@ -49,22 +51,49 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
-    /// Its motion with all samples and events.
+    /// What its samples tell of.
+    fn shape(&self) -> Shape {
+        Shape {
+            bodies: self.bodies().len(),
+            joints: 0,
+            slipping: 0,
+        }
+    }
+
+    /// Its motion with all samples and events, which may take [`MEMORY_BYTES`] of memory.
     ///
     /// # Errors
-    /// Those of [`Model::simulate`].
+    /// Those of [`Model::history_within`].
     fn history(
         &self,
         ground: &GroundMotion,
         request: &Request,
     ) -> Result<History, SimulationError> {
-        let mut recording = Recording::default();
+        self.history_within(MEMORY_BYTES, ground, request)
+    }
+
+    /// The same with another bound of memory, in bytes. [`Shape::bytes`] of [`Request::most_samples`] tells what the
+    /// samples take.
+    ///
+    /// # Errors
+    /// Those of [`Model::simulate`], and when the history takes more memory: without any work where that is known
+    /// before.
+    fn history_within(
+        &self,
+        memory_bytes: u64,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<History, SimulationError> {
+        request.check()?;
+        request.check_samples()?;
+        let mut recording = Recording::new(self.shape(), request.most_samples(), memory_bytes)?;
         let summary = self.simulate(ground, request, Some(&mut recording))?;
+        let (samples, events) = recording.finish()?;
         Ok(History {
             bodies: self.bodies(),
             summary,
-            samples: recording.samples,
-            events: recording.events,
+            samples,
+            events,
         })
     }
 }
@@ -193,6 +222,13 @@ impl Default for Request {
 }
 
 impl Request {
+    /// How many samples its history has at most: one at every output step, one at the end.
+    #[must_use]
+    pub fn most_samples(&self) -> u64 {
+        // What is no number of samples is refused elsewhere.
+        (self.end_s / self.output_step_s) as u64 + 2
+    }
+
     /// Refuses more samples than a history may have.
     pub(crate) fn check_samples(&self) -> Result<(), ArgumentError> {
         if self.end_s / self.output_step_s <= MAX_SAMPLES {
@@ -242,6 +278,9 @@ pub enum SimulationError {
         /// When, in seconds.
         time_s: f64,
     },
+    /// The history takes too much memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// The integration failed.
     #[error(transparent)]
     Engine(#[from] EngineError),

@@ -11,6 +11,7 @@ from ._described import Described
 from ._ground import Ground
 from ._hinge import Limit
 from ._history import History
+from ._native import MEMORY_GB
 from ._native import Scenario as NativeScenario
 from ._settings import Settings
 from ._structure import Structure
@@ -148,14 +149,26 @@ class Scenario(Described):
         tables.update(map=map, spectrum=spectrum, suite=suite)
         return cls(tables, files=held, model=_model(chosen.model))
 
-    def run(self) -> History:
+    def run(self, *, memory_gb: float = MEMORY_GB) -> History:
         """Its history.
+
+        Args:
+            memory_gb: memory that it may take, in units of 1e9 bytes; see :meth:`memory_gb`.
 
         Raises:
             ValueError: when nothing moves the structure, or the motion cannot be computed.
+            MemoryError: when the history takes more memory than allowed: before it is computed, where that is known.
             KeyboardInterrupt: on Ctrl-C, within a second.
         """
-        return History(self._native.run(None), self._files, self._folder)
+        return History(self._native.run(None, _bytes(memory_gb)), self._files, self._folder)
+
+    def memory_gb(self) -> float:
+        """Memory that the samples of its history take at most, in units of 1e9 bytes; events come on top.
+
+        Raises:
+            ValueError: when the structure has no such model of motion.
+        """
+        return self._native.memory_bytes() / 1e9
 
     def limit(self) -> Limit:
         """The push that starts the structure to either side, by limit analysis, as ``archrock limit``.
@@ -227,6 +240,12 @@ def _model(name: object) -> Model:
     raise ValueError(f"`model = {name!r}` is not one of 'four_links' and 'free_hinges'")
 
 
+def _bytes(memory_gb: float) -> int:
+    if not 0.0 < memory_gb <= 1e6:
+        raise ValueError(f"`memory_gb = {memory_gb}` is not allowed: it must be above 0, and at most 1e6")
+    return int(memory_gb * 1e9)
+
+
 def _not_a_structure(given: object) -> TypeError:
     name = type(given).__name__
     return TypeError(f"`structure` must be an Arch, a Column or a Structure, not {name}")
@@ -253,6 +272,7 @@ def simulate(
     relative_tolerance: float = 1e-9,
     rest_energy_ratio: float = 1e-8,
     gravity_m_s2: float = 9.81,
+    memory_gb: float = MEMORY_GB,
 ) -> History:
     """The history of a structure on moving ground, to the same bits as of the program.
 
@@ -277,6 +297,7 @@ def simulate(
         relative_tolerance: error that the integrator of four links may make in a step.
         rest_energy_ratio: energy over energy barrier below which the structure is at rest.
         gravity_m_s2: acceleration of gravity.
+        memory_gb: memory that the history may take, in units of 1e9 bytes.
 
     Returns:
         The history.
@@ -284,6 +305,7 @@ def simulate(
     Raises:
         ValueError: when an argument is not allowed, or the motion cannot be computed, in the library's words.
         TypeError: when an argument is of another type.
+        MemoryError: when the history takes more memory than allowed: before it is computed, where that is known.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
     key = (
@@ -308,8 +330,9 @@ def simulate(
             raise _not_a_structure(structure) from None
         _model(model)
         base = structure._base(key)
+    memory_bytes = _bytes(memory_gb)
     if ground is None:
-        return History(base.run(None), structure._files, None)
+        return History(base.run(None, memory_bytes), structure._files, None)
     if not isinstance(ground, Ground):
         raise _not_a_ground(ground)
-    return History(base.run(ground._native), (structure, ground), None)
+    return History(base.run(ground._native, memory_bytes), (structure, ground), None)

@@ -11,7 +11,7 @@ use super::{
 use crate::argument::{ArgumentError, above};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{
-    Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
+    Event, EventKind, Impact, OpenHinge, Outcome, Sample, Shape, State, Summary,
 };
 use crate::dynamics::hybrid::integrator::Cost;
 use crate::dynamics::model::{Initial, Model, Recorder, Repetition, Request, SimulationError};
@@ -326,6 +326,15 @@ impl Model for FreeHinges {
         (1..=self.row.blocks().len())
             .map(|block| block.to_string())
             .collect()
+    }
+
+    fn shape(&self) -> Shape {
+        let joints = self.row.joints().len();
+        Shape {
+            bodies: self.row.blocks().len(),
+            joints,
+            slipping: self.options.friction_coefficient.map_or(0, |_| joints),
+        }
     }
 
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
