@@ -177,6 +177,34 @@ fn the_command_writes_table_picture_and_summary() {
     }
 }
 
+/// At rest a secant has no displacement, and its period is none: of every scenario of the repository that has four links
+/// or is a block.
+#[test]
+fn curves_begin_at_no_displacement_and_no_period() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut curves = 0;
+    for entry in std::fs::read_dir(program::scenarios()).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let arguments = ["capacity", path.to_str().unwrap(), "--out", "out"];
+        let output = program::archrock(folder.path(), &arguments);
+        if !output.status.success() {
+            continue;
+        }
+        let table = std::fs::read_to_string(folder.path().join("out/capacity.csv")).unwrap();
+        assert!(!table.contains("NaN"), "{}", path.display());
+        for side in ["right", "left"] {
+            let first = table.lines().find(|line| line.starts_with(side)).unwrap();
+            let cells: Vec<&str> = first.split(',').collect();
+            assert_eq!([cells[2], cells[4], cells[6]], ["0.0"; 3], "{first}");
+            curves += 1;
+        }
+    }
+    assert!(curves >= 2 * 8, "{curves}");
+}
+
 #[test]
 fn control_points_must_be_on_the_structure_and_move() {
     let scenario = scenario(POINTED);

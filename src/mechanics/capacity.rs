@@ -180,7 +180,7 @@ pub struct CurvePoint {
     pub oscillator_displacement_m: f64,
     /// Its acceleration `a*`, in g.
     pub oscillator_acceleration_g: f64,
-    /// Its secant period in seconds; `None` at the unstable equilibrium, where it grows beyond bounds.
+    /// Its secant period in seconds, 0 at rest; `None` at the unstable equilibrium, where it grows beyond bounds.
     pub secant_period_s: Option<f64>,
     /// Friction coefficient without which it would slide there.
     pub friction: f64,
@@ -283,9 +283,13 @@ impl Capacity {
         let curve: Vec<CurvePoint> = (0..=INTERVALS)
             .map(|step| {
                 let here = displaced(f64::from(step) / f64::from(INTERVALS));
-                let displacement_m = sway.sign() * control.shift_m(&here.poses) + 0.0;
-                // At the end rounding may leave it on either side of zero.
-                let last = step == INTERVALS;
+                // Rounding may leave either on either side of zero.
+                let (first, last) = (step == 0, step == INTERVALS);
+                let displacement_m = if first {
+                    0.0
+                } else {
+                    sway.sign() * control.shift_m(&here.poses)
+                };
                 let acceleration_g = if last { 0.0 } else { here.acceleration_g };
                 let oscillator_displacement_m = displacement_m * to_oscillator;
                 let oscillator_acceleration_g = acceleration_g / mass_fraction;

@@ -4,8 +4,9 @@ use std::io::Write;
 
 use serde_json::{Map, Value, json};
 
+use super::OutputError;
 use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign};
-use super::{OutputError, finite};
+use super::table::table;
 use crate::mechanics::capacity::Capacity;
 
 /// Parts of the ultimate displacement at which secant periods are told.
@@ -18,7 +19,7 @@ pub const PARTS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 /// When the system refuses, or a value is not finite.
 pub fn write_table(writer: impl Write, sides: &[Capacity; 2]) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the capacity curve";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     csv.write_record([
         "sway",
         "q_rad",
@@ -38,7 +39,6 @@ pub fn write_table(writer: impl Write, sides: &[Capacity; 2]) -> Result<(), Outp
                 point.oscillator_displacement_m,
                 point.oscillator_acceleration_g,
             ];
-            finite("of a row of capacity.csv", &numbers)?;
             csv.serialize((side.sway.name(), numbers, point.secant_period_s))
                 .map_err(OutputError::csv(WHAT))?;
         }

@@ -2,8 +2,9 @@
 
 use std::io::Write;
 
+use super::OutputError;
 use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
-use super::{OutputError, finite};
+use super::table::table;
 use crate::studies::survey::ShapeResult;
 
 /// Writes a row per shape. Where an impact stops the arch the restitution coefficient is left empty.
@@ -12,7 +13,7 @@ use crate::studies::survey::ShapeResult;
 /// When the system refuses, or a value is not finite.
 pub fn write_table(writer: impl Write, results: &[ShapeResult]) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the chart";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     csv.write_record([
         "embrace_deg",
         "thickness_ratio",
@@ -22,11 +23,7 @@ pub fn write_table(writer: impl Write, results: &[ShapeResult]) -> Result<(), Ou
     ])
     .map_err(OutputError::csv(WHAT))?;
     for result in results {
-        finite("of a row of chart.csv", &[result.incipient_g])?;
         let restitutions = [result.first_restitution, result.last_restitution];
-        for restitution in restitutions.into_iter().flatten() {
-            finite("of a row of chart.csv", &[restitution])?;
-        }
         csv.serialize((
             result.embrace_deg,
             result.thickness_ratio,

@@ -5,6 +5,7 @@ use std::io::Write;
 use serde_json::{Value, json};
 
 use super::results::{beginning, edges, joints};
+use super::table::{Table, table};
 use super::{OutputError, finite};
 use crate::dynamics::free_hinges::FreeHinges;
 use crate::dynamics::free_hinges::spread::{PeakSpread, Spread};
@@ -20,7 +21,7 @@ use crate::scenario::Scenario;
 /// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
 /// joint is an arc: thickness times relative rotation, plus the smaller gap.
 pub struct JointsWriter<W: Write> {
-    csv: csv::Writer<W>,
+    csv: Table<W>,
 }
 
 impl<W: Write> JointsWriter<W> {
@@ -31,7 +32,7 @@ impl<W: Write> JointsWriter<W> {
     /// # Errors
     /// When the system refuses.
     pub fn new(writer: W, joints: usize, slip: bool) -> Result<Self, OutputError> {
-        let mut csv = csv::Writer::from_writer(writer);
+        let mut csv = table(writer);
         let gaps = (0..joints)
             .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
         let slips = (0..joints)
@@ -50,10 +51,6 @@ impl<W: Write> JointsWriter<W> {
     /// # Errors
     /// When the system refuses, or a value is not finite.
     pub fn write(&mut self, sample: &Sample) -> Result<(), OutputError> {
-        const ROW: &str = "of a row of joints.csv";
-        finite(ROW, &[sample.time_s])?;
-        finite(ROW, sample.gaps_m.as_flattened())?;
-        finite(ROW, &sample.offsets_m)?;
         self.csv
             .serialize((sample.time_s, &sample.gaps_m[..], &sample.offsets_m[..]))
             .map_err(OutputError::csv(Self::WHAT))
@@ -73,7 +70,7 @@ impl<W: Write> JointsWriter<W> {
 /// where both landed or the joint parts), `energy_before_j`, `energy_after_j` and `energy_taken_j`, kinetic energies, and where joints slip `friction_j`, the
 /// part that friction took.
 pub struct LandingsWriter<W: Write> {
-    csv: csv::Writer<W>,
+    csv: Table<W>,
     rows: usize,
 }
 
@@ -85,7 +82,7 @@ impl<W: Write> LandingsWriter<W> {
     /// # Errors
     /// When the system refuses.
     pub fn new(writer: W, slip: bool) -> Result<Self, OutputError> {
-        let mut csv = csv::Writer::from_writer(writer);
+        let mut csv = table(writer);
         let columns = [
             "impact",
             "time_s",
@@ -108,8 +105,6 @@ impl<W: Write> LandingsWriter<W> {
     /// When the system refuses, or a value is not finite.
     pub fn write(&mut self, time_s: f64, impact: &Impact) -> Result<(), OutputError> {
         let (before_j, after_j) = (impact.energy_before_j, impact.energy_after_j);
-        finite("of a row of impacts.csv", &[time_s, before_j, after_j])?;
-        finite("of a row of impacts.csv", impact.friction_j.as_slice())?;
         self.rows += 1;
         self.csv
             .serialize((

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::OutputError;
 use super::mechanisms::hinges;
+use super::table::table;
 use crate::dynamics::model::{FourLinkModel, MechanismModel};
 use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
@@ -247,7 +248,7 @@ pub fn write_line(
         impact.profile(),
         impact.sway(),
     );
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     csv.write_record([
         section(profile, 0.0).0,
         "eccentricity_ratio",

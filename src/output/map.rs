@@ -8,6 +8,7 @@ use super::ending::{self, Failed};
 use super::kind::{self, CANNOT_STAND, Kind, NOT_FOUR_LINKS};
 use super::rotations::Scales;
 use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use super::table::table;
 use super::{OutputError, finite};
 use crate::dynamics::history::Outcome;
 use crate::scenario::{Axis, Quantity, Scenario, Spacing};
@@ -75,7 +76,7 @@ pub fn write_table(
     rows: &[CellRow],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the table";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     let axes = map.axes().map(|axis| axis.key.as_str());
     let free_hinges = map.has_free_hinges();
     let columns = ending::columns(free_hinges).map(|column| -> &str { column });
@@ -111,7 +112,7 @@ pub fn write_boundaries(
     boundaries: &[BoundaryRow],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the boundary";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     csv.write_record([
         x_axis.key.as_str(),
         "incipient_acceleration_g",

@@ -33,6 +33,7 @@ pub mod spectrum;
 pub mod suite;
 pub mod survival;
 mod svg;
+mod table;
 pub mod threshold;
 pub mod timeline;
 
@@ -42,6 +43,7 @@ use std::path::PathBuf;
 pub use folder::Folder;
 pub use panels::Subject;
 pub use svg::Figure;
+use table::NotFinite;
 use thiserror::Error;
 
 /// Why results could not be written.
@@ -78,23 +80,25 @@ impl OutputError {
 
     fn io(what: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
         let what = what.into();
-        |source| Self::Io { what, source }
+        |source| match source.downcast::<NotFinite>() {
+            Ok(NotFinite(what)) => Self::NotFinite { what },
+            Err(source) => Self::Io { what, source },
+        }
     }
 
     fn csv(what: impl Into<String>) -> impl FnOnce(csv::Error) -> Self {
-        let what = what.into();
+        let failed = Self::io(what);
         |error| {
             let message = error.to_string();
-            let source = match error.into_kind() {
+            failed(match error.into_kind() {
                 csv::ErrorKind::Io(source) => source,
                 _ => io::Error::other(message),
-            };
-            Self::Io { what, source }
+            })
         }
     }
 }
 
-/// Refuses what is not finite.
+/// Refuses what is not finite. Tables check their cells themselves.
 fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

@@ -2,8 +2,9 @@
 
 use std::io::Write;
 
+use super::OutputError;
 use super::rotations::columns;
-use super::{OutputError, finite};
+use super::table::{Table, table};
 use crate::dynamics::history::Sample;
 
 /// Writes a row per sample: `time_s`, then for each body `x_..._m`, `y_..._m`, `rotation_..._rad`.
@@ -12,7 +13,7 @@ use crate::dynamics::history::Sample;
 /// of a circular arch, the middle of a column's base. A corner that was at `c` is at `(x, y) + R c`, where `R` turns
 /// anticlockwise by the rotation.
 pub struct PosesWriter<W: Write> {
-    csv: csv::Writer<W>,
+    csv: Table<W>,
 }
 
 impl<W: Write> PosesWriter<W> {
@@ -23,7 +24,7 @@ impl<W: Write> PosesWriter<W> {
     /// # Errors
     /// When the system refuses.
     pub fn new(writer: W, bodies: &[String]) -> Result<Self, OutputError> {
-        let mut csv = csv::Writer::from_writer(writer);
+        let mut csv = table(writer);
         let by_body = bodies.iter().flat_map(|body| {
             let body = std::slice::from_ref(body);
             [("x", "m"), ("y", "m"), ("rotation", "rad")]
@@ -45,8 +46,6 @@ impl<W: Write> PosesWriter<W> {
         let values: Vec<f64> = poses
             .flat_map(|pose| [pose.translation.x, pose.translation.y, pose.rotation_rad])
             .collect();
-        finite("of a row of poses.csv", &[sample.time_s])?;
-        finite("of a row of poses.csv", &values)?;
         self.csv
             .serialize((sample.time_s, values))
             .map_err(OutputError::csv(Self::WHAT))

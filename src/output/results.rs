@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::ending::Failed;
 use super::rotations::{Scales, columns};
+use super::table::{Table, table};
 use super::{OutputError, finite};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Event, Outcome, Summary, impacts};
@@ -35,7 +36,7 @@ use crate::scenario::{Ground, Scenario};
 /// Rows of blocks have thousands of impacts, and bodies by the hundred: without names of bodies their columns are left
 /// out.
 pub struct EventsWriter<W: Write> {
-    csv: csv::Writer<W>,
+    csv: Table<W>,
     rows: usize,
     /// Whether there are columns of open joints, and none by body.
     of_row: bool,
@@ -64,7 +65,7 @@ impl<W: Write> EventsWriter<W> {
 
     /// Without names of bodies, of a row.
     fn new(writer: W, bodies: Option<&[String]>, sections: usize) -> Result<Self, OutputError> {
-        let mut csv = csv::Writer::from_writer(writer);
+        let mut csv = table(writer);
         let mut header: Vec<String> = ["time_s", "phase", "kind", "sway", "mechanism"]
             .map(str::to_owned)
             .to_vec();
@@ -99,9 +100,6 @@ impl<W: Write> EventsWriter<W> {
         let open = self
             .of_row
             .then(|| [joints(&event.hinges), edges(&event.hinges)]);
-        finite("of a row of events.csv", &[event.time_s, event.energy_j])?;
-        finite("of a row of events.csv", rotations)?;
-        finite("of a row of events.csv", rates)?;
         self.rows += 1;
         self.csv
             .serialize((
@@ -149,8 +147,7 @@ pub fn write_impacts(
     events: &[Event],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the impacts";
-    const ROW: &str = "of a row of impacts.csv";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     let mut header: Vec<String> = [
         "impact",
         "time_s",
@@ -184,14 +181,9 @@ pub fn write_impacts(
         let edges: Vec<_> = opened.iter().map(|(_, edge)| *edge).collect();
         let impulses = impact.impulses_n_s.iter();
         let impulses_n_s: Vec<f64> = impulses.flat_map(|i| [i.x, i.y]).collect();
-        finite(ROW, &impulses_n_s)?;
         let mut impulses_n_s: Vec<Option<f64>> = impulses_n_s.into_iter().map(Some).collect();
         impulses_n_s.resize(2 * sections, None);
         let energies = [impact.energy_before_j, impact.energy_after_j];
-        finite(ROW, &[time_s, impact.restitution])?;
-        finite(ROW, &energies)?;
-        finite(ROW, &impact.rates_before_rad_s)?;
-        finite(ROW, &impact.rates_after_rad_s)?;
         csv.serialize((
             index + 1,
             time_s,

@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use super::{OutputError, finite};
+use super::OutputError;
+use super::table::{Table, table};
 use crate::dynamics::history::Sample;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::sway::Sway;
@@ -51,7 +52,7 @@ impl Scales {
 /// (ground acceleration over `g A_L`) and `rotation_over_critical` (see
 /// [`Sample::rotation_over_critical`]).
 pub struct RotationsWriter<W: Write> {
-    csv: csv::Writer<W>,
+    csv: Table<W>,
     scales: Option<Scales>,
     rows: u64,
     /// Whether the bodies are the blocks of a row with free hinges.
@@ -91,7 +92,7 @@ impl<W: Write> RotationsWriter<W> {
         scales: Option<Scales>,
         of_row: bool,
     ) -> Result<Self, OutputError> {
-        let mut csv = csv::Writer::from_writer(writer);
+        let mut csv = table(writer);
         let mut header: Vec<String> = ["time_s", "ground_acceleration_m_s2", "phase", "state"]
             .map(str::to_owned)
             .to_vec();
@@ -130,16 +131,7 @@ impl<W: Write> RotationsWriter<W> {
     /// When the system refuses, or a value is not finite.
     pub fn write(&mut self, sample: &Sample) -> Result<(), OutputError> {
         let (rotations, rates) = (&sample.rotations_rad[..], &sample.rates_rad_s[..]);
-        finite(
-            "of a row of rotations.csv",
-            &[sample.time_s, sample.ground_acceleration_m_s2],
-        )?;
         let vertical = self.vertical.then_some(sample.vertical_acceleration_m_s2);
-        finite("of a row of rotations.csv", vertical.as_slice())?;
-        finite("of a row of rotations.csv", rotations)?;
-        finite("of a row of rotations.csv", rates)?;
-        let demand = [sample.demand.excess_ratio, sample.demand.friction];
-        finite("of a row of rotations.csv", &demand)?;
         let excess = (!self.of_row).then_some(sample.demand.excess_ratio);
         let open_joints = self.of_row.then_some(sample.hinges.len());
         let further = self.scales.map(|scales| {
@@ -150,7 +142,6 @@ impl<W: Write> RotationsWriter<W> {
             ]
         });
         let further = further.as_ref().map_or(&[][..], |values| values.as_slice());
-        finite("of a row of rotations.csv", further)?;
         self.rows += 1;
         self.csv
             .serialize((

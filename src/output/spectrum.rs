@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::ending::{Failed, number};
 use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use super::table::table;
 use super::{OutputError, finite};
 use crate::studies::spectrum::{OverturningSpectrum, PointRow, StructureKind};
 
@@ -28,7 +29,7 @@ const COLUMNS: [&str; 9] = [
 /// When the system refuses, or a value is not finite.
 pub fn write_table(writer: impl Write, rows: &[PointRow]) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the table";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     csv.write_record(COLUMNS).map_err(OutputError::csv(WHAT))?;
     for row in rows {
         csv.write_record(fields(row)?)

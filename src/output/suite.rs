@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::ending::{self, Failed};
 use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
+use super::table::table;
 use super::{OutputError, finite};
 use crate::scenario::{Measure, Scenario, Spacing, Suite};
 use crate::studies::fragility::{Errors, Fragility};
@@ -24,7 +25,7 @@ pub fn write_table(
     rows: &[CaseRow],
 ) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the table";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     let free_hinges = heading.has_free_hinges();
     csv.write_record(COLUMNS.into_iter().chain(ending::columns(free_hinges)))
         .map_err(OutputError::csv(WHAT))?;
@@ -110,7 +111,7 @@ pub fn records_in_words(results: &SuiteFragility) -> String {
 /// When the system refuses, or a value is not finite.
 pub fn write_fragility(writer: impl Write, results: &SuiteFragility) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the fragility";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     csv.write_record([
         results.measure.column(),
         "cases",

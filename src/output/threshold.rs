@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::kind::{self, GROUND_FALLS, Kind};
 use super::svg::{Anchor, Axes, CURVES, Drawing, Figure, Frame, Scale, Sign, Stroke, color};
+use super::table::table;
 use super::{OutputError, ending, finite};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Outcome;
@@ -74,7 +75,7 @@ pub fn rounded(value: f64) -> String {
 /// When the system refuses.
 pub fn write_table(writer: impl Write, thresholds: &[Threshold]) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the samples";
-    let mut csv = csv::Writer::from_writer(writer);
+    let mut csv = table(writer);
     csv.write_record(COLUMNS).map_err(OutputError::csv(WHAT))?;
     for threshold in thresholds {
         for sample in &threshold.samples {

@@ -1,0 +1,143 @@
+//! Tables as CSV, in which every number is finite.
+
+use std::fmt;
+use std::io::{self, Write};
+
+/// Writes a table.
+pub(super) type Table<W> = csv::Writer<Finite<W>>;
+
+/// Begins a table.
+pub(super) fn table<W: Write>(writer: W) -> Table<W> {
+    csv::Writer::from_writer(Finite {
+        writer,
+        columns: Vec::new(),
+        in_header: true,
+        quoted: false,
+        column: 0,
+        cell: Vec::new(),
+    })
+}
+
+/// Stands between the text of a table and its file, and refuses cells that are what numbers that are not finite are
+/// written as.
+pub(super) struct Finite<W> {
+    writer: W,
+    /// Names of the columns.
+    columns: Vec<String>,
+    in_header: bool,
+    /// Whether the text is between quotation marks.
+    quoted: bool,
+    /// Number of the column.
+    column: usize,
+    /// The cell so far, or its beginning.
+    cell: Vec<u8>,
+}
+
+/// A number that is not finite, by the name of its column.
+#[derive(Debug)]
+pub(super) struct NotFinite(pub(super) String);
+
+impl fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is not finite", self.0)
+    }
+}
+
+impl std::error::Error for NotFinite {}
+
+/// Longest text of a number that is not finite.
+const LONGEST: usize = "-inf".len();
+
+impl<W> Finite<W> {
+    fn read(&mut self, byte: u8) -> io::Result<()> {
+        match byte {
+            b',' | b'\n' if !self.quoted => {
+                self.end_cell()?;
+                if byte == b',' {
+                    self.column += 1;
+                } else {
+                    self.column = 0;
+                    self.in_header = false;
+                }
+            }
+            _ => {
+                self.quoted ^= byte == b'"';
+                if self.in_header || self.cell.len() <= LONGEST {
+                    self.cell.push(byte);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn end_cell(&mut self) -> io::Result<()> {
+        if self.in_header {
+            let name = String::from_utf8_lossy(&self.cell).into_owned();
+            self.columns.push(name);
+        } else if matches!(&self.cell[..], b"NaN" | b"inf" | b"-inf") {
+            let name = self.columns.get(self.column).cloned();
+            return Err(io::Error::other(NotFinite(name.unwrap_or_default())));
+        }
+        self.cell.clear();
+        Ok(())
+    }
+}
+
+impl<W: Write> Write for Finite<W> {
+    fn write(&mut self, text: &[u8]) -> io::Result<usize> {
+        for byte in text {
+            self.read(*byte)?;
+        }
+        self.writer.write_all(text)?;
+        Ok(text.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::OutputError;
+    use super::*;
+
+    fn written(number: f64, text: &str) -> Result<String, OutputError> {
+        let mut bytes = Vec::new();
+        {
+            let mut table = table(&mut bytes);
+            let what = "cannot write";
+            let csv = |error| OutputError::csv(what)(error);
+            table.write_record(["a", "b\"c"]).map_err(csv)?;
+            // Much more than is kept back.
+            for row in 0..10_000 {
+                table.serialize((f64::from(row), 0.5)).map_err(csv)?;
+            }
+            table.serialize((text, number)).map_err(csv)?;
+            table.flush().map_err(OutputError::io(what))?;
+        }
+        Ok(String::from_utf8(bytes).unwrap())
+    }
+
+    #[test]
+    fn no_number_that_is_not_finite_is_written() {
+        for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let error = written(number, "x").unwrap_err();
+            let words = r#"the result "b""c" is not a finite number: please report the scenario"#;
+            assert_eq!(error.to_string(), words);
+            assert!(matches!(error, OutputError::NotFinite { .. }));
+        }
+        for text in ["", "NaN,inf", "NaNs", "-info", "a\"NaN", "\nNaN\n", ",inf,"] {
+            let table = written(-1e300, text).unwrap();
+            assert!(table.starts_with("a,\"b\"\"c\"\n0.0,0.5\n"));
+            assert!(
+                table.ends_with("-1e300\n"),
+                "{}",
+                &table[table.len() - 30..]
+            );
+            let mut reader = csv::Reader::from_reader(table.as_bytes());
+            let last = reader.records().last().unwrap().unwrap();
+            assert_eq!(&last[0], text);
+        }
+    }
+}
