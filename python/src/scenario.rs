@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::stability::onset;
 use archrock::output::{impact, mechanisms};
-use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source, Structure};
+use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
 use numpy::{PyArray1, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -223,12 +223,11 @@ impl Scenario {
     /// The push that starts it to either side, as `archrock limit --format json`.
     fn limit_json(&self, py: Python<'_>) -> PyResult<String> {
         let gravity_m_s2 = self.inner.simulation.gravity_m_s2;
-        if let Structure::Masonry(masonry) = &self.inner.structure {
-            let row = masonry.row();
+        if let Some(row) = self.inner.row().map_err(refused)? {
             let [right, left] =
-                py.detach(|| [Sway::Right, Sway::Left].map(|sway| onset(row, sway)));
+                py.detach(|| [Sway::Right, Sway::Left].map(|sway| onset(&row, sway)));
             let onsets = [right.map_err(refused)?, left.map_err(refused)?];
-            return Ok(mechanisms::row_limit(row, &onsets, gravity_m_s2).to_string());
+            return Ok(mechanisms::row_limit(&row, &onsets, gravity_m_s2).to_string());
         }
         let model = self.mechanisms(py)?;
         Ok(mechanisms::limit(&*model, gravity_m_s2).to_string())

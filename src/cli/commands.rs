@@ -41,8 +41,10 @@ pub fn limit(
         )?;
     }
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-    let (mut json, mut text) = if let Structure::Masonry(masonry) = &scenario.structure {
-        row_limit(&scenario, masonry.row())?
+    let row = scenario.row();
+    let row = row.map_err(|error| Failure::Input(error.to_string()))?;
+    let (mut json, mut text) = if let Some(row) = row {
+        row_limit(&scenario, &row)?
     } else {
         let model = model(&scenario)?;
         (
@@ -68,12 +70,7 @@ fn row_limit(scenario: &Scenario, row: &Row) -> Result<(serde_json::Value, Strin
     let gravity_m_s2 = scenario.simulation.gravity_m_s2;
     let onset = |sway| onset(row, sway).map_err(|error| Failure::Input(error.to_string()));
     let onsets = [onset(Sway::Right)?, onset(Sway::Left)?];
-    let four_links = scenario.structure.model(scenario.impact);
     let mut json = mechanisms::row_limit(row, &onsets, gravity_m_s2);
-    json["four_links"] = match &four_links {
-        Ok(model) => mechanisms::of_both_sides(&**model, gravity_m_s2),
-        Err(error) => json!({ "none_because": error.to_string() }),
-    };
     let mut text = String::new();
     for (sway, onset) in [Sway::Right, Sway::Left].into_iter().zip(&onsets) {
         let side = sway.name();
@@ -100,12 +97,18 @@ fn row_limit(scenario: &Scenario, row: &Row) -> Result<(serde_json::Value, Strin
         }
         text.push('\n');
     }
+    if let Structure::Column(_) = scenario.structure {
+        text += "joints are counted from the base, which is 0; their intrados is the left side\n";
+        return Ok((json, text));
+    }
     text += "joints are counted from the left, 0 at the left base or springing\n\n";
-    match four_links {
+    match scenario.structure.model(scenario.impact) {
         Err(error) => {
+            json["four_links"] = json!({ "none_because": error.to_string() });
             let _ = writeln!(text, "{error}");
         }
         Ok(model) => {
+            json["four_links"] = mechanisms::of_both_sides(&*model, gravity_m_s2);
             text += "as four links, which the static programme confirms, unstable equilibrium under gravity alone at \
                      rotations (rad,\nanticlockwise) and equivalent free-standing block\n";
             for sway in [Sway::Right, Sway::Left] {

@@ -202,6 +202,12 @@ impl Column {
             .unwrap_or_else(|| vec![self.height_m])
     }
 
+    /// Whether it is one block with upright sides, as in Housner's model.
+    #[must_use]
+    pub fn is_one_prism(&self) -> bool {
+        self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m
+    }
+
     /// Width at the top, in metres.
     #[must_use]
     pub fn top_width_m(&self) -> f64 {

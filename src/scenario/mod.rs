@@ -56,6 +56,7 @@ use serde_json::Value;
 use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, Model, Request};
+use crate::mechanics::blocks::Row;
 use crate::mechanics::four_link::impact::ImpactLaw;
 pub use assignment::Assignment;
 pub use error::{Place, ScenarioError, ScenarioErrors};
@@ -280,6 +281,22 @@ impl Scenario {
         Ok(match self.free_hinges {
             Some(steps) => Box::new(self.structure.free_hinges(steps)?),
             None => self.structure.model(self.impact)?,
+        })
+    }
+
+    /// The blocks of which limit analysis tells what starts them: of masonry, and of a column that is not the one block
+    /// of Housner. `None` of what starts as one mechanism.
+    ///
+    /// # Errors
+    /// As [`Structure::free_hinges`].
+    pub fn row(&self) -> Result<Option<Row>, ModelError> {
+        Ok(match &self.structure {
+            Structure::Masonry(masonry) => Some(masonry.row().clone()),
+            Structure::Column(column) if !column.is_one_prism() => {
+                let drums = self.structure.free_hinges(RowOptions::default())?;
+                Some(drums.row().clone())
+            }
+            Structure::Arch(_) | Structure::Column(_) => None,
         })
     }
 
