@@ -908,3 +908,98 @@ fn joints_that_slip_are_told_of() {
         assert!(refused.contains(words), "{options}\n{refused}");
     }
 }
+
+/// The sideways peak of a pulse is told beside the push that starts the structure, and that is with friction the one of
+/// limit analysis: of a low block Coulomb's coefficient, of a slender one width over height.
+#[test]
+fn with_friction_the_push_that_starts_it_is_that_with_friction() {
+    for (height_m, width_m, friction, push_g) in [
+        (0.3, 2.0, 0.2, 0.2),
+        (2.0, 0.3, 0.2, 0.15),
+        (2.0, 0.3, 0.1, 0.1),
+    ] {
+        let scenario = format!(
+            "[column]\nheight_m = {height_m}\nwidth_m = {width_m}\n[free_hinges]\nfriction_coefficient = {friction}\n\
+             [ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.1\n[simulation]\nduration_s = 0.2\n"
+        );
+        let results = Results::of(&scenario, &["--no-spread"]);
+        let words = format!(
+            "  incipient acceleration with friction {push_g:.4} g; the ground reaches 0.5000 g, {:.2} times as much\n",
+            0.5 / push_g
+        );
+        assert!(results.said.contains(&words), "{}", results.said);
+        for side in ["right", "left"] {
+            let told_g = &results.summary()["incipient_acceleration_g"][side];
+            // To the accuracy of the interior point method.
+            assert!((told_g.as_f64().unwrap() - push_g).abs() < 1e-6, "{told_g}");
+        }
+    }
+}
+
+#[test]
+fn what_slides_without_turning_has_no_half_cycles_to_tell_of() {
+    let scenario = "[column]\nheight_m = 0.3\nwidth_m = 2\n[free_hinges]\nfriction_coefficient = 0.2\n\
+                    [ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.3\n[simulation]\nduration_s = 2\n";
+    let said = Results::of(scenario, &[]).said;
+    assert!(said.contains("  slides without rocking\n"), "{said}");
+    assert!(said.contains("joint 0 slipped 101."), "{said}");
+    for words in ["half cycle", "0.000000"] {
+        assert!(!said.contains(words), "{said}");
+    }
+}
+
+/// A mechanism that takes less energy than the first may overturn it.
+#[test]
+fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
+    let scenario = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.138\nembrace_deg = 120\nvoussoirs = 9\n\
+                    [free_hinges]\n[ground.one_sine]\namplitude_g = 2.309\nduration_s = 0.482\n\
+                    [simulation]\nduration_s = 3\n";
+    let results = Results::of(scenario, &["--no-spread"]);
+    let summary = results.summary();
+    assert_eq!(summary["outcome"], "overturned");
+    assert!(summary["peak_potential_over_barrier"].as_f64().unwrap() < 1.0);
+    assert!(
+        results
+            .said
+            .contains("  passed the barrier beyond which it overturns\n")
+    );
+    assert!(!results.said.contains("reached"), "{}", results.said);
+}
+
+#[test]
+fn limit_analysis_of_drums_tells_the_push_that_starts_them() {
+    let root = tempfile::tempdir().unwrap();
+    let limit = |more: &str| -> Value {
+        let text = format!("[column]\nheight_m = 6\nwidth_m = 1\n{more}");
+        fs::write(root.path().join("s.toml"), text).unwrap();
+        let arguments = ["limit", "s.toml", "--format", "json"];
+        serde_json::from_str(&program::printed(root.path(), &arguments)).unwrap()
+    };
+    let pushes_g = |json: &Value| {
+        ["right", "left"].map(|side| json["incipient_acceleration_g"][side].as_f64().unwrap())
+    };
+    // As one block about the base, by width over height.
+    let drums = limit("drums = 6\n[free_hinges]\n");
+    let sides = [("right", "extrados"), ("left", "intrados")];
+    for (push_g, (side, edge)) in pushes_g(&drums).into_iter().zip(sides) {
+        assert!((push_g - 1.0 / 6.0).abs() < 1e-9, "{push_g}");
+        let mechanism = drums["mechanism"][side].as_array().unwrap();
+        assert_eq!(mechanism.len(), 1);
+        assert_eq!(mechanism[0]["joint"], 0);
+        assert_eq!(mechanism[0]["edge"], edge);
+    }
+    // A taper: the lever of the centre of gravity of a trapezoid with sides 1 and 0.5 is 6 / 3 * (1 + 2 * 0.5) / 1.5.
+    let tapered = limit("drums = 6\ntop_width_m = 0.5\n[free_hinges]\n");
+    for push_g in pushes_g(&tapered) {
+        assert!((push_g - 0.5 / (2.0 * 2.0 / 1.5)).abs() < 1e-9, "{push_g}");
+    }
+    let slippery = limit("drums = 6\n[free_hinges]\nfriction_coefficient = 0.1\n");
+    for side in ["right", "left"] {
+        let push_g = slippery["friction"][side]["incipient_acceleration_g"]
+            .as_f64()
+            .unwrap();
+        assert!((push_g - 0.1).abs() < 1e-6, "{push_g}");
+    }
+    let said = program::printed(root.path(), &["limit", "s.toml"]);
+    assert!(said.contains("joints are counted from the base"), "{said}");
+}

@@ -417,3 +417,45 @@ fn a_folder_that_is_removed_during_a_map_is_made_again() {
         "{said}"
     );
 }
+
+/// What a terminal shows of a command; `None` where there is nothing that stands for one.
+fn on_a_terminal(folder: &Path, command: &str) -> Option<String> {
+    let ran = Command::new("script")
+        .args(["--quiet", "--return", "--command", command, "/dev/null"])
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .ok()?;
+    assert!(
+        ran.status.success(),
+        "{}",
+        String::from_utf8_lossy(&ran.stdout)
+    );
+    Some(String::from_utf8(ran.stdout).unwrap())
+}
+
+#[test]
+fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
+    let root = tempfile::tempdir().unwrap();
+    let scenario = |duration_s: f64| {
+        format!(
+            "[column]\nheight_m = 4\nwidth_m = 1\n[free_hinges]\nlongest_step_s = 1e-6\nshortest_step_s = 1e-7\n\
+             [ground.one_sine]\namplitude_g = 0.4\nduration_s = 1\n[simulation]\nduration_s = {duration_s}\n"
+        )
+    };
+    fs::write(root.path().join("long.toml"), scenario(1.5)).unwrap();
+    fs::write(root.path().join("short.toml"), scenario(1e-2)).unwrap();
+    let run = |more: &str| format!("{PROGRAM} run --no-report --out out {more}");
+    let Some(said) = on_a_terminal(root.path(), &run("long.toml")) else {
+        eprintln!("script is missing: progress is not tested");
+        return;
+    };
+    assert!(said.contains(" of 1.5 s simulated, "), "{said}");
+    for more in ["long.toml --quiet", "short.toml"] {
+        let said = on_a_terminal(root.path(), &run(more)).unwrap();
+        assert!(!said.contains(" s simulated"), "{said}");
+    }
+    // Into a file goes none.
+    let (code, said) = within_a_minute(root.path(), &["run", "--out", "out", "long.toml"]);
+    assert_eq!((code, said), (Some(0), String::new()));
+}

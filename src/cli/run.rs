@@ -2,6 +2,7 @@
 
 mod extras;
 mod free_hinges;
+mod progress;
 
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write as _};
@@ -96,7 +97,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         if !quiet {
             super::warn(&job.scenario);
         }
-        let told = match job.run(arguments) {
+        let told = match job.run(arguments, quiet) {
             Ok(told) => told,
             // The others are run all the same.
             Err(Failure::Work(message)) if jobs.len() > 1 => {
@@ -191,7 +192,7 @@ impl Job {
     }
 
     /// Runs it, and says what happened.
-    fn run(&self, arguments: &Arguments) -> Result<Told, Failure> {
+    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
         let Self {
             scenario,
             other,
@@ -205,8 +206,8 @@ impl Job {
             let _ = writeln!(text, "  {ignored}");
         }
         let told = match (&scenario.free_hinges, other) {
-            (_, Some(free)) => both(scenario, free, place, arguments)?,
-            (Some(_), None) => free_hinges::run(scenario, place, arguments.options()?, None)?,
+            (_, Some(free)) => both(scenario, free, place, arguments, quiet)?,
+            (Some(_), None) => free_hinges::run(scenario, place, arguments.options(quiet)?, None)?,
             (None, None) => {
                 if arguments.no_spread {
                     let message = "--no-spread goes with free hinges: four links and columns are not repeated";
@@ -262,7 +263,7 @@ impl Models {
 
 impl Arguments {
     /// What concerns free hinges, or why it does not go with them.
-    fn options(&self) -> Result<free_hinges::Options, Failure> {
+    fn options(&self, quiet: bool) -> Result<free_hinges::Options, Failure> {
         if self.dimensionless {
             let message = "--dimensionless goes with four links and columns: free hinges have no unstable \
                            equilibrium to measure by";
@@ -270,6 +271,7 @@ impl Arguments {
         }
         Ok(free_hinges::Options {
             spread: !self.no_spread,
+            quiet,
         })
     }
 }
@@ -359,12 +361,13 @@ fn both(
     free: &Scenario,
     place: &Place,
     arguments: &Arguments,
+    quiet: bool,
 ) -> Result<Told, Failure> {
     if arguments.rotations.is_some() {
         let message = "--rotations - is for one model: choose --hinges four or --hinges free";
         return Err(Failure::Input(message.to_owned()));
     }
-    let options = arguments.options()?;
+    let options = arguments.options(quiet)?;
     // Neither is run where the other cannot be.
     let models = (commands::model(four)?, free_hinges::model(free)?);
     let mut folder = match &place.results {
@@ -639,15 +642,20 @@ fn incipient<M: Model + ?Sized>(
         reaches(scenario, ground, history, least_g),
         "the smaller one",
     );
+    let options = scenario.free_hinges.unwrap_or_default();
+    let incipient = match options.friction_coefficient {
+        None => "incipient acceleration A_L",
+        Some(_) => "incipient acceleration with friction",
+    };
     match sides {
         [Some(right), Some(left)] if (right - left).abs() > 1e-9 * right => format!(
-            "  incipient acceleration A_L {right:.4} g to the right, {left:.4} g to the left; the ground {}\n",
+            "  {incipient} {right:.4} g to the right, {left:.4} g to the left; the ground {}\n",
             reaches.replacen("times as much", &format!("times {uneven}"), 1)
         ),
         [None, None] => {
-            format!("  incipient acceleration A_L none, no push starts it; the ground {reaches}\n")
+            format!("  {incipient} none, no push starts it; the ground {reaches}\n")
         }
-        _ => format!("  incipient acceleration A_L {least_g:.4} g; the ground {reaches}\n"),
+        _ => format!("  {incipient} {least_g:.4} g; the ground {reaches}\n"),
     }
 }
 

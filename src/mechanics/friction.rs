@@ -83,6 +83,15 @@ pub fn onset(
     if !stands(row, coefficient)? {
         return Err(FrictionError::CannotStand(coefficient));
     }
+    onset_of_standing(row, coefficient, sway)
+}
+
+/// The same of a row that is known to stand with this coefficient.
+pub(crate) fn onset_of_standing(
+    row: &Row,
+    coefficient: f64,
+    sway: Sway,
+) -> Result<Option<FrictionOnset>, FrictionError> {
     let program = Program::new(row, coefficient, Goal::Push);
     match program.solve(-sway.sign())? {
         Answer::Found(solution) => Ok(Some(FrictionOnset {

@@ -21,6 +21,7 @@ use archrock::output::{Folder, OutputError};
 use archrock::scenario::Scenario;
 
 use super::extras::{Extras, File, POSES, PosesTable};
+use super::progress::RunProgress;
 use super::{
     EVENTS, IMPACTS, JOINTS, PICTURE, Place, ROTATIONS, SUMMARY, Told, cannot_write, cut_short,
     incipient, outcome, subject, written,
@@ -32,6 +33,8 @@ use crate::cli::Failure;
 pub struct Options {
     /// Whether it is repeated in other ways, to see what depends on the computation.
     pub spread: bool,
+    /// Whether no progress is shown.
+    pub quiet: bool,
 }
 
 /// The model of a scenario that has free hinges.
@@ -65,6 +68,7 @@ pub fn run(
     let repetitions = options
         .spread
         .then(|| Repetitions::start(&model, ground, scenario.request()));
+    let progress = RunProgress::new(scenario.simulation.duration_s, options.quiet);
     let (summary, rows) = {
         let mut results = Results {
             tables: Tables::new(&model, ground, place, folder.as_mut())?,
@@ -72,13 +76,16 @@ pub fn run(
             extras: &mut extras,
             impacts: &mut impacts,
             curves,
+            progress: &progress,
             written: Ok(()),
         };
         let summary = model.simulate(ground, &scenario.request(), Some(&mut results))?;
         results.written?;
         (summary, results.tables.finish()?)
     };
+    progress.repeating();
     let spread = repetitions.map(|repetitions| repetitions.spread(&summary));
+    drop(progress);
     let spread = spread.as_ref().map(|spread| match spread {
         Ok(spread) => Ok(spread),
         Err(reason) => Err(reason.as_str()),
@@ -215,6 +222,9 @@ impl<'a> Tables<'a> {
 /// Half cycles that the words of a run tell of.
 const FIRST: usize = 3;
 
+/// What turns by no more than this slides straight on: printed, it is zero.
+const STRAIGHT_RAD: f64 = 5e-7;
+
 /// Impacts that the words of a run tell of, with their times.
 #[derive(Default)]
 struct Notable {
@@ -246,6 +256,7 @@ struct Results<'a> {
     extras: &'a mut Extras,
     impacts: &'a mut Notable,
     curves: Option<&'a mut Curves>,
+    progress: &'a RunProgress,
     /// Why a table could not be written, which ends the history.
     written: Result<(), OutputError>,
 }
@@ -262,6 +273,7 @@ impl Results<'_> {
 
 impl Recorder for Results<'_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.progress.reached(sample.time_s);
         self.timeline.push(sample);
         self.extras.push(sample);
         if let Some(curves) = &mut self.curves {
@@ -313,13 +325,19 @@ fn words(
     if let Some(run) = history.free_hinges.as_deref()
         && history.outcome != Outcome::NeverMoved
     {
-        let cycles: Vec<_> = run.half_cycles.iter().take(FIRST).map(cycle).collect();
+        let rocking = run
+            .half_cycles
+            .iter()
+            .filter(|cycle| cycle.peak_rad > STRAIGHT_RAD);
+        let cycles: Vec<_> = rocking.take(FIRST).map(cycle).collect();
         if !cycles.is_empty() {
             let cycles = cycles.join(", ");
             let _ = writeln!(text, "  peaks of the first half cycles in rad: {cycles}");
         }
         let (peak, peaks) = (history.largest_rotation_rad(), &history.peak_rotations_rad);
-        if let Some(block) = peaks.iter().rposition(|other| *other == peak) {
+        if peak <= STRAIGHT_RAD {
+            text += "  slides without rocking\n";
+        } else if let Some(block) = peaks.iter().rposition(|other| *other == peak) {
             let _ = writeln!(
                 text,
                 "  largest rotation {peak:.6} rad, of block {} of {}",
@@ -328,16 +346,20 @@ fn words(
             );
         }
         if let Some(peak) = history.peak_potential_over_barrier {
-            // What stands has not reached what the rounded number may say.
-            let tenths = match history.outcome {
-                Outcome::Overturned(_) => (1e3 * peak).round(),
-                _ => (1e3 * peak).floor(),
+            let _ = match history.outcome {
+                // It may have overturned by another mechanism, and fallen on since.
+                Outcome::Overturned(_) => {
+                    writeln!(text, "  passed the barrier beyond which it overturns")
+                }
+                _ => {
+                    // Rounded down, so that what was not reached is not said to be.
+                    let percent = (1e3 * peak).floor() / 10.0;
+                    writeln!(
+                        text,
+                        "  reached {percent:.1} % of the potential energy at which its first mechanism overturns"
+                    )
+                }
             };
-            let _ = writeln!(
-                text,
-                "  reached {:.1} % of the potential energy at which its first mechanism overturns",
-                tenths / 10.0
-            );
         }
         let _ = writeln!(
             text,
@@ -486,6 +508,11 @@ fn sure(spread: &Spread) -> String {
         let others = others.join(" and ");
         format!("  repeated ({repeated}): ANOTHER OUTCOME, {others}")
     };
+    let mut peaks = spread.half_cycles.iter();
+    if peaks.all(|peak| peak.max_rad <= STRAIGHT_RAD) {
+        text.push('\n');
+        return text;
+    }
     let percent = 100.0 * SAME_PEAK_RATIO;
     let same = spread.same_until_half_cycle;
     let _ = match (same, spread.parts_at_s) {

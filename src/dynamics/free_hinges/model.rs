@@ -36,8 +36,10 @@ use crate::mechanics::sway::Sway;
 #[derive(Clone, Debug)]
 pub struct FreeHinges {
     row: Row,
-    /// The push that starts it to the right and to the left, in units of gravity.
+    /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
     incipient_g: [Option<f64>; 2],
+    /// The same where they do.
+    with_friction_g: Option<[Option<f64>; 2]>,
     /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
     first: Option<FirstMechanism>,
     options: RowOptions,
@@ -144,6 +146,7 @@ impl FreeHinges {
         Ok(Self {
             row,
             incipient_g,
+            with_friction_g: None,
             first,
             options: RowOptions::default(),
             repeated: None,
@@ -190,12 +193,32 @@ impl FreeHinges {
     /// shortest step is given for joints that slip, or the row slides apart under its own weight.
     pub fn with_options(self, options: RowOptions) -> Result<Self, FreeHingesError> {
         let options = options.checked()?;
-        if let Some(coefficient) = options.friction_coefficient
-            && !friction::stands(&self.row, coefficient)?
-        {
-            return Err(FrictionError::CannotStand(coefficient).into());
+        let with_friction_g = match options.friction_coefficient {
+            None => None,
+            Some(coefficient) if friction::stands(&self.row, coefficient)? => {
+                Some(self.with_friction_g(coefficient)?)
+            }
+            Some(coefficient) => return Err(FrictionError::CannotStand(coefficient).into()),
+        };
+        Ok(Self {
+            options,
+            with_friction_g,
+            ..self
+        })
+    }
+
+    /// The push that starts it to either side where joints slip, by limit analysis.
+    fn with_friction_g(&self, coefficient: f64) -> Result<[Option<f64>; 2], FrictionError> {
+        let [mut right, mut left] = self.incipient_g;
+        for (push_g, sway) in [(&mut right, Sway::Right), (&mut left, Sway::Left)] {
+            *push_g = match friction::onset_of_standing(&self.row, coefficient, sway) {
+                Ok(onset) => onset.map(|onset| onset.acceleration_g),
+                // Joints that do not slip bear no less: theirs is a bound as well.
+                Err(FrictionError::NotSolved(_)) => *push_g,
+                Err(error) => return Err(error),
+            };
         }
-        Ok(Self { options, ..self })
+        Ok([right, left])
     }
 
     /// Coulomb's coefficient of friction, where joints slip.
@@ -338,9 +361,10 @@ impl Model for FreeHinges {
     }
 
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
+        let [right, left] = self.with_friction_g.unwrap_or(self.incipient_g);
         match sway {
-            Sway::Right => self.incipient_g[0],
-            Sway::Left => self.incipient_g[1],
+            Sway::Right => right,
+            Sway::Left => left,
         }
     }
 

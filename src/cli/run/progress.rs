@@ -1,0 +1,80 @@
+//! How far a run is that takes a while, on a terminal.
+
+use std::fmt;
+use std::io::{self, IsTerminal as _};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+
+/// A run that takes less shows nothing.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// The bar counts thousandths of the longest time to simulate.
+const WHOLE: u64 = 1000;
+
+/// A bar that shows the time that was reached. It vanishes with this.
+pub struct RunProgress {
+    bar: ProgressBar,
+    duration_s: f64,
+    begun: Instant,
+    /// Whether there is somebody to look at it.
+    wanted: bool,
+}
+
+impl RunProgress {
+    pub fn new(duration_s: f64, quiet: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(WHOLE), ProgressDrawTarget::hidden());
+        let template = "{bar:40} {reached} of {duration} s simulated, {eta} left{msg}";
+        let seconds = move |state: &ProgressState| f64::from(state.fraction()) * duration_s;
+        let style = ProgressStyle::with_template(template)
+            .expect("the template is valid")
+            // A bar that cannot be written does no harm.
+            .with_key(
+                "reached",
+                move |state: &ProgressState, out: &mut dyn fmt::Write| {
+                    let _ = write!(out, "{:.2}", seconds(state));
+                },
+            )
+            .with_key(
+                "duration",
+                move |_: &ProgressState, out: &mut dyn fmt::Write| {
+                    let _ = write!(out, "{duration_s}");
+                },
+            );
+        bar.set_style(style);
+        Self {
+            bar,
+            duration_s,
+            begun: Instant::now(),
+            wanted: !quiet && io::stderr().is_terminal(),
+        }
+    }
+
+    /// A time was reached.
+    pub fn reached(&self, time_s: f64) {
+        if self.shows() {
+            self.bar
+                .set_position((WHOLE as f64 * time_s / self.duration_s) as u64);
+        }
+    }
+
+    /// The time is over, and the repetitions are not.
+    pub fn repeating(&self) {
+        if self.shows() {
+            self.bar.set_message("; repeating it with other steps");
+        }
+    }
+
+    fn shows(&self) -> bool {
+        let shows = self.wanted && self.begun.elapsed() > PATIENCE;
+        if shows && self.bar.is_hidden() {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        shows
+    }
+}
+
+impl Drop for RunProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
