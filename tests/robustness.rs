@@ -1,6 +1,6 @@
 //! The program under bad circumstances: killed, unread, out of space, and with very much to write.
 #![cfg(target_os = "linux")]
-#![expect(clippy::unwrap_used, reason = "tests")]
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "tests")]
 
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};
@@ -445,7 +445,7 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
     };
     fs::write(root.path().join("long.toml"), scenario(1.5)).unwrap();
     fs::write(root.path().join("short.toml"), scenario(1e-2)).unwrap();
-    let run = |more: &str| format!("{PROGRAM} run --no-report --out out {more}");
+    let run = |more: &str| format!("{PROGRAM} run --no-spread --no-report --out out {more}");
     let Some(said) = on_a_terminal(root.path(), &run("long.toml")) else {
         eprintln!("script is missing: progress is not tested");
         return;
@@ -456,6 +456,9 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
         assert!(!said.contains(" s simulated"), "{said}");
     }
     // Into a file goes none.
-    let (code, said) = within_a_minute(root.path(), &["run", "--out", "out", "long.toml"]);
+    let (code, said) = within_a_minute(
+        root.path(),
+        &["run", "--no-spread", "--out", "out", "long.toml"],
+    );
     assert_eq!((code, said), (Some(0), String::new()));
 }
