@@ -36,12 +36,10 @@ pub fn verify(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let json = pretty(&to_json(&scenario, &check)?);
     let place = input.results(arguments.out.as_deref())?;
     let mut folder = place.open(&[SUMMARY])?;
-    for (name, text) in [(SUMMARY, &json)] {
-        folder
-            .file(name)
-            .write_all(text.as_bytes())
-            .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
-    }
+    folder
+        .file(SUMMARY)
+        .write_all(json.as_bytes())
+        .map_err(|error| Failure::Work(format!("cannot write {SUMMARY}: {error}")))?;
     let path = folder.path().to_owned();
     folder.complete()?;
     if !quiet {
