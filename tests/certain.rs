@@ -1,0 +1,113 @@
+//! What a run calls certain holds with other steps, and it still calls most things certain.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use archrock::dynamics::free_hinges::spread::Spread;
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::model::Model as _;
+use archrock::{FreeHinges, Outcome, Request, Sway};
+use archrock::dynamics::free_hinges::RowOptions;
+use common::{GRAVITY, Random, noise, random_row};
+
+/// Steps, over those of a run, with which what it calls certain must hold.
+const OTHER_STEPS: [f64; 4] = [0.37, 0.23, 1.7, 2.9];
+
+/// By how much peaks may differ then: twice what a run allows its repetitions.
+const SAME: f64 = 0.02;
+
+/// A row that stands and moves, under a pulse or a broadband record some times as strong as its onset.
+fn case(random: &mut Random) -> (FreeHinges, GroundMotion, f64) {
+    loop {
+        let Ok(model) = FreeHinges::new(random_row(random, 30)) else {
+            continue;
+        };
+        let Some(onset_g) = model.incipient_acceleration_g(Sway::Right) else {
+            continue;
+        };
+        if !(0.02..1.5).contains(&onset_g) {
+            continue;
+        }
+        let scale_s = (model.row().size_m() / GRAVITY).sqrt();
+        if random.next() < 0.5 {
+            let kind = Pulse::ALL[(random.next() * 5.0) as usize];
+            let amplitude = GRAVITY * onset_g * (1.1 + 1.4 * random.next());
+            let duration_s = scale_s * (0.15 + random.next());
+            let ground = GroundMotion::pulse(kind, amplitude, duration_s, 0.0).unwrap();
+            return (model, ground, 20.0);
+        }
+        let peak_g = onset_g * (1.2 + 2.3 * random.next());
+        let ground = noise(random, [2.0 * peak_g, peak_g.min(0.4)], 4.0);
+        return (model, ground, 20.0);
+    }
+}
+
+#[derive(Debug, Default)]
+struct Counts {
+    outcomes: usize,
+    first_peaks: usize,
+    moved: usize,
+    failed_outcomes: usize,
+    failed_first_peaks: usize,
+    failed_later_peaks: usize,
+    failed_largest: usize,
+    failed_cases: usize,
+}
+
+fn campaign(cases: usize) -> Counts {
+    let mut random = Random(2026);
+    let mut counts = Counts::default();
+    for index in 0..cases {
+        let (model, ground, end_s) = case(&mut random);
+        let request = Request { end_s, ..Request::default() };
+        let own = model.simulate(&ground, &request, None).unwrap();
+        let repeated: Vec<_> = model
+            .repetitions()
+            .into_iter()
+            .map(|other| (other.name, other.model.simulate(&ground, &request, None).unwrap()))
+            .collect();
+        let spread = Spread::new(&own, &repeated);
+        let cycles = &own.free_hinges.as_ref().unwrap().half_cycles;
+        let certain = spread.same_outcome();
+        let same = spread.same_until_half_cycle;
+        counts.outcomes += usize::from(certain);
+        counts.moved += usize::from(!cycles.is_empty());
+        counts.first_peaks += usize::from(same > 0 || cycles.is_empty());
+        let largest = spread.largest.is_some_and(|largest| largest.is_same());
+        let longest_s = 3.4e-4 * (model.row().size_m() / GRAVITY).sqrt();
+        let mut failed = [false; 4];
+        for factor in OTHER_STEPS {
+            let options = RowOptions {
+                longest_step_s: Some(factor * longest_s),
+                ..RowOptions::default()
+            };
+            let other = model.clone().with_options(options).unwrap();
+            let other = other.simulate(&ground, &request, None).unwrap();
+            let overturns = |outcome| matches!(outcome, Outcome::Overturned(_));
+            failed[0] |= certain && overturns(own.outcome) != overturns(other.outcome);
+            let others = &other.free_hinges.as_ref().unwrap().half_cycles;
+            for (cycle, own) in cycles.iter().take(same).enumerate() {
+                let off = others.get(cycle).map_or(1.0, |other| (other.peak_rad / own.peak_rad - 1.0).abs());
+                let fails = off > SAME;
+                if fails { println!("case {index} N {} factor {factor} cycle {cycle} of {same} own {:e} off {off:.4}", model.row().blocks().len(), own.peak_rad); }
+                failed[1 + usize::from(cycle > 0)] |= fails;
+            }
+            let off = (other.largest_rotation_rad() / own.largest_rotation_rad() - 1.0).abs();
+            failed[3] |= largest && off > SAME;
+        }
+        counts.failed_outcomes += usize::from(failed[0]);
+        counts.failed_first_peaks += usize::from(failed[1]);
+        counts.failed_later_peaks += usize::from(failed[2]);
+        counts.failed_largest += usize::from(failed[3]);
+        counts.failed_cases += usize::from(failed.contains(&true));
+        println!("{index} {:?} same {same}/{} certain {certain} {failed:?}", own.outcome, cycles.len());
+    }
+    counts
+}
+
+#[test]
+fn what_is_called_certain_holds_with_other_steps() {
+    let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
+    let counts = campaign(cases);
+    println!("{counts:?}");
+}
