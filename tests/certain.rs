@@ -4,10 +4,11 @@
 mod common;
 
 use archrock::dynamics::free_hinges::spread::Spread;
+use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model as _;
-use archrock::{FreeHinges, Outcome, Request, Sway};
-use archrock::dynamics::free_hinges::RowOptions;
+use archrock::{Request, Sway};
 use common::{GRAVITY, Random, noise, random_row};
 
 /// Steps, over those of a run, with which what it calls certain must hold.
@@ -59,12 +60,20 @@ fn campaign(cases: usize) -> Counts {
     let mut counts = Counts::default();
     for index in 0..cases {
         let (model, ground, end_s) = case(&mut random);
-        let request = Request { end_s, ..Request::default() };
+        let request = Request {
+            end_s,
+            ..Request::default()
+        };
         let own = model.simulate(&ground, &request, None).unwrap();
         let repeated: Vec<_> = model
             .repetitions()
             .into_iter()
-            .map(|other| (other.name, other.model.simulate(&ground, &request, None).unwrap()))
+            .map(|other| {
+                (
+                    other.name,
+                    other.model.simulate(&ground, &request, None).unwrap(),
+                )
+            })
             .collect();
         let spread = Spread::new(&own, &repeated);
         let cycles = &own.free_hinges.as_ref().unwrap().half_cycles;
@@ -87,9 +96,17 @@ fn campaign(cases: usize) -> Counts {
             failed[0] |= certain && overturns(own.outcome) != overturns(other.outcome);
             let others = &other.free_hinges.as_ref().unwrap().half_cycles;
             for (cycle, own) in cycles.iter().take(same).enumerate() {
-                let off = others.get(cycle).map_or(1.0, |other| (other.peak_rad / own.peak_rad - 1.0).abs());
+                let off = others
+                    .get(cycle)
+                    .map_or(1.0, |other| (other.peak_rad / own.peak_rad - 1.0).abs());
                 let fails = off > SAME;
-                if fails { println!("case {index} N {} factor {factor} cycle {cycle} of {same} own {:e} off {off:.4}", model.row().blocks().len(), own.peak_rad); }
+                if fails {
+                    println!(
+                        "case {index} N {} factor {factor} cycle {cycle} of {same} own {:e} off {off:.4}",
+                        model.row().blocks().len(),
+                        own.peak_rad
+                    );
+                }
                 failed[1 + usize::from(cycle > 0)] |= fails;
             }
             let off = (other.largest_rotation_rad() / own.largest_rotation_rad() - 1.0).abs();
@@ -100,14 +117,25 @@ fn campaign(cases: usize) -> Counts {
         counts.failed_later_peaks += usize::from(failed[2]);
         counts.failed_largest += usize::from(failed[3]);
         counts.failed_cases += usize::from(failed.contains(&true));
-        println!("{index} {:?} same {same}/{} certain {certain} {failed:?}", own.outcome, cycles.len());
+        println!(
+            "{index} {:?} same {same}/{} certain {certain} {failed:?}",
+            own.outcome,
+            cycles.len()
+        );
     }
     counts
 }
 
+/// Of ten rows. Of a hundred (`ARCHROCK_CASES=100`): MEASURED.
 #[test]
 fn what_is_called_certain_holds_with_other_steps() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
     let counts = campaign(cases);
     println!("{counts:?}");
+    assert!(counts.failed_cases <= cases / 100, "{counts:?}");
+    let most = cases * 8 / 10;
+    assert!(
+        counts.outcomes >= most && counts.first_peaks >= most,
+        "{counts:?}"
+    );
 }

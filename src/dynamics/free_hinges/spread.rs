@@ -1,10 +1,13 @@
 //! How far a motion depends on the way it is computed.
 
-use super::Settings;
+use super::{HalfCycle, Settings};
 use crate::dynamics::history::{Outcome, Summary};
 
 /// Peaks are the same while they differ by no more than this part of the largest.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
+
+/// After the last half cycle that peaks above this part of the largest peak nothing is compared.
+const LEAST_PEAK_RATIO: f64 = 1e-3;
 
 named! {
     /// Other ways to compute the motion of a row.
@@ -47,7 +50,7 @@ pub struct Spread {
     pub repeated: Vec<&'static str>,
     /// How it ended: itself, then the repetitions.
     pub outcomes: Vec<Outcome>,
-    /// The half cycles that all have.
+    /// The half cycles that all have, up to the last that peaks above a thousandth of the largest peak of the motion itself.
     pub half_cycles: Vec<PeakSpread>,
     /// Half cycles from the first on that are the same: to one side, with peaks within [`SAME_PEAK_RATIO`].
     pub same_until_half_cycle: usize,
@@ -99,7 +102,19 @@ impl Spread {
                 run.map_or(&[][..], |run| &run.half_cycles)
             })
             .collect();
-        let in_all = cycles.iter().map(|cycles| cycles.len()).min().unwrap_or(0);
+        let largest_rad = cycles[0]
+            .iter()
+            .map(|cycle| cycle.peak_rad)
+            .fold(0.0, f64::max);
+        let counts = |cycle: &HalfCycle| cycle.peak_rad > LEAST_PEAK_RATIO * largest_rad;
+        let last = cycles[0].iter().rposition(counts);
+        let compared = last.map_or(0, |last| last + 1);
+        let in_all = cycles
+            .iter()
+            .map(|cycles| cycles.len())
+            .min()
+            .unwrap_or(0)
+            .min(compared);
         let mut half_cycles = Vec::new();
         let mut same = 0;
         for index in 0..in_all {
@@ -114,6 +129,7 @@ impl Spread {
         }
         let starts_s = cycles
             .iter()
+            .filter(|_| same < compared)
             .filter_map(|cycles| Some(cycles.get(same)?.start_s))
             .reduce(f64::min);
         let stands = |summary: &&Summary| !matches!(summary.outcome, Outcome::Overturned(_));
