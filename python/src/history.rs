@@ -6,8 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use archrock::dynamics::free_hinges::spread::{REPETITIONS, Spread};
+use archrock::dynamics::free_hinges::spread::Spread;
 use archrock::dynamics::history::{Recording, Samples, Summary};
+use archrock::dynamics::model::{Model as _, Repetition};
 use archrock::mechanics::chain::Demand;
 use archrock::output::report::Report;
 use archrock::output::scene::Scene;
@@ -393,7 +394,7 @@ impl History {
         Scenario::new(self.shaken())
     }
 
-    /// `summary.json` of the program; with `spread`, a row of blocks is simulated with half and with double steps.
+    /// `summary.json` of the program; with `spread`, a row of blocks is simulated again in its repetitions.
     fn summary_json(&self, py: Python<'_>, spread: bool) -> PyResult<String> {
         let scenario = self.shaken();
         let motion = scenario.ground_motion();
@@ -402,17 +403,16 @@ impl History {
                 results::summary(&scenario, &**model, motion, &self.summary)
             }
             Standing::Row(row) => {
-                let repeated = spread.then(|| {
+                let spread = if spread {
                     let request = scenario.request();
-                    py.detach(|| REPETITIONS.map(|factor| row.repeated(factor, motion, &request)))
-                });
-                let spread = match repeated {
-                    Some([half, double]) => Some(Spread::new(
-                        &self.summary,
-                        &half.map_err(refused)?,
-                        &double.map_err(refused)?,
-                    )),
-                    None => None,
+                    let simulated = |Repetition { name, model }| {
+                        Ok::<_, SimulationError>((name, model.simulate(motion, &request, None)?))
+                    };
+                    let repeat = || row.repetitions().into_iter().map(simulated).collect();
+                    let repeated: Result<Vec<_>, _> = py.detach(repeat);
+                    Some(Spread::new(&self.summary, &repeated.map_err(refused)?))
+                } else {
+                    None
                 };
                 let spread = spread.as_ref().map(Ok);
                 free_hinges::summary(&scenario, row, &self.summary, spread)

@@ -205,12 +205,7 @@ impl Scenario {
     }
 
     /// Simulates it, on other ground than its own if that is given, in so much memory.
-    fn run(
-        &self,
-        py: Python<'_>,
-        ground: Option<&Ground>,
-        memory_bytes: u64,
-    ) -> PyResult<History> {
+    fn run(&self, py: Python<'_>, ground: Option<&Ground>, memory_bytes: u64) -> PyResult<History> {
         History::of(py, self, ground, memory_bytes)
     }
 

@@ -290,10 +290,10 @@ class History:
     def spread(self) -> dict[str, Any] | None:
         """How a history with free hinges depends on its steps, as ``spread`` of ``summary.json``; ``None`` of others.
 
-        Simulates it with half and with double steps.
+        Simulates it again in other ways that are as good, such as with double steps.
 
         Raises:
-            ValueError: when one of these cannot be computed.
+            ValueError: when one of these fails.
         """
         native = self._native or self.scenario.run()._native
         assert native is not None, "a history that was run is there"
