@@ -210,6 +210,7 @@ fn random(numbers: &mut Numbers) -> Option<Masonry> {
             width_m: numbers.within(1.5, 4.0),
             blocks: 1 + numbers.pick(3) as usize,
             density_kg_m3: None,
+            pedestal: false,
         })
     };
     let piers = Piers {

@@ -372,6 +372,7 @@ fn piers_lower_the_onset_and_wide_ones_do_not() {
         width_m,
         blocks,
         density_kg_m3: None,
+        pedestal: false,
     };
     let on = |left, right| {
         let piers = Piers { left, right };

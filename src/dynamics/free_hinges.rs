@@ -28,10 +28,8 @@ use crate::mechanics::sway::Sway;
 const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
 /// Impacts within the shortest step after which the next landings are merged: without end they would stop time.
 const CROWDED_IMPACTS: usize = 50;
-/// A row has overturned when it is lower than at rest by this part of weight times size.
+/// A row whose joints do not slip has overturned when it is lower than at rest by this part of weight times size.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
-/// The same where joints slip, so that a row may come to rest lower than it stood.
-const SLIPPED_ENERGY_RATIO: f64 = 1e-2;
 
 /// How a motion is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,6 +172,11 @@ pub struct Sample<'a> {
     pub kinetic_j: f64,
     /// Potential energy above the undeformed row in joules.
     pub potential_j: f64,
+    /// To which side the row sways, without what it slid as a whole: the side of its centre of gravity or, where that is at its
+    /// undeformed place, the one to which it goes.
+    pub sway: Sway,
+    /// Whether it has overturned.
+    pub overturned: bool,
 }
 
 /// Joints open where all were shut.
@@ -220,6 +223,8 @@ pub struct Impact<'a> {
     pub gaps_m: &'a [[f64; 2]],
     /// Potential energy above the undeformed row in joules.
     pub potential_j: f64,
+    /// Whether the row has overturned.
+    pub overturned: bool,
 }
 
 /// Who listens to a motion.
@@ -259,11 +264,13 @@ pub enum Outcome {
         /// When.
         time_s: f64,
     },
-    /// Overturned: lower than at rest, whose potential energy is a minimum.
+    /// Overturned: lower than at rest, whose potential energy is a minimum. Where joints slip: a joint has no overlap left, a block has
+    /// turned by 0.8 rad, or it has moved by 0.6 of the size, besides what the row slid along a support.
     Overturned {
         /// To which side.
         sway: Sway,
-        /// When the potential energy was last highest, in seconds.
+        /// When the potential energy was last highest, in seconds; where joints slip, that and what friction took of it: from then on
+        /// gravity gave more than friction took.
         time_s: f64,
     },
     /// Still rocking at the end.
@@ -394,14 +401,9 @@ pub fn simulate(
     course::run(engine, ground, settings, recorder)
 }
 
-/// Potential energy below which a row has overturned, in joules.
-fn fallen_energy_j(row: &Row, gravity_m_s2: f64, slips: bool) -> f64 {
-    let ratio = if slips {
-        SLIPPED_ENERGY_RATIO
-    } else {
-        FALLEN_ENERGY_RATIO
-    };
-    -ratio * row.mass_kg() * gravity_m_s2 * row.size_m()
+/// Potential energy below which a row whose joints do not slip has overturned, in joules.
+fn fallen_energy_j(row: &Row, gravity_m_s2: f64) -> f64 {
+    -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m()
 }
 
 fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {

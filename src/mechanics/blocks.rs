@@ -241,6 +241,8 @@ pub struct Row {
     outlines_m: Vec<Vec<Vector2<f64>>>,
     /// Of a joint with unit vector `e` along the face and normal `n` towards the right block: `e x n`.
     handedness: f64,
+    /// Whether the left and the right support go on beyond their joints.
+    supports_go_on: [bool; 2],
 }
 
 impl Row {
@@ -345,6 +347,7 @@ impl Row {
             size_m,
             outlines_m,
             handedness,
+            supports_go_on: [false; 2],
         })
     }
 
@@ -356,6 +359,16 @@ impl Row {
         } else {
             self
         }
+    }
+
+    /// The same row on other supports, left and right (of a stack: the base, and none). One that goes on beyond its joint, as the
+    /// ground does beyond a base, carries the block wherever that slides; else the block slides off. Where joints do not slip the two
+    /// are the same.
+    #[must_use]
+    pub const fn with_supports_that_go_on(mut self, sides: [bool; 2]) -> Self {
+        let right = matches!(self.supports, Supports::Both);
+        self.supports_go_on = [sides[0], sides[1] && right];
+        self
     }
 
     /// The same row with a body that moves with a block.
@@ -392,6 +405,7 @@ impl Row {
                 .rev()
                 .map(|outline| outline.iter().rev().copied().map(mirror).collect())
                 .collect(),
+            supports_go_on: [self.supports_go_on[1], self.supports_go_on[0]],
             ..*self
         })
     }
@@ -581,6 +595,12 @@ impl Row {
     #[must_use]
     pub const fn supports(&self) -> Supports {
         self.supports
+    }
+
+    /// Whether the left and the right support go on beyond their joints.
+    #[must_use]
+    pub const fn supports_go_on(&self) -> [bool; 2] {
+        self.supports_go_on
     }
 
     /// The length, in metres, that energies and steps are measured with.

@@ -124,6 +124,8 @@ pub struct Column {
     drum_heights_m: Option<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     top_width_m: Option<f64>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pedestal: bool,
 }
 
 impl Column {
@@ -139,6 +141,7 @@ impl Column {
             density_kg_m3: DENSITY_KG_M3,
             drum_heights_m: None,
             top_width_m: None,
+            pedestal: false,
         })
     }
 
@@ -192,6 +195,18 @@ impl Column {
             top_width_m: Some(within("top_width_m", top_width_m, MAGNITUDE)?),
             ..self
         })
+    }
+
+    /// The same column on a pedestal as wide as its base, off which it falls where it slips too far; else on ground that goes on.
+    #[must_use]
+    pub fn on_pedestal(self, pedestal: bool) -> Self {
+        Self { pedestal, ..self }
+    }
+
+    /// Whether it stands on a pedestal as wide as its base.
+    #[must_use]
+    pub const fn is_on_pedestal(&self) -> bool {
+        self.pedestal
     }
 
     /// Heights of its drums from the base up, in metres; its own height where it is one block.

@@ -6,6 +6,10 @@
 //! place `x` along the joint is `d . n + 2 s tan(phi/2) x`. Faces that are offset touch at the ends of their overlap. The gaps
 //! there and the offset are the three coordinates; their gradients are exact, so that a solution for their rates needs no other
 //! correction than the curvature of the motion.
+//!
+//! A support that goes on beyond its joint, as the ground does, is a straight line without ends. There the corners that touch are those
+//! of the block's face, wherever it has slid; gaps and offset are measured normal to the line and along it, and the offset is that of
+//! the corner that is nearer to it.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -63,6 +67,8 @@ pub struct Faces {
     /// Length of the faces in metres.
     pub thickness_m: f64,
     handedness: f64,
+    /// The side of the block (left 0, right 1), where the support on the other side goes on beyond the joint.
+    on_support: Option<usize>,
 }
 
 impl Faces {
@@ -73,7 +79,14 @@ impl Faces {
             let block = block.and_then(|block| row.blocks().get(block));
             block.map_or(Vector2::zeros(), |block| block.centre_m)
         };
+        let [first, last] = row.supports_go_on();
+        let ends = row.joints().len() - 1;
         let faces = |(index, joint): (usize, &Joint)| Self {
+            on_support: match index {
+                0 if first => Some(1),
+                _ if index == ends && last => Some(0),
+                _ => None,
+            },
             arms_m: [centre(index.checked_sub(1)), centre(Some(index))]
                 .map(|centre| joint.intrados_m - centre),
             along: joint.along(),
@@ -86,6 +99,9 @@ impl Faces {
     /// The joint between two blocks at these positions.
     #[must_use]
     pub fn contact(&self, left: &Position, right: &Position) -> Contact {
+        if let Some(side) = self.on_support {
+            return self.contact_with_support([left, right][side], side);
+        }
         let s = self.handedness;
         let half = product(right.half, Vector2::new(left.half.x, -left.half.y));
         let along = product(product(left.half, right.half), self.along);
@@ -108,18 +124,48 @@ impl Faces {
             coordinates_m: Vector3::new(gap(ends_m[0]), gap(ends_m[1]), offset_m),
         }
     }
+
+    /// The joint between a block, on the given side, and a support that goes on.
+    fn contact_with_support(&self, block: &Position, side: usize) -> Contact {
+        let (along, normal) = (self.along, turned(self.along) * self.handedness);
+        // What moves is the right face, or the left one the other way.
+        let sign = if side == 1 { 1.0 } else { -1.0 };
+        let intrados_m = block.of_arm(self.arms_m[side]);
+        let face = product(product(block.half, block.half), along) * self.thickness_m;
+        let moved = intrados_m - self.arms_m[1 - side];
+        let gaps_m = [moved, moved + face].map(|corner| sign * corner.dot(&normal));
+        let reach_m = face.dot(&along);
+        let (middle_m, ends_m, shift_m) = if gaps_m[0] <= gaps_m[1] {
+            (intrados_m, [0.0, reach_m], 0.0)
+        } else {
+            let shift_m = reach_m - self.thickness_m;
+            (intrados_m + face, [-reach_m, 0.0], shift_m)
+        };
+        Contact {
+            middle_m,
+            along,
+            normal,
+            half: Vector2::new(1.0, 0.0),
+            ends_m,
+            coordinates_m: Vector3::new(
+                gaps_m[0],
+                gaps_m[1],
+                sign * (moved.dot(&along) + shift_m),
+            ),
+        }
+    }
 }
 
 /// A joint in the present position of its blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
-    /// Midway between the intrados corners of the faces.
+    /// Midway between the intrados corners of the faces; on a support that goes on, the corner nearer to it.
     pub middle_m: Vector2<f64>,
-    /// Unit vector from intrados to extrados, at the mean angle of the faces.
+    /// Unit vector from intrados to extrados, at the mean angle of the faces; that of a support that goes on.
     pub along: Vector2<f64>,
     /// Unit normal towards the right block.
     pub normal: Vector2<f64>,
-    /// Cosine and sine of half the angle between the faces.
+    /// Cosine and sine of half the angle between the faces, by which forces on faces that are offset lean.
     half: Vector2<f64>,
     /// Where the overlap of the faces begins and ends, along the joint from `middle_m`, in metres.
     pub ends_m: [f64; 2],
@@ -180,13 +226,23 @@ mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// Central differences of coordinates of order one over steps of 1e-6: errors of about 1e-10.
+    /// Between two blocks, and between a block and a support to either side that goes on.
     #[test]
     fn gradients_are_those_of_the_coordinates() {
         let ring = Ring::new(0.2, 2.5).unwrap();
         let row = Row::arch(&ring, 3, 2.0, 1.0, 1.0).unwrap();
-        let faces = Faces::of_row(&row)[1];
-        let centres = [row.blocks()[0].centre_m, row.blocks()[1].centre_m];
+        let row = row.with_supports_that_go_on([true; 2]);
+        for joint in [1, 0, 3] {
+            check_gradients(&row, joint);
+        }
+    }
+
+    /// Central differences of coordinates of order one over steps of 1e-6: errors of about 1e-10.
+    fn check_gradients(row: &Row, joint: usize) {
+        let faces = Faces::of_row(row)[joint];
+        let block = |index: Option<usize>| index.and_then(|index| row.blocks().get(index));
+        let sides = [block(joint.checked_sub(1)), block(Some(joint))];
+        let centres = sides.map(|block| block.map_or(Vector2::zeros(), |block| block.centre_m));
         for (shift, turns) in [
             (Vector2::new(0.03, 0.01), [0.1, -0.2]),
             (Vector2::new(-0.02, 0.02), [0.05, 0.3]),
@@ -196,13 +252,16 @@ mod tests {
                 [centres[1].x + shift.x, centres[1].y + shift.y, turns[1]],
             ];
             let place = |at: &[[f64; 3]; 2]| {
-                let [left, right] = at.map(|p| Position::new(Vector2::new(p[0], p[1]), p[2]));
+                let [left, right] = [0, 1].map(|side| {
+                    let [x, y, turn] = at[side];
+                    sides[side].map_or(Position::HELD, |_| Position::new(Vector2::new(x, y), turn))
+                });
                 (faces.contact(&left, &right), left, right)
             };
             let (contact, left, right) = place(&base);
             let gradients = contact.gradients(&faces, left.centre_m, right.centre_m);
             assert!(contact.coordinates_m.z.abs() > 1e-3);
-            for block in 0..2 {
+            for block in (0..2).filter(|side| sides[*side].is_some()) {
                 for axis in 0..3 {
                     let moved = |by: f64| {
                         let mut at = base;

@@ -17,7 +17,7 @@ use nalgebra::Vector2;
 use super::LineFault;
 use super::record::{faulty, read_numbers};
 use super::structure::{MAGNITUDE, VOUSSOIRS};
-use super::table::{Count, Number, OneOf, OneOrMore, Reading, Reported, Table, Text};
+use super::table::{Count, Number, OneOf, OneOrMore, Reading, Reported, Switch, Table, Text};
 use crate::argument::ArgumentError;
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
@@ -379,6 +379,7 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
         table.optional("density_kg_m3", &MAGNITUDE)?,
     ];
     let blocks = table.optional("blocks", &PIER_BLOCKS)?;
+    let pedestal = table.optional("pedestal", &Switch)?;
     let read = |table: &mut Table<'_>| {
         let mut number = |key, both: Option<f64>| match both {
             Some(both) => table.or(key, &MAGNITUDE, both),
@@ -387,11 +388,13 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
         let (height_m, width_m) = (number("height_m", both[0]), number("width_m", both[1]));
         let density_kg_m3 = table.optional("density_kg_m3", &MAGNITUDE);
         let blocks = table.or("blocks", &PIER_BLOCKS, blocks.unwrap_or(1));
+        let pedestal = table.or("pedestal", &Switch, pedestal.unwrap_or(false));
         Ok(Pier {
             height_m: height_m?,
             width_m: width_m?,
             blocks: blocks?,
             density_kg_m3: density_kg_m3?.or(both[2]),
+            pedestal: pedestal?,
         })
     };
     let said = blocks.is_some() || both.iter().any(Option::is_some);
@@ -413,6 +416,7 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
                         width_m,
                         blocks: blocks.unwrap_or(1),
                         density_kg_m3: both[2],
+                        pedestal: pedestal.unwrap_or(false),
                     };
                     left = left.or(Some(pier));
                     right = right.or(Some(pier));

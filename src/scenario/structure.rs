@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::masonry::{self, Beside};
 use super::span::Circular;
-use super::table::{Count, List, Number, Reading, Table};
+use super::table::{Count, List, Number, Reading, Switch, Table};
 use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use crate::dynamics::model::{FourLinkModel, MechanismModel};
@@ -280,6 +280,7 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let top_width_m = table.optional("top_width_m", &MAGNITUDE);
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
+    let pedestal = table.or("pedestal", &Switch, false);
     if !free_hinges {
         for key in ["drums", "drum_heights_m", "top_width_m"] {
             if table.gives(key) {
@@ -299,7 +300,8 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let mut column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))
-        .expect("the ranges of the keys are within those of a column");
+        .expect("the ranges of the keys are within those of a column")
+        .on_pedestal(pedestal?);
     if let Some(drums) = drums {
         column = column
             .with_drums(drums)

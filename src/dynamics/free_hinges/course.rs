@@ -9,7 +9,7 @@ use crate::mechanics::sway::Sway;
 use super::{Cost, Elapsed, FreeHingeError, HalfCycle, Outcome, Recorder, Run, Settings};
 
 /// Sways below this part of the size do not count as a change of side.
-const SWAY_RATIO: f64 = 1e-9;
+pub(super) const SWAY_RATIO: f64 = 1e-9;
 
 /// What has happened so far.
 pub(super) struct Course {
@@ -20,13 +20,11 @@ pub(super) struct Course {
     pub moved: bool,
     /// Whether the recorder broke.
     pub stopped: bool,
-    /// Whether blocks slid off each other.
-    pub fallen_apart: bool,
     /// Weight times size.
     pub energy_unit: f64,
     pub run: Run,
     gravity: f64,
-    /// Potential energy below which the row has overturned.
+    /// Potential energy below which the row has overturned, where that tells.
     fallen: f64,
     cycle: Option<HalfCycle>,
     cycle_energy: Option<f64>,
@@ -44,7 +42,12 @@ pub(super) trait Stepper {
     fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError>;
     /// Since when it stands still for good, once the ground does.
     fn rests_since(&self) -> Option<f64>;
-    /// Horizontal displacement of the centre of gravity times the mass.
+    /// When the row passed its last way back, once it has overturned.
+    fn overturned_s(&self) -> Option<f64> {
+        let course = self.course();
+        (course.potential < course.fallen).then_some(course.highest_s)
+    }
+    /// Horizontal displacement of the centre of gravity times the mass, without what the row as a whole slid.
     fn sway(&self) -> f64;
     /// Completes the run with what belongs to the engine.
     fn finish(self) -> Run;
@@ -78,9 +81,8 @@ pub(super) fn run(
         }
         let outcome = if course.stopped {
             Some(Outcome::Rocking)
-        } else if course.fallen_apart || course.potential < course.fallen {
+        } else if let Some(time_s) = engine.overturned_s() {
             let sway = towards(engine.sway());
-            let time_s = course.highest_s;
             Some(Outcome::Overturned { sway, time_s })
         } else if time >= quiet_s
             && let Some(time_s) = engine.rests_since()
@@ -133,16 +135,16 @@ pub(super) fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
 }
 
 impl Course {
-    pub(super) fn new(row: &Row, gravity: f64, fallen: f64) -> Self {
+    /// Below the potential energy `fallen` the row has overturned; `None` where the engine tells by other signs.
+    pub(super) fn new(row: &Row, gravity: f64, fallen: Option<f64>) -> Self {
         Self {
             time: 0.0,
             potential: 0.0,
             moved: false,
             stopped: false,
-            fallen_apart: false,
             energy_unit: row.mass_kg() * gravity * row.size_m(),
             gravity,
-            fallen,
+            fallen: fallen.unwrap_or(f64::NEG_INFINITY),
             cycle: None,
             cycle_energy: None,
             rising: false,

@@ -186,7 +186,7 @@ impl<'a> Engine<'a> {
             gravity,
             settings,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
-            course: Course::new(row, gravity, fallen_energy_j(row, gravity, false)),
+            course: Course::new(row, gravity, Some(fallen_energy_j(row, gravity))),
             kicked_s: 0.0,
             backup: placement.clone(),
             placement,

@@ -25,7 +25,6 @@ use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::joints::Pose as RowPose;
 use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::sway::Sway;
 
@@ -177,13 +176,14 @@ impl FreeHinges {
     /// # Errors
     /// When the drums make no row, or the column cannot carry its own weight.
     pub fn of_column(column: &Column) -> Result<Self, FreeHingesError> {
-        Self::new(Row::tapered_stack(
+        let row = Row::tapered_stack(
             &column.drum_heights_m(),
             column.width_m(),
             column.top_width_m(),
             column.depth_m(),
             column.density_kg_m3(),
-        )?)
+        )?;
+        Self::new(row.with_supports_that_go_on([!column.is_on_pedestal(), false]))
     }
 
     /// The same with other options.
@@ -382,14 +382,8 @@ impl Model for FreeHinges {
             .transpose()?;
         let barrier_j = self.barrier_j(request.gravity_m_s2);
         let mut relay = Relay {
-            model: self,
             ground,
             barrier_j,
-            fallen_j: super::fallen_energy_j(
-                &self.row,
-                request.gravity_m_s2,
-                self.options.friction_coefficient.is_some(),
-            ),
             phase: 0,
             thrust: ThrustRecord::default(),
             sample: Sample::at_rest(0.0),
@@ -437,11 +431,8 @@ impl Model for FreeHinges {
 
 /// Hands on what happens to a row in the words of any model.
 struct Relay<'r, 'k> {
-    model: &'r FreeHinges,
     ground: &'r GroundMotion,
     barrier_j: Option<f64>,
-    /// Potential energy below which the row has overturned.
-    fallen_j: f64,
     phase: usize,
     thrust: ThrustRecord,
     /// The sample that is made, again and again.
@@ -449,29 +440,16 @@ struct Relay<'r, 'k> {
     recorder: Option<&'k mut dyn Recorder>,
 }
 
+/// What a row does that moves, swayed to a side.
+const fn swaying(sway: Sway, overturned: bool) -> State {
+    if overturned {
+        State::Overturned(sway)
+    } else {
+        State::Rocking(sway)
+    }
+}
+
 impl Relay<'_, '_> {
-    /// What the row does where its blocks are at the given poses.
-    fn doing(&self, poses: &[RowPose], potential_j: f64) -> State {
-        if poses.iter().all(|pose| pose.rotation_rad == 0.0) {
-            return State::Rest;
-        }
-        let blocks = self.model.row.blocks().iter().zip(poses);
-        let shift: f64 = blocks
-            .map(|(block, pose)| block.mass_kg * (pose.of(block.centre_m) - block.centre_m).x)
-            .sum();
-        let sway = if shift > 0.0 { Sway::Right } else { Sway::Left };
-        self.swaying(sway, potential_j)
-    }
-
-    /// What a row does that moves, swayed to a side.
-    fn swaying(&self, sway: Sway, potential_j: f64) -> State {
-        if potential_j < self.fallen_j {
-            State::Overturned(sway)
-        } else {
-            State::Rocking(sway)
-        }
-    }
-
     /// Tells of the end, if it is one.
     fn end(&mut self, outcome: Outcome, end_s: f64) {
         let (kind, state) = match outcome {
@@ -512,11 +490,12 @@ impl RowRecorder for Relay<'_, '_> {
     }
 
     fn sample(&mut self, sample: &RowSample<'_>) -> ControlFlow<()> {
-        let still = sample.open_joints == 0 && sample.slipping_joints == 0;
+        let shut = sample.open_joints == 0 && sample.slipping_joints == 0;
+        let still = shut || sample.rotations_rad.iter().all(|angle| *angle == 0.0);
         let state = if still {
             State::Rest
         } else {
-            self.doing(sample.poses, sample.potential_j)
+            swaying(sample.sway, sample.overturned)
         };
         let pieces = self.ground.pieces();
         let piece = pieces.partition_point(|piece| piece.start_s <= sample.time_s) - 1;
@@ -603,7 +582,7 @@ impl RowRecorder for Relay<'_, '_> {
         self.phase += 1;
         let state = landing
             .sway
-            .map_or(State::Rest, |sway| self.swaying(sway, landing.potential_j));
+            .map_or(State::Rest, |sway| swaying(sway, landing.overturned));
         let Some(recorder) = &mut self.recorder else {
             return ControlFlow::Continue(());
         };

@@ -9,13 +9,11 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::course::{Course, Stepper, equal_step, heading};
+use super::course::{Course, SWAY_RATIO, Stepper, equal_step, heading};
 use super::engine::{only, rise, sway};
-use super::{
-    FreeHingeError, Impact, Recorder, Run, Sample, Settings, Sliding, Uplift, fallen_energy_j,
-};
+use super::{FreeHingeError, Impact, Recorder, Run, Sample, Settings, Sliding, Uplift};
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
-use crate::mechanics::blocks::Row;
+use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode, Program};
 use crate::mechanics::joints::{Frame, Placement, Pose};
@@ -31,6 +29,12 @@ const APART_RATIO: f64 = 1e-9;
 const REST_ENERGY_RATIO: f64 = 1e-9;
 /// ... for this part of the time in which the size falls free: longer than at any turning point.
 const REST_TIME_RATIO: f64 = 0.5;
+/// A block that has turned by this, in radians, has overturned ...
+const OVERTURNED_RAD: f64 = 0.8;
+/// ... and one that has moved by this part of the size, besides what the row slid along a support.
+const OVERTURNED_RATIO: f64 = 0.6;
+/// Heights that come back by less than this part of weight times size, on the way down, are no way back.
+const LEAST_RETURN: f64 = 1e-3;
 /// Joints with less than this part of the largest normal force are not pressed.
 const LOADED: f64 = 1e-6;
 /// Bounds of friction that are wrong by less than this part of the largest one have converged.
@@ -65,6 +69,11 @@ pub(super) struct Engine<'a> {
     stands: bool,
     sliding: Sliding,
     ground_work: f64,
+    /// By what the row may still be held.
+    summit: Summit,
+    /// Energy that friction took outside impacts.
+    held_back: f64,
+    overturned: bool,
     /// The least energy so far, without what the ground did.
     least_energy: f64,
     quiet_since_s: f64,
@@ -114,7 +123,7 @@ impl<'a> Engine<'a> {
             normal: Vector2::zeros(),
             thickness_m: 0.0,
         };
-        let mut course = Course::new(row, gravity, fallen_energy_j(row, gravity, true));
+        let mut course = Course::new(row, gravity, None);
         let start_energy = gravity * rise(row, placement.centres_m());
         let stands = placement.open_corners() == 0;
         if !stands {
@@ -139,6 +148,9 @@ impl<'a> Engine<'a> {
             stands,
             sliding: still,
             ground_work: 0.0,
+            summit: Summit::new(start_energy),
+            held_back: 0.0,
+            overturned: false,
             least_energy: f64::INFINITY,
             quiet_since_s: 0.0,
             friction_demand: 0.0,
@@ -269,6 +281,8 @@ impl<'a> Engine<'a> {
         self.kicked_s = to_s;
         self.last_step = step;
         let landed = self.find_landings();
+        // What friction takes at a blow holds nothing back.
+        self.held_back += if landed { 0.0 } else { rubbed };
         self.drift(step);
         if landed {
             self.report(taken, rubbed, recorder);
@@ -360,18 +374,47 @@ impl<'a> Engine<'a> {
             let least = APART_RATIO * self.faces[joint].thickness_m;
             let [intrados, extrados, _] = contact.coordinates_m.into();
             self.course.moved |= self.stuck[joint].abs().max(intrados).max(extrados) > least;
-            self.course.fallen_apart |= contact.ends_m[1] <= contact.ends_m[0];
+            self.overturned |= contact.ends_m[1] <= contact.ends_m[0];
             self.contacts[joint] = contact;
         }
         let kinetic = self.kinetic();
         let potential = self.gravity * rise(self.row, &self.centres);
         self.audit(kinetic + 0.5 * (self.course.potential + potential));
-        let sway = sway(self.row, &self.centres);
+        let sway = self.sway();
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
         self.course.observe(rotations, potential, kinetic, sway);
+        self.overturned |= self.has_fallen();
+        let height = potential + self.held_back;
+        let least = LEAST_RETURN * self.course.energy_unit;
+        self.summit.note(self.course.time, height, least);
         if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
             self.quiet_since_s = self.course.time;
         }
+    }
+
+    /// By what the row slid along its supports, left and right.
+    fn slides(&self) -> [Vector2<f64>; 2] {
+        let slide = |joint: usize, sign: f64| {
+            let along = self.row.joints()[joint].along();
+            along * (sign * self.contacts[joint].coordinates_m.z)
+        };
+        // At the right support the block is the left one.
+        match self.row.supports() {
+            Supports::Left => [slide(0, 1.0); 2],
+            Supports::Both => [slide(0, 1.0), slide(self.contacts.len() - 1, -1.0)],
+        }
+    }
+
+    /// Whether a block has turned or moved too far.
+    fn has_fallen(&self) -> bool {
+        let slides = self.slides();
+        let far = (OVERTURNED_RATIO * self.row.size_m()).powi(2);
+        let mut blocks = self.row.blocks().iter().zip(&self.positions);
+        blocks.any(|(block, position)| {
+            let moved = position.centre_m - block.centre_m;
+            position.rotation_rad.abs() >= OVERTURNED_RAD
+                || slides.iter().all(|slide| (moved - slide).norm_squared() >= far)
+        })
     }
 
     /// Compares the energy in the middle of a step, less the work of the ground, with the least so far: what grows beyond it has been
@@ -485,6 +528,7 @@ impl<'a> Engine<'a> {
             rates_after_rad_s: &self.rates,
             gaps_m: &self.gaps,
             potential_j: self.course.potential,
+            overturned: self.overturned,
         });
         self.course.stopped |= flow.is_break();
     }
@@ -514,8 +558,40 @@ impl<'a> Engine<'a> {
             corner_impulses_n_s: &self.corners,
             kinetic_j,
             potential_j: self.course.potential,
+            sway: heading(self.sway(), self.momentum().x),
+            overturned: self.overturned,
         });
         self.course.stopped |= flow.is_break();
+    }
+}
+
+/// When something was highest before it came down for good.
+struct Summit {
+    time: f64,
+    highest: f64,
+    /// The lowest since then.
+    lowest: f64,
+}
+
+impl Summit {
+    const fn new(height: f64) -> Self {
+        Self {
+            time: 0.0,
+            highest: height,
+            lowest: height,
+        }
+    }
+
+    /// Notes a height; what rises again by `least` from where it was lowest has not come down.
+    fn note(&mut self, time: f64, height: f64, least: f64) {
+        self.lowest = self.lowest.min(height);
+        if height >= self.highest || height >= self.lowest + least {
+            *self = Self {
+                time,
+                highest: height,
+                lowest: height,
+            };
+        }
     }
 }
 
@@ -554,8 +630,19 @@ impl Stepper for Engine<'_> {
         (quiet_s > if undeformed { 0.0 } else { long_s }).then_some(self.quiet_since_s)
     }
 
+    fn overturned_s(&self) -> Option<f64> {
+        self.overturned.then_some(self.summit.time)
+    }
+
     fn sway(&self) -> f64 {
-        sway(self.row, &self.centres)
+        let [left, right] = self.slides();
+        let mass = self.row.mass_kg();
+        let sway = sway(self.row, &self.centres) - mass * 0.5 * (left.x + right.x);
+        if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
+            sway
+        } else {
+            0.0
+        }
     }
 
     fn finish(mut self) -> Run {

@@ -9,6 +9,9 @@ use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
 use crate::mechanics::geometry::curve::Curve;
 
+/// Corners that differ in height by less than this part of the size are at one level.
+const LEVEL_RATIO: f64 = 1e-9;
+
 /// Blocks between joints, from left to right (of a stack: from the base up).
 ///
 /// A block is the quadrilateral between its joints unless it has an outline. The last joint of a stack is its free top.
@@ -127,6 +130,20 @@ impl GivenBlocks {
             edge(|joint| joint.extrados_m),
             (0..=last).map(place).collect(),
         )
+    }
+
+    /// Whether the faces on the left and the right support stand on ground that goes on: they are level, and nothing reaches lower.
+    pub(super) fn on_ground(&self) -> [bool; 2] {
+        let corners = self.outlines_m().into_iter().flatten();
+        let lowest_m = corners.map(|corner| corner.y).fold(f64::INFINITY, f64::min);
+        let least_m = LEVEL_RATIO * self.size_m();
+        let stands = |joint: Option<&Joint>| {
+            joint.is_some_and(|joint| {
+                let levels_m = [joint.intrados_m.y, joint.extrados_m.y];
+                levels_m.iter().all(|level_m| level_m - lowest_m <= least_m)
+            })
+        };
+        [self.joints.first(), self.joints.last()].map(stands)
     }
 
     /// Half the diagonal of the rectangle around the joints.

@@ -306,8 +306,13 @@ impl Masonry {
                 }
             }
         }
-        let mut row =
-            Row::new(blocks, joints, supports, shape.size_m())?.with_outlines_m(outlines_m);
+        let on_ground = match &shape {
+            Shape::Blocks(given) => given.on_ground(),
+            _ => [piers.left, piers.right].map(|pier| pier.is_some_and(|pier| !pier.pedestal)),
+        };
+        let mut row = Row::new(blocks, joints, supports, shape.size_m())?
+            .with_outlines_m(outlines_m)
+            .with_supports_that_go_on(on_ground);
         for (voussoir, extra) in extra.iter().enumerate() {
             if let Some(extra) = extra {
                 row = row.carrying(first + voussoir, extra);

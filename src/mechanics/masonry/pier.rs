@@ -40,6 +40,9 @@ pub struct Pier {
     /// Density in kg/m3; `None`: that of the arch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub density_kg_m3: Option<f64>,
+    /// Whether it stands on a pedestal as wide as its base, off which it falls where it slips too far; else on ground that goes on.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub pedestal: bool,
 }
 
 /// The blocks of a pier in the order of the row: upwards at the left, downwards at the right.

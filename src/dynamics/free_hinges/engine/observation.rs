@@ -123,6 +123,7 @@ impl Engine<'_> {
             rates_after_rad_s: &self.rates,
             gaps_m,
             potential_j: self.course.potential,
+            overturned: self.overturned_s().is_some(),
         });
         self.course.stopped |= flow.is_break();
     }
@@ -193,6 +194,8 @@ impl Engine<'_> {
             corner_impulses_n_s: self.auxiliary.corner_impulses(),
             offsets_m: &[],
             slipping_joints: 0,
+            sway: heading(self.sway(), self.momentum().x),
+            overturned: self.overturned_s().is_some(),
             kinetic_j,
             potential_j: self.course.potential,
         });
