@@ -6,6 +6,7 @@ use archrock::Sway;
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::friction::{least_coefficient, stands};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{
     Dimensions, EllipticArch, Masonry, Material, Piers, PointedArch, Shape,
@@ -73,6 +74,41 @@ fn least_thickness_of_a_semicircle_under_acceleration() {
             "{of_row}"
         );
     }
+}
+
+/// A semicircle of 27 voussoirs under its own weight, by the static programme with friction: the least thickness for a coefficient, and
+/// the least coefficient for a thickness. Gilbert, Casapulla and Ahmed (2006), read from a figure to 0.002.
+#[test]
+fn least_thickness_of_a_semicircle_against_friction() {
+    let row = |ratio| {
+        let ring = Ring::new(ratio, PI).unwrap();
+        Row::arch(&ring, 27, 1.0, 1.0, 1.0).unwrap()
+    };
+    for (coefficient, published, page) in [
+        (0.395, 0.107, 0.1068),
+        (0.375, 0.127, 0.1254),
+        (0.35, 0.152, 0.1506),
+        (0.325, 0.179, 0.1776),
+        (0.31, 0.196, 0.1954),
+    ] {
+        // Far below it also stands with hardly more friction, and far above it asks for more again.
+        let ratio = least(0.1, 0.2, |ratio| {
+            stands(&row(ratio), coefficient) == Ok(true)
+        });
+        assert!((ratio - published).abs() < 2e-3, "{coefficient}: {ratio}");
+        assert!((ratio - page).abs() < 5e-5, "{coefficient}: {ratio}");
+        if coefficient < 0.39 {
+            let own = least_coefficient(&row(ratio)).unwrap();
+            assert!((own - coefficient).abs() < 1e-5, "{coefficient}: {own}");
+        }
+    }
+    // With more friction than that the thickness of no sliding is enough, and with less than this none is.
+    let without = least(0.05, 0.2, |ratio| falls(&row(ratio)).unwrap().is_none());
+    assert!((without - 0.1068).abs() < 5e-5, "{without}");
+    let ratios = (0..40).map(|step| 0.11 + 0.01 * f64::from(step));
+    let coefficients = ratios.map(|ratio| least_coefficient(&row(ratio)).unwrap());
+    let fewest = coefficients.fold(f64::INFINITY, f64::min);
+    assert!((fewest - 0.309).abs() < 5e-4, "{fewest}");
 }
 
 /// Least thickness over half the span, a hundred voussoirs, by the static programme: the table of the page.

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-pub use model::{FreeHinges, FreeHingesError, RowOptions};
+pub use model::{DOUBTFUL_ENERGY_ERROR, FreeHinges, FreeHingesError, RowOptions};
 
 use self::engine::Engine;
 use super::ground::GroundMotion;
@@ -131,6 +131,17 @@ pub enum FreeHingeError {
         /// By how much.
         error: f64,
     },
+    /// Energy was created or lost.
+    #[error(
+        "the energy balance is wrong by {:.2} % of the largest energy of the motion, which says nothing then: give a          longest_step_s in [free_hinges] of at most {:.1e} s, and look again at amplitudes and coefficients that no masonry meets",
+        1e2 * .error, 0.2 * .longest_step_s
+    )]
+    Energy {
+        /// By how much of the larger of the barrier and the largest kinetic energy.
+        error: f64,
+        /// The longest step, in seconds.
+        longest_step_s: f64,
+    },
     /// The ends of an arch parted in the computation.
     #[error("at {time_s} s the ends of the arch miss each other by {error_m:.3e} m")]
     Closure {
@@ -172,7 +183,7 @@ pub struct Sample<'a> {
     pub kinetic_j: f64,
     /// Potential energy above the undeformed row in joules.
     pub potential_j: f64,
-    /// To which side the row sways, without what it slid as a whole: the side of its centre of gravity or, where that is at its
+    /// To which side the row sways, without what it slid along the ground: the side of its centre of gravity or, where that is at its
     /// undeformed place, the one to which it goes.
     pub sway: Sway,
     /// Whether it has overturned.
@@ -349,6 +360,8 @@ pub struct Run {
     pub peaks_rad: Vec<f64>,
     /// Largest potential energy above the undeformed row, in joules.
     pub peak_potential_j: f64,
+    /// Largest kinetic energy at the end of a step, in joules.
+    pub largest_kinetic_j: f64,
     /// Half cycles.
     pub half_cycles: Vec<HalfCycle>,
     /// Least normal force at a joint outside impacts, in newtons.

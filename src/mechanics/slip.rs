@@ -147,11 +147,7 @@ impl Faces {
             normal,
             half: Vector2::new(1.0, 0.0),
             ends_m,
-            coordinates_m: Vector3::new(
-                gaps_m[0],
-                gaps_m[1],
-                sign * (moved.dot(&along) + shift_m),
-            ),
+            coordinates_m: Vector3::new(gaps_m[0], gaps_m[1], sign * (moved.dot(&along) + shift_m)),
         }
     }
 }

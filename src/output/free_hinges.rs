@@ -136,7 +136,7 @@ impl<W: Write> LandingsWriter<W> {
 /// `peak_potential_over_barrier` is the largest potential energy over that at which the first mechanism overturns, where that
 /// is known. Normal forces and friction are those outside impacts; `largest_friction_demand` is that of the samples, as in
 /// `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the diagonal of
-/// a column). Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and what did
+/// a column), `energy_defect_over_largest` over the larger of the barrier, where that is known, and the largest kinetic energy. Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and what did
 /// not converge. `spread` is left out where the run was not repeated; where a repetition failed it says why, as `failed`.
 ///
 /// # Errors
@@ -193,6 +193,10 @@ pub fn summary(
         for (name, value) in [
             ("energy_taken_j", run.energy_taken_j),
             ("energy_defect_ratio", run.energy_defect_ratio),
+            (
+                "energy_defect_over_largest",
+                model.energy_error(run, scenario.simulation.gravity_m_s2),
+            ),
             ("closure_error_m", run.closure_error_m),
         ] {
             put(name, number(name, value)?);

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::thread::{self, JoinHandle};
 
 use archrock::dynamics::free_hinges::spread::{SAME_PEAK_RATIO, Spread};
-use archrock::dynamics::free_hinges::{FreeHinges, HalfCycle, Sliding};
+use archrock::dynamics::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, HalfCycle, Sliding};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::{Model as _, Recorder, Repetition, Request, SimulationError};
@@ -366,6 +366,14 @@ fn words(
             "  energy defect {:.1e} of weight times size, {} steps, {} iterations",
             run.energy_defect_ratio, run.cost.steps, run.cost.iterations
         );
+        let error = model.energy_error(run, scenario.simulation.gravity_m_s2);
+        if error > DOUBTFUL_ENERGY_ERROR {
+            let _ = writeln!(
+                text,
+                "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [free_hinges] makes it less",
+                1e2 * error
+            );
+        }
     }
     text += &incipient(scenario, model, ground, history);
     text += &cut_short(scenario, ground, history);

@@ -47,7 +47,7 @@ pub(super) trait Stepper {
         let course = self.course();
         (course.potential < course.fallen).then_some(course.highest_s)
     }
-    /// Horizontal displacement of the centre of gravity times the mass, without what the row as a whole slid.
+    /// Horizontal displacement of the centre of gravity times the mass, without what the row slid along the ground.
     fn sway(&self) -> f64;
     /// Completes the run with what belongs to the engine.
     fn finish(self) -> Run;
@@ -154,6 +154,7 @@ impl Course {
                 end_s: 0.0,
                 peaks_rad: vec![0.0; row.blocks().len()],
                 peak_potential_j: 0.0,
+                largest_kinetic_j: 0.0,
                 half_cycles: Vec::new(),
                 least_normal_n: f64::INFINITY,
                 friction_demand: 0.0,
@@ -198,6 +199,7 @@ impl Course {
         }
         self.potential = potential;
         self.run.peak_potential_j = self.run.peak_potential_j.max(potential);
+        self.run.largest_kinetic_j = self.run.largest_kinetic_j.max(kinetic);
         let least = SWAY_RATIO * self.energy_unit / self.gravity;
         if sway.abs() > least {
             let side = towards(sway);

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use super::{
-    Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder, Sample as RowSample,
-    Settings, Uplift, spread::Repeated,
+    FreeHingeError, Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder, Run,
+    Sample as RowSample, Settings, Uplift, spread::Repeated,
 };
 use crate::argument::{ArgumentError, above};
 use crate::dynamics::ground::GroundMotion;
@@ -98,6 +98,13 @@ impl RowOptions {
 /// A row has slipped when friction took more than this part of the barrier of its first mechanism. It then stands lower than it did,
 /// and its potential energy tells nothing about that barrier.
 const SLIPPED_RATIO: f64 = 0.01;
+
+/// An energy balance that is wrong by more than this part of the largest energy of the motion is worth a word ...
+pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
+/// ... and by more than this, an error.
+const LARGEST_ENERGY_ERROR: f64 = 1e-2;
+/// Motions whose energies are below this part of weight times size are none: their balance is rounding.
+const LEAST_ENERGY_RATIO: f64 = 1e-6;
 
 /// What the motion of the first mechanism is known by.
 #[derive(Clone, Debug)]
@@ -258,6 +265,16 @@ impl FreeHinges {
         }
     }
 
+    /// By how much the energy balance of a motion is wrong, over the larger of its largest kinetic energy and the barrier, where that is
+    /// known.
+    #[must_use]
+    pub fn energy_error(&self, run: &Run, gravity_m_s2: f64) -> f64 {
+        let unit_j = self.row.mass_kg() * gravity_m_s2 * self.row.size_m();
+        let barrier_j = self.barrier_j(gravity_m_s2).unwrap_or(0.0);
+        let least_j = LEAST_ENERGY_RATIO * unit_j;
+        run.energy_defect_ratio * unit_j / run.largest_kinetic_j.max(barrier_j).max(least_j)
+    }
+
     /// How a motion is computed.
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (&self.row, request.gravity_m_s2, request.end_s);
@@ -397,6 +414,15 @@ impl Model for FreeHinges {
             initial_rad.as_deref(),
             &mut relay,
         )?;
+        let error = self.energy_error(&run, request.gravity_m_s2);
+        if error > LARGEST_ENERGY_ERROR {
+            let longest_step_s = settings.longest_step_s;
+            return Err(FreeHingeError::Energy {
+                error,
+                longest_step_s,
+            }
+            .into());
+        }
         let (outcome, outcome_time_s) = match run.outcome {
             RowOutcome::NeverMoved => (Outcome::NeverMoved, run.end_s),
             RowOutcome::Rest { time_s } => (Outcome::Rest, time_s),

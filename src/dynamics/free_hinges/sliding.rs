@@ -413,7 +413,9 @@ impl<'a> Engine<'a> {
         blocks.any(|(block, position)| {
             let moved = position.centre_m - block.centre_m;
             position.rotation_rad.abs() >= OVERTURNED_RAD
-                || slides.iter().all(|slide| (moved - slide).norm_squared() >= far)
+                || slides
+                    .iter()
+                    .all(|slide| (moved - slide).norm_squared() >= far)
         })
     }
 
@@ -635,9 +637,17 @@ impl Stepper for Engine<'_> {
     }
 
     fn sway(&self) -> f64 {
-        let [left, right] = self.slides();
+        let on_ground = match (self.row.supports(), self.row.supports_go_on()) {
+            (Supports::Left, [base, _]) => [base; 2],
+            (Supports::Both, both) => both,
+        };
+        // What slips along a face that ends leaves it.
+        let slides = self.slides().into_iter().zip(on_ground);
+        let slid: f64 = slides
+            .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
+            .sum();
         let mass = self.row.mass_kg();
-        let sway = sway(self.row, &self.centres) - mass * 0.5 * (left.x + right.x);
+        let sway = sway(self.row, &self.centres) - mass * slid;
         if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
             sway
         } else {

@@ -1,0 +1,91 @@
+//! The energy balance of a row: doubtful ones are told, and wrong ones fail.
+
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use archrock::dynamics::free_hinges::{
+    DOUBTFUL_ENERGY_ERROR, FreeHingeError, FreeHinges, RowOptions,
+};
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::model::{Model as _, SimulationError};
+use archrock::mechanics::column::Column;
+use archrock::mechanics::sway::Sway;
+use common::{GRAVITY, released, request};
+
+const COEFFICIENTS: [Option<f64>; 2] = [None, Some(0.8)];
+
+fn block(friction_coefficient: Option<f64>, longest_step_s: Option<f64>) -> FreeHinges {
+    let column = Column::new(4.0, 0.8).unwrap();
+    let options = RowOptions {
+        longest_step_s,
+        friction_coefficient,
+        ..RowOptions::default()
+    };
+    let model = FreeHinges::of_column(&column).unwrap();
+    model.with_options(options).unwrap()
+}
+
+/// A block that is released gains what its centre comes down by: with sine and cosine of its rotation, half its width and height.
+/// The first impact is within a step of the largest.
+#[test]
+fn the_largest_kinetic_energy_is_noted() {
+    let angle_rad = 0.1_f64;
+    for coefficient in COEFFICIENTS {
+        let model = block(coefficient, None);
+        let request = released(5.0, Sway::Right, angle_rad);
+        let summary = model
+            .simulate(&GroundMotion::still(), &request, None)
+            .unwrap();
+        let run = summary.free_hinges.unwrap();
+        let rise_m = 2.0 * (angle_rad.cos() - 1.0) + 0.4 * angle_rad.sin();
+        let due_j = model.row().mass_kg() * GRAVITY * rise_m;
+        let miss = run.largest_kinetic_j / due_j - 1.0;
+        assert!(miss.abs() < 2e-3, "{coefficient:?} {miss}");
+        assert!(model.energy_error(&run, GRAVITY) < 1e-6);
+    }
+}
+
+/// With ever longer steps the balance gets worse, is doubtful, and is refused beyond a hundredth of the larger of the barrier,
+/// `m g (R - h)`, and the largest kinetic energy; the message tells a step with which it is not.
+#[test]
+fn a_wrong_energy_balance_fails() {
+    let push = GroundMotion::pulse(Pulse::Rectangular, -0.8 * GRAVITY, 0.1, 0.0).unwrap();
+    for coefficient in COEFFICIENTS {
+        let (mut doubtful, mut wrong) = (0, 0);
+        let mut longest_step_s = 1e-3;
+        while longest_step_s < 0.9 {
+            let model = block(coefficient, Some(longest_step_s));
+            match model.simulate(&push, &request(6.0), None) {
+                Ok(summary) => {
+                    let run = summary.free_hinges.unwrap();
+                    let mass_kg = model.row().mass_kg();
+                    let barrier_j = mass_kg * GRAVITY * (2.0_f64.hypot(0.4) - 2.0);
+                    let defect_j =
+                        run.energy_defect_ratio * mass_kg * GRAVITY * model.row().size_m();
+                    let due = defect_j / barrier_j.max(run.largest_kinetic_j);
+                    let error = model.energy_error(&run, GRAVITY);
+                    assert!((error / due - 1.0).abs() < 1e-12 || error < 1e-12);
+                    assert!(error <= 1e-2, "{coefficient:?} {longest_step_s} {error}");
+                    doubtful += usize::from(error > DOUBTFUL_ENERGY_ERROR);
+                }
+                Err(SimulationError::FreeHinges(FreeHingeError::Energy {
+                    error,
+                    longest_step_s: told_s,
+                })) => {
+                    assert!(error > 1e-2 && told_s == longest_step_s);
+                    let shorter = block(coefficient, Some(0.02 * longest_step_s));
+                    assert!(shorter.simulate(&push, &request(6.0), None).is_ok());
+                    wrong += 1;
+                }
+                Err(other) => panic!("{coefficient:?} {longest_step_s} {other}"),
+            }
+            longest_step_s *= 1.3;
+        }
+        println!("{coefficient:?}: {doubtful} doubtful, {wrong} wrong");
+        assert!(
+            doubtful > 0 && wrong > 0,
+            "{coefficient:?}: {doubtful} {wrong}"
+        );
+    }
+}
