@@ -839,3 +839,46 @@ const DAMAGE: &[&str] = &[
     "[", "]", "\"", "'", "\"\"\"", "=", "\n", "\r", ".", ",", "{", "}", "#", "é", "\\u12",
     "\u{feff}",
 ];
+
+/// What stands on a pedestal says so, for both piers or for one; the rest stands on ground that goes on.
+#[test]
+fn pedestals() {
+    let goes_on = |text: &str| {
+        let scenario = parse(text).unwrap();
+        assert_eq!(parse(&scenario.to_toml()).unwrap(), scenario);
+        let model = scenario
+            .structure
+            .free_hinges(RowOptions::default())
+            .unwrap();
+        model.row().supports_go_on()
+    };
+    let free = "[free_hinges]\nfriction_coefficient = 0.7\n";
+    let column = |pedestal: &str| format!("{COLUMN}{pedestal}drums = 3\n{free}");
+    assert_eq!(goes_on(&column("")), [true, false]);
+    assert_eq!(goes_on(&column("pedestal = false\n")), [true, false]);
+    assert_eq!(goes_on(&column("pedestal = true\n")), [false, false]);
+    let arch = |piers: &str| format!("{ARCH}voussoirs = 9\n{piers}{free}");
+    let both = "[piers]\nheight_m = 3.0\nwidth_m = 2.0\n";
+    assert_eq!(goes_on(&arch("")), [false, false]);
+    assert_eq!(goes_on(&arch(both)), [true, true]);
+    assert_eq!(
+        goes_on(&arch(&format!("{both}pedestal = true\n"))),
+        [false, false]
+    );
+    let left = "[piers.left]\nheight_m = 3.0\nwidth_m = 2.0\n";
+    assert_eq!(goes_on(&arch(left)), [true, false]);
+    assert_eq!(
+        goes_on(&arch(&format!("{left}pedestal = true\n"))),
+        [false, false]
+    );
+    assert_eq!(
+        goes_on(&arch(&format!("[piers]\npedestal = true\n{left}"))),
+        [false, false]
+    );
+    let other = format!("{both}pedestal = true\n[piers.right]\npedestal = false\n");
+    assert_eq!(goes_on(&arch(&other)), [false, true]);
+    assert_errors(
+        &format!("{COLUMN}pedestal = 1\n"),
+        &[(4, 1, &["`pedestal", "true or false"])],
+    );
+}

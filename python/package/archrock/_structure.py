@@ -165,6 +165,8 @@ class Column(Structure):
         drums: number of equal drums; or give ``drum_heights_m``. Drums and a taper go with free hinges only.
         drum_heights_m: heights of drums from the base up, shape ``(drums,)``.
         top_width_m: width at the top, where it tapers.
+        pedestal: whether it stands on a pedestal as wide as its base, off which it falls where it slips, instead of on ground that
+            goes on; ``None``: that of the program, on the ground.
         depth_m: length out of plane; ``None``: that of the program, 1.
         density_kg_m3: density; ``None``: that of the program, 2000.
 
@@ -182,6 +184,7 @@ class Column(Structure):
         drums: int | None = None,
         drum_heights_m: Any = None,
         top_width_m: float | None = None,
+        pedestal: bool | None = None,
         depth_m: float | None = None,
         density_kg_m3: float | None = None,
     ) -> None:
@@ -192,6 +195,7 @@ class Column(Structure):
                 "drums": drums,
                 "drum_heights_m": drum_heights_m,
                 "top_width_m": top_width_m,
+                "pedestal": pedestal,
                 "depth_m": depth_m,
                 "density_kg_m3": density_kg_m3,
             }
