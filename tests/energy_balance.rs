@@ -73,7 +73,7 @@ fn a_wrong_energy_balance_fails() {
                     error,
                     longest_step_s: told_s,
                 })) => {
-                    assert!(error > 1e-2 && told_s == longest_step_s);
+                    assert!(error > 1e-2 && (told_s / longest_step_s - 1.0).abs() < 1e-12);
                     let shorter = block(coefficient, Some(0.02 * longest_step_s));
                     assert!(shorter.simulate(&push, &request(6.0), None).is_ok());
                     wrong += 1;

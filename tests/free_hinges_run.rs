@@ -532,7 +532,7 @@ fn what_repetitions_change_is_said_and_written() {
     );
 }
 
-/// With steps far too long the ends of the arch may part in the computation. Which steps do that is a matter of
+/// With steps far too long the ends of the arch may part in the computation, or its energy balance be wrong. Which steps do that is a matter of
 /// rounding; among a few there is one with which a repetition fails and the history itself does not.
 #[test]
 fn a_failed_repetition_leaves_the_history_and_says_why() {
@@ -551,7 +551,10 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
         });
     let (step_s, results, reason) = failed.expect("a repetition that fails");
     assert!(reason.starts_with("the repetition with "), "{reason}");
-    assert!(reason.contains(" failed: at "), "{reason}");
+    assert!(
+        reason.contains(" failed: at ") || reason.contains(" failed: the energy balance is wrong"),
+        "{reason}"
+    );
     let said = &results.said;
     let words = format!("  how far it depends on its steps is not known: {reason}\n");
     assert!(

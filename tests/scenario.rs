@@ -879,6 +879,6 @@ fn pedestals() {
     assert_eq!(goes_on(&arch(&other)), [false, true]);
     assert_errors(
         &format!("{COLUMN}pedestal = 1\n"),
-        &[(4, 1, &["`pedestal", "true or false"])],
+        &[(4, 12, &["`pedestal", "true or false"])],
     );
 }

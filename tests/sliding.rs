@@ -504,7 +504,7 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
 fn the_time_of_overturning_is_that_of_the_unstable_equilibrium() {
     let row = column(4.0, 0.8, false);
     let ground = push(0.5, 0.5);
-    let without = run(&row, &ground, &Settings::fine(&row, GRAVITY, 10.0));
+    let without = run(&row, &ground, &Settings::to_landings(&row, GRAVITY, 10.0));
     let with = run(&row, &ground, &equal(5e-5, 10.0, 5.0));
     let times_s = [&without, &with].map(|run| match run.outcome {
         Outcome::Overturned { sway, time_s } => {

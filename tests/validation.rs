@@ -89,7 +89,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
         (0.375, 0.127, 0.1254),
         (0.35, 0.152, 0.1506),
         (0.325, 0.179, 0.1776),
-        (0.31, 0.196, 0.1954),
+        (0.31, 0.196, 0.1953),
     ] {
         // Far below it also stands with hardly more friction, and far above it asks for more again.
         let ratio = least(0.1, 0.2, |ratio| {

@@ -133,7 +133,9 @@ pub enum FreeHingeError {
     },
     /// Energy was created or lost.
     #[error(
-        "the energy balance is wrong by {:.2} % of the largest energy of the motion, which says nothing then: give a          longest_step_s in [free_hinges] of at most {:.1e} s, and look again at amplitudes and coefficients that no masonry meets",
+        "the energy balance is wrong by {:.2} % of the largest energy of the motion, which says nothing then: give a \
+         longest_step_s in [free_hinges] of at most {:.1e} s, and look again at amplitudes and coefficients that no masonry \
+         meets",
         1e2 * .error, 0.2 * .longest_step_s
     )]
     Energy {
