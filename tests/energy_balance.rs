@@ -82,7 +82,6 @@ fn a_wrong_energy_balance_fails() {
             }
             longest_step_s *= 1.3;
         }
-        println!("{coefficient:?}: {doubtful} doubtful, {wrong} wrong");
         assert!(
             doubtful > 0 && wrong > 0,
             "{coefficient:?}: {doubtful} {wrong}"
