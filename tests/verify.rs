@@ -2,6 +2,7 @@
 //! ground and at a height; spectra from files; what cannot be checked, and why.
 #![allow(clippy::unwrap_used)]
 
+mod browser;
 mod program;
 
 use archrock::scenario::LimitState;
@@ -416,16 +417,18 @@ fn what_is_out_of_the_range_of_the_code_is_refused() {
     );
 }
 
-/// A thick shallow arch starts with another mechanism than four links, and drums with any: there are the damage limit state and
-/// its multiple, by the static limit analysis.
+/// Locks before its multiplier is zero.
+const LOCKS: &str = "[pointed_arch]\nspan_m = 2.02\nrise_m = 1.46\nthickness_m = 0.6\nvoussoirs = 6\n\
+    [piers]\nheight_m = 2.62\nwidth_m = 2.09\nblocks = 2\n";
+const DRUMS: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hinges]\n";
+
+/// A linkage that locks and a stack of drums: there are the damage limit state and its multiple.
 #[test]
 fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
-    let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
-    let drums = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hinges]\n";
-    for structure in [lintel, drums] {
+    for (structure, why) in [(LOCKS, "comes to the end of its way"), (DRUMS, "drums")] {
         let check = check(&format!("{structure}{DEMAND}"));
         for mechanism in &check.mechanisms {
-            assert!(mechanism.way.is_err());
+            assert!(mechanism.way.as_ref().unwrap_err().contains(why));
             // The virtual work of the bodies gives the push of the limit analysis back.
             let model = scenario(structure).model().unwrap();
             let incipient_g = model.incipient_acceleration_g(mechanism.sway).unwrap();
@@ -456,11 +459,31 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
         assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
     }
     // A stack of drums that turns about its base is the column.
-    let [drums, column] = [drums, COLUMN].map(|structure| check(&format!("{structure}{DEMAND}")));
+    let [drums, column] = [DRUMS, COLUMN].map(|structure| check(&format!("{structure}{DEMAND}")));
     let (drums, column) = (&drums.mechanisms[0], &column.mechanisms[0]);
     assert!((drums.alpha0 / column.alpha0 - 1.0).abs() < 1e-9);
     assert_eq!(drums.bodies.len(), 1);
     assert!((drums.bodies[0].displacement - column.bodies[0].displacement).norm() < 1e-9);
+}
+
+/// The least multiplier counts: where sliding has a smaller one than what opens without it, there is nothing to check. A block
+/// that needs more friction than the Circolare has is checked, with a warning.
+#[test]
+fn c8_7_1_1_what_slides_before_is_no_mechanism() {
+    let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
+    let folder = in_folder(lintel, DEMAND);
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["friction coefficient of 0.577", "to the right"],
+    );
+    let squat = COLUMN.replace("width_m = 0.8", "width_m = 2.8");
+    let said = words(&check(&format!("{squat}{DEMAND}")));
+    assert!(
+        said.contains("warning: To the right the mechanism needs a friction coefficient of 0.700"),
+        "{said}"
+    );
+    assert!(!words(&check(&format!("{COLUMN}{DEMAND}"))).contains("warning"));
 }
 
 #[test]
@@ -521,5 +544,58 @@ fn the_command_says_and_writes_the_check() {
     ] {
         let own = self::scenario(&format!("{COLUMN}{text}"));
         assert_eq!(self::scenario(&own.to_toml()), own);
+    }
+}
+
+/// Every number of the page is one of the JSON's, rounded as it is shown, and those that count are where they are looked for; the
+/// page needs no network and claims nothing that the Circolare does not say.
+#[test]
+fn page_and_json_agree() {
+    let free = "[verify]\nsides = 'right'\nfree_standing = { t0_s = 0.15 }\n";
+    for text in [
+        format!("title = 'A <title> & more'\n{SEMICIRCLE}{DEMAND}"),
+        format!("{}{DEMAND}{HEIGHT}", on_piers()),
+        format!("{COLUMN}{DEMAND}{free}"),
+        format!("{LOCKS}{DEMAND}"),
+        format!("{DRUMS}{DEMAND}"),
+        format!("{COLUMN}[demand.slv]\nspectrum = 'slv.csv'\n[demand.sld]\nspectrum = 'slv.csv'\n"),
+    ] {
+        let folder = in_folder(&text, "");
+        print_of(folder.path(), &["verify", "a.toml", "--out", "out"]);
+        let json = std::fs::read_to_string(folder.path().join("out/verify.json")).unwrap();
+        let page = folder.path().join("out/verify.html");
+        let html = std::fs::read_to_string(&page).unwrap();
+        for foreign in ["src=", "@import", "<link", "url(", "omplian", "NaN", "inf<"] {
+            assert!(!html.contains(foreign), "{foreign}");
+        }
+        let script = "
+const known = new Set();
+const walk = (value) => {
+  if (typeof value === 'number') known.add(value);
+  else if (value && typeof value === 'object') Object.values(value).forEach(walk);
+};
+walk(data);
+document.querySelectorAll('data').forEach((element) => {
+  const value = Number(element.value);
+  const text = element.textContent;
+  verify(known.has(value), `${element.value} is not in the JSON`);
+  const decimals = (text.split('.')[1] ?? '').length;
+  verify(Math.abs(Number(text) - value) <= 0.5000001 * 10 ** -decimals, `${text} ${element.value}`);
+});
+const result = document.getElementById('result').textContent;
+verify(result.includes(`= ${data.zeta_e.toFixed(3)}.`), 'zeta_e');
+for (const [state, verdict] of Object.entries(data.verdict)) {
+  const rows = [...document.querySelectorAll('#result tbody tr')].filter((row) => row.textContent.startsWith(state.toUpperCase()));
+  const counts = rows.find((row) => row.className === 'counts');
+  const words = { passed: 'passed', not_passed: 'not passed', not_checked: undefined };
+  verify(counts?.lastElementChild.textContent === words[verdict], `${state} ${verdict}`);
+  if (counts) verify(counts.textContent.includes(data.states[state].zeta_e.toFixed(3)), state);
+}
+verify(document.querySelectorAll('svg').length >= 1, 'pictures');
+verify(document.title === (data.title ?? 'Check of local mechanisms'), document.title);
+verify(document.body.textContent.includes(data.scenario_sha256), 'hash');
+data.decisions.forEach((one) => verify([...document.querySelectorAll('dt')].some((dt) => dt.textContent === one.name), one.name));
+";
+        browser::assert_checked(&page, script, &json, &[], 60);
     }
 }

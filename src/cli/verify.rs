@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use archrock::studies::verify::{Check, to_json, words};
+use archrock::studies::verify::{Check, page, to_json, today, words};
 
 use super::commands::pretty;
 use super::scenario_file::ScenarioFile;
@@ -22,6 +22,7 @@ pub struct Arguments {
     format: Format,
 }
 
+const PAGE: &str = "verify.html";
 /// Written last: a folder that has it is complete.
 const SUMMARY: &str = "verify.json";
 
@@ -35,15 +36,18 @@ pub fn verify(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         Check::new(&scenario).map_err(|error| input.about(Failure::Input(error.to_string())))?;
     let json = pretty(&to_json(&scenario, &check)?);
     let place = input.results(arguments.out.as_deref())?;
-    let mut folder = place.open(&[SUMMARY])?;
-    folder
-        .file(SUMMARY)
-        .write_all(json.as_bytes())
-        .map_err(|error| Failure::Work(format!("cannot write {SUMMARY}: {error}")))?;
+    let page = page(&scenario, &check, &today());
+    let mut folder = place.open(&[PAGE, SUMMARY])?;
+    for (name, text) in [(PAGE, &page), (SUMMARY, &json)] {
+        folder
+            .file(name)
+            .write_all(text.as_bytes())
+            .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
+    }
     let path = folder.path().to_owned();
     folder.complete()?;
     if !quiet {
-        say(&format!("results in {}: {SUMMARY}", path.display()));
+        say(&format!("results in {}: {PAGE}, {SUMMARY}", path.display()));
     }
     match arguments.format {
         Format::Json => print(&json),

@@ -2,10 +2,10 @@
 
 use serde_json::Value;
 
-pub(super) use super::svg::escaped;
+pub(crate) use super::svg::escaped;
 
 /// A template whose places, names between `%`, are filled with these texts. What fills a place is not looked at again.
-pub(super) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
+pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
     let mut page = String::new();
     let mut rest = template;
     while let Some((before, after)) = rest.split_once('%') {
@@ -29,7 +29,7 @@ pub(super) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
 }
 
 /// JSON that can stand in a script of a page: nothing in it ends the script.
-pub(super) fn script_safe(data: &Value) -> String {
+pub(crate) fn script_safe(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
 }
 

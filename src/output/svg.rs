@@ -509,7 +509,7 @@ fn name_attribute(name: &str) -> String {
 }
 
 /// Text with the characters that mean something in XML replaced; control characters are left out.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for character in text.chars() {
         match character {

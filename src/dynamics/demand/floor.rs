@@ -98,21 +98,29 @@ impl FloorSpectrum {
         root_of_squares(floor).max(self.ground.acceleration_g(period_s, damping_percent))
     }
 
-    /// The displacement that is asked of a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`, and beyond
-    /// the resonance with the first mode at least what it is there.
+    /// Period up to which a mechanism is in resonance with the first mode, in seconds.
+    #[must_use]
+    pub fn resonance_s(&self) -> f64 {
+        PLATEAU[1] * self.first_period_s()
+    }
+
+    /// The displacement that is demanded there, in metres.
+    #[must_use]
+    pub fn resonance_m(&self, damping_percent: f64, gravity_m_s2: f64) -> f64 {
+        let acceleration_g = self.acceleration_g(self.first_period_s(), damping_percent);
+        displacement_m(acceleration_g, self.resonance_s(), gravity_m_s2)
+    }
+
+    /// The displacement that is demanded of a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`, and beyond the resonance
+    /// with the first mode at least what it is there.
     #[must_use]
     pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
-        let at = |acceleration_g, period_s| displacement_m(acceleration_g, period_s, gravity_m_s2);
-        let own = at(self.acceleration_g(period_s, damping_percent), period_s);
-        let first_s = self.first_period_s();
-        let resonance_s = PLATEAU[1] * first_s;
-        if period_s <= resonance_s {
-            return own;
+        let acceleration_g = self.acceleration_g(period_s, damping_percent);
+        let own_m = displacement_m(acceleration_g, period_s, gravity_m_s2);
+        if period_s <= self.resonance_s() {
+            return own_m;
         }
-        own.max(at(
-            self.acceleration_g(first_s, damping_percent),
-            resonance_s,
-        ))
+        own_m.max(self.resonance_m(damping_percent, gravity_m_s2))
     }
 }
 

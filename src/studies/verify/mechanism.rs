@@ -2,11 +2,15 @@
 
 use nalgebra::Vector2;
 
+use super::NoCheck;
+use super::notes::FRICTION;
 use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::{Capacity, Carried, Control};
 use crate::mechanics::chain::Hinge;
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
@@ -187,17 +191,27 @@ impl Mechanism {
     }
 }
 
+/// The push at which the joints of a row slide to a side, by the associated bound, if they do before any of them opens; zero
+/// where they do under its weight.
+fn slides_at_g(row: &Row, sway: Sway) -> Option<f64> {
+    match friction::onset(row, FRICTION, sway) {
+        Ok(Some(onset)) => onset.sliding_governs().then_some(onset.acceleration_g),
+        Err(FrictionError::CannotStand(_)) => Some(0.0),
+        Ok(None) | Err(_) => None,
+    }
+}
+
 /// The mechanisms of a structure to these sides.
 ///
 /// # Errors
-/// In words, when it does not stand, or no push moves it to a side.
+/// When it does not stand, no push moves it to a side, or, where it has no curve, joints slide first.
 pub(super) fn mechanisms(
     structure: &Structure,
     sides: &[Sway],
     gravity_m_s2: f64,
-) -> Result<Vec<Mechanism>, String> {
-    use crate::mechanics::four_link::impact::ImpactModel;
-    let none = |sway: Sway| format!("no push moves it to the {}", sway.name());
+) -> Result<Vec<Mechanism>, NoCheck> {
+    let none =
+        |sway: Sway| NoCheck::NoMechanism(format!("no push moves it to the {}", sway.name()));
     let model = match structure.model(ImpactModel::MaxRestitution) {
         Ok(model) => {
             let of = |sway: &Sway| {
@@ -209,11 +223,20 @@ pub(super) fn mechanisms(
         Err(why) => why.to_string(),
     };
     let rows = structure.free_hinges(RowOptions::default());
-    let rows = rows.map_err(|error| error.to_string())?;
-    let of = |sway: &Sway| match onset(rows.row(), *sway) {
-        Ok(Some(found)) => Ok(Mechanism::of_onset(rows.row(), *sway, &found, &model)),
-        Ok(None) => Err(none(*sway)),
-        Err(error) => Err(error.to_string()),
+    let rows = rows.map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
+    let row = rows.row();
+    let of = |sway: &Sway| {
+        let found = onset(row, *sway).map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
+        let found = found.ok_or_else(|| none(*sway))?;
+        let mechanism = Mechanism::of_onset(row, *sway, &found, &model);
+        match slides_at_g(row, *sway) {
+            Some(at_g) => Err(NoCheck::Slides {
+                sway: *sway,
+                at_g,
+                alpha0: mechanism.alpha0,
+            }),
+            None => Ok(mechanism),
+        }
     };
     sides.iter().map(of).collect()
 }

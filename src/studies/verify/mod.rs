@@ -7,6 +7,8 @@
 
 mod mechanism;
 pub mod notes;
+mod page;
+mod picture;
 mod summary;
 mod words;
 
@@ -22,6 +24,7 @@ use crate::mechanics::capacity::Capacity;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{Demand, LimitState, PointDemand, Scenario, Sides, StateRule, Verify};
 pub use mechanism::{Mechanism, PlacedHinge, Way};
+pub use page::{page, today};
 pub use summary::to_json;
 pub use words::words;
 
@@ -37,6 +40,21 @@ pub enum NoCheck {
     /// There is no mechanism to a side.
     #[error("there is no mechanism to check: {0}")]
     NoMechanism(String),
+    /// Sliding has a smaller multiplier than the mechanism without it.
+    #[error(
+        "no check is possible to the {}: with a friction coefficient of {} joints slide at {at_g:.4} g at most (associated \
+         bound), before a mechanism without sliding forms at {alpha0:.4} g, and the least multiplier counts. Check the other \
+         side alone with `sides`, or another structure",
+        .sway.name(), notes::FRICTION
+    )]
+    Slides {
+        /// To which side.
+        sway: Sway,
+        /// The push at which joints slide, in g.
+        at_g: f64,
+        /// Load multiplier of the mechanism without sliding.
+        alpha0: f64,
+    },
     /// Without a curve there is only the simplified check.
     #[error(
         "no check is possible: {0}. Without a capacity curve there are the damage limit state and the simplified check of SLV \
@@ -207,7 +225,9 @@ pub struct Simplified {
 /// The check by displacements (SLV, SLC).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ByDisplacement {
-    /// Displacement of the oscillator that may be reached, in metres.
+    /// Part of the ultimate displacement that the state is at, in metres.
+    pub reached_m: f64,
+    /// The same divided: displacement of the oscillator that may be reached, in metres.
     pub capacity_m: f64,
     /// Acceleration there, divided, in g.
     pub acceleration_g: f64,
@@ -217,6 +237,8 @@ pub struct ByDisplacement {
     pub demand_g: f64,
     /// Displacement that is demanded, in metres.
     pub demand_m: f64,
+    /// What it is at least, in metres, beyond the resonance with a building.
+    pub resonance_m: Option<f64>,
     /// One over the other, and what counts of it: if it starts later than that, the activation.
     pub displacement: Margin,
     /// The activation, as `a_g` in g, where that is larger.
@@ -328,8 +350,7 @@ impl Check {
             Sides::Right => &[Sway::Right],
             Sides::Left => &[Sway::Left],
         };
-        let mechanisms = mechanism::mechanisms(&scenario.structure, sides, gravity_m_s2)
-            .map_err(NoCheck::NoMechanism)?;
+        let mechanisms = mechanism::mechanisms(&scenario.structure, sides, gravity_m_s2)?;
         let (_, density_kg_m3) = scenario.structure.depth_and_density();
         let free = settings.free_standing.as_ref();
         let t0_s = free.map(|free| free.period_s(density_kg_m3));
@@ -502,11 +523,18 @@ impl Check {
             Spectrum::Floor(..) | Spectrum::Points(_) => None,
         };
         Ok(ByDisplacement {
+            reached_m: rule.part_of_d0 * way.centre.end().oscillator_displacement_m,
             capacity_m,
             acceleration_g,
             period_s,
             demand_g: spectrum.acceleration_g(period_s, rule.damping_percent)?,
             demand_m,
+            resonance_m: match spectrum {
+                Spectrum::Floor(_, floor) if period_s > floor.resonance_s() => {
+                    Some(floor.resonance_m(rule.damping_percent, self.gravity_m_s2))
+                }
+                _ => None,
+            },
             displacement,
             activation_ag_g,
             margin,

@@ -27,7 +27,7 @@ pub fn decisions(check: &Check) -> Vec<(&'static str, String)> {
     }
     if !check.by_the_code() {
         notes.push((
-            "-",
+            "S",
             "The spectra and what makes the limit states are the engineer's: no clause is named. The largest spectral displacement \
              up to the period counts; accelerations are divided as each state says, and displacements after the period is known."
                 .to_owned(),
@@ -115,37 +115,55 @@ pub fn assumptions(check: &Check) -> Vec<String> {
         "The masonry does not disintegrate; the bodies are rigid, without tension between them, of unlimited compressive strength; \
          they move in one plane."
             .to_owned(),
-        "The mechanism is the one of the least multiplier among all with hinges at the joints that are given.".to_owned(),
+        "The mechanism is the one of the least multiplier among all with hinges at the joints that are given, or anywhere where none \
+         are."
+            .to_owned(),
     ];
-    let frictions = check.mechanisms.iter().map(|one| {
+    lines.extend(check.mechanisms.iter().map(|one| {
         let side = one.sway.name();
         match &one.way {
             Ok(way) => {
                 let friction = way.friction_up_to(check.furthest_part());
-                let against = if friction <= FRICTION { "below" } else { "ABOVE" };
-                format!(
-                    "No joint slides: to the {side} that needs a friction coefficient of {friction:.3}, {against} {FRICTION}."
-                )
+                format!("No joint slides: to the {side} that needs a friction coefficient of {friction:.3}; the Circolare has {FRICTION} for walls.")
             }
-            Err(_) => format!("No joint slides: to the {side} the friction that this needs is not computed."),
+            Err(_) => format!("No joint slides: to the {side} none does with a friction coefficient of {FRICTION} (associated bound)."),
         }
-    });
-    lines.extend(frictions);
+    }));
     lines
+}
+
+/// Where an assumption does not hold.
+#[must_use]
+pub fn warnings(check: &Check) -> Vec<String> {
+    let slides = check.mechanisms.iter().filter_map(|one| {
+        let friction = one.way.as_ref().ok()?.friction_up_to(check.furthest_part());
+        (friction > FRICTION).then(|| {
+            format!(
+                "To the {} the mechanism needs a friction coefficient of {friction:.3}, above the {FRICTION} of the Circolare: \
+                 joints may slide before, which is not checked.",
+                one.sway.name()
+            )
+        })
+    });
+    slides.collect()
 }
 
 /// What is left out.
 #[must_use]
-pub fn not_covered(scenario: &Scenario) -> Vec<String> {
-    let mut lines = vec![
-        "Vertical ground motion: C8.7.1.2.1 has no vertical term.".to_owned(),
-        "Ties, thrust of fill (its weight counts where it is given), crushing, soil and foundations, torsional hinges.".to_owned(),
-        "The choice of the mechanism beyond the joints that are given, and the building as a whole.".to_owned(),
-    ];
-    if !matches!(scenario.structure, Structure::Column(_)) {
-        lines[0] = "Vertical ground motion: \u{a7} 7.2.2 asks for it for structures that thrust, where a_g is at least 0.15 g \
-                    (\u{a7} 3.2.3.1); C8.7.1.2.1 has no vertical term."
-            .to_owned();
-    }
-    lines
+pub fn not_covered(scenario: &Scenario, check: &Check) -> Vec<String> {
+    let vertical = match (check.by_the_code(), &scenario.structure) {
+        (false, _) => "Vertical ground motion.",
+        (true, Structure::Column(_)) => "Vertical ground motion: C8.7.1.2.1 has no vertical term.",
+        (true, Structure::Arch(_) | Structure::Masonry(_)) => {
+            "Vertical ground motion: \u{a7} 7.2.2 asks for it for structures that thrust, where a_g is at least 0.15 g \
+             (\u{a7} 3.2.3.1); C8.7.1.2.1 has no vertical term."
+        }
+    };
+    [
+        vertical,
+        "Ties, thrust of fill (its weight counts where it is given), crushing, soil and foundations, torsional hinges.",
+        "The choice of the mechanism beyond the joints that are given, and the building as a whole.",
+    ]
+    .map(str::to_owned)
+    .to_vec()
 }

@@ -1,5 +1,6 @@
 //! The check as JSON: every number, in full.
 
+use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
 use super::{
@@ -54,9 +55,10 @@ pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError>
         "gravity_m_s2": check.gravity_m_s2,
         "mechanisms": mechanisms,
         "states": states,
+        "warnings": notes::warnings(check),
         "decisions": decisions,
         "assumptions": notes::assumptions(check),
-        "not_covered": notes::not_covered(scenario),
+        "not_covered": notes::not_covered(scenario, check),
         "scenario": scenario.to_json(),
     }))
 }
@@ -78,7 +80,37 @@ pub(super) fn verdict(state: &StateCheck) -> &'static str {
     }
 }
 
+/// Sums over the bodies of a mechanism, weights in kN.
+pub(super) struct Sums {
+    /// Of the weights.
+    pub(super) weight_kn: f64,
+    /// Of these times the horizontal virtual displacements.
+    pub(super) sway_kn: f64,
+    /// Times their squares.
+    pub(super) sway_squared_kn: f64,
+    /// Times the vertical ones.
+    pub(super) rise_kn: f64,
+}
+
+impl Sums {
+    pub(super) fn of(mechanism: &Mechanism, gravity_m_s2: f64) -> Self {
+        let sum = |term: fn(Vector2<f64>) -> f64| -> f64 {
+            let bodies = mechanism.bodies.iter();
+            let terms =
+                bodies.map(|body| body.mass_kg * gravity_m_s2 / 1000.0 * term(body.displacement));
+            terms.sum()
+        };
+        Self {
+            weight_kn: sum(|_| 1.0),
+            sway_kn: sum(|delta| delta.x),
+            sway_squared_kn: sum(|delta| delta.x * delta.x),
+            rise_kn: sum(|delta| delta.y),
+        }
+    }
+}
+
 fn mechanism(check: &Check, mechanism: &Mechanism) -> Value {
+    let sums = Sums::of(mechanism, check.gravity_m_s2);
     let hinges = mechanism.hinges.iter().map(|placed| {
         let mut hinge = match placed.hinge {
             Hinge::Section { angle_rad, edge } => {
@@ -120,6 +152,10 @@ fn mechanism(check: &Check, mechanism: &Mechanism) -> Value {
     json!({
         "hinges": hinges.collect::<Vec<_>>(),
         "bodies": bodies.collect::<Vec<_>>(),
+        "sum_p_kn": sums.weight_kn,
+        "sum_p_delta_x_kn": sums.sway_kn,
+        "sum_p_delta_x2_kn": sums.sway_squared_kn,
+        "sum_p_delta_y_kn": sums.rise_kn,
         "alpha0": mechanism.alpha0,
         "moving_mass_kg": participation.moving_mass_kg,
         "e_star": participation.mass_fraction,
@@ -233,10 +269,12 @@ fn simplified(one: &Simplified) -> Value {
 
 fn displacement(one: &ByDisplacement) -> Value {
     let value = json!({
+        "reached_m": one.reached_m,
         "capacity_m": one.capacity_m,
         "acceleration_g": one.acceleration_g,
         "period_s": one.period_s,
         "demand_m": one.demand_m,
+        "resonance_m": one.resonance_m,
         "demand_acceleration_g": one.demand_g,
         "by_displacement_ag_g": one.displacement.ag_capacity_g,
         "activation_governs": one.activation_ag_g.is_some(),

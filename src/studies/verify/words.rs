@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::summary::verdict;
-use super::{Check, Method, StateCheck};
+use super::{Check, Method, StateCheck, notes};
 use crate::mechanics::sway::Sway;
 use crate::scenario::LimitState;
 
@@ -43,6 +43,9 @@ pub fn words(check: &Check) -> String {
         "zeta_E {:.5}, the least of the states asked for",
         check.zeta_e()
     );
+    for warning in notes::warnings(check) {
+        let _ = writeln!(text, "warning: {warning}");
+    }
     text
 }
 
@@ -52,7 +55,7 @@ pub(super) fn name(state: LimitState) -> String {
 }
 
 /// A verdict in words.
-pub(super) fn passed(verdict: &str) -> &'static str {
+fn passed(verdict: &str) -> &'static str {
     match verdict {
         "passed" => "passed",
         "not_passed" => "not passed",

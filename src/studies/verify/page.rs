@@ -1,0 +1,890 @@
+//! The check on one page, which prints on A4: everything that another engineer needs to redo it by hand.
+//!
+//! Every number of it is one of [`super::to_json`]'s, rounded: it stands in an element `data` with its full value.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use super::summary::{Sums, scenario_sha256};
+use super::words::{name, of_method};
+use super::{
+    Activation, ByDisplacement, Check, Margin, Mechanism, Method, SideCheck, Simplified, Spectrum,
+    StateCheck, Way, notes, picture,
+};
+use crate::dynamics::demand::damping_factor;
+use crate::dynamics::demand::ground::GroundSpectrum;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
+use crate::output::Figure;
+use crate::output::page::{escaped, filled};
+use crate::scenario::{LimitState, Scenario, StateRule};
+
+/// The page of a check of a scenario, made on a date.
+#[must_use]
+pub fn page(scenario: &Scenario, check: &Check, date: &str) -> String {
+    let title = scenario
+        .title
+        .as_deref()
+        .unwrap_or("Check of local mechanisms");
+    let (by, footer) = if check.by_the_code() {
+        (
+            "Local mechanisms by Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018. C: clauses of the Circolare; \
+             \u{a7}: of NTC 2018.",
+            "Computed by the formulas of Circolare 7/2019, C8.7.1.2.1 and C7.2.3, and of NTC 2018, \u{a7} 3.2; the engineer \
+             answers for the applicability.",
+        )
+    } else {
+        (
+            "Local mechanisms, with spectra and limits given by the engineer: no clause is named.",
+            "Computed with spectra and limits given by the engineer, who answers for the applicability.",
+        )
+    };
+    let writer = Writer { scenario, check };
+    let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
+    filled(
+        include_str!("page/page.html"),
+        &[
+            ("PROGRAM", &program),
+            ("STYLE", include_str!("page/page.css")),
+            ("TITLE", &escaped(title)),
+            ("BY", by),
+            ("HASH", &scenario_sha256(scenario)),
+            ("DATE", &escaped(date)),
+            ("RESULT", &writer.result()),
+            ("MECHANISM", &writer.sides(Writer::mechanism)),
+            ("DEMAND", &writer.demand()),
+            ("CHECKS", &writer.sides(Writer::checks)),
+            ("NOTES", &writer.notes()),
+            ("FOOTER", footer),
+            ("SCENARIO", &escaped(&scenario.to_toml())),
+        ],
+    )
+}
+
+/// Today's date in Greenwich, as in 2025-01-31.
+#[must_use]
+pub fn today() -> String {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    date_of(since.map_or(0, |since| since.as_secs() / 86_400))
+}
+
+/// The date so many days after the first of January 1970.
+fn date_of(mut days: u64) -> String {
+    let leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
+    let mut year = 1970;
+    while days >= 365 + u64::from(leap(year)) {
+        days -= 365 + u64::from(leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    format!("{year}-{month:02}-{:02}", days + 1)
+}
+
+/// A number with so many decimals, and its full value.
+fn n(value: f64, decimals: usize) -> String {
+    let mut text = format!("{value:.decimals$}");
+    if text.parse() == Ok(0.0) {
+        text = text.trim_start_matches('-').to_owned();
+    }
+    // Adding zero makes a negative zero positive.
+    format!("<data value=\"{:?}\">{text}</data>", value + 0.0)
+}
+
+/// The same where there is one.
+fn maybe(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "\u{2013}".to_owned(), |value| n(value, decimals))
+}
+
+/// Words with their symbols as formulas have them: `a_g,SLD` with an index, `alpha` as a letter.
+fn typeset(text: &str) -> String {
+    let mut words = escaped(text);
+    for (name, letter) in [("alpha_", "\u{3b1}_"), ("xi\u{b2}", "\u{3be}\u{b2}")] {
+        words = words.replace(name, letter);
+    }
+    let mut set = String::new();
+    let mut rest = words.as_str();
+    while let Some((before, after)) = rest.split_once('_') {
+        set += before;
+        // Only a letter that stands alone has an index.
+        let mut letters = before.chars().rev();
+        let letter = letters.next().is_some_and(char::is_alphabetic);
+        let alone = letter && !letters.next().is_some_and(char::is_alphanumeric);
+        let index = |c: char| c.is_alphanumeric() || c == ',';
+        let end = after.find(|c| !index(c)).unwrap_or(after.len());
+        let index = after[..end].trim_end_matches(',');
+        if alone && !index.is_empty() {
+            set += &format!("<sub>{index}</sub>");
+            rest = &after[index.len()..];
+        } else {
+            set.push('_');
+            rest = after;
+        }
+    }
+    set + rest
+}
+
+/// A row of cells.
+fn row(class: &str, cells: &[String]) -> String {
+    let cells: String = cells
+        .iter()
+        .map(|cell| format!("<td>{cell}</td>"))
+        .collect();
+    let class = if class.is_empty() {
+        String::new()
+    } else {
+        format!(" class=\"{class}\"")
+    };
+    format!("<tr{class}>{cells}</tr>\n")
+}
+
+fn table(head: &[&str], body: &str) -> String {
+    let head: String = head.iter().map(|cell| format!("<th>{cell}</th>")).collect();
+    format!("<table><thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody></table>\n")
+}
+
+fn formula(text: &str) -> String {
+    format!("<p class=\"formula\">{text}</p>\n")
+}
+
+struct Writer<'a> {
+    scenario: &'a Scenario,
+    check: &'a Check,
+}
+
+impl Writer<'_> {
+    /// The clause that a formula is of, where clauses are named.
+    fn clause(&self, clause: &str) -> String {
+        if self.check.by_the_code() {
+            format!(" <span class=\"clause\">[{clause}]</span>")
+        } else {
+            String::new()
+        }
+    }
+
+    /// Whether what holds to the right holds, seen in a mirror, to the left.
+    fn is_symmetric(&self) -> bool {
+        let [right, left] = &self.check.mechanisms[..] else {
+            return false;
+        };
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6);
+        let mut bodies = right.bodies.iter().zip(left.bodies.iter().rev());
+        right.bodies.len() == left.bodies.len()
+            && bodies.all(|(a, b)| {
+                near(a.mass_kg, b.mass_kg)
+                    && near(a.centre_m.x, -b.centre_m.x)
+                    && near(a.displacement.x, b.displacement.x)
+            })
+    }
+
+    /// What is to be told of each side; of a symmetric structure, of the right.
+    fn sides(&self, tell: fn(&Self, &Mechanism, Figure) -> String) -> String {
+        let one = self.is_symmetric() || self.check.mechanisms.len() == 1;
+        let figure = if one { "78mm" } else { "90mm" };
+        let figure: Figure = figure.parse().expect("a width of a figure");
+        let shown = if one { 1 } else { self.check.mechanisms.len() };
+        let mut text = String::new();
+        for mechanism in &self.check.mechanisms[..shown] {
+            let told = tell(self, mechanism, figure);
+            text += &if one {
+                told
+            } else {
+                format!(
+                    "<div>\n<h3>To the {}</h3>\n{told}</div>\n",
+                    mechanism.sway.name()
+                )
+            };
+        }
+        let class = if one { "pair one" } else { "pair" };
+        let mirror = if self.is_symmetric() {
+            "<p class=\"before\">To the right. To the left it is the mirror image, with the same numbers.</p>\n"
+        } else {
+            ""
+        };
+        format!("{mirror}<div class=\"{class}\">\n{text}</div>\n")
+    }
+
+    // Result.
+
+    fn result(&self) -> String {
+        let mut body = String::new();
+        for state in &self.check.states {
+            let counts = state.governing();
+            let sides = &state.sides[..if self.is_symmetric() {
+                1
+            } else {
+                state.sides.len()
+            }];
+            for side in sides {
+                for (method, margin, what) in rows_of(side) {
+                    let is_it = counts.is_some_and(|(sway, counted, _)| {
+                        counted == method && (self.is_symmetric() || sway == side.sway)
+                    });
+                    body += &self.result_row(state, side.sway, method, &margin, &what, is_it);
+                }
+            }
+            if counts.is_none() {
+                let cells = [
+                    name(state.state),
+                    "not checked: there is no capacity curve".to_owned(),
+                ];
+                body += &format!(
+                    "<tr><td class=\"word\">{}</td><td class=\"word\" colspan=\"8\">{}</td></tr>\n",
+                    cells[0], cells[1]
+                );
+            }
+        }
+        let head = "<tr><th class=\"word\">State</th><th class=\"word\">Method</th><th class=\"word\">To the</th>\
+                    <th>Capacity</th><th>Demand</th><th>a<sub>g</sub> borne (g)</th><th>a<sub>g</sub> (g)</th>\
+                    <th>\u{3b6}<sub>E</sub></th><th class=\"word\"></th></tr>";
+        let least = n(self.check.zeta_e(), 3);
+        let mut text = format!(
+            "<table><thead>{head}</thead>\n<tbody>\n{body}</tbody></table>\n\
+             <p>Bold: what counts for the state. Least of the states asked for: \u{3b6}<sub>E</sub> = <b>{least}</b>."
+        );
+        if self.check.by_the_code() {
+            text += " SLV or SLC suffices (C8.7.1, \u{a7} 8.3); SLD is asked for in use class IV (\u{a7} 8.3).";
+            let sld = self
+                .check
+                .states
+                .iter()
+                .any(|one| one.state == LimitState::Sld);
+            if !sld {
+                text += " SLD is not given: whether a<sub>g,SLV</sub> is below a<sub>g,SLD</sub>, which would then count, is not checked.";
+            }
+        }
+        text += "</p>\n";
+        let warnings = notes::warnings(self.check).into_iter();
+        let warnings =
+            warnings.map(|line| format!("<p class=\"warning\">{}</p>\n", typeset(&line)));
+        text + &warnings.collect::<String>()
+    }
+
+    fn result_row(
+        &self,
+        state: &StateCheck,
+        sway: Sway,
+        method: Method,
+        margin: &Margin,
+        (capacity, demand): &(String, String),
+        counts: bool,
+    ) -> String {
+        let clause = match method {
+            Method::Activation => "C8.7.1.2.1.5",
+            Method::Simplified => "C8.7.1.2.1.7",
+            Method::Displacement => "C8.7.1.2.1.8",
+        };
+        let side = if self.is_symmetric() {
+            "either side"
+        } else {
+            sway.name()
+        };
+        let (class, word) = if margin.passes() {
+            ("verdict", "passed")
+        } else {
+            ("verdict no", "not passed")
+        };
+        let verdict = format!("<span class=\"{class}\">{word}</span>");
+        let counts = if counts { " class=\"counts\"" } else { "" };
+        format!(
+            "<tr{counts}><td class=\"word\">{}</td><td class=\"word\">{}{}</td><td class=\"word\">{side}</td><td>{capacity}</td>\
+             <td>{demand}</td><td>{}</td><td>{}</td><td>{}</td><td class=\"word\">{verdict}</td></tr>\n",
+            name(state.state),
+            of_method(method),
+            self.clause(clause),
+            maybe(margin.ag_capacity_g, 4),
+            maybe(margin.ag_g, 4),
+            n(margin.zeta_e, 3),
+        )
+    }
+
+    // Mechanism.
+
+    fn mechanism(&self, mechanism: &Mechanism, figure: Figure) -> String {
+        let picture = picture::mechanism(figure, &self.scenario.structure, mechanism);
+        let hinges = ('A'..='Z').zip(&mechanism.hinges).map(|(letter, placed)| {
+            let place = match placed.hinge {
+                Hinge::Section { edge, .. } => edge.name().to_owned(),
+                Hinge::Toe(side) => format!("{} toe", side.name()),
+                Hinge::Joint { joint, edge } => {
+                    format!("joint {joint}, {}", edge.map_or("parted", Edge::name))
+                }
+            };
+            format!(
+                "{letter} {place} ({}, {}) m",
+                n(placed.at_m.x, 3),
+                n(placed.at_m.y, 3)
+            )
+        });
+        let hinges: Vec<String> = hinges.collect();
+        format!(
+            "<div><figure>{picture}<figcaption>Bodies by number with their centres and virtual displacements; hinges: {}.\
+             </figcaption></figure></div>\n<div>\n{}{}</div>\n",
+            hinges.join("; "),
+            self.bodies(mechanism),
+            self.activation_formulas(mechanism)
+        )
+    }
+
+    fn bodies(&self, mechanism: &Mechanism) -> String {
+        let mut body = String::new();
+        for (number, one) in (1..).zip(&mechanism.bodies) {
+            body += &row(
+                "",
+                &[
+                    format!("{number}"),
+                    n(one.mass_kg * self.check.gravity_m_s2 / 1000.0, 3),
+                    n(one.centre_m.x, 4),
+                    n(one.centre_m.y, 4),
+                    n(one.displacement.x, 5),
+                    n(one.displacement.y, 5),
+                ],
+            );
+        }
+        let head = [
+            "k",
+            "P<sub>k</sub> (kN)",
+            "x (m)",
+            "y (m)",
+            "\u{3b4}<sub>x</sub>",
+            "\u{3b4}<sub>y</sub>",
+        ];
+        table(&head, &body)
+            + "<p>Virtual displacements of the centres for one of their common centre; x to the side of the motion.</p>\n"
+    }
+
+    fn activation_formulas(&self, mechanism: &Mechanism) -> String {
+        let sums = Sums::of(mechanism, self.check.gravity_m_s2);
+        let part = &mechanism.participation;
+        let settings = &self.check.settings;
+        let mut text = formula(&format!(
+            "\u{3b1}<sub>0</sub> = \u{2211}P\u{3b4}<sub>y</sub> / \u{2211}P\u{3b4}<sub>x</sub> = {} / {} = <b>{}</b>; A<sub>L</sub> = \
+             \u{3b1}<sub>0</sub> g{}",
+            n(sums.rise_kn, 4),
+            n(sums.sway_kn, 4),
+            n(mechanism.alpha0, 5),
+            self.clause("C8.7.1.1")
+        ));
+        text += &formula(&format!(
+            "e* = (\u{2211}P\u{3b4}<sub>x</sub>)\u{b2} / (\u{2211}P \u{2211}P\u{3b4}<sub>x</sub>\u{b2}) = {}\u{b2} / ({} \u{b7} {}) = \
+             <b>{}</b>; M* = e* \u{2211}P/g = {} kg{}",
+            n(sums.sway_kn, 4),
+            n(sums.weight_kn, 4),
+            n(sums.sway_squared_kn, 4),
+            n(part.mass_fraction, 5),
+            n(part.participating_mass_kg, 1),
+            self.clause("C8.7.1.5")
+        ));
+        text += &formula(&format!(
+            "a<sub>0</sub>/FC = \u{3b1}<sub>0</sub> g/(e* FC) = {} / ({} \u{b7} {}) g = <b>{}</b> g{}",
+            n(mechanism.alpha0, 5),
+            n(part.mass_fraction, 5),
+            settings.confidence_factor,
+            n(self.check.activation_g(mechanism), 5),
+            self.clause("C8.7.1.3")
+        ));
+        match &mechanism.way {
+            Ok(way) => text += &self.way_formulas(way),
+            Err(why) => text += &formula(&format!("No capacity curve: {}.", escaped(why))),
+        }
+        text
+    }
+
+    fn way_formulas(&self, way: &Way) -> String {
+        let end = way.centre.end();
+        let mut text = formula(&format!(
+            "\u{3b1} = 0 at d<sub>C0</sub> = {} m of the common centre; d<sub>0</sub> = d<sub>C0</sub>/e* = <b>{}</b> m{}",
+            n(end.displacement_m, 5),
+            n(end.oscillator_displacement_m, 5),
+            self.clause("C8.7.1.4")
+        ));
+        if let Some(crown) = &way.crown {
+            text += &formula(&format!(
+                "With the crown as control point d<sub>C0</sub> = {} m, d<sub>0</sub> = {} m.",
+                n(crown.end().displacement_m, 5),
+                n(crown.end().oscillator_displacement_m, 5)
+            ));
+        }
+        if let (Some(t0_s), Some((d_m, a_g))) = (self.check.t0_s, self.check.yielding(way)) {
+            text += &formula(&format!(
+                "Elastic up to d<sub>y</sub> = {} m, a<sub>y</sub>/FC = {} g, with T<sub>0</sub> = {} s{}",
+                n(d_m, 6),
+                n(a_g, 5),
+                n(t0_s, 5),
+                self.clause("C8.7.1.6, C8.7.1.7")
+            ));
+        }
+        text
+    }
+
+    // Demand.
+
+    fn demand(&self) -> String {
+        let mut body = String::new();
+        for one in &self.check.states {
+            if let Some(ground) = one.spectrum.ground() {
+                body += &parameters(one.state, ground, self.check.gravity_m_s2);
+            }
+        }
+        let mut text = String::new();
+        if !body.is_empty() {
+            let head = [
+                "State",
+                "soil",
+                "a<sub>g</sub> (g)",
+                "F<sub>o</sub>",
+                "T<sub>C</sub>* (s)",
+                "S<sub>S</sub>",
+                "S<sub>T</sub>",
+                "S",
+                "C<sub>C</sub>",
+                "T<sub>B</sub> (s)",
+                "T<sub>C</sub> (s)",
+                "T<sub>D</sub> (s)",
+                "a<sub>g</sub>S (g)",
+                "d<sub>g</sub> (m)",
+            ];
+            text += &table(&head, &body);
+            text += "<p>\u{a7} 3.2.3.2: S<sub>S</sub>, C<sub>C</sub> by Tab. 3.2.IV, S<sub>T</sub> by Tab. 3.2.V, S = S<sub>S</sub> S<sub>T</sub>, \
+                     T<sub>C</sub> = C<sub>C</sub> T<sub>C</sub>*, T<sub>B</sub> = T<sub>C</sub>/3, T<sub>D</sub> = 4 a<sub>g</sub>/g + 1.6, \
+                     \u{3b7} = \u{221a}(10/(5 + \u{3be})).</p>\n";
+        }
+        text + &self.modes() + &self.points()
+    }
+
+    fn modes(&self) -> String {
+        let mut body = String::new();
+        for one in &self.check.states {
+            let Spectrum::Floor(ground, floor) = &one.spectrum else {
+                continue;
+            };
+            let damping = one.rule.map_or(5.0, |rule| rule.damping_percent);
+            for (number, mode) in (1..).zip(floor.modes()) {
+                body += &row(
+                    "",
+                    &[
+                        name(one.state),
+                        number.to_string(),
+                        n(mode.t_s, 3),
+                        n(mode.damping_percent, 1),
+                        n(mode.gamma, 4),
+                        n(mode.psi, 4),
+                        n(ground.acceleration_g(mode.t_s, mode.damping_percent), 5),
+                        n(mode.peak_g(ground), 5),
+                        n(floor.peak_g(), 5),
+                        n(mode.amplification(damping), 4),
+                    ],
+                );
+            }
+        }
+        if body.is_empty() {
+            return String::new();
+        }
+        let head = [
+            "State",
+            "mode",
+            "T<sub>k</sub> (s)",
+            "\u{3be}<sub>k</sub> (%)",
+            "\u{3b3}<sub>k</sub>",
+            "\u{3c8}<sub>k</sub>",
+            "S<sub>e</sub>(T<sub>k</sub>) (g)",
+            "a<sub>Z,k</sub> (g)",
+            "a<sub>Z</sub> (g)",
+            "f",
+        ];
+        table(&head, &body)
+            + "<p>C7.2.3: a<sub>Z,k</sub> [C7.2.7], a<sub>Z</sub> [C7.2.8] and at least a<sub>g</sub>S, f at the damping of the mechanism, \
+               S<sub>eZ</sub> [C7.2.5, C7.2.6] with a = 0.8, b = 1.1.</p>\n"
+    }
+
+    fn points(&self) -> String {
+        let mut text = String::new();
+        for one in &self.check.states {
+            let Spectrum::Points(demand) = &one.spectrum else {
+                continue;
+            };
+            let points = demand.points.points();
+            let shown: Vec<String> = points
+                .iter()
+                .take(MOST_POINTS)
+                .map(|(period_s, acceleration_g)| {
+                    format!("({}, {})", n(*period_s, 3), n(*acceleration_g, 4))
+                })
+                .collect();
+            let more = points.len().saturating_sub(MOST_POINTS);
+            let more = if more > 0 {
+                format!(" and {more} more in the file")
+            } else {
+                String::new()
+            };
+            text += &format!(
+                "<p><b>{}</b>: {}, at {} % damping, straight between (T in s, S in g): {}{more}.",
+                name(one.state),
+                escaped(&demand.spectrum),
+                demand.damping_percent,
+                shown.join(" ")
+            );
+            if let Some(rule) = &one.rule {
+                text += &format!(
+                    " Limit: {} d<sub>0</sub>, divided by {}; T = {} \u{3c0} \u{221a}(d/a), a divided by {}; {} % damping.",
+                    rule.part_of_d0,
+                    rule.divide_displacement,
+                    rule.period_factor,
+                    rule.divide_acceleration,
+                    rule.damping_percent
+                );
+            }
+            text += "</p>\n";
+        }
+        text
+    }
+
+    // Checks.
+
+    fn checks(&self, mechanism: &Mechanism, figure: Figure) -> String {
+        let picture = mechanism.way.as_ref().map_or(String::new(), |way| {
+            let drawn = picture::capacity(figure, self.check, mechanism, way);
+            format!(
+                "<div><figure>{drawn}<figcaption>Dotted: lines of the periods; circles: reached, and demanded.</figcaption></figure></div>\n"
+            )
+        });
+        let mut text = String::new();
+        for state in &self.check.states {
+            let Some(side) = state.sides.iter().find(|side| side.sway == mechanism.sway) else {
+                continue;
+            };
+            if let Some((_, margin)) = side.governing() {
+                let word = if margin.passes() {
+                    "passed"
+                } else {
+                    "not passed"
+                };
+                text += &format!("<h3>{}: {word}</h3>\n", name(state.state));
+            }
+            if let Some(one) = &side.activation {
+                text += &self.activation(one);
+            }
+            if let (Some(one), Some(rule)) = (&side.displacement, &state.rule) {
+                text += &self.displacement(state, mechanism, one, rule);
+            }
+            if let Some(one) = &side.simplified {
+                text += &self.simplified(one);
+            }
+        }
+        format!("{picture}<div>\n{text}</div>\n")
+    }
+
+    fn activation(&self, one: &Activation) -> String {
+        let (what, clause) = match (self.check.t0_s, &self.check.states[0].spectrum) {
+            (Some(_), _) => ("S<sub>e</sub>(T<sub>0</sub>, 5 %)", "C8.7.1.9"),
+            (None, Spectrum::Ground(_)) => ("a<sub>g</sub>S", "C8.7.1.8"),
+            (None, Spectrum::Floor(..)) => ("a<sub>Z</sub>", "C8.7.1.8"),
+            (None, Spectrum::Points(_)) => ("S(0)", ""),
+        };
+        let borne =
+            one.margin
+                .ag_capacity_g
+                .zip(one.margin.ag_g)
+                .map_or(String::new(), |(borne, ag_g)| {
+                    format!(
+                        "; a<sub>g,SLD</sub> = {} \u{b7} {} / {} = {} g",
+                        n(ag_g, 4),
+                        n(one.capacity_g, 5),
+                        n(one.demand_g, 5),
+                        n(borne, 5)
+                    )
+                });
+        formula(&format!(
+            "a<sub>0</sub>/FC = {} g against {what} = {} g{borne}; \u{3b6}<sub>E</sub> = <b>{}</b>{}",
+            n(one.capacity_g, 5),
+            n(one.demand_g, 5),
+            n(one.margin.zeta_e, 4),
+            self.clause(clause)
+        ))
+    }
+
+    fn simplified(&self, one: &Simplified) -> String {
+        formula(&format!(
+            "Simplified: a<sub>g,SLV</sub> = q a<sub>g,SLD</sub> = {} \u{b7} {} = {} g; \u{3b6}<sub>E</sub> = {}{}",
+            one.behaviour_factor,
+            n(one.activation_ag_g, 5),
+            maybe(one.margin.ag_capacity_g, 5),
+            n(one.margin.zeta_e, 4),
+            self.clause("C8.7.1.2.1.7")
+        ))
+    }
+
+    fn displacement(
+        &self,
+        state: &StateCheck,
+        mechanism: &Mechanism,
+        one: &ByDisplacement,
+        rule: &StateRule,
+    ) -> String {
+        let Ok(way) = &mechanism.way else {
+            return String::new();
+        };
+        let name = name(state.state);
+        let d0_m = way.centre.end().oscillator_displacement_m;
+        let period_clause = if state.state == LimitState::Slv {
+            "C8.7.1.10"
+        } else {
+            "C8.7.1.11"
+        };
+        let divided = if rule.divide_displacement == 1.0 {
+            String::new()
+        } else {
+            format!(" / {}", rule.divide_displacement)
+        };
+        let mut text = formula(&format!(
+            "d<sub>{name}</sub> = {} d<sub>0</sub>{divided} = {} \u{b7} {}{divided} = <b>{}</b> m; a(d)/{} = {} g{}",
+            rule.part_of_d0,
+            rule.part_of_d0,
+            n(d0_m, 5),
+            n(one.capacity_m, 5),
+            if self.check.by_the_code() {
+                "FC".to_owned()
+            } else {
+                rule.divide_acceleration.to_string()
+            },
+            n(one.acceleration_g, 5),
+            self.clause("C8.7.1.2.1.6")
+        ));
+        text += &formula(&format!(
+            "T = {} \u{3c0} \u{221a}(d/a) = {} \u{3c0} \u{221a}({} / ({} \u{b7} {})) = <b>{}</b> s{}",
+            rule.period_factor,
+            rule.period_factor,
+            n(one.reached_m, 5),
+            n(one.acceleration_g, 5),
+            self.check.gravity_m_s2,
+            n(one.period_s, 4),
+            self.clause(period_clause)
+        ));
+        text += &self.demanded(state, one, rule);
+        let following = one.ag_following_g.map_or(String::new(), |ag_g| {
+            format!(
+                "; with S<sub>S</sub>, T<sub>D</sub> following a<sub>g</sub>: {} g",
+                n(ag_g, 5)
+            )
+        });
+        let borne = one
+            .displacement
+            .ag_capacity_g
+            .map_or(String::new(), |borne| {
+                format!(
+                    "a<sub>g</sub> borne = a<sub>g</sub> d/S<sub>D</sub> = {} g{following}; ",
+                    n(borne, 5)
+                )
+            });
+        let crown = one.zeta_e_crown.map_or(String::new(), |zeta_e| {
+            format!("; at the crown {}", n(zeta_e, 4))
+        });
+        text += &formula(&format!(
+            "{borne}\u{3b6}<sub>E</sub> = {} / {} = <b>{}</b>{crown}",
+            n(one.capacity_m, 5),
+            n(one.demand_m, 5),
+            n(one.displacement.zeta_e, 4)
+        ));
+        if let Some(start_g) = one.activation_ag_g {
+            text += &formula(&format!(
+                "It starts at a<sub>g,SLD</sub> = {} g only, which is more and counts: \u{3b6}<sub>E</sub> = <b>{}</b>{}",
+                n(start_g, 5),
+                n(one.margin.zeta_e, 4),
+                self.clause("C8.7.1.2.1.8")
+            ));
+        }
+        text
+    }
+
+    /// The displacement that is demanded, with the formula of its spectrum.
+    fn demanded(&self, state: &StateCheck, one: &ByDisplacement, rule: &StateRule) -> String {
+        let damping = rule.damping_percent;
+        match &state.spectrum {
+            Spectrum::Ground(ground) => formula(&format!(
+                "{}; S<sub>De</sub> = <b>{}</b> m{}",
+                branch(ground, one, damping),
+                n(one.demand_m, 5),
+                self.clause("\u{a7} 3.2.3.2.3")
+            )),
+            Spectrum::Floor(..) => {
+                let resonance = one.resonance_m.map_or(String::new(), |resonance_m| {
+                    format!("; T &gt; b T<sub>1</sub>: at least S<sub>eZ</sub>(T<sub>1</sub>)(b T<sub>1</sub>)\u{b2}/4\u{3c0}\u{b2} = {} m", n(resonance_m, 5))
+                });
+                formula(&format!(
+                    "S<sub>eZ</sub>(T, {damping} %) = {} g; S<sub>eZ</sub>T\u{b2}/4\u{3c0}\u{b2}{resonance}; demand <b>{}</b> m{}",
+                    n(one.demand_g, 5),
+                    n(one.demand_m, 5),
+                    self.clause("C8.7.1.12")
+                ))
+            }
+            Spectrum::Points(_) => formula(&format!(
+                "S(T, {damping} %) = {} g; the largest S T\u{b2}/4\u{3c0}\u{b2} up to T is <b>{}</b> m",
+                n(one.demand_g, 5),
+                n(one.demand_m, 5)
+            )),
+        }
+    }
+
+    // Notes.
+
+    fn notes(&self) -> String {
+        let decisions = notes::decisions(self.check).into_iter();
+        let decisions: String = decisions
+            .map(|(name, text)| format!("<dt>{name}</dt><dd>{}</dd>\n", typeset(&text)))
+            .collect();
+        let list = |lines: Vec<String>| -> String {
+            let items = lines
+                .iter()
+                .map(|line| format!("<li>{}</li>\n", typeset(line)));
+            format!("<ul>\n{}</ul>\n", items.collect::<String>())
+        };
+        format!(
+            "<h3>Where the text leaves room, decided here</h3>\n<dl class=\"notes\">\n{decisions}</dl>\n<h3>Assumed</h3>\n{}<h3>Not \
+             covered</h3>\n{}",
+            list(notes::assumptions(self.check)),
+            list(notes::not_covered(self.scenario, self.check))
+        )
+    }
+}
+
+/// Points of a spectrum that the page shows.
+const MOST_POINTS: usize = 40;
+
+/// Methods of a side with what they compare.
+fn rows_of(side: &SideCheck) -> Vec<(Method, Margin, (String, String))> {
+    let mut rows = Vec::new();
+    if let Some(one) = &side.activation {
+        let what = (n(one.capacity_g, 4) + " g", n(one.demand_g, 4) + " g");
+        rows.push((Method::Activation, one.margin, what));
+    }
+    if let Some(one) = &side.displacement {
+        let what = (n(one.capacity_m, 4) + " m", n(one.demand_m, 4) + " m");
+        rows.push((Method::Displacement, one.margin, what));
+    }
+    if let Some(one) = &side.simplified {
+        rows.push((
+            Method::Simplified,
+            one.margin,
+            (String::new(), String::new()),
+        ));
+    }
+    rows
+}
+
+fn parameters(state: LimitState, ground: &GroundSpectrum, gravity_m_s2: f64) -> String {
+    row(
+        "",
+        &[
+            name(state),
+            ground.site.soil.name().to_owned(),
+            n(ground.hazard.ag_g, 4),
+            n(ground.hazard.f0, 3),
+            n(ground.hazard.tc_star_s, 3),
+            n(ground.s_s, 4),
+            n(ground.site.topographic_factor, 2),
+            n(ground.s(), 4),
+            n(ground.c_c, 4),
+            n(ground.t_b_s, 4),
+            n(ground.t_c_s, 4),
+            n(ground.t_d_s, 3),
+            n(ground.peak_g(), 4),
+            n(ground.peak_displacement_m(gravity_m_s2), 4),
+        ],
+    )
+}
+
+/// The branch of [3.2.2] that a period is on, with its numbers.
+fn branch(ground: &GroundSpectrum, one: &ByDisplacement, damping_percent: f64) -> String {
+    let (t, eta) = (one.period_s, damping_factor(damping_percent));
+    let common = format!(
+        "{} \u{b7} {} \u{b7} {eta:.4} \u{b7} {}",
+        n(ground.hazard.ag_g, 4),
+        n(ground.s(), 4),
+        n(ground.hazard.f0, 3)
+    );
+    let head = "a<sub>g</sub>S\u{3b7}F<sub>o</sub>";
+    let value = n(one.demand_g, 5);
+    if t > ground.t_e_s {
+        return format!(
+            "T &gt; T<sub>E</sub> = {} s: what softened has passed the plateau",
+            n(ground.t_e_s, 1)
+        );
+    }
+    let (range, factor, numbers) = if t < ground.t_b_s {
+        (
+            "T &lt; T<sub>B</sub>",
+            " (T/T<sub>B</sub> + (1 - T/T<sub>B</sub>)/(\u{3b7}F<sub>o</sub>))",
+            String::new(),
+        )
+    } else if t < ground.t_c_s {
+        ("T &lt; T<sub>C</sub>", "", String::new())
+    } else if t < ground.t_d_s {
+        (
+            "T &lt; T<sub>D</sub>",
+            " T<sub>C</sub>/T",
+            format!(" \u{b7} {} / {}", n(ground.t_c_s, 4), n(t, 4)),
+        )
+    } else {
+        (
+            "T \u{2265} T<sub>D</sub>",
+            " T<sub>C</sub>T<sub>D</sub>/T\u{b2}",
+            format!(
+                " \u{b7} {} \u{b7} {} / {}\u{b2}",
+                n(ground.t_c_s, 4),
+                n(ground.t_d_s, 3),
+                n(t, 4)
+            ),
+        )
+    };
+    let numbers = if t < ground.t_b_s {
+        String::new()
+    } else {
+        format!(" = {common}{numbers}")
+    };
+    format!("{range}: S<sub>e</sub> = {head}{factor}{numbers} = {value} g")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        for (days, date) in [
+            (0, "1970-01-01"),
+            (58, "1970-02-28"),
+            (59, "1970-03-01"),
+            (789, "1972-02-29"),
+            (11_016, "2000-02-29"),
+            (20_088, "2024-12-31"),
+            (20_089, "2025-01-01"),
+        ] {
+            assert_eq!(date_of(days), date);
+        }
+    }
+
+    #[test]
+    fn symbols_have_indices_and_keys_do_not() {
+        let set = typeset("q times a_g,SLD, alpha_0 g/e* & S_eZ; give free_standing, T_C*");
+        let expected = "q times a<sub>g,SLD</sub>, \u{3b1}<sub>0</sub> g/e* &amp; S<sub>eZ</sub>; give free_standing, T<sub>C</sub>*";
+        assert_eq!(set, expected);
+    }
+
+    #[test]
+    fn numbers_are_rounded_and_keep_their_value() {
+        assert_eq!(n(-1e-9, 3), "<data value=\"-1e-9\">0.000</data>");
+        assert_eq!(
+            n(1.0 / 3.0, 2),
+            "<data value=\"0.3333333333333333\">0.33</data>"
+        );
+    }
+}
