@@ -1,6 +1,12 @@
 //! The numbers of docs/validation.md.
 #![allow(clippy::unwrap_used)]
 
+mod program;
+
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+
 use archrock::Arch;
 use archrock::Sway;
 use archrock::mechanics::blocks::Row;
@@ -12,6 +18,7 @@ use archrock::mechanics::masonry::{
     Dimensions, EllipticArch, Masonry, Material, Piers, PointedArch, Shape,
 };
 use archrock::mechanics::stability::{falls, onset};
+use program::{done, says_what_it_shows, scenarios};
 use std::f64::consts::PI;
 
 /// The least number at which something holds that holds from there on, to 1e-6.
@@ -137,4 +144,48 @@ fn least_thickness_of_pointed_and_elliptic_arches() {
     for (found, page) in found.into_iter().zip(page) {
         assert!((found - page).abs() < 1e-4, "{found} {page}");
     }
+}
+
+#[test]
+fn commands_say_what_the_page_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    symlink(scenarios(), folder.path().join("scenarios")).unwrap();
+    let commands = says_what_it_shows("docs/validation.md", folder.path());
+    assert!(commands >= 15, "{commands}");
+}
+
+/// Each row of the page's table of drums, by its command: within a stride of the number the outcome changes, at that number.
+#[test]
+fn the_failure_domain_of_the_page_is_that_of_the_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("drums-step-pair.toml");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, table) = page.split_once("| t_p (s) |").unwrap();
+    let mut rows = 0;
+    for line in table
+        .lines()
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+    {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let (duration, shown): (&str, f64) = (cells[0], cells[4].parse().unwrap());
+        let set = format!("ground.step_pair.duration_s={duration}");
+        let [from, to] = [0.99, 1.01].map(|part| (part * shown).to_string());
+        let arguments = ["threshold", scenario.to_str().unwrap(), "--set", &set];
+        let range = [
+            "--from", &from, "--to", &to, "--stride", "0.03", "--out", "drums",
+        ];
+        done(folder.path(), &[&arguments[..], &range[..]].concat());
+        let results = fs::read_to_string(folder.path().join("drums/threshold.json")).unwrap();
+        let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+        let factor = results["models"][0]["bands"][0]["from"].as_f64().unwrap();
+        // Half a unit of the last digit, and the width of an edge.
+        assert!(
+            (factor - shown).abs() < 5e-4 + 1e-4 * shown,
+            "{duration}: {factor} {shown}"
+        );
+        rows += 1;
+    }
+    assert_eq!(rows, 18);
 }

@@ -74,3 +74,47 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 pub fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
 }
+
+/// The commands that a page of the documentation shows, each with the lines that are shown of what it says.
+fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
+    let mut commands: Vec<(Vec<String>, Vec<String>)> = Vec::new();
+    for line in page.lines() {
+        let Some(line) = line.strip_prefix("    ") else {
+            continue;
+        };
+        match line.strip_prefix("$ archrock ") {
+            Some(command) => {
+                // None of the words has a blank, so that a shell would only drop the marks around them.
+                let words = command
+                    .split_whitespace()
+                    .map(|word| word.trim_matches('\'').to_owned());
+                commands.push((words.collect(), Vec::new()));
+            }
+            None => commands.last_mut().unwrap().1.push(line.to_owned()),
+        }
+    }
+    commands
+}
+
+/// Runs the commands that a page shows, as they stand there, in a folder; each says the lines that are shown, in their order. Returns
+/// how many there are.
+#[track_caller]
+pub fn says_what_it_shows(page: &str, folder: &Path) -> usize {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+    let commands = shown_commands(&fs::read_to_string(page).unwrap());
+    for (command, shown) in &commands {
+        let arguments: Vec<&str> = command.iter().map(String::as_str).collect();
+        let output = archrock(folder, &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = String::from_utf8(output.stdout.clone()).unwrap() + &stderr(&output);
+        let mut lines = said.lines();
+        assert!(!shown.is_empty());
+        for line in shown {
+            assert!(
+                line == "..." || lines.any(|said| said == line),
+                "{arguments:?} does not say {line:?}, or not after the line before:\n{said}"
+            );
+        }
+    }
+    commands.len()
+}
