@@ -3,11 +3,14 @@
 use super::{HalfCycle, Settings};
 use crate::dynamics::history::{Outcome, Summary};
 
-/// Peaks are the same while they differ by no more than this part of the largest.
+/// To this part of them peaks are called certain.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
 
+/// The repetitions must agree to this part of that, because still other ways to compute the motion may differ by more.
+const AGREEMENT: f64 = 0.5;
+
 /// After the last half cycle that peaks above this part of the largest peak nothing is compared.
-const LEAST_PEAK_RATIO: f64 = 1e-3;
+const LEAST_PEAK_RATIO: f64 = 1e-2;
 
 named! {
     /// Other ways to compute the motion of a row.
@@ -50,9 +53,9 @@ pub struct Spread {
     pub repeated: Vec<&'static str>,
     /// How it ended: itself, then the repetitions.
     pub outcomes: Vec<Outcome>,
-    /// The half cycles that all have, up to the last that peaks above a thousandth of the largest peak of the motion itself.
+    /// The half cycles that all have, up to the last that peaks above a hundredth of the largest peak of the motion itself.
     pub half_cycles: Vec<PeakSpread>,
-    /// Half cycles from the first on that are the same: to one side, with peaks within [`SAME_PEAK_RATIO`].
+    /// Half cycles from the first on that are the same: to one side, with peaks that are the same.
     pub same_until_half_cycle: usize,
     /// When the first half cycle begins that is not, in seconds; `None` where all are the same.
     pub parts_at_s: Option<f64>,
@@ -81,10 +84,10 @@ impl PeakSpread {
         }
     }
 
-    /// Whether all are within [`SAME_PEAK_RATIO`].
+    /// Whether all agree so well that they are certain to [`SAME_PEAK_RATIO`].
     #[must_use]
     pub fn is_same(&self) -> bool {
-        self.max_rad - self.min_rad <= SAME_PEAK_RATIO * self.max_rad
+        self.max_rad - self.min_rad <= AGREEMENT * SAME_PEAK_RATIO * self.max_rad
     }
 }
 
