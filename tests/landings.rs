@@ -204,14 +204,23 @@ fn a_closure_is_not_split() {
     }
 }
 
-/// Sequences of impacts converge with the step: second peaks are those of steps of 10 us, within 1 % in nine of ten arches. (Of 73
-/// arches, five of which are long, 6 are off by more; see docs/models.md.)
+/// Sequences of impacts converge with the step: second peaks are those of steps of 0.01 ms, where these agree with steps of 0.03 ms,
+/// within 1 % in nine of ten arches of 5 to 12 voussoirs. More arches, half of them of up to 40, with `ARCHROCK_CASES=73`: MEASURED2.
 #[test]
 fn second_peaks_converge() {
+    let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
     let mut random = Random(3);
-    let (mut compared, mut off) = (0, 0);
-    while compared < 10 {
-        let (_, _, row, ground) = shaken_arch(&mut random, 5, 12);
+    let mut compared = 0;
+    // By more than 1 % and 5 %, with the steps of a run.
+    let mut off = [0; 2];
+    while compared < cases {
+        let most = if cases > 10 && compared % 2 == 1 {
+            40
+        } else {
+            12
+        };
+        let (_, _, row, ground) = shaken_arch(&mut random, 5, most);
+        let end_s = 3.0 * (row.size_m() / 10.0).sqrt();
         let second = |settings: Settings| {
             let run = simulate(&row, &ground, GRAVITY, &settings, None, &mut ()).unwrap();
             peaks_rad(&run).get(1).copied()
@@ -219,7 +228,7 @@ fn second_peaks_converge() {
         let fine = |longest_step_s: f64| Settings {
             longest_step_s,
             shortest_step_s: 1e-6,
-            ..Settings::to_landings(&row, GRAVITY, 3.0)
+            ..Settings::to_landings(&row, GRAVITY, end_s)
         };
         let (Some(exact), Some(shorter)) = (second(fine(1e-5)), second(fine(3e-5))) else {
             continue;
@@ -228,8 +237,14 @@ fn second_peaks_converge() {
             continue;
         }
         compared += 1;
-        let ours = second(Settings::to_landings(&row, GRAVITY, 3.0)).unwrap();
-        off += usize::from((ours / exact - 1.0).abs() > 0.01);
+        let ours = second(Settings::to_landings(&row, GRAVITY, end_s)).unwrap();
+        for (off, ratio) in off.iter_mut().zip([0.01, 0.05]) {
+            *off += usize::from((ours / exact - 1.0).abs() > ratio);
+        }
     }
-    assert!(off <= 1, "{off} of {compared}");
+    println!("{off:?} of {compared}");
+    assert!(
+        off[0] <= compared / 10 && off[1] <= 1 + compared / 50,
+        "{off:?} of {compared}"
+    );
 }

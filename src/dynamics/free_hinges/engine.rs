@@ -972,7 +972,7 @@ mod tests {
         ] {
             let ground =
                 GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
-            let settings = Settings::to_landings(&row, 9.81, 60.0).times(3.0);
+            let settings = Settings::to_landings(&row, 9.81, 60.0).times(1.1 / 0.34);
             let mut engine = Engine::new(&row, &ground, 9.81, &settings);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
