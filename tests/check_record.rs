@@ -264,16 +264,43 @@ fn unlikely_input_is_pointed_out() {
     let folder = tempfile::tempdir().unwrap();
     let pulse = "[ground.rectangular]\namplitude_g = 0.05\nduration_s = 0.2\n";
     let record = "[ground.record]\nfile = 'r.csv'\nunit = 'g'\n";
-    fs::write(folder.path().join("r.csv"), "0,0\n0.01,35\n0.02,0\n").unwrap();
+    for (name, text) in [
+        ("r.csv", "0,0\n0.01,35\n0.02,0\n"),
+        ("small.csv", "0,0\n0.01,0.35\n0.02,0\n"),
+        (
+            "offset.NS",
+            "Sampling Freq(Hz) 100Hz\nScale Factor      1000(gal)/1000000\nMemo.\n5100 5200 5090\n5130 5130 5131\n",
+        ),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
     let usual = format!("{ARCH}{pulse}");
     for (text, warning) in [
         (
             usual.replace("= 5.0", "= 500"),
-            Some("the mean radius is 500 m: is it in metres?"),
+            Some("the mean radius is 500 m: is it in centimetres?"),
         ),
         (
             usual.replace("= 5.0", "= 50"),
-            Some("the arch is 7.5 m thick: is its thickness in metres?"),
+            Some("the thickness is 7.5 m: is it in centimetres?"),
+        ),
+        (
+            usual.replace("= 5.0", "= 5000"),
+            Some("the mean radius is 5000 m: is it in millimetres?"),
+        ),
+        (
+            usual.replace("= 5.0", "= 5000"),
+            Some("the thickness is 750 m: is it in millimetres?"),
+        ),
+        (
+            format!("[column]\nheight_m = 4000\nwidth_m = 800\n{pulse}"),
+            Some("the column measures 4000 m: is it in millimetres?"),
+        ),
+        (
+            format!(
+                "{ARCH}voussoirs = 8\n[piers]\nheight_m = 3000\nwidth_m = 2000\n[free_hinges]\n{pulse}"
+            ),
+            Some("the structure measures 4009.25 m: is it in millimetres?"),
         ),
         (
             usual.replace("180.0", "3.14159"),
@@ -291,6 +318,52 @@ fn unlikely_input_is_pointed_out() {
             usual.replace("0.05", "-4"),
             Some("the pulse peaks at 4 g: is its amplitude in units of gravity?"),
         ),
+        // A block of 4 by 0.08 m starts at 0.02 g.
+        (
+            format!(
+                "[column]\nheight_m = 4\nwidth_m = 0.08\n{}",
+                pulse.replace("0.05", "0.5")
+            ),
+            Some(
+                "the pulse peaks at 0.5 g, 25 times what starts the structure: is its amplitude in units of gravity?",
+            ),
+        ),
+        (
+            format!("{ARCH}{record}scale = 1e-5"),
+            Some("r.csv peaks at 3.5e-4 g: is its unit \"g\", and `scale` 1e-5?"),
+        ),
+        (
+            format!("{ARCH}{record}peak_g = 9.81"),
+            Some("r.csv peaks at 9.81 g: is `peak_g` in units of gravity?"),
+        ),
+        (
+            format!("{ARCH}[ground.record]\nfile = 'small.csv'\nunit = 'cm/s2'\n"),
+            Some("small.csv peaks at 3.56779e-4 g: is its unit \"cm/s2\"?"),
+        ),
+        (
+            format!("{ARCH}[ground.record]\nfile = 'offset.NS'\n"),
+            Some(
+                "offset.NS has a mean of 0.00523252 g, the offset of the instrument: give `remove_mean = true`",
+            ),
+        ),
+        // Longest steps of 3.4e-4 times the square root of size over gravity.
+        (
+            format!(
+                "{}voussoirs = 7\n[free_hinges]\nlongest_step_s = 1e-3\n{pulse}\
+                 [simulation]\nduration_s = 1e6\noutput_step_s = 1\n",
+                ARCH
+            ),
+            Some(
+                "the simulation lasts 1e6 s, some 1e9 steps of 1.0e-3 s: unless it rests or overturns before, every \
+                 million of them takes several seconds",
+            ),
+        ),
+        (
+            format!("{usual}[simulation]\nduration_s = 1e6\noutput_step_s = 1\n"),
+            Some(
+                "the simulation lasts 1e6 s: unless it rests or overturns before, that takes minutes or more",
+            ),
+        ),
         (usual, None),
     ] {
         fs::write(folder.path().join("s.toml"), &text).unwrap();
@@ -301,9 +374,15 @@ fn unlikely_input_is_pointed_out() {
                 // A thin arch of three degrees is refused besides.
                 Some(_) if output.status.code() == Some(2) => {
                     assert!(text.contains("3.14159"), "{said}");
+                    let remedy = "too thick for its embrace angle of 3.14159 degrees";
+                    assert!(said.contains(remedy), "{said}");
+                    assert!(said.contains("is it in radians, 180 degrees?"), "{said}");
                 }
                 Some(warning) => {
-                    assert!(said.contains(&format!("warning: {warning}")), "{said}");
+                    assert!(
+                        said.contains(&format!("warning: {warning}")),
+                        "{text}: {said}"
+                    );
                     let quiet = archrock(folder.path(), &[command, "s.toml", "--quiet"]);
                     assert!(quiet.stderr.is_empty());
                 }
@@ -311,6 +390,31 @@ fn unlikely_input_is_pointed_out() {
             }
         }
     }
+}
+
+/// Weights beyond what numbers resolve end in an error that says so, and with others there is none.
+#[test]
+fn blocks_too_unlike_in_weight_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |density: &str| {
+        format!(
+            "[pointed_arch]\nspan_m = 6.0\nrise_m = 5.2\nthickness_m = 0.5\nvoussoirs = 40\n\
+             density_kg_m3 = {density}\n[piers]\nheight_m = 2\nwidth_m = 30\ndensity_kg_m3 = 2000\n\
+             [free_hinges]\n[ground.one_sine]\namplitude_g = 2\nduration_s = 0.1\n[simulation]\nduration_s = 0.5\n"
+        )
+    };
+    let run = |density: &str| {
+        fs::write(folder.path().join("s.toml"), text(density)).unwrap();
+        archrock(
+            folder.path(),
+            &["run", "s.toml", "--no-spread", "--no-report"],
+        )
+    };
+    let output = run("0.001");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(said.contains("make their weights more alike"), "{said}");
+    stdout(&run("200"));
 }
 
 #[test]

@@ -339,10 +339,24 @@ fn rows_of_several_samples_are_the_samples_one_after_another() {
     }
 }
 
-/// Excel's "Unicode text" and old Macs' text are named.
+/// Excel's "Unicode text" and old Macs' text are named, also where they are scenarios.
 #[test]
 fn what_is_no_plain_text_is_named() {
     let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    let text = format!("{ARCH}file = 'a.at2'\n");
+    let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for (bytes, words) in [
+        (wide, "s.toml: the file is UTF-16 text"),
+        (
+            text.replace('\n', "\r").into_bytes(),
+            "s.toml: the lines end with a carriage return alone (CR)",
+        ),
+    ] {
+        fs::write(&path, bytes).unwrap();
+        let message = Scenario::read(&path).unwrap_err().to_string();
+        assert!(message.contains(words), "{message}");
+    }
     let table = "t,a\n0,0\n1,1\n";
     let utf_16 = |order: fn(u16) -> [u8; 2], mark: &[u16]| -> Vec<u8> {
         let units = mark.iter().copied().chain(table.encode_utf16());

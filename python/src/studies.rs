@@ -148,7 +148,7 @@ fn map_of(scenario: &archrock::Scenario) -> PyResult<OverturningMap<'_>> {
 }
 
 fn pretty(value: &Value) -> Vec<u8> {
-    format!("{value:#}\n").into_bytes()
+    output::pretty(value).into_bytes()
 }
 
 fn map_files(map: &OverturningMap<'_>, rows: Vec<MapRow>) -> PyResult<Files> {

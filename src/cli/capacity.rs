@@ -6,10 +6,10 @@ use std::path::PathBuf;
 
 use archrock::mechanics::capacity::Capacity;
 use archrock::output::capacity as output;
+use archrock::output::pretty;
 use archrock::studies::capacity::{capacity as capacities, grouping};
 use nalgebra::Vector2;
 
-use super::commands::pretty;
 use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
 use super::study::say;

@@ -52,7 +52,7 @@ pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 
 fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String, Failure> {
     if Format::of_file(file).is_some() || is_format_given(arguments) {
-        return check_record(file, arguments);
+        return check_record(file, arguments, quiet);
     }
     if arguments.plot.is_some() {
         let message = format!("--plot is of records; {} is a scenario", file.display());
@@ -60,7 +60,7 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String,
     }
     let scenario = arguments.set.open(file)?.read(None)?;
     if !quiet {
-        super::warn(&scenario);
+        super::warn(&scenario.unlikely());
     }
     Ok(scenario.to_toml())
 }
@@ -72,7 +72,7 @@ fn is_format_given(arguments: &Arguments) -> bool {
 }
 
 /// What is in a record file.
-fn check_record(file: &Path, arguments: &Arguments) -> Result<String, Failure> {
+fn check_record(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String, Failure> {
     // Of several files, tables may need keys that others do not have.
     let several = arguments.files.len() > 1;
     let is_table = Format::of_file(file).is_none_or(|format| format == Format::Csv);
@@ -85,6 +85,9 @@ fn check_record(file: &Path, arguments: &Arguments) -> Result<String, Failure> {
         let hint = "keys of [ground.record] are given with --set, as in --set unit=cm/s2 --set skip_rows=3";
         Failure::Input(format!("{errors}\n{hint}"))
     })?;
+    if !quiet {
+        super::warn(&series.unlikely(GRAVITY_M_S2));
+    }
     let samples = series.accelerations_m_s2(GRAVITY_M_S2);
     let intensity = Intensity::of(&samples, GRAVITY_M_S2);
     if let Some(plot) = &arguments.plot {
@@ -98,11 +101,11 @@ fn check_record(file: &Path, arguments: &Arguments) -> Result<String, Failure> {
         );
         commands::write_picture(plot, &picture)?;
     }
-    Ok(record_text(file, &series, &intensity))
+    Ok(record_text(&series, &intensity))
 }
 
-fn record_text(file: &Path, series: &Series, intensity: &Intensity) -> String {
-    let mut text = format!("{}: {}\n", file.display(), kind(series));
+fn record_text(series: &Series, intensity: &Intensity) -> String {
+    let mut text = format!("{}: {}\n", series.name(), kind(series));
     let _ = writeln!(text, "  {}", sampling_in_words(&series.sampling()));
     let PeakMotion { value, time_s } = intensity.acceleration_m_s2;
     let _ = writeln!(

@@ -13,6 +13,7 @@ use archrock::mechanics::friction::{self, FrictionError};
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::stability::onset;
 use archrock::mechanics::sway::Sway;
+use archrock::output::pretty;
 use archrock::output::{Figure, mechanisms, pictures};
 use archrock::scenario::{Scenario, Structure};
 
@@ -199,11 +200,6 @@ pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
     })?;
     file.write_all(picture.as_bytes())
         .map_err(|error| Failure::Work(cannot(error)))
-}
-
-/// JSON for people to read as well.
-pub fn pretty(value: &serde_json::Value) -> String {
-    format!("{value:#}\n")
 }
 
 /// Values of the bodies with their names, from left to right.

@@ -18,11 +18,12 @@ use archrock::mechanics::geometry::profile::Profile;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::sway::Sway;
 use archrock::output::impact::LinkImpact;
+use archrock::output::pretty;
 use archrock::output::{Folder, impact as output, pictures};
 use archrock::scenario::{Scenario, Structure};
 use serde_json::json;
 
-use super::commands::{self, degrees, pretty};
+use super::commands::{self, degrees};
 use super::figure::FigureOption;
 use super::first::FirstOption;
 use super::scenario_file::ScenarioFile;

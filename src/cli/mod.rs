@@ -27,7 +27,7 @@ use std::process::ExitCode;
 
 use archrock::dynamics::model::SimulationError;
 use archrock::output::OutputError;
-use archrock::scenario::{Scenario, ScenarioErrors};
+use archrock::scenario::{ScenarioErrors, shown_lines};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use figure::FigureOption;
@@ -179,13 +179,13 @@ pub fn main() -> ExitCode {
         Err(Failure::Input(message)) => (2, message),
     };
     // When standard error fails there is nowhere to report it.
-    let _ = writeln!(io::stderr(), "error: {message}");
+    let _ = writeln!(io::stderr(), "error: {}", shown_lines(&message));
     ExitCode::from(code)
 }
 
-/// Warns of what is unlikely in a scenario.
-fn warn(scenario: &Scenario) {
-    for unlikely in scenario.unlikely() {
+/// Warns of what is unlikely in a scenario or a record.
+fn warn(unlikely: &[String]) {
+    for unlikely in unlikely {
         study::say(&format!("warning: {unlikely}"));
     }
 }
@@ -198,8 +198,9 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     print(&String::from_utf8_lossy(&script))
 }
 
-/// Prints a result on standard output.
+/// Prints a result on standard output. Names in it may hold what a terminal would obey.
 fn print(text: &str) -> Result<(), Failure> {
+    let text = shown_lines(text);
     let mut out = io::stdout().lock();
     let printed = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     printed.map_err(|error| match error.kind() {

@@ -15,12 +15,13 @@ use archrock::dynamics::model::{MechanismModel, Model, Recorder};
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::sway::Sway;
 use archrock::output::overlay::{self, Curves};
+use archrock::output::pretty;
 use archrock::output::results::{self, EventsWriter};
 use archrock::output::rotations::{RotationsWriter, Scales};
 use archrock::output::scene::Scene;
 use archrock::output::timeline::Timeline;
 use archrock::output::{Figure, Folder, OutputError, Subject};
-use archrock::scenario::{Ground, Hinges, Scenario, Series, Structure};
+use archrock::scenario::{Ground, Hinges, Scenario, Series, Structure, shown_lines};
 use clap::ValueEnum;
 use serde_json::{Value, json};
 
@@ -95,7 +96,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut failures = Vec::new();
     for job in &jobs {
         if !quiet {
-            super::warn(&job.scenario);
+            super::warn(&job.scenario.unlikely());
         }
         let told = match job.run(arguments, quiet) {
             Ok(told) => told,
@@ -112,14 +113,14 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             // What the rotations are read from gets nothing else.
             Format::Text if job.place.to_stdout => {
                 // Nobody is left to be told when standard error fails.
-                let _ = io::stderr().write_all(told.text.as_bytes());
+                let _ = io::stderr().write_all(shown_lines(&told.text).as_bytes());
             }
             Format::Text => print(&told.text)?,
         }
     }
     if let Format::Json = arguments.format {
         let only = (jobs.len() == 1).then(|| summaries.pop()).flatten();
-        print(&commands::pretty(&only.unwrap_or(Value::Array(summaries))))?;
+        print(&pretty(&only.unwrap_or(Value::Array(summaries))))?;
     }
     if failures.is_empty() {
         Ok(())
@@ -229,7 +230,7 @@ fn records(scenario: &Scenario) -> String {
         return String::new();
     };
     let line = |series: &Series| {
-        let (file, sampling) = (&series.file, sampling_in_words(&series.sampling()));
+        let (file, sampling) = (series.name(), sampling_in_words(&series.sampling()));
         let peak_g = series.peak_g(scenario.simulation.gravity_m_s2);
         format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
     };
@@ -482,7 +483,10 @@ fn four_links(
             .write_all(picture.as_bytes())
             .map_err(cannot_write("the picture"))?;
         extras.write(&mut folder, scenario, (place.figure, title), &mut text)?;
-        writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
+        folder
+            .file(SUMMARY)
+            .write_all(pretty(&json).as_bytes())
+            .map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
         text += &written(&path, place, rows, &[EVENTS, IMPACTS, PICTURE, SUMMARY]);

@@ -7,7 +7,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use archrock::output::Folder;
-use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source};
+use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 
 use super::Failure;
 
@@ -217,7 +217,7 @@ impl Destination {
             return Err(Failure::Input(format!(
                 "{} holds the results of {}: choose another folder with --out, or remove that one",
                 path.display(),
-                theirs.trim_end().replace(char::is_control, "\u{fffd}")
+                shown(theirs.trim_end())
             )));
         }
         Ok(Self { path, origin })

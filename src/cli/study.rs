@@ -13,8 +13,9 @@ use std::time::{Duration, Instant};
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::output::ending::Failed;
+use archrock::output::pretty;
 use archrock::output::results;
-use archrock::scenario::{Hinges, Scenario};
+use archrock::scenario::{Hinges, Scenario, shown_lines};
 use archrock::studies::part::{PartError, PartFile, Shard};
 use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
 use clap::ValueEnum;
@@ -82,8 +83,11 @@ impl HingesOption {
             Model::Free => Hinges::Free,
         });
         let scenario = input.read(hinges)?;
-        if !quiet && let Some(ignored) = impact_ignored(&scenario) {
-            say(ignored);
+        if !quiet {
+            super::warn(&scenario.unlikely());
+            if let Some(ignored) = impact_ignored(&scenario) {
+                say(ignored);
+            }
         }
         Ok(scenario)
     }
@@ -217,7 +221,7 @@ pub fn write_summary(
     failures: &[Failed],
 ) -> Result<(), Failure> {
     let summary = results::study_summary(scenario, cases, failures);
-    writeln!(file, "{summary:#}")
+    file.write_all(pretty(&summary).as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))
 }
 
@@ -261,7 +265,7 @@ pub fn counts(cases: impl Iterator<Item = Words>) -> String {
 /// Prints a line on standard error.
 pub fn say(text: &str) {
     // When standard error fails there is nowhere to report it.
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", shown_lines(text));
 }
 
 /// Progress: a bar on a terminal, a line a minute elsewhere.

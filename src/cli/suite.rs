@@ -5,13 +5,13 @@ use std::io::Write as _;
 use archrock::dynamics::history::Outcome;
 use archrock::output::Figure;
 use archrock::output::ida;
+use archrock::output::pretty;
 use archrock::output::suite::{self as output, Heading};
 use archrock::output::survival;
 use archrock::scenario::{Measure, Scenario, Suite};
 use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 
 use super::Failure;
-use super::commands::pretty;
 use super::figure::FigureOption;
 use super::scenario_file::Destination;
 use super::study::{HingesOption, Options, counts, failed_in_words, in_words, say};

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
+use archrock::output::pretty;
 use archrock::output::survival;
 use archrock::output::threshold::{self as output, rounded};
 use archrock::scenario::{Ground, Scenario, Structure};
@@ -22,7 +23,7 @@ use super::figure::FigureOption;
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
 use super::study::{Display, Threads, impact_ignored, say};
-use super::{Failure, Format, commands, print};
+use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -91,7 +92,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut results = Vec::new();
     for (scenarios, place) in &tasks {
         if !quiet {
-            super::warn(&scenarios[0]);
+            super::warn(&scenarios[0].unlikely());
         }
         let (text, json) = find(scenarios, place, &factors, arguments, quiet)?;
         texts.push(text);
@@ -100,7 +101,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     match arguments.format {
         Format::Json => {
             let only = (results.len() == 1).then(|| results.pop()).flatten();
-            print(&commands::pretty(&only.unwrap_or(Value::Array(results))))
+            print(&pretty(&only.unwrap_or(Value::Array(results))))
         }
         Format::Text => {
             let title = tasks[0].0[0].title.as_ref();
@@ -154,7 +155,7 @@ fn find(
     let of_models: Vec<&Scenario> = scenarios.iter().collect();
     let json = output::to_json(&of_models, ground, factors, &found)?;
     let picture = output::draw(arguments.figure.get(), title, peak_g, factors, &found);
-    let summary = commands::pretty(&json);
+    let summary = pretty(&json);
     for (name, text) in [(PICTURE, &picture), (SUMMARY, &summary)] {
         folder
             .file(name)
@@ -244,7 +245,7 @@ fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -
                 String::new()
             };
             let line = survival::in_words(&Survival::of_threshold(threshold), "");
-            let file = &record.main.file;
+            let file = record.main.name();
             let _ = writeln!(text, "  {file}{model}: {line} (1 is {} g)", rounded(peak_g));
         } else {
             if several {

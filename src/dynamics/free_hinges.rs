@@ -108,13 +108,16 @@ pub enum FreeHingeError {
         blocks: usize,
     },
     /// The initial rotations do not close an arch.
-    #[error("with the initial rotations the ends of the arch miss each other by {error_m:.3e} m")]
+    #[error(
+        "with the initial rotations the ends of the arch miss each other by {error_m:.3e} m: give rotations of the blocks \
+         with which it stays closed; a smaller `rotation_rad` in [initial] may do"
+    )]
     Open {
         /// By how much.
         error_m: f64,
     },
     /// The velocities of a step were not found.
-    #[error("at {time_s} s {reason}")]
+    #[error("at {time_s} s {reason}, or give another `longest_step_s` in [free_hinges]")]
     Contact {
         /// When, in seconds.
         time_s: f64,
@@ -145,7 +148,10 @@ pub enum FreeHingeError {
         longest_step_s: f64,
     },
     /// The ends of an arch parted in the computation.
-    #[error("at {time_s} s the ends of the arch miss each other by {error_m:.3e} m")]
+    #[error(
+        "at {time_s} s the ends of the arch miss each other by {error_m:.3e} m: give a shorter `longest_step_s` in \
+         [free_hinges]"
+    )]
     Closure {
         /// When, in seconds.
         time_s: f64,

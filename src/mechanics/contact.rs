@@ -44,7 +44,10 @@ const LEAST_SLOPE: f64 = 1e-12;
 
 /// The program was not solved within its number of iterations, at the loosest tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the velocities of the blocks were not found in {iterations} iterations")]
+#[error(
+    "the velocities of the blocks were not found in {iterations} iterations: where the heaviest block is more than some \
+     1e5 times as heavy as the lightest, numbers are not exact enough; make their weights more alike"
+)]
 pub struct ContactError {
     /// Iterations spent.
     pub iterations: usize,

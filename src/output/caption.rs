@@ -1,7 +1,7 @@
 //! What a picture was computed of, in a line: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::scenario::{Axis, Ground, Quantity, Scenario, Structure};
+use crate::scenario::{Axis, Ground, Quantity, Scenario, Series, Structure};
 
 /// The line. What varies along the axes is left out.
 #[must_use]
@@ -26,7 +26,7 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
             parts.push(part);
         }
         Some(Ground::Record(record)) => {
-            let files: Vec<_> = record.series().map(|series| series.file.as_str()).collect();
+            let files: Vec<_> = record.series().map(Series::name).collect();
             parts.push(format!("record {}", files.join(" and ")));
         }
         None => {}

@@ -42,9 +42,12 @@ use std::path::PathBuf;
 
 pub use folder::Folder;
 pub use panels::Subject;
+use serde_json::Value;
 pub use svg::Figure;
 use table::NotFinite;
 use thiserror::Error;
+
+use crate::scenario::shown_lines;
 
 /// Why results could not be written.
 #[derive(Debug, Error)]
@@ -96,6 +99,12 @@ impl OutputError {
             })
         }
     }
+}
+
+/// JSON for people to read as well: what would not be seen in it is escaped.
+#[must_use]
+pub fn pretty(value: &Value) -> String {
+    shown_lines(&format!("{value:#}\n"))
 }
 
 /// Refuses what is not finite. Tables check their cells themselves.

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 pub(crate) use super::svg::escaped;
+use crate::scenario::shown_lines;
 
 /// A template whose places, names between `%`, are filled with these texts. What fills a place is not looked at again.
 pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
@@ -30,7 +31,7 @@ pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
 
 /// JSON that can stand in a script of a page: nothing in it ends the script.
 pub(crate) fn script_safe(data: &Value) -> String {
-    data.to_string().replace('<', "\\u003c")
+    shown_lines(&data.to_string()).replace('<', "\\u003c")
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::ending::{self, Failed};
 use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 use super::table::table;
 use super::{OutputError, finite};
-use crate::scenario::{Measure, Scenario, Spacing, Suite};
+use crate::scenario::{Measure, Scenario, Spacing, Suite, shown};
 use crate::studies::fragility::{Errors, Fragility};
 use crate::studies::suite::{CaseRow, CurvePoint, FragilityRow, SuiteFragility};
 
@@ -37,7 +37,7 @@ pub fn write_table(
         };
         let [scale, peak_g] = [case.scale, case.peak_g].map(ending::number);
         let sign = if case.mirrored { "-1" } else { "1" };
-        let lead = [case.record.as_str(), sign, &scale, &peak_g];
+        let lead = [&*shown(&case.record), sign, &scale, &peak_g];
         csv.write_record(lead.into_iter().chain(fields.iter().map(String::as_str)))
             .map_err(OutputError::csv(WHAT))?;
     }

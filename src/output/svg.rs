@@ -9,6 +9,8 @@ use std::str::FromStr;
 
 use nalgebra::Vector2;
 
+use crate::scenario::shown_lines;
+
 /// Colours that the colour-blind can tell apart (Okabe and Ito), the dark ones.
 pub mod color {
     /// Blue.
@@ -508,17 +510,15 @@ fn name_attribute(name: &str) -> String {
     }
 }
 
-/// Text with the characters that mean something in XML replaced; control characters are left out.
+/// Text as it is shown, line ends and tabs as they are, with the characters that mean something in XML replaced.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
-    for character in text.chars() {
+    for character in shown_lines(text).chars() {
         match character {
             '<' => escaped += "&lt;",
             '>' => escaped += "&gt;",
             '&' => escaped += "&amp;",
             '"' => escaped += "&quot;",
-            character if character.is_control() || matches!(character, '\u{fffe}' | '\u{ffff}') => {
-            }
             character => escaped.push(character),
         }
     }
@@ -839,12 +839,12 @@ mod tests {
     #[test]
     fn text_is_escaped() {
         let mut drawing = Drawing::new(Figure::SCREEN);
-        let text = "a < b & \"c\" \u{7}";
+        let text = "a < b & \"c\" \u{7}\u{202e}";
         drawing.label(Vector2::zeros(), Anchor::Start, 0.0, text);
         assert!(
             drawing
                 .finish(10.0)
-                .contains("a &lt; b &amp; &quot;c&quot; </text>")
+                .contains("a &lt; b &amp; &quot;c&quot; \\u0007\\u202e</text>")
         );
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::assignment::{Assignment, Behind};
+use super::shown;
 use super::source::Source;
 
 /// One thing that is wrong with a scenario.
@@ -28,7 +29,7 @@ pub struct Place {
 impl fmt::Display for ScenarioError {
     /// `file:line:column: message`, the form that editors follow.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:", self.file)?;
+        write!(f, "{}:", shown(&self.file))?;
         if let Some(Place { line, column }) = self.place {
             write!(f, "{line}:{column}:")?;
         }
@@ -129,16 +130,11 @@ pub(super) struct Fault {
     pub(super) message: String,
 }
 
-/// A piece of the file for a message: its first line, cut when long. Control characters, which could
-/// rewrite the terminal, are replaced.
+/// A piece of the file for a message: its first line, cut when long.
 pub(super) fn excerpt(text: &str) -> String {
     const MAX_CHARS: usize = 60;
     let line = text.trim().lines().next().unwrap_or_default();
-    let mut short: String = line
-        .chars()
-        .take(MAX_CHARS)
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
-        .collect();
+    let mut short = shown(&line.chars().take(MAX_CHARS).collect::<String>());
     if line.chars().nth(MAX_CHARS).is_some() {
         short.push_str("...");
     }

@@ -35,6 +35,7 @@ mod map;
 mod masonry;
 mod record;
 mod sequence;
+mod shown;
 mod simulation;
 mod source;
 mod span;
@@ -68,6 +69,7 @@ pub use record::{
     Scaling, Series, TableColumn, TableLayout, Times, Unit,
 };
 pub use sequence::{Sequence, Spacing};
+pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
 pub use source::Source;
 pub use spectrum::Spectrum;
@@ -109,7 +111,7 @@ pub struct Changes<'a> {
 /// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scenario {
-    /// Free text for the results.
+    /// Free text for the results, as it is [shown].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
     /// What stands on the ground.
@@ -240,7 +242,7 @@ impl Scenario {
             free_hinges::carries(table, &structure, options)?;
         }
         Ok(Self {
-            title: title?,
+            title: title?.map(|title| shown(&title)),
             structure,
             free_hinges: free.then(|| steps.unwrap_or_default()),
             ground: ground?,

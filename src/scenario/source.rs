@@ -71,6 +71,9 @@ impl Source {
                 "is larger than 1 MiB, too large for a scenario".to_owned(),
             ));
         }
+        if let Some(wrong) = not_plain(&bytes) {
+            return Err(unreadable(wrong.to_owned()));
+        }
         let text = String::from_utf8(bytes).map_err(|error| {
             // What precedes the fault is the same in the lossy text.
             let text = String::from_utf8_lossy(error.as_bytes());
@@ -86,6 +89,20 @@ impl Source {
             text,
         })
     }
+}
+
+/// Why a file is not text as it is read here, where its first bytes or its line ends tell.
+pub(super) fn not_plain(bytes: &[u8]) -> Option<&'static str> {
+    let is_utf_16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
+    // Without a mark, every other byte of letters and digits in UTF-16 is zero.
+    if is_utf_16 || bytes.iter().take(100).any(|byte| *byte == 0) {
+        return Some(
+            "the file is UTF-16 text, as some programs export it, or no text: save it as UTF-8 or plain text",
+        );
+    }
+    (bytes.contains(&b'\r') && !bytes.contains(&b'\n')).then_some(
+        "the lines end with a carriage return alone (CR), as on old Macs: save the file with line ends LF or CR LF",
+    )
 }
 
 /// The folder that a file is in.

@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::masonry::{self, Beside};
 use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Switch, Table};
+use super::unlikely::LIKELY_EMBRACE_DEG;
 use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use crate::dynamics::model::{FourLinkModel, MechanismModel};
@@ -260,8 +261,16 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
         }
         LimitError::OtherMechanism { .. } | LimitError::NoPush => format!(
             "makes an arch too thick for its embrace angle of {} degrees: {error}; give a \
-             thinner arch or a larger angle",
-            plain(embrace_deg)
+             thinner arch or a larger angle{}",
+            plain(embrace_deg),
+            if embrace_deg < LIKELY_EMBRACE_DEG {
+                format!(
+                    ": is it in radians, {} degrees?",
+                    plain(embrace_deg.to_degrees())
+                )
+            } else {
+                String::new()
+            }
         ),
     }
 }

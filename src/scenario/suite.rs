@@ -24,7 +24,7 @@ use serde::ser::{Error as _, Serialize, SerializeMap as _, Serializer};
 use super::record::{self, Form, Format, Layout, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::table::{Number, OneOrMore, Reading, Switch, Table, Text};
-use super::{Component, Ground, Scenario, Simulation};
+use super::{Component, Ground, Scenario, Simulation, shown};
 use crate::argument::{plain, short};
 
 named! {
@@ -157,7 +157,7 @@ impl Suite {
                     Series::of_file(folder, file.clone(), layout)
                         .and_then(|series| suits(&series, strongest, simulation).map(|()| series))
                         .map_err(|wrong| {
-                            let wrong = format!("names {file}, which {wrong}");
+                            let wrong = format!("names {}, which {wrong}", shown(&file));
                             table.wrong_element(RECORDS, element, wrong)
                         })
                 },
@@ -316,7 +316,7 @@ fn list(
             let format = format
                 .map_or_else(|| Format::of_ending(&file), Ok)
                 .map_err(|wrong| {
-                    let wrong = format!("names {file}, which {wrong}");
+                    let wrong = format!("names {}, which {wrong}", shown(&file));
                     table.wrong_element(RECORDS, element, wrong)
                 })?;
             Ok(Listed {
@@ -380,17 +380,25 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     Ok(files)
 }
 
-/// The name of a file for scenarios and results, where it must fit on a line.
+/// What a cell begins with that spreadsheets compute; so does a tab, a control character.
+const FORMULA: [char; 4] = ['=', '+', '-', '@'];
+
+/// The name of a file for scenarios and results, where it must fit on a line and in a cell.
 fn file_name(path: &Path) -> Result<String, String> {
     let plain: PathBuf = path
         .components()
         .filter(|part| *part != PathPart::CurDir)
         .collect();
     match plain.to_str() {
+        Some(name) if name.starts_with(FORMULA) => Err(format!(
+            "names {}, which spreadsheets that open the table of results would take for a formula: give the file a name \
+             that does not begin with any of = + - @",
+            shown(name)
+        )),
         Some(name) if !name.contains(char::is_control) => Ok(name.to_owned()),
         _ => Err(format!(
-            "names {:?}; file names must be UTF-8 without control characters",
-            plain.display().to_string()
+            "names {}; file names must be UTF-8 without control characters",
+            shown(&plain.display().to_string())
         )),
     }
 }

@@ -2,6 +2,8 @@
 
 use serde_json::{Map, Value};
 
+use super::shown::is_hidden;
+
 /// The text of a table and of all that are in it. A range, which is a table with the key `from`, stands in one
 /// line.
 pub(crate) fn toml_text(table: &Map<String, Value>) -> String {
@@ -70,7 +72,7 @@ pub(super) fn quoted(text: &str) -> String {
     for c in text.chars() {
         match c {
             '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => quoted += &format!("\\u{:04x}", u32::from(c)),
+            c if is_hidden(c) => quoted += &format!("\\u{:04x}", u32::from(c)),
             c => quoted.push(c),
         }
     }

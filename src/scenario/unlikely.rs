@@ -2,49 +2,39 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Ground, Scenario, Structure};
-use crate::argument::plain;
+use super::{Form, Ground, PulseGround, Scaling, Scenario, Series, Structure};
+use crate::argument::{plain, short};
+use crate::mechanics::blocks::Row;
+use crate::mechanics::sway::Sway;
 
-/// Strongest recorded ground accelerations are a little above 2 g; what is more is another unit.
-const PEAK_G: f64 = 3.0;
+/// Strongest recorded ground accelerations are a little above 2 g, and weaker ones than the least are not felt: what is
+/// beyond is in another unit.
+const PEAK_G: RangeInclusive<f64> = 1e-3..=3.0;
+/// A pulse of so many times what starts the structure throws it.
+const PEAK_OVER_INCIPIENT: f64 = 20.0;
 /// The largest masonry arches span 140 m.
-const MEAN_RADIUS_M: f64 = 100.0;
-/// A straight angle in radians, in degrees it is almost nothing.
-const EMBRACE_DEG: f64 = 3.2;
+const RADIUS_M: f64 = 100.0;
 /// Thicker than any arch.
 const THICKNESS_M: f64 = 5.0;
+/// Larger than any column or arch on piers.
+const SIZE_M: f64 = 200.0;
+/// Full circles in radians are less; in degrees it is almost nothing.
+pub(super) const LIKELY_EMBRACE_DEG: f64 = 10.0;
 /// Gravity on Earth, from the equator to the poles.
 const GRAVITY_M_S2: RangeInclusive<f64> = 9.75..=9.85;
+/// Offset of a record over its peak.
+const OFFSET: f64 = 0.01;
+/// More steps than these take minutes.
+const STEPS: f64 = 1e7;
+/// With four links, motion for so long takes minutes.
+const DURATION_S: f64 = 1e5;
 
 impl Scenario {
     /// What is possible but unlikely, a sentence each, with what it might be instead.
     #[must_use]
     pub fn unlikely(&self) -> Vec<String> {
-        let mut unlikely = Vec::new();
-        if let Structure::Arch(arch) = &self.structure {
-            let mean_radius_m = arch.mean_radius_m();
-            let thickness_m = mean_radius_m * arch.thickness_ratio();
-            let embrace_deg = arch.embrace_deg();
-            if mean_radius_m > MEAN_RADIUS_M {
-                unlikely.push(format!(
-                    "the mean radius is {} m: is it in metres?",
-                    plain(mean_radius_m)
-                ));
-            }
-            if thickness_m > THICKNESS_M {
-                unlikely.push(format!(
-                    "the arch is {} m thick: is its thickness in metres?",
-                    plain(thickness_m)
-                ));
-            }
-            if embrace_deg < EMBRACE_DEG {
-                unlikely.push(format!(
-                    "the embrace angle is {} degrees: is it in radians?",
-                    plain(embrace_deg)
-                ));
-            }
-        }
         let gravity_m_s2 = self.simulation.gravity_m_s2;
+        let mut unlikely = self.structure.unlikely();
         if !GRAVITY_M_S2.contains(&gravity_m_s2) {
             unlikely.push(format!(
                 "gravity is {} m/s2, not that of the Earth",
@@ -53,31 +43,165 @@ impl Scenario {
         }
         match &self.ground {
             Some(Ground::Record(record)) => {
-                for series in record.series() {
-                    let peak_g = series.peak_g(gravity_m_s2);
-                    if peak_g > PEAK_G {
-                        unlikely.push(format!(
-                            "{} peaks at {} g: is its unit {:?}?",
-                            series.file,
-                            plain(peak_g),
-                            series.unit.name()
-                        ));
-                    }
-                }
+                unlikely.extend(
+                    record
+                        .series()
+                        .flat_map(|series| series.unlikely(gravity_m_s2)),
+                );
             }
-            Some(Ground::Pulse(pulse)) => {
-                let peak_g = pulse
-                    .amplitude_g
-                    .abs()
-                    .max(pulse.vertical_amplitude_g.abs());
-                if peak_g > PEAK_G {
-                    unlikely.push(format!(
-                        "the pulse peaks at {} g: is its amplitude in units of gravity?",
-                        plain(peak_g)
-                    ));
-                }
-            }
+            Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse)),
             None => {}
+        }
+        if let Some(suite) = &self.suite {
+            let mut records = suite
+                .records
+                .iter()
+                .map(|series| series.unlikely(gravity_m_s2));
+            // One unit is that of all tables.
+            if let Some(first) = records.find(|unlikely| !unlikely.is_empty()) {
+                let others = records.filter(|unlikely| !unlikely.is_empty()).count();
+                unlikely.extend(first);
+                if others > 0 {
+                    unlikely.push(format!("{others} more records of the suite are like that"));
+                }
+            }
+        }
+        unlikely.extend(self.takes_long());
+        unlikely
+    }
+
+    fn unlikely_pulse(&self, pulse: &PulseGround) -> Option<String> {
+        let peak_g = pulse
+            .amplitude_g
+            .abs()
+            .max(pulse.vertical_amplitude_g.abs());
+        if peak_g > *PEAK_G.end() {
+            return Some(format!(
+                "the pulse peaks at {} g: is its amplitude in units of gravity?",
+                plain(peak_g)
+            ));
+        }
+        let model = self.model().ok()?;
+        let starts_g = Sway::ALL
+            .iter()
+            .filter_map(|sway| model.incipient_acceleration_g(*sway))
+            .reduce(f64::min)?;
+        let times = pulse.amplitude_g.abs() / starts_g;
+        (times > PEAK_OVER_INCIPIENT).then(|| {
+            format!(
+                "the pulse peaks at {} g, {times:.0} times what starts the structure: is its amplitude in units of \
+                 gravity?",
+                plain(pulse.amplitude_g.abs())
+            )
+        })
+    }
+
+    /// That a motion until the end of the simulation takes long to compute.
+    fn takes_long(&self) -> Option<String> {
+        let duration_s = self.simulation.duration_s;
+        let begin = format!("the simulation lasts {} s", short(duration_s));
+        let Some(options) = self.free_hinges else {
+            return (duration_s > DURATION_S).then(|| {
+                format!("{begin}: unless it rests or overturns before, that takes minutes or more")
+            });
+        };
+        let model = self.structure.free_hinges(options).ok()?;
+        let longest_s = model.longest_step_s(&self.request());
+        let steps = duration_s / longest_s;
+        (steps > STEPS).then(|| {
+            format!(
+                "{begin}, some {steps:.0e} steps of {longest_s:.1e} s: unless it rests or overturns before, every \
+                 million of them takes several seconds"
+            )
+        })
+    }
+}
+
+impl Structure {
+    fn unlikely(&self) -> Vec<String> {
+        match self {
+            Self::Arch(arch) => {
+                let mean_radius_m = arch.mean_radius_m();
+                let thickness_m = mean_radius_m * arch.thickness_ratio();
+                let embrace_deg = arch.embrace_deg();
+                let in_radians = (embrace_deg < LIKELY_EMBRACE_DEG).then(|| {
+                    format!(
+                        "the embrace angle is {} degrees: is it in radians?",
+                        plain(embrace_deg)
+                    )
+                });
+                [
+                    long("the mean radius is", mean_radius_m, RADIUS_M),
+                    long("the thickness is", thickness_m, THICKNESS_M),
+                    in_radians,
+                ]
+                .into_iter()
+                .flatten()
+                .collect()
+            }
+            Self::Column(column) => {
+                let longest_m = column.height_m().max(column.width_m());
+                long("the column measures", longest_m, SIZE_M)
+                    .into_iter()
+                    .collect()
+            }
+            Self::Masonry(masonry) => {
+                let longest_m = extents_m(masonry.row()).into_iter().fold(0.0, f64::max);
+                long("the structure measures", longest_m, SIZE_M)
+                    .into_iter()
+                    .collect()
+            }
+        }
+    }
+}
+
+/// Width and height of a row.
+fn extents_m(row: &Row) -> [f64; 2] {
+    let points = || row.outlines_m().iter().flatten();
+    [0, 1].map(|axis| {
+        let (least, most) = points()
+            .map(|point| point[axis])
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
+                (least.min(x), most.max(x))
+            });
+        most - least
+    })
+}
+
+/// That a length is beyond what is usual, in a unit that makes it usual.
+fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
+    let unit = if length_m > 10.0 * usual_m {
+        "millimetres"
+    } else {
+        "centimetres"
+    };
+    (length_m > usual_m).then(|| format!("{what} {} m: is it in {unit}?", plain(length_m)))
+}
+
+impl Series {
+    /// What is possible but unlikely in a record, a sentence each, with what it might be instead.
+    #[must_use]
+    pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<String> {
+        let mut unlikely = Vec::new();
+        let (name, peak_g) = (self.name(), self.peak_g(gravity_m_s2));
+        if !PEAK_G.contains(&peak_g) {
+            let might_be = match self.scaling {
+                Scaling::Factor(1.0) => format!("is its unit {:?}?", self.unit.name()),
+                Scaling::Factor(scale) => format!(
+                    "is its unit {:?}, and `scale` {}?",
+                    self.unit.name(),
+                    plain(scale)
+                ),
+                Scaling::PeakG(_) => "is `peak_g` in units of gravity?".to_owned(),
+            };
+            unlikely.push(format!("{name} peaks at {} g: {might_be}", plain(peak_g)));
+        }
+        let mean_g = self.mean_g(gravity_m_s2);
+        if self.layout.form == Form::Knet && mean_g.abs() > OFFSET * peak_g {
+            unlikely.push(format!(
+                "{name} has a mean of {} g, the offset of the instrument: give `remove_mean = true` to take it off",
+                plain(mean_g)
+            ));
         }
         unlikely
     }

@@ -13,6 +13,7 @@ use archrock::dynamics::model::{Model as _, Recorder, Repetition, Request, Simul
 use archrock::mechanics::chain::Hinge;
 use archrock::output::free_hinges::{JointsWriter, LandingsWriter, summary};
 use archrock::output::overlay::Curves;
+use archrock::output::pretty;
 use archrock::output::results::EventsWriter;
 use archrock::output::rotations::RotationsWriter;
 use archrock::output::row_timeline::RowTimeline;
@@ -106,7 +107,10 @@ pub fn run(
             .write_all(picture.as_bytes())
             .map_err(cannot_write("the picture"))?;
         extras.write(&mut folder, scenario, (place.figure, title), &mut text)?;
-        writeln!(folder.file(SUMMARY), "{json:#}").map_err(cannot_write("the summary"))?;
+        folder
+            .file(SUMMARY)
+            .write_all(pretty(&json).as_bytes())
+            .map_err(cannot_write("the summary"))?;
         let path = folder.path().to_owned();
         folder.complete()?;
         let names = [JOINTS, EVENTS, IMPACTS, PICTURE, SUMMARY];

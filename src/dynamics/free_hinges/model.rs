@@ -275,6 +275,11 @@ impl FreeHinges {
         run.energy_defect_ratio * unit_j / run.largest_kinetic_j.max(barrier_j).max(least_j)
     }
 
+    /// The longest step that a history takes, in seconds.
+    pub(crate) fn longest_step_s(&self, request: &Request) -> f64 {
+        self.settings(request).longest_step_s
+    }
+
     /// How a motion is computed.
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (&self.row, request.gravity_m_s2, request.end_s);

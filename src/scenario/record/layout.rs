@@ -9,6 +9,7 @@ use toml::de::DeValue;
 
 use super::unit::AnyUnit;
 use super::{LineFault, MAX_TIME_S, MIN_STEP_S, Samples, Unit, asc, at2, csv, knet};
+use crate::scenario::source::not_plain;
 use crate::scenario::table::{Count, Number, OneOf, Reading, Rule, Switch, Table};
 
 named! {
@@ -365,21 +366,11 @@ impl Layout {
 
 /// The text of a file. Headers may be in any encoding that has the digits where ASCII has them.
 pub(super) fn legible(bytes: &[u8]) -> Result<String, LineFault> {
-    let fault = |message: &str| LineFault {
-        line: 1,
-        message: message.to_owned(),
-    };
-    let is_utf_16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
-    // Without a mark, every other byte of numbers in UTF-16 is zero.
-    if is_utf_16 || bytes.iter().take(100).any(|byte| *byte == 0) {
-        return Err(fault(
-            "the file is UTF-16 text, as some programs export it, or no text: save it as UTF-8 or plain text",
-        ));
-    }
-    if bytes.contains(&b'\r') && !bytes.contains(&b'\n') {
-        return Err(fault(
-            "the lines end with a carriage return alone (CR), as on old Macs: save the file with line ends LF or CR LF",
-        ));
+    if let Some(wrong) = not_plain(bytes) {
+        return Err(LineFault {
+            line: 1,
+            message: wrong.to_owned(),
+        });
     }
     let text = String::from_utf8_lossy(bytes);
     Ok(text.trim_start_matches('\u{feff}').to_owned())

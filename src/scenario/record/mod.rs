@@ -46,6 +46,7 @@ pub use unit::Unit;
 use super::assignment::Assignment;
 use super::error::{ScenarioErrors, excerpt};
 use super::ground::{MAX_ACCELERATION_G, free_fall};
+use super::shown;
 use super::source::Source;
 use super::table::{self, Number, OneOf, Reading, Table, Text};
 use crate::argument::{plain, short};
@@ -279,6 +280,12 @@ impl Series {
         }
     }
 
+    /// The name of its file, as it is shown.
+    #[must_use]
+    pub fn name(&self) -> String {
+        shown(&self.file)
+    }
+
     /// The same record, differently scaled.
     #[must_use]
     pub(super) fn scaled(&self, scaling: Scaling) -> Self {
@@ -493,8 +500,7 @@ pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f
 
 /// That a line of a file is wrong.
 pub(super) fn faulty(path: &Path, fault: &LineFault) -> String {
-    let path = path.display().to_string();
-    let path = path.replace(char::is_control, "\u{fffd}");
+    let path = shown(&path.display().to_string());
     format!("is faulty: {path}:{fault}")
 }
 

@@ -1,0 +1,80 @@
+//! Texts from outside, such as titles and names of files, as they are shown.
+
+/// The text with everything escaped that would not be seen, or would change how the text around it is read: control
+/// characters, line ends, and marks of the direction of writing. Escapes are those of TOML and JSON.
+///
+/// ```
+/// use archrock::scenario::shown;
+///
+/// assert_eq!(shown("a\u{202e}b\nc\u{7}"), r"a\u202eb\nc\u0007");
+/// ```
+#[must_use]
+pub fn shown(text: &str) -> String {
+    escape(text, |_| false)
+}
+
+/// The same of a text of several lines, whose line ends and tabs are meant.
+#[must_use]
+pub fn shown_lines(text: &str) -> String {
+    escape(text, |c| matches!(c, '\n' | '\t'))
+}
+
+fn escape(text: &str, is_meant: impl Fn(char) -> bool) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            c if !is_hidden(c) || is_meant(c) => shown.push(c),
+            '\n' => shown += "\\n",
+            '\r' => shown += "\\r",
+            '\t' => shown += "\\t",
+            // All of them have four digits.
+            c => shown += &format!("\\u{:04x}", u32::from(c)),
+        }
+    }
+    shown
+}
+
+/// Whether a character is not seen, or changes how others are read.
+pub(super) fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(
+            c,
+            // Marks of direction.
+            '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+            // Ends of lines and paragraphs.
+            | '\u{2028}' | '\u{2029}'
+            // No characters, which XML does not allow.
+            | '\u{fffe}' | '\u{ffff}'
+        )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is shown reads back as what was meant in JSON, between its marks.
+    #[test]
+    fn escapes_are_those_of_json() {
+        let hidden: String = (0..=0xffff)
+            .filter_map(char::from_u32)
+            .filter(|c| is_hidden(*c))
+            .collect();
+        assert!(hidden.chars().count() > 70);
+        let escaped = shown(&hidden);
+        assert!(escaped.is_ascii() && !escaped.contains(is_hidden));
+        let read: String = serde_json::from_str(&format!("\"{escaped}\"")).unwrap();
+        assert_eq!(read, hidden);
+        assert!(
+            (0x1_0000..=0x10_ffff)
+                .filter_map(char::from_u32)
+                .all(|c| !is_hidden(c))
+        );
+    }
+
+    #[test]
+    fn letters_of_all_scripts_stay() {
+        let text = "Pont du Gard, \u{5d0}\u{5e8}\u{5db} \u{1f309} \\ \"x\"";
+        assert_eq!(shown(text), text);
+        assert_eq!(shown_lines("a\n\tb\r"), "a\n\tb\\r");
+    }
+}
