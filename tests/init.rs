@@ -18,7 +18,7 @@ const OPTIONAL: [&str; 9] = [
     "vertical_amplitude_g",
     "both_signs",
     "time_column",
-    "acceleration_column",
+    "wrapped",
     "format",
     "scale",
 ];

@@ -3,9 +3,9 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
+use archrock::output::pretty;
 use archrock::studies::verify::{Check, page, to_json, today, words};
 
-use super::commands::pretty;
 use super::scenario_file::ScenarioFile;
 use super::study::say;
 use super::{Failure, Format, print, warn};
@@ -30,7 +30,7 @@ pub fn verify(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.read(None)?;
     if !quiet {
-        warn(&scenario);
+        warn(&scenario.unlikely());
     }
     let check =
         Check::new(&scenario).map_err(|error| input.about(Failure::Input(error.to_string())))?;

@@ -397,7 +397,7 @@ fn file_name(path: &Path) -> Result<String, String> {
         )),
         Some(name) if !name.contains(char::is_control) => Ok(name.to_owned()),
         _ => Err(format!(
-            "names {}; file names must be UTF-8 without control characters",
+            "names \"{}\"; file names must be UTF-8 without control characters",
             shown(&plain.display().to_string())
         )),
     }
