@@ -112,7 +112,7 @@ fn maps_have_the_symmetries_of_the_mechanics() {
         (small.outcome, small.impacts),
         (large.outcome, large.impacts)
     );
-    let [small_peak, large_peak] = [small, large].map(|one| one.peak.over_critical().unwrap());
+    let [small_peak, large_peak] = [&small, &large].map(|one| one.peak.over_critical().unwrap());
     assert!((small_peak - large_peak).abs() < 1e-9);
     assert!((2.0 * small.outcome_time_s - large.outcome_time_s).abs() < 1e-6);
     assert!(small.impacts > 0);

@@ -12,7 +12,7 @@ use std::path::Path;
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
-use archrock::output::suite::{Heading, draw, failures, to_json, write_fragility};
+use archrock::output::suite::{Heading, draw, remarks, to_json, write_fragility};
 use archrock::scenario::{Form, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, PeakRotation};
 use archrock::studies::suite::{CaseRow, SuiteFragility};
@@ -528,6 +528,8 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
             impacts: 0,
             peak: PeakRotation::OverCritical(Some(0.5)),
             energy_defect_ratio: 0.0,
+            steps: None,
+            uncertain: None,
         }),
     });
     SuiteFragility::new(Measure::Scale, rows.collect())
@@ -582,7 +584,11 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         json["records_that_never_overturn"],
         serde_json::json!(["c.at2"])
     );
-    let failed: Vec<_> = failures(&results).iter().map(ToString::to_string).collect();
+    let failed: Vec<_> = remarks(&results)
+        .failures
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     assert_eq!(failed.len(), 4);
     assert_eq!(failed[0], "a, b.at2, scale 1.0: it broke");
     assert_eq!(json["failures"].as_array().unwrap().len(), 4);
@@ -596,7 +602,7 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
 fn a_level_of_which_all_failed_has_no_fraction() {
     let results = results(&[("a.at2", 1.0, FAILED), ("a.at2", 2.0, OVERTURNED)]);
     let mut levels = Vec::new();
-    write_fragility(&mut levels, &results).unwrap();
+    write_fragility(&mut levels, &heading(), &results).unwrap();
     let levels = String::from_utf8(levels).unwrap();
     assert!(
         levels.contains("\n1.0,0,0,0,1,,,,\n2.0,1,1,0,0,1.0,,,\n"),

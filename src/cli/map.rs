@@ -13,7 +13,10 @@ use clap::ValueEnum;
 use super::Failure;
 use super::figure::FigureOption;
 use super::scenario_file::Destination;
-use super::study::{HingesOption, Options, counts, failed_in_words, in_words, say, write_summary};
+use super::study::{
+    HingesOption, Options, counts, failed_in_words, in_words, say, uncertain_in_words,
+    write_summary,
+};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -200,15 +203,15 @@ fn finish(
         .file(PAGE)
         .write_all(page.as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the page: {error}")))?;
-    let failures = output::failures(map, &cells, &boundaries);
-    write_summary(folder.file(SUMMARY), scenario, cells.len(), &failures)?;
+    let remarks = output::remarks(map, &cells, &boundaries);
+    write_summary(folder.file(SUMMARY), scenario, cells.len(), &remarks)?;
     output::write_table(folder.file(TABLE), map, &cells)?;
     folder.complete()?;
     if !quiet {
         say(&summary(&cells));
         if map.has_spread() {
             say(&format!(
-                "  with half and double steps {} of them have another outcome",
+                "  {} of them have another outcome in a repetition, be it only rest instead of rocking on",
                 output::doubtful(&cells)
             ));
         }
@@ -217,7 +220,10 @@ fn finish(
                 "  free hinges: without the boundary of overturning without impact, which is of four links",
             );
         }
-        if let Some(words) = failed_in_words(&failures, SUMMARY) {
+        if let Some(words) = uncertain_in_words(&remarks.uncertain, SUMMARY) {
+            say(&format!("  {words}"));
+        }
+        if let Some(words) = failed_in_words(&remarks.failures, SUMMARY) {
             say(&format!("  {words}"));
         }
         say(&format!(
@@ -232,13 +238,15 @@ fn finish(
 /// How many cells came to what.
 fn summary(cells: &[CellRow]) -> String {
     let words = |cell: &CellRow| match &cell.result {
-        CellResult::Ended(ending) if ending.outcome == Outcome::StillRocking => {
+        CellResult::Ended(ending)
+            if ending.uncertain.is_none() && ending.outcome == Outcome::StillRocking =>
+        {
             (3, "are still rocking at duration_s of [simulation]")
         }
-        CellResult::Ended(ending) => in_words(ending.outcome),
-        CellResult::CannotStand => (4, "cannot stand"),
-        CellResult::NotFourLinks => (5, "are too thick for four links"),
-        CellResult::Failed(_) => (6, "failed"),
+        CellResult::Ended(ending) => in_words(ending),
+        CellResult::CannotStand => (5, "cannot stand"),
+        CellResult::NotFourLinks => (6, "are too thick for four links"),
+        CellResult::Failed(_) => (7, "failed"),
     };
     format!("{} cells: {}", cells.len(), counts(cells.iter().map(words)))
 }

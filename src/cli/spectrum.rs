@@ -2,7 +2,7 @@
 
 use std::io::Write as _;
 
-use archrock::output::ending::Failed;
+use archrock::output::ending::Remark;
 use archrock::output::{Figure, spectrum as output};
 use archrock::scenario::Scenario;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow};
@@ -86,12 +86,12 @@ fn finish(
         .file(PICTURE)
         .write_all(output::draw(figure, title, spectrum, rows).as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-    let failures = output::failures(rows);
-    write_summary(folder.file(SUMMARY), scenario, rows.len(), &failures)?;
+    let remarks = output::remarks(rows);
+    write_summary(folder.file(SUMMARY), scenario, rows.len(), &remarks)?;
     output::write_table(folder.file(TABLE), rows)?;
     folder.complete()?;
     if !quiet {
-        say(&summary(spectrum, rows, &failures));
+        say(&summary(spectrum, rows, &remarks.failures));
         say(&format!(
             "  results in {}: {PICTURE}, {SUMMARY}, {TABLE}",
             place.path().display()
@@ -101,7 +101,7 @@ fn finish(
 }
 
 /// Counts the points by outcome, and says what is uncertain.
-fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], failures: &[Failed]) -> String {
+fn summary(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], failures: &[Remark]) -> String {
     let count = |wanted: fn(Option<usize>) -> bool| {
         let impacts = rows
             .iter()

@@ -12,10 +12,11 @@ use std::time::{Duration, Instant};
 
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::output::ending::Failed;
+use archrock::output::ending::{Remark, Remarks};
 use archrock::output::pretty;
 use archrock::output::results;
 use archrock::scenario::{Hinges, Scenario, shown_lines};
+use archrock::studies::ending::Ending;
 use archrock::studies::part::{PartError, PartFile, Shard};
 use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
 use clap::ValueEnum;
@@ -213,20 +214,20 @@ fn listen_to_interrupts() {
 /// The exit code of shells for a program ended by Ctrl-C.
 const INTERRUPTED_CODE: i32 = 130;
 
-/// Writes the summary of a study: its scenario, number of cases, and what failed.
+/// Writes the summary of a study: its scenario, number of cases, and what is to be remarked of these.
 pub fn write_summary(
     mut file: impl io::Write,
     scenario: &Scenario,
     cases: usize,
-    failures: &[Failed],
+    remarks: &Remarks,
 ) -> Result<(), Failure> {
-    let summary = results::study_summary(scenario, cases, failures);
+    let summary = results::study_summary(scenario, cases, remarks);
     file.write_all(pretty(&summary).as_bytes())
         .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))
 }
 
 /// How many cases failed, why the first did, and where the others are; `None` where none did.
-pub fn failed_in_words(failures: &[Failed], file: &str) -> Option<String> {
+pub fn failed_in_words(failures: &[Remark], file: &str) -> Option<String> {
     let first = failures.first()?;
     let (count, more) = (failures.len(), failures.len() > 1);
     let others = if more {
@@ -237,16 +238,29 @@ pub fn failed_in_words(failures: &[Failed], file: &str) -> Option<String> {
     Some(format!("failed: {count}; the first: {first}{others}"))
 }
 
+/// What is uncertain, and where it is told; `None` where nothing is.
+pub fn uncertain_in_words(uncertain: &[Remark], file: &str) -> Option<String> {
+    let first = uncertain.first()?;
+    let listed = match uncertain.len() {
+        1 => String::new(),
+        _ => format!("; all are in {file}"),
+    };
+    Some(format!(
+        "uncertain is what other steps, or landings merged, answer otherwise; the first: {first}{listed}"
+    ))
+}
+
 /// Words for what became of cases, and their place among the counts.
 pub type Words = (u8, &'static str);
 
-/// The words of an outcome.
-pub const fn in_words(outcome: Outcome) -> Words {
-    match outcome {
-        Outcome::NeverMoved => (0, "never move"),
-        Outcome::Rest => (1, "come to rest"),
-        Outcome::Overturned(_) => (2, "overturn"),
-        Outcome::StillRocking => (3, "are still rocking"),
+/// The words of how a case ended.
+pub const fn in_words(ending: &Ending) -> Words {
+    match (&ending.uncertain, ending.outcome) {
+        (Some(_), _) => (4, "are uncertain"),
+        (None, Outcome::NeverMoved) => (0, "never move"),
+        (None, Outcome::Rest) => (1, "come to rest"),
+        (None, Outcome::Overturned(_)) => (2, "overturn"),
+        (None, Outcome::StillRocking) => (3, "are still rocking"),
     }
 }
 

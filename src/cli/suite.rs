@@ -2,11 +2,10 @@
 
 use std::io::Write as _;
 
-use archrock::dynamics::history::Outcome;
 use archrock::output::Figure;
 use archrock::output::ida;
 use archrock::output::pretty;
-use archrock::output::suite::{self as output, Heading};
+use archrock::output::suite::{self as output, CurveInWords, Heading};
 use archrock::output::survival;
 use archrock::scenario::{Measure, Scenario, Suite};
 use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
@@ -14,7 +13,9 @@ use archrock::studies::suite::{CaseRow, RecordSuite, SuiteFragility};
 use super::Failure;
 use super::figure::FigureOption;
 use super::scenario_file::Destination;
-use super::study::{HingesOption, Options, counts, failed_in_words, in_words, say};
+use super::study::{
+    HingesOption, Options, counts, failed_in_words, in_words, say, uncertain_in_words,
+};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -90,7 +91,7 @@ fn finish(
     let results = SuiteFragility::new(heading.measure, rows);
     let files = [PICTURE, IDA, LEVELS, FRAGILITY, TABLE];
     let mut folder = place.open(&files)?;
-    output::write_fragility(folder.file(LEVELS), &results)?;
+    output::write_fragility(folder.file(LEVELS), heading, &results)?;
     for (name, text) in [
         (PICTURE, output::draw(figure, heading, &results)),
         (IDA, ida::draw(figure, heading, &results)),
@@ -117,13 +118,12 @@ fn finish(
 /// What the results say, line by line.
 fn summary(results: &SuiteFragility) -> String {
     let mut lines = vec![counted(results)];
-    lines.push(match output::curve_in_words(results) {
-        Some(words) => format!("fragility over {}: {words}", results.measure.column()),
-        None => format!(
-            "no fragility curve: {}",
-            output::no_fit(results).unwrap_or_default()
-        ),
-    });
+    let column = results.measure.column();
+    let curves = output::curves_in_words(results).into_iter();
+    lines.extend(curves.map(|CurveInWords { taken, curve }| match curve {
+        Ok(curve) => format!("fragility over {column}{taken}: {curve}"),
+        Err(reason) => format!("no fragility curve{taken}: {reason}"),
+    }));
     let unit = match results.measure {
         Measure::Scale => "",
         Measure::PeakG => " g",
@@ -133,13 +133,14 @@ fn summary(results: &SuiteFragility) -> String {
         let words = survival::in_words(&record.survival, unit);
         lines.push(format!("{}{mirrored}: {words}", record.record));
     }
-    let still_rocking = |case: &CaseRow| case.outcome() == Some(Outcome::StillRocking);
-    if results.cases.iter().any(still_rocking) {
+    if results.cases.iter().any(CaseRow::still_rocking) {
         lines.push(
             "those still rocking at duration_s of [simulation] count as not overturned".to_owned(),
         );
     }
-    if let Some(words) = failed_in_words(&output::failures(results), FRAGILITY) {
+    let remarks = output::remarks(results);
+    lines.extend(uncertain_in_words(&remarks.uncertain, FRAGILITY));
+    if let Some(words) = failed_in_words(&remarks.failures, FRAGILITY) {
         lines.push(format!("{words}; what failed does not count"));
     }
     lines.join("\n  ")
@@ -147,7 +148,7 @@ fn summary(results: &SuiteFragility) -> String {
 
 /// How many cases came to what.
 fn counted(results: &SuiteFragility) -> String {
-    let words = |case: &CaseRow| case.outcome().map_or((4, "failed"), in_words);
+    let words = |case: &CaseRow| case.result.as_ref().map_or((5, "failed"), in_words);
     format!(
         "{} cases of {}: {}",
         results.cases.len(),

@@ -13,9 +13,10 @@ use archrock::output::pretty;
 use archrock::output::survival;
 use archrock::output::threshold::{self as output, rounded};
 use archrock::scenario::{Ground, Scenario, Structure};
+use archrock::studies::ending::Verdict;
 use archrock::studies::survival::Survival;
 use archrock::studies::threshold::{
-    FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
+    FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
 };
 use serde_json::Value;
 
@@ -231,7 +232,7 @@ fn refuse_if_nothing_is_known(threshold: &Threshold) -> Result<(), Failure> {
     }
 }
 
-/// What was found: of a record in a line, of a pulse a line per band.
+/// What was found: of a record in a line, of a pulse a line per range.
 fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -> String {
     let mut text = String::new();
     let peak_g = output::peak_g(scenario, ground);
@@ -251,7 +252,7 @@ fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -
             if several {
                 let _ = writeln!(text, "{model}");
             }
-            bands(&mut text, peak_g, threshold);
+            ranges(&mut text, peak_g, threshold);
         }
         doubts(&mut text, threshold);
     }
@@ -277,45 +278,84 @@ fn sampled(factors: &Factors) -> String {
     )
 }
 
-fn bands(text: &mut String, peak_g: f64, threshold: &Threshold) {
+fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
     let at = |factor: f64| format!("{} ({} g)", rounded(factor), rounded(factor * peak_g));
-    let Some(first) = threshold.bands.first() else {
+    let certainly = if threshold.uncertain().is_empty() {
+        ""
+    } else {
+        "certainly "
+    };
+    if threshold.bands().is_empty() {
         let mut known = threshold.samples.iter().rev();
         let last = known.find(|sample| sample.result.is_ok());
-        let last = last.map_or(0.0, |sample| sample.factor);
-        let _ = writeln!(text, "  does not overturn up to factor {}", at(last));
-        return;
-    };
-    if first.from_end == RangeEnd::Sampled {
+        let last = at(last.map_or(0.0, |sample| sample.factor));
+        let _ = writeln!(text, "  does not {certainly}overturn up to factor {last}");
+    }
+    if let Some((verdict, first)) = threshold.ranges.first()
+        && *verdict != Verdict::Survives
+        && first.from_end == RangeEnd::Sampled
+    {
+        let (what, range) = match verdict {
+            Verdict::Overturns => ("overturns", "band"),
+            _ => ("uncertain", "range"),
+        };
         let _ = writeln!(
             text,
-            "  overturns at the smallest factor already: a smaller --from finds where this band begins"
+            "  {what} at the smallest factor already: a smaller --from finds where this {range} begins"
         );
     }
-    for band in &threshold.bands {
-        let _ = write!(text, "  overturns from factor {}", at(band.from));
-        let _ = match (band.to_end, gap_after(threshold, band)) {
-            (RangeEnd::Sampled, _) => writeln!(text, " up to the largest factor"),
-            (RangeEnd::Unknown, _) => {
-                writeln!(text, " to {}; not known beyond", at(band.to))
-            }
-            (RangeEnd::Edge, None) => writeln!(text, " to {}; survives from there on", at(band.to)),
-            (RangeEnd::Edge, Some(gap)) => {
-                let (from, to) = (at(band.to), at(gap.to));
-                writeln!(text, " to {from}; survives again up to {to}")
-            }
+    // A line for each band, with what follows it.
+    let mut lines: Vec<String> = Vec::new();
+    for (verdict, range) in &threshold.ranges {
+        let to = at(range.to);
+        let (ends, beyond) = match range.to_end {
+            RangeEnd::Sampled => ("up to the largest factor".to_owned(), ""),
+            RangeEnd::Unknown => (format!("to {to}"), "; not known beyond"),
+            RangeEnd::Edge => (format!("to {to}"), ""),
         };
+        let begins = at(range.from);
+        match (verdict, lines.last_mut()) {
+            (Verdict::Overturns, _) => {
+                lines.push(format!("overturns from factor {begins} {ends}{beyond}"));
+            }
+            (Verdict::Survives, None) => {}
+            (Verdict::Uncertain, None) => {
+                lines.push(format!("uncertain from factor {begins} {ends}{beyond}"));
+            }
+            (verdict, Some(line)) => {
+                let what = match verdict {
+                    Verdict::Uncertain => "uncertain",
+                    _ => "survives",
+                };
+                *line += &match range.to_end {
+                    RangeEnd::Sampled => format!("; {what} from there on"),
+                    _ if what == "survives" => format!("; survives again up to {to}{beyond}"),
+                    _ => format!("; {what} up to {to}{beyond}"),
+                };
+            }
+        }
+    }
+    for line in lines {
+        let _ = writeln!(text, "  {line}");
     }
 }
 
-/// The safe gap that follows a band.
-fn gap_after<'a>(threshold: &'a Threshold, band: &FactorRange) -> Option<&'a FactorRange> {
-    let mut gaps = threshold.gaps.iter();
-    gaps.find(|gap| gap.from > band.to)
-}
-
-/// What is uncertain about the bands.
+/// What is doubtful about the ranges.
 fn doubts(text: &mut String, threshold: &Threshold) {
+    let uncertain = threshold.samples.iter().filter_map(|sample| {
+        let reason = sample.result.as_ref().ok()?.uncertain.as_ref()?;
+        Some((sample.factor, reason))
+    });
+    let uncertain: Vec<_> = uncertain.collect();
+    if let Some((factor, reason)) = uncertain.first() {
+        let _ = writeln!(
+            text,
+            "  uncertain: {} of {} histories; the first, at factor {}: {reason}",
+            uncertain.len(),
+            threshold.samples.len(),
+            rounded(*factor)
+        );
+    }
     let falls = |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
     let samples = &threshold.samples;
     if let Some(first) = samples.iter().find(falls) {

@@ -364,6 +364,10 @@ pub struct Run {
     pub outcome: Outcome,
     /// When, in seconds.
     pub end_s: f64,
+    /// The longest step that it might take, in seconds.
+    pub longest_step_s: f64,
+    /// The time within which landings crowd, in seconds.
+    pub shortest_step_s: f64,
     /// Largest rotation of every block, in radians.
     pub peaks_rad: Vec<f64>,
     /// Largest potential energy above the undeformed row, in joules.

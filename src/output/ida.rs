@@ -2,6 +2,8 @@
 
 use super::suite::{Heading, intensity_label, intensity_scale};
 use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use crate::dynamics::history::Outcome;
+use crate::studies::ending::Verdict;
 use crate::studies::suite::{CaseRow, SuiteFragility};
 
 /// Records that get curves of their own looks and names.
@@ -11,22 +13,35 @@ const OVERTURNED: f64 = 1.0;
 /// How far what survives may be drawn.
 const SURVIVED: f64 = 0.94;
 
-/// Draws the intensity against the peak rotation, over the critical one where that is known: a curve for every record as
-/// it is, and at the right end what overturns.
+/// Draws the intensity against the peak rotation, over the critical one where that is known: a curve for every record, also
+/// mirrored where that counts, and at the right end what overturns. What is uncertain is marked where its history went.
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let mut drawing = Drawing::new(figure);
     let mut top = drawing.title(heading.title());
     let records = records(results);
-    let all = format!("a curve for each of {} records", records.len());
-    let keys: Vec<Key<'_>> = if records.len() <= NAMED {
-        let named = records.iter().zip(CURVES);
+    let both = if results.mirrored_count {
+        ", also mirrored"
+    } else {
+        ""
+    };
+    let count = results.record_count();
+    let all = format!("a curve for each of {count} records{both}");
+    let names: Vec<String> = records.iter().map(|cases| name(cases[0])).collect();
+    let mut keys: Vec<Key<'_>> = if records.len() <= NAMED {
+        let named = names.iter().map(String::as_str).zip(CURVES);
         named
-            .map(|(cases, stroke)| (cases[0].record.as_str(), Sign::Line(stroke)))
+            .map(|(name, stroke)| (name, Sign::Line(stroke)))
             .collect()
     } else {
         vec![(all.as_str(), Sign::Line(MANY))]
     };
+    if results.has_uncertain() {
+        keys.push((
+            "uncertain whether it overturns",
+            Sign::Circle(4.0, UNCERTAIN),
+        ));
+    }
     top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let over_critical = results
         .cases
@@ -37,7 +52,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
         let peak = case.result.as_ref().ok()?.peak;
         peak.over_critical().or(peak.rad())
     };
-    let survived = results.cases.iter().filter(|case| !case.overturned());
+    let survived = results.cases.iter().filter(|case| !goes_over(case));
     let largest = survived.filter_map(peak).fold(0.0, f64::max);
     let largest = if over_critical {
         largest.max(1.0)
@@ -67,24 +82,26 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
             CURVES[index % NAMED]
         }
     });
-    for (cases, stroke) in records.iter().zip(looks) {
+    for ((cases, name), stroke) in records.iter().zip(&names).zip(looks) {
         let place = |case: &&&CaseRow| {
-            let x = if case.overturned() {
+            let x = if goes_over(case) {
                 overturned
             } else {
                 peak(case)?
             };
-            Some((
-                axes.place(x, case.level(results.measure)),
-                case.overturned(),
-            ))
+            let at = axes.place(x, case.level(results.measure));
+            Some((at, case.verdict()?))
         };
         let places: Vec<_> = cases.iter().filter_map(|case| place(&case)).collect();
-        let name = &cases[0].record;
         drawing.curve(name, places.iter().map(|(at, _)| *at), stroke);
-        for (at, fell) in places {
-            let mark = if fell { "overturned" } else { "survived" };
-            drawing.circle(mark, at, 2.2, Stroke::new(stroke.color, 1.0, ""));
+        for (at, verdict) in places {
+            let plain = Stroke::new(stroke.color, 1.0, "");
+            let (mark, radius, look) = match verdict {
+                Verdict::Overturns => ("overturned", 2.2, plain),
+                Verdict::Survives => ("survived", 2.2, plain),
+                Verdict::Uncertain => ("uncertain", 4.0, UNCERTAIN),
+            };
+            drawing.circle(mark, at, radius, look);
         }
     }
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
@@ -92,12 +109,25 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
 
 const MANY: Stroke = Stroke::new(color::BLUE, 0.9, "");
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
+const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
-/// The cases of each record as it is, weakest first.
+/// Whether the history itself overturned, certain or not.
+fn goes_over(case: &CaseRow) -> bool {
+    let ending = case.result.as_ref();
+    ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
+}
+
+fn name(case: &CaseRow) -> String {
+    let mirrored = if case.mirrored { " mirrored" } else { "" };
+    format!("{}{mirrored}", case.record)
+}
+
+/// The cases that count of each record, weakest first.
 fn records(results: &SuiteFragility) -> Vec<Vec<&CaseRow>> {
-    let cases: Vec<&CaseRow> = results.cases.iter().filter(|case| !case.mirrored).collect();
+    let counts = |case: &&CaseRow| results.mirrored_count || !case.mirrored;
+    let cases: Vec<&CaseRow> = results.cases.iter().filter(counts).collect();
     cases
-        .chunk_by(|a, b| a.record == b.record)
+        .chunk_by(|a, b| (&a.record, a.mirrored) == (&b.record, b.mirrored))
         .map(<[_]>::to_vec)
         .collect()
 }

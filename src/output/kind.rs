@@ -40,7 +40,7 @@ impl Kind {
     }
 
     /// In the order of the legend.
-    pub(super) const ALL: [Self; 18] = [
+    pub(super) const ALL: [Self; 19] = [
         kind("never_moved", "never moves", "#e4e4e4"),
         kind("rest", "comes to rest", "#bcdcf0"),
         SURVIVED[0],
@@ -55,6 +55,11 @@ impl Kind {
         kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
         kind("overturned-more", "overturns after more", color::PURPLE),
         kind("overturned", "overturns", color::VERMILION),
+        kind(
+            ending::UNCERTAIN,
+            "uncertain whether it overturns",
+            color::GREEN,
+        ),
         kind(CANNOT_STAND, "cannot stand", "#ffffff"),
         kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
         kind(GROUND_FALLS, "the ground falls freely", "#ffffff"),

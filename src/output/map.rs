@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 
 use super::caption::caption;
-use super::ending::{self, Failed};
+use super::ending::{self, Remark, Remarks};
 use super::kind::{self, CANNOT_STAND, Kind, NOT_FOUR_LINKS};
 use super::rotations::Scales;
 use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
@@ -19,17 +19,17 @@ use crate::studies::map::{CellResult, CellRow, OverturningMap};
 #[must_use]
 pub const fn outcome(result: &CellResult) -> &'static str {
     match result {
-        CellResult::Ended(ending) => ending.outcome.name(),
+        CellResult::Ended(ending) => ending::outcome(ending),
         CellResult::CannotStand => CANNOT_STAND,
         CellResult::NotFourLinks => NOT_FOUR_LINKS,
         CellResult::Failed(_) => ending::FAILED,
     }
 }
 
-/// The number of outcomes of a cell with several steps, as it stands in the table.
+/// The number of outcomes of a cell with its repetitions, as it stands in the table.
 const SPREAD: &str = "spread";
 
-/// How many cells have an outcome that depends on the steps.
+/// How many cells have an outcome that depends on how they are computed.
 #[must_use]
 pub fn doubtful(rows: &[CellRow]) -> usize {
     rows.iter().filter(|row| is_doubtful(row)).count()
@@ -39,31 +39,29 @@ fn is_doubtful(row: &CellRow) -> bool {
     matches!(row.spread, Some(Ok(2..)))
 }
 
-/// The cells that failed, and those of which a repetition or a boundary did: where, and why.
+/// What is to be remarked of the cells: which failed, and of which a repetition or a boundary did; which are uncertain.
 #[must_use]
-pub fn failures(
-    map: &OverturningMap<'_>,
-    cells: &[CellRow],
-    boundaries: &[BoundaryRow],
-) -> Vec<Failed> {
+pub fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRow]) -> Remarks {
     let [x_name, y_name] = map.axes().map(|axis| axis.key.as_str());
-    let mut failures = Vec::new();
+    let mut remarks = Remarks::default();
     for cell in cells {
         let case = || format!("{x_name} {:?}, {y_name} {:?}", cell.x, cell.y);
-        if let CellResult::Failed(reason) = &cell.result {
-            failures.push(Failed::new(case(), reason));
+        match &cell.result {
+            CellResult::Ended(ending) => remarks.note(case, Ok(ending)),
+            CellResult::Failed(reason) => remarks.note(case, Err(reason)),
+            CellResult::CannotStand | CellResult::NotFourLinks => {}
         }
         if let Some(Err(reason)) = &cell.spread {
-            failures.push(Failed::new(case(), reason));
+            remarks.failures.push(Remark::new(case(), reason));
         }
     }
     for row in boundaries {
         if let Err(reason) = &row.result {
             let case = format!("boundary without impact at {x_name} {:?}", row.x);
-            failures.push(Failed::new(case, reason));
+            remarks.failures.push(Remark::new(case, reason));
         }
     }
-    failures
+    remarks
 }
 
 /// Writes the table, a row per cell: x varies slowly, y fast.
@@ -367,7 +365,7 @@ pub(super) fn drawn(
     }
 }
 
-/// Strikes out the cells whose outcome depends on the steps.
+/// Strikes out the cells whose outcome depends on how they are computed.
 fn hatch(drawing: &mut Drawing, axes: &Axes, edges: [&[f64]; 2], rows: &[CellRow]) {
     let [x_edges, y_edges] = edges;
     let mut path = String::new();
@@ -400,7 +398,7 @@ fn legend(
 ) -> Vec<Key<'static>> {
     let mut keys = kind::keys(kinds);
     if map.has_spread() {
-        let words = "outcome depends on the steps of the computation";
+        let words = "another outcome in a repetition";
         keys.push((words, Sign::Line(DOUBTFUL)));
     }
     let shown = |value: fn(&Boundary) -> Option<f64>| {

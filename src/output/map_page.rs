@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::kind::Kind;
 use super::map::{self, Drawn, Look};
@@ -12,6 +12,7 @@ use super::page::{escaped, filled, script_safe};
 use super::svg::Figure;
 use crate::scenario::{Ground, Quantity, toml_text};
 use crate::studies::boundary::BoundaryRow;
+use crate::studies::ending::Ending;
 use crate::studies::map::{CellResult, CellRow, OverturningMap};
 
 /// The page.
@@ -43,6 +44,14 @@ pub fn page(
     )
 }
 
+/// How the history of a cell ended, if it has one.
+const fn ended(row: &CellRow) -> Option<&Ending> {
+    match &row.result {
+        CellResult::Ended(ending) => Some(ending),
+        _ => None,
+    }
+}
+
 fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -> Value {
     let kinds = rows.iter().map(|row| map::kind_of(&row.result, look));
     let kinds: Vec<Kind> = kinds.collect();
@@ -55,10 +64,6 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -
     let kinds = kinds
         .iter()
         .map(|kind| u8::try_from(index(kind)).unwrap_or(0));
-    let ended = |row: &CellRow| match &row.result {
-        CellResult::Ended(ending) => Some(*ending),
-        _ => None,
-    };
     let column = |name: &str, value: &dyn Fn(&CellRow) -> Option<f64>| {
         // What a cell does not have is not a number, which the page leaves out.
         let values = rows.iter().map(|row| value(row).unwrap_or(f64::NAN));
@@ -86,10 +91,16 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -
             "edges_px": drawn.edges_px[i],
         })
     };
+    let doubt = |(index, row): (usize, &CellRow)| {
+        let doubt = ended(row)?.uncertain.as_ref()?;
+        Some((index.to_string(), json!(doubt)))
+    };
+    let doubts: Map<String, Value> = rows.iter().enumerate().filter_map(doubt).collect();
     json!({
         "axes": [axis(0), axis(1)],
         "sheet_px": { "width": Figure::SCREEN.width_px(), "height": drawn.height_px },
         "kinds": BASE64_STANDARD.encode(kinds.collect::<Vec<u8>>()),
+        "doubts": doubts,
         "labels": Kind::ALL.map(|kind| kind.label),
         "columns": columns,
         "command": command(map),

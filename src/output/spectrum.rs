@@ -4,7 +4,7 @@ use std::io::Write;
 
 use nalgebra::Vector2;
 
-use super::ending::{Failed, number};
+use super::ending::{Remark, Remarks, number};
 use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use super::table::table;
 use super::{OutputError, finite};
@@ -40,8 +40,8 @@ pub fn write_table(writer: impl Write, rows: &[PointRow]) -> Result<(), OutputEr
 
 /// What failed: where, and why.
 #[must_use]
-pub fn failures(rows: &[PointRow]) -> Vec<Failed> {
-    let mut failures = Vec::new();
+pub fn remarks(rows: &[PointRow]) -> Remarks {
+    let mut remarks = Remarks::default();
     for row in rows {
         for failure in &row.failures {
             let what = match failure.over_incipient {
@@ -49,10 +49,11 @@ pub fn failures(rows: &[PointRow]) -> Vec<Failed> {
                 None => "least without impact".to_owned(),
             };
             let case = format!("{} with p t_p {:?}, {what}", row.structure.name(), row.p_t);
-            failures.push(Failed::new(case, &failure.reason));
+            let remark = Remark::new(case, &failure.reason);
+            remarks.failures.push(remark);
         }
     }
-    failures
+    remarks
 }
 
 fn fields(row: &PointRow) -> Result<[String; 9], OutputError> {

@@ -4,12 +4,13 @@ use std::io::Write;
 
 use serde_json::{Value, json};
 
-use super::ending::{self, Failed};
+use super::ending::{self, Remarks};
 use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 use super::table::table;
 use super::{OutputError, finite};
 use crate::scenario::{Measure, Scenario, Spacing, Suite, shown};
-use crate::studies::fragility::{Errors, Fragility};
+use crate::studies::ending::Verdict;
+use crate::studies::fragility::{Errors, Fragility, NoFit};
 use crate::studies::suite::{CaseRow, CurvePoint, FragilityRow, SuiteFragility};
 
 /// What leads a row.
@@ -109,10 +110,14 @@ pub fn records_in_words(results: &SuiteFragility) -> String {
 ///
 /// # Errors
 /// When the system refuses, or a value is not finite.
-pub fn write_fragility(writer: impl Write, results: &SuiteFragility) -> Result<(), OutputError> {
+pub fn write_fragility(
+    writer: impl Write,
+    heading: &Heading,
+    results: &SuiteFragility,
+) -> Result<(), OutputError> {
     const WHAT: &str = "cannot write the fragility";
     let mut csv = table(writer);
-    csv.write_record([
+    let columns = [
         results.measure.column(),
         "cases",
         "overturned",
@@ -122,37 +127,60 @@ pub fn write_fragility(writer: impl Write, results: &SuiteFragility) -> Result<(
         "probability",
         "probability_low",
         "probability_high",
-    ])
-    .map_err(OutputError::csv(WHAT))?;
+    ];
+    let free_hinges = heading.has_free_hinges();
+    let uncertain = UNCERTAIN_COLUMNS.into_iter().filter(|_| free_hinges);
+    csv.write_record(columns.into_iter().chain(uncertain))
+        .map_err(OutputError::csv(WHAT))?;
     for level in &results.levels {
         let FragilityRow {
             intensity,
             cases,
             overturned,
+            uncertain,
             still_rocking,
             failed,
             curve,
+            curve_with_uncertain,
         } = *level;
-        let curve = curve.map(|point| {
-            let CurvePoint {
-                probability,
-                low,
-                high,
-            } = point;
-            [probability, low, high]
-        });
-        finite(
-            "of a row of fragility.csv",
-            curve.as_ref().map_or(&[], |c| c),
-        )?;
+        let with_uncertain = (
+            uncertain,
+            level.fraction_with_uncertain(),
+            numbers(curve_with_uncertain)?,
+        );
         csv.serialize((
             (intensity, cases, overturned, still_rocking, failed),
             level.fraction(),
-            curve.map_or([None; 3], |curve| curve.map(Some)),
+            numbers(curve)?,
+            free_hinges.then_some(with_uncertain).as_slice(),
         ))
         .map_err(OutputError::csv(WHAT))?;
     }
     csv.flush().map_err(OutputError::io(WHAT))
+}
+
+/// What rows of blocks have besides: the number of uncertain cases, and what counts them as overturned.
+const UNCERTAIN_COLUMNS: [&str; 5] = [
+    "uncertain",
+    "fraction_with_uncertain",
+    "probability_with_uncertain",
+    "probability_with_uncertain_low",
+    "probability_with_uncertain_high",
+];
+
+/// The probability of a curve at a level and its band, if there is a curve.
+fn numbers(curve: Option<CurvePoint>) -> Result<[Option<f64>; 3], OutputError> {
+    let Some(CurvePoint {
+        probability,
+        low,
+        high,
+    }) = curve
+    else {
+        return Ok([None; 3]);
+    };
+    let numbers = [probability, low, high];
+    finite("of a row of fragility.csv", &numbers)?;
+    Ok(numbers.map(Some))
 }
 
 /// The fragility as JSON. Missing values are null.
@@ -160,7 +188,46 @@ pub fn write_fragility(writer: impl Write, results: &SuiteFragility) -> Result<(
 /// # Errors
 /// When a value is not finite.
 pub fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputError> {
-    let fit = results.fit.as_ref().ok();
+    let total =
+        |count: fn(&FragilityRow) -> usize| -> usize { results.levels.iter().map(count).sum() };
+    let mut json = json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenario": heading.scenario,
+        "intensity": results.measure.column(),
+    });
+    let curve = curve_to_json(&results.fit)?;
+    if let (Some(json), Value::Object(curve)) = (json.as_object_mut(), curve) {
+        json.extend(curve);
+    }
+    let counts = [
+        ("records", results.record_count()),
+        ("cases", total(|level| level.cases)),
+        ("overturned", total(|level| level.overturned)),
+        ("uncertain", total(|level| level.uncertain)),
+        (
+            "still_rocking_counted_as_not_overturned",
+            total(|level| level.still_rocking),
+        ),
+        ("failed_left_out", total(|level| level.failed)),
+    ];
+    for (name, count) in counts {
+        json[name] = json!(count);
+    }
+    json["mirrored_cases_count"] = json!(results.mirrored_count);
+    json["records_that_never_overturn"] = json!(results.always(Verdict::Survives));
+    json["records_that_always_overturn"] = json!(results.always(Verdict::Overturns));
+    if results.has_uncertain() {
+        json["with_uncertain_as_overturned"] = curve_to_json(&results.fit_with_uncertain)?;
+    }
+    remarks(results).add_to(&mut json);
+    Ok(json)
+}
+
+/// A curve with its standard errors, or why there is none.
+fn curve_to_json(fit: &Result<Fragility, NoFit>) -> Result<Value, OutputError> {
+    let no_fit = fit.as_ref().err().map(ToString::to_string);
+    let fit = fit.as_ref().ok();
     let errors = |errors: Option<&Errors>| {
         errors.map_or([None; 2], |errors| {
             [Some(errors.median), Some(errors.dispersion)]
@@ -169,71 +236,75 @@ pub fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, Out
     let [median_error, dispersion_error] = errors(fit.map(|fit| &fit.independent));
     let [median_error_by_record, dispersion_error_by_record] =
         errors(fit.and_then(|fit| fit.clustered.as_ref()));
-    let median = fit.map(|fit| fit.median);
-    let dispersion = fit.map(|fit| fit.dispersion);
-    let log_likelihood = fit.map(|fit| fit.log_likelihood);
-    for value in [
-        median,
-        median_error,
-        median_error_by_record,
-        dispersion,
-        dispersion_error,
-        dispersion_error_by_record,
-        log_likelihood,
+    let mut json = json!({});
+    for (name, value) in [
+        ("median", fit.map(|fit| fit.median)),
+        ("median_standard_error", median_error),
+        ("median_standard_error_by_record", median_error_by_record),
+        ("dispersion", fit.map(|fit| fit.dispersion)),
+        ("dispersion_standard_error", dispersion_error),
+        (
+            "dispersion_standard_error_by_record",
+            dispersion_error_by_record,
+        ),
+        ("log_likelihood", fit.map(|fit| fit.log_likelihood)),
     ] {
         finite("of fragility.json", value.as_slice())?;
+        json[name] = json!(value);
     }
-    let total =
-        |count: fn(&FragilityRow) -> usize| -> usize { results.levels.iter().map(count).sum() };
-    let mut json = json!({
-        "program": env!("CARGO_PKG_NAME"),
-        "version": env!("CARGO_PKG_VERSION"),
-        "scenario": heading.scenario,
-        "intensity": results.measure.column(),
-        "median": median,
-        "median_standard_error": median_error,
-        "median_standard_error_by_record": median_error_by_record,
-        "dispersion": dispersion,
-        "dispersion_standard_error": dispersion_error,
-        "dispersion_standard_error_by_record": dispersion_error_by_record,
-        "log_likelihood": log_likelihood,
-        "no_fit": no_fit(results),
-        "records": results.record_count(),
-        "cases": total(|level| level.cases),
-        "overturned": total(|level| level.overturned),
-        "still_rocking_counted_as_not_overturned": total(|level| level.still_rocking),
-        "failed_left_out": total(|level| level.failed),
-        "records_that_never_overturn": results.always(false),
-        "records_that_always_overturn": results.always(true),
-    });
-    Failed::list_in(&mut json, &failures(results));
+    json["no_fit"] = json!(no_fit);
     Ok(json)
 }
 
-/// The cases that failed: which, and why.
+/// What is to be remarked of the cases: which failed or are uncertain, and why.
 #[must_use]
-pub fn failures(results: &SuiteFragility) -> Vec<Failed> {
-    let failed = results.cases.iter().filter_map(|case| {
-        let reason = case.result.as_ref().err()?;
-        let mirrored = if case.mirrored { " mirrored" } else { "" };
-        let (column, level) = (results.measure.column(), case.level(results.measure));
-        let case = format!("{}{mirrored}, {column} {level:?}", case.record);
-        Some(Failed::new(case, reason))
-    });
-    failed.collect()
+pub fn remarks(results: &SuiteFragility) -> Remarks {
+    let mut remarks = Remarks::default();
+    for case in &results.cases {
+        let name = || {
+            let mirrored = if case.mirrored { " mirrored" } else { "" };
+            let (column, level) = (results.measure.column(), case.level(results.measure));
+            format!("{}{mirrored}, {column} {level:?}", case.record)
+        };
+        remarks.note(name, case.result.as_ref().map_err(String::as_str));
+    }
+    remarks
 }
 
-/// Why there is no curve.
-#[must_use]
-pub fn no_fit(results: &SuiteFragility) -> Option<String> {
-    results.fit.as_ref().err().map(ToString::to_string)
+/// A curve in words, or why there is none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CurveInWords {
+    /// How uncertain cases are taken: `, 2 uncertain cases taken as survived`; empty where there are none.
+    pub taken: String,
+    /// The curve, or the reason.
+    pub curve: Result<String, String>,
 }
 
-/// The curve in words, with its standard errors, the larger ones first.
+/// The curve in words; where cases are uncertain, first with these as survived, then as overturned.
 #[must_use]
-pub fn curve_in_words(results: &SuiteFragility) -> Option<String> {
-    let fit = results.fit.as_ref().ok()?;
-    let unit = match results.measure {
+pub fn curves_in_words(results: &SuiteFragility) -> Vec<CurveInWords> {
+    let uncertain: usize = results.levels.iter().map(|level| level.uncertain).sum();
+    let curve = |fit: &Result<Fragility, NoFit>, how: &str| CurveInWords {
+        taken: match uncertain {
+            0 => String::new(),
+            1 => format!(", 1 uncertain case taken as {how}"),
+            _ => format!(", {uncertain} uncertain cases taken as {how}"),
+        },
+        curve: match fit {
+            Ok(fit) => Ok(fit_in_words(fit, results.measure)),
+            Err(reason) => Err(reason.to_string()),
+        },
+    };
+    let mut curves = vec![curve(&results.fit, "survived")];
+    if uncertain > 0 {
+        curves.push(curve(&results.fit_with_uncertain, "overturned"));
+    }
+    curves
+}
+
+/// A curve in words, with its standard errors, the larger ones last.
+fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
+    let unit = match measure {
         Measure::Scale => "",
         Measure::PeakG => " g",
     };
@@ -246,11 +317,11 @@ pub fn curve_in_words(results: &SuiteFragility) -> Option<String> {
         });
         format!("{value:.digits$}{unit} ± {independent:.digits$}{unit}{by_record}")
     };
-    Some(format!(
+    format!(
         "median {}, dispersion {}",
         quantity(fit.median, |errors| errors.median, unit),
         quantity(fit.dispersion, |errors| errors.dispersion, "")
-    ))
+    )
 }
 
 /// Draws fractions, curve and band.
@@ -264,22 +335,56 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
         x: intensity_scale(heading, &results.levels, figure),
         y: Scale::exactly(0.0, 1.0, 5),
     };
-    if let Ok(fit) = &results.fit {
-        draw_band(&mut drawing, &axes, fit);
-    }
+    let curves = curves(results);
+    draw_bands(&mut drawing, &axes, &curves);
     let label = intensity_label(results.measure);
     axes.draw(&mut drawing, Some(label), "fraction that overturns");
-    if let Ok(fit) = &results.fit {
+    for (fit, look) in &curves {
         let curve = along(&axes.x).map(|x| axes.place(x, fit.probability(x)));
-        drawing.curve("fit", curve, CURVE);
+        drawing.curve(look.name, curve, look.line);
     }
     for level in &results.levels {
-        if let Some(fraction) = level.fraction() {
-            let at = axes.place(level.intensity, fraction);
-            drawing.circle("fraction", at, 4.5, POINT);
+        let fractions = level.fraction().zip(level.fraction_with_uncertain());
+        let Some((certain, possible)) = fractions else {
+            continue;
+        };
+        let [low, high] = [certain, possible].map(|part| axes.place(level.intensity, part));
+        if possible > certain {
+            drawing.curve("uncertain", [low, high], POINT);
+            drawing.circle("fraction-with-uncertain", high, 4.5, POINT);
         }
+        drawing.circle("fraction", low, 4.5, POINT);
     }
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+}
+
+/// How a curve is drawn.
+struct Look {
+    name: &'static str,
+    label: &'static str,
+    line: Stroke,
+}
+
+const CURVE: Look = Look {
+    name: "fit",
+    label: "lognormal curve",
+    line: Stroke::new(color::BLUE, 2.0, ""),
+};
+const CURVE_WITH_UNCERTAIN: Look = Look {
+    name: "fit-with-uncertain",
+    label: "the same with uncertain cases as overturned",
+    line: Stroke::new(color::BLUE, 2.0, "7 4"),
+};
+
+/// The curves that are drawn: with uncertain cases as survived, and, where there are such, as overturned.
+fn curves(results: &SuiteFragility) -> Vec<(&Fragility, Look)> {
+    let with_uncertain = (&results.fit_with_uncertain, CURVE_WITH_UNCERTAIN);
+    let with_uncertain = results.has_uncertain().then_some(with_uncertain);
+    [(&results.fit, CURVE)]
+        .into_iter()
+        .chain(with_uncertain)
+        .filter_map(|(fit, look)| Some((fit.as_ref().ok()?, look)))
+        .collect()
 }
 
 /// What the intensities are, in words.
@@ -303,27 +408,33 @@ pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow], figure
     }
 }
 
-/// What is drawn, and the curve in words or why there is none; returns where that ends.
+/// What is drawn, and the curves in words or why there are none; returns where that ends.
 fn legend(drawing: &mut Drawing, figure: Figure, top: f64, results: &SuiteFragility) -> f64 {
     let cases: usize = results.levels.iter().map(|level| level.cases).sum();
     let text = format!("fraction of {}, {cases} cases", records_in_words(results));
     let mut keys = vec![(text.as_str(), Sign::Circle(4.5, POINT))];
-    let words = curve_in_words(results);
-    if words.is_some() {
-        keys.extend([
-            ("lognormal curve", Sign::Line(CURVE)),
-            ("95 % band", Sign::Band(BAND, 1.0)),
-        ]);
+    let curves = curves(results);
+    let lines = curves.iter();
+    keys.extend(lines.map(|(_, look)| (look.label, Sign::Line(look.line))));
+    if curves.len() > 1 {
+        keys.push(("between these", Sign::Band(BETWEEN, 1.0)));
+    }
+    if !curves.is_empty() {
+        keys.push(("95 % band", Sign::Band(BAND, 1.0)));
     }
     let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys);
-    let words =
-        words.unwrap_or_else(|| format!("no curve: {}", no_fit(results).unwrap_or_default()));
-    drawing.caption(top + 14.0, &words) + 10.0
+    let words = curves_in_words(results).into_iter();
+    let words = words.map(|CurveInWords { taken, curve }| match curve {
+        Ok(curve) => format!("{curve}{taken}"),
+        Err(reason) => format!("no curve: {reason}{taken}"),
+    });
+    let words: Vec<String> = words.collect();
+    drawing.caption(top + 14.0, &words.join("; ")) + 10.0
 }
 
-const CURVE: Stroke = Stroke::new(color::BLUE, 2.0, "");
 const POINT: Stroke = Stroke::new(color::VERMILION, 1.8, "");
 const BAND: &str = "#d6e8f4";
+const BETWEEN: &str = "#9cc7e3";
 
 /// So many points make a smooth curve.
 const POINTS: u32 = 200;
@@ -336,21 +447,36 @@ fn along(scale: &Scale) -> impl Iterator<Item = f64> {
         .filter(|x| *x > 0.0)
 }
 
-fn draw_band(drawing: &mut Drawing, axes: &Axes, fit: &Fragility) {
-    let (mut low, mut high): (Vec<_>, Vec<_>) = along(&axes.x)
-        .map(|x| {
-            let (low, high) = fit.band(x);
-            (axes.place(x, low), axes.place(x, high))
+/// The band of 95 % of the curves together, and the one between them.
+fn draw_bands(drawing: &mut Drawing, axes: &Axes, curves: &[(&Fragility, Look)]) {
+    let mut fill = |name: &str, color: &'static str, ends: &dyn Fn(f64) -> [f64; 2]| {
+        let (low, mut high): (Vec<_>, Vec<_>) = along(&axes.x)
+            .map(|x| {
+                let [low, high] = ends(x).map(|probability| axes.place(x, probability));
+                (low, high)
+            })
+            .unzip();
+        high.reverse();
+        let corners = low.into_iter().chain(high);
+        drawing.polygon(name, corners, color, Stroke::new(color, 0.0, ""));
+    };
+    if curves.is_empty() {
+        return;
+    }
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold([1.0, 0.0], |[low, high]: [f64; 2], value| {
+            [low.min(value), high.max(value)]
         })
-        .unzip();
-    high.reverse();
-    low.append(&mut high);
-    let path: Vec<_> = low
-        .iter()
-        .map(|point| format!("{:.2} {:.2}", point.x, point.y))
-        .collect();
-    let path = format!("M{}Z", path.join(" "));
-    drawing.path("band", &path, BAND, Stroke::new(BAND, 0.0, ""));
+    };
+    fill("band", BAND, &|x| {
+        let bands = curves.iter();
+        range(&mut bands.flat_map(|(fit, _)| <[f64; 2]>::from(fit.band(x))))
+    });
+    if curves.len() > 1 {
+        fill("between", BETWEEN, &|x| {
+            range(&mut curves.iter().map(|(fit, _)| fit.probability(x)))
+        });
+    }
 }
 
 /// Digits after the point that show two digits of an error.

@@ -1,4 +1,4 @@
-//! In a line: where a structure first overturns, and where it survives again.
+//! In a line: where a structure first overturns, where it survives again, and where that is uncertain.
 
 use super::threshold::rounded;
 use crate::studies::survival::Survival;
@@ -8,27 +8,33 @@ use crate::studies::survival::Survival;
 #[must_use]
 pub fn in_words(survival: &Survival, unit: &str) -> String {
     let at = |strength: f64| format!("{}{unit}", rounded(strength));
-    let Some(first) = survival.overturns_from else {
-        return format!("does not overturn up to {}", at(survival.tried_to));
+    let mut words = match survival.overturns_from {
+        None if survival.uncertain.is_empty() => {
+            format!("does not overturn up to {}", at(survival.tried_to))
+        }
+        None => format!(
+            "does not certainly overturn up to {}",
+            at(survival.tried_to)
+        ),
+        Some(first) if survival.from_the_first => {
+            format!("overturns at {} already, the least tried", at(first))
+        }
+        Some(first) => format!("first overturns at {}", at(first)),
     };
-    let mut words = if survival.from_the_first {
-        format!("overturns at {} already, the least tried", at(first))
-    } else {
-        format!("first overturns at {}", at(first))
-    };
-    let again: Vec<String> = survival
-        .again
-        .iter()
-        .map(|[from, to]| {
-            if from == to {
-                at(*from)
-            } else {
-                format!("{} to {}", rounded(*from), at(*to))
-            }
-        })
-        .collect();
-    if !again.is_empty() {
-        words += &format!("; survives again at {}", again.join(", "));
+    for (what, ranges) in [
+        ("survives again", &survival.again),
+        ("uncertain", &survival.uncertain),
+    ] {
+        let ranges: Vec<String> = ranges
+            .iter()
+            .map(|[from, to]| match (at(*from), at(*to)) {
+                (from, to) if from == to => to,
+                (_, to) => format!("{} to {to}", rounded(*from)),
+            })
+            .collect();
+        if !ranges.is_empty() {
+            words += &format!("; {what} at {}", ranges.join(", "));
+        }
     }
     words
 }
@@ -43,6 +49,7 @@ mod tests {
             overturns_from: from,
             from_the_first: from == Some(0.1),
             again: again.to_vec(),
+            uncertain: Vec::new(),
             tried_to: 4.0,
         };
         assert_eq!(
@@ -56,6 +63,18 @@ mod tests {
         assert_eq!(
             in_words(&survival(Some(0.1), &[]), ""),
             "overturns at 0.1000 already, the least tried"
+        );
+        let uncertain = |from, uncertain: &[[f64; 2]]| Survival {
+            uncertain: uncertain.to_vec(),
+            ..survival(from, &[])
+        };
+        assert_eq!(
+            in_words(&uncertain(Some(2.5), &[[2.1, 2.4], [3.0, 3.0]]), " g"),
+            "first overturns at 2.500 g; uncertain at 2.100 to 2.400 g, 3.000 g"
+        );
+        assert_eq!(
+            in_words(&uncertain(None, &[[3.0, 4.0]]), ""),
+            "does not certainly overturn up to 4.000; uncertain at 3.000 to 4.000"
         );
     }
 }

@@ -5,16 +5,16 @@ use std::io::Write;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
+use super::ending::{self, Remarks};
 use super::kind::{self, GROUND_FALLS, Kind};
 use super::svg::{Anchor, Axes, CURVES, Drawing, Figure, Frame, Scale, Sign, Stroke, color};
 use super::table::table;
-use super::{OutputError, ending, finite};
+use super::{OutputError, finite};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Outcome;
 use crate::scenario::Scenario;
-use crate::studies::ending::Ending;
+use crate::studies::ending::Verdict;
 use crate::studies::threshold::{
-    FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold,
+    EDGE_WIDTH, FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold,
 };
 
 /// Names of the columns.
@@ -33,16 +33,9 @@ pub const COLUMNS: [&str; 8] = [
 #[must_use]
 pub const fn outcome(sample: &FactorSample) -> &'static str {
     match &sample.result {
-        Ok(ending) => ending.outcome.name(),
+        Ok(ending) => ending::outcome(ending),
         Err(NoHistory::GroundFalls(_)) => GROUND_FALLS,
         Err(NoHistory::Failed(_)) => ending::FAILED,
-    }
-}
-
-const fn overturning_sway(ending: &Ending) -> Option<&'static str> {
-    match ending.outcome {
-        Outcome::Overturned(sway) => Some(sway.name()),
-        _ => None,
     }
 }
 
@@ -84,7 +77,7 @@ pub fn write_table(writer: impl Write, thresholds: &[Threshold]) -> Result<(), O
                 &threshold.model,
                 sample.factor,
                 outcome(sample),
-                ending.and_then(overturning_sway),
+                ending.and_then(ending::overturning_sway),
                 ending.map(|ending| ending.impacts),
                 ending.map(|ending| ending.outcome_time_s),
                 ending.and_then(|ending| ending.peak.over_critical()),
@@ -96,8 +89,8 @@ pub fn write_table(writer: impl Write, thresholds: &[Threshold]) -> Result<(), O
     csv.flush().map_err(OutputError::io(WHAT))
 }
 
-/// All that was found, as JSON: per model the least factor that overturns, the bands that overturn and the safe
-/// gaps between them, and all samples; beside the edges the peak acceleration of the ground, in units of gravity.
+/// All that was found, as JSON: per model the least factor that overturns, the bands that overturn, the safe gaps between
+/// them, the uncertain ranges, the steps where it has such, and all samples; beside the edges the peak acceleration of the ground, in units of gravity.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -109,7 +102,7 @@ pub fn to_json(
 ) -> Result<Value, OutputError> {
     let peak_g = scenarios.first().map_or(0.0, |first| peak_g(first, ground));
     finite("peak_acceleration_g", &[peak_g])?;
-    let ranges = |ranges: &[FactorRange]| -> Vec<Value> {
+    let ranges = |ranges: Vec<FactorRange>| -> Vec<Value> {
         let ranges = ranges.iter();
         ranges.map(|range| range_to_json(range, peak_g)).collect()
     };
@@ -118,14 +111,21 @@ pub fn to_json(
         .zip(scenarios)
         .map(|(threshold, scenario)| {
             let samples: Vec<Value> = threshold.samples.iter().map(sample_to_json).collect();
-            json!({
+            let mut model = json!({
                 "model": threshold.model,
                 "scenario": scenario.to_json(),
                 "lowest_factor": threshold.lowest_factor(),
-                "bands": ranges(&threshold.bands),
-                "gaps": ranges(&threshold.gaps),
-                "samples": samples,
-            })
+                "bands": ranges(threshold.bands()),
+                "gaps": ranges(threshold.gaps()),
+                "uncertain": ranges(threshold.uncertain()),
+            });
+            let mut remarks = Remarks::default();
+            for ending in threshold.samples.iter().flat_map(|sample| &sample.result) {
+                remarks.note_steps(ending);
+            }
+            remarks.add_to(&mut model);
+            model["samples"] = samples.into();
+            model
         })
         .collect();
     Ok(json!({
@@ -150,15 +150,21 @@ fn range_to_json(range: &FactorRange, peak_g: f64) -> Value {
 
 fn sample_to_json(sample: &FactorSample) -> Value {
     match &sample.result {
-        Ok(ending) => json!({
-            "factor": sample.factor,
-            "outcome": outcome(sample),
-            "overturning_sway": overturning_sway(ending),
-            "impacts": ending.impacts,
-            "outcome_time_s": ending.outcome_time_s,
-            "peak_rotation_over_critical": ending.peak.over_critical(),
-            "peak_rotation_rad": sample.peak_rotation_rad,
-        }),
+        Ok(ending) => {
+            let mut json = json!({
+                "factor": sample.factor,
+                "outcome": outcome(sample),
+                "overturning_sway": ending::overturning_sway(ending),
+                "impacts": ending.impacts,
+                "outcome_time_s": ending.outcome_time_s,
+                "peak_rotation_over_critical": ending.peak.over_critical(),
+                "peak_rotation_rad": sample.peak_rotation_rad,
+            });
+            if let Some(reason) = &ending.uncertain {
+                json["reason"] = json!(reason);
+            }
+            json
+        }
         Err(error) => json!({
             "factor": sample.factor,
             "outcome": outcome(sample),
@@ -175,6 +181,9 @@ const LABEL_ADVANCE: f64 = 15.0;
 
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
 const EDGE: Stroke = Stroke::new(color::GREY, 0.8, "");
+const HATCH: Stroke = Stroke::new("#ffffff", 1.2, "");
+/// Distance of the lines of a hatch, along the strip.
+const HATCH_PX: f64 = 6.0;
 
 /// Draws the outcome over the factor as a strip for each model, with the edges of the bands, and the largest
 /// rotation below. `peak_g` is the peak acceleration of the ground at the factor 1.
@@ -318,18 +327,27 @@ impl Rotation {
         };
         let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
         let survived = samples
-            .filter(|sample| sample.overturns() == Some(false))
+            .filter(|sample| sample.verdict() == Some(Verdict::Survives))
             .filter_map(|sample| self.peak(sample));
         Scale::exactly(0.0, 1.15 * survived.fold(least, f64::max), 6)
     }
 }
 
-/// The edges of the bands, ascending.
+/// The edges of the bands and of what is uncertain, ascending.
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
-    threshold.bands.iter().flat_map(|band| {
-        let ends = [(band.from, band.from_end), (band.to, band.to_end)];
+    let mut told = f64::NAN;
+    let ranges = threshold.ranges.iter();
+    let ranges = ranges.filter(|(verdict, _)| *verdict != Verdict::Survives);
+    let ends = ranges.flat_map(|(_, range)| {
+        let ends = [(range.from, range.from_end), (range.to, range.to_end)];
         let ends = ends.into_iter().filter(|(_, end)| *end == RangeEnd::Edge);
         ends.map(|(factor, _)| factor)
+    });
+    // Where a band and an uncertain range meet, one of the two factors that enclose the edge is enough.
+    ends.filter(move |factor| {
+        let anew = factor - told > 2.0 * EDGE_WIDTH * factor || told.is_nan();
+        told = *factor;
+        anew
     })
 }
 
@@ -341,7 +359,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         let edge = edges
             .iter()
             .find(|edge| (below.factor..=above.factor).contains(*edge));
-        let changes = below.overturns() != above.overturns();
+        let changes = below.verdict() != above.verdict();
         match edge.filter(|_| changes) {
             Some(edge) => *edge,
             None => (below.factor * above.factor).sqrt(),
@@ -371,6 +389,9 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
             kind.fill,
             1.0,
         );
+        if last.verdict() == Some(Verdict::Uncertain) {
+            hatch(drawing, &frame);
+        }
         from = to;
     }
     let Frame { left, width, .. } = axes.frame;
@@ -388,6 +409,23 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         let text = head + Vector2::new(4.5, -3.0);
         drawing.label(text, Anchor::Start, 90.0, &rounded(*edge));
     }
+}
+
+/// Hatches a part of a strip.
+fn hatch(drawing: &mut Drawing, frame: &Frame) {
+    let (right, bottom) = (frame.left + frame.width, frame.top + frame.height);
+    drawing.within(frame, |drawing| {
+        let mut foot = frame.left - frame.height;
+        while foot < right {
+            let from = Vector2::new(foot, bottom);
+            drawing.line(
+                from,
+                from + Vector2::new(frame.height, -frame.height),
+                HATCH,
+            );
+            foot += HATCH_PX;
+        }
+    });
 }
 
 /// Places for labels near the given ascending places, side by side between `left` and `right`; fewer where

@@ -76,7 +76,7 @@ pub struct Suite {
     pub measure: Measure,
     /// How strong each record is made, above 0.
     pub levels: Sequence,
-    /// Whether every record is also run mirrored, which acts the same to the other side.
+    /// Whether every record is also run mirrored, which acts to the other side.
     pub both_signs: bool,
 }
 

@@ -1,13 +1,61 @@
-//! How a history ended, as studies keep it.
+//! How a history ended, as studies keep it, and whether that is certain.
+//!
+//! Where a model can be computed in [other ways that are as good](Model::repetitions), a case is computed in these as well,
+//! and where they do not agree on whether it overturns that is **uncertain**: neither overturned nor survived. To which side
+//! it overturns, and whether what survives has come to rest, does not count.
+//!
+//! Most repetitions can be spared, because nothing that follows an impact decides: of what [`is_plain`]. On 5 maps and 2
+//! suites of records, arches of 7 to 36 voussoirs and columns of drums, TODO
+
+use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Model, Request};
+use crate::dynamics::history::{Outcome, Sample, Summary};
+use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
+
+/// Whether a history overturns, as far as that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// It does not, to the end of the simulation.
+    Survives,
+    /// That depends on how it is computed.
+    Uncertain,
+    /// It does.
+    Overturns,
+}
+
+impl From<Outcome> for Verdict {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Overturned(_) => Self::Overturns,
+            Outcome::NeverMoved | Outcome::Rest | Outcome::StillRocking => Self::Survives,
+        }
+    }
+}
+
+impl Verdict {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Survives => "survives",
+            Self::Uncertain => "is uncertain",
+            Self::Overturns => "overturns",
+        }
+    }
+}
+
+/// The steps of a history.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Steps {
+    /// The longest, in seconds.
+    pub longest_s: f64,
+    /// The shortest, in seconds, but for steps that end at landings.
+    pub shortest_s: f64,
+}
 
 /// How a history ended, in the numbers that studies compare. They are finite.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ending {
     /// How it ended.
     pub outcome: Outcome,
@@ -20,6 +68,12 @@ pub struct Ending {
     pub energy_defect_ratio: f64,
     /// How far it went.
     pub peak: PeakRotation,
+    /// The steps that it was computed in; `None` of models whose steps follow from a tolerance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steps: Option<Steps>,
+    /// Why it is uncertain whether it overturns: what it does, and what a repetition does instead. `None` where it is certain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertain: Option<String>,
 }
 
 /// The largest rotation, measured as the model can.
@@ -70,7 +124,28 @@ impl Ending {
         }
     }
 
-    /// Simulates a structure from rest and returns how that ended.
+    /// Whether it overturns, as far as that is known.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        match self.uncertain {
+            Some(_) => Verdict::Uncertain,
+            None => self.outcome.into(),
+        }
+    }
+
+    /// That of the mirror image.
+    pub(super) fn mirrored(&self) -> Self {
+        let outcome = match self.outcome {
+            Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
+            other => other,
+        };
+        Self {
+            outcome,
+            ..self.clone()
+        }
+    }
+
+    /// Simulates a structure, and again in other ways where that may matter, and returns how that ended.
     ///
     /// # Errors
     /// Says why there is no history, or none that could be kept.
@@ -78,25 +153,108 @@ impl Ending {
         let summary = model
             .simulate(ground, request, None)
             .map_err(|error| error.to_string())?;
-        Self::from_summary(&summary)
+        let doubt = doubt(model, ground, request, &summary);
+        Self::from_summary(&summary, doubt)
     }
 
-    /// What a history came to.
+    /// What a history came to, and why that is uncertain, if it is.
     ///
     /// # Errors
     /// Says that a number is not finite.
-    pub(super) fn from_summary(summary: &Summary) -> Result<Self, String> {
+    pub(super) fn from_summary(
+        summary: &Summary,
+        uncertain: Option<String>,
+    ) -> Result<Self, String> {
         let ending = Self {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
             impacts: summary.impacts,
             energy_defect_ratio: summary.energy_defect_ratio,
             peak: PeakRotation::of(summary),
+            steps: summary.free_hinges.as_ref().map(|run| Steps {
+                longest_s: run.longest_step_s,
+                shortest_s: run.shortest_step_s,
+            }),
+            uncertain,
         };
         check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
         check_finite(ending.peak.over_critical().as_slice())?;
         check_finite(ending.peak.rad().as_slice())?;
         Ok(ending)
+    }
+}
+
+/// What a repetition says against a history that ended like this; `None` where it agrees.
+pub(super) fn objection(
+    own: Outcome,
+    name: &str,
+    repeated: &Result<Summary, SimulationError>,
+) -> Option<String> {
+    let own = Verdict::from(own);
+    match repeated {
+        Ok(summary) => {
+            let other = Verdict::from(summary.outcome);
+            (other != own).then(|| format!("{}; {} with {name}", own.words(), other.words()))
+        }
+        Err(error) => Some(format!("{}; failed with {name}: {error}", own.words())),
+    }
+}
+
+/// Why it is uncertain whether a history overturns, which is repeated where that may matter.
+pub(super) fn doubt(
+    model: &dyn Model,
+    ground: &GroundMotion,
+    request: &Request,
+    own: &Summary,
+) -> Option<String> {
+    if is_plain(own) {
+        return None;
+    }
+    let repetitions = model.repetitions();
+    repetitions.iter().find_map(|Repetition { name, model }| {
+        let mut until_safe = UntilSafe {
+            quiet_s: ground.end_s(),
+        };
+        let repeated = model.simulate(ground, request, Some(&mut until_safe));
+        objection(own.outcome, name, &repeated)
+    })
+}
+
+/// What survives without ever reaching this part of the energy barrier of its first mechanism is not repeated.
+const FAR_FROM_OVERTURNING: f64 = 0.5;
+
+/// Whether repetitions can be spared: it never moved, it overturned before it changed side, up to which all ways agree, or it
+/// survived far from overturning.
+fn is_plain(own: &Summary) -> bool {
+    let half_cycles = own.free_hinges.as_ref().map(|run| run.half_cycles.len());
+    match own.outcome {
+        Outcome::NeverMoved => true,
+        Outcome::Overturned(_) => half_cycles <= Some(1),
+        Outcome::Rest | Outcome::StillRocking => own
+            .peak_potential_over_barrier
+            .is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING),
+    }
+}
+
+/// On ground that is quiet for good, what has less than this part of the energy barrier of its first mechanism cannot
+/// overturn any more.
+const SAFE: f64 = 0.1;
+
+/// Ends a history that cannot overturn any more.
+struct UntilSafe {
+    /// From when on the ground is quiet.
+    quiet_s: f64,
+}
+
+impl Recorder for UntilSafe {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        // What has slipped stands lower, and its energy says nothing.
+        let slips = !sample.offsets_m.is_empty();
+        let safe = sample.energy_ratio.is_some_and(|ratio| ratio < SAFE);
+        if sample.time_s >= self.quiet_s && safe && !slips {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
     }
 }
 

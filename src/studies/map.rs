@@ -4,13 +4,12 @@ use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
-use super::ending::Ending;
+use super::ending::{Ending, objection};
 use super::impact_free::ScalablePulse;
 use super::runner::Study;
 use crate::argument::ArgumentError;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{MechanismModel, Model, Repetition, Request};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
@@ -60,9 +59,9 @@ pub struct CellRow {
     pub y: f64,
     /// What became of it.
     pub result: CellResult,
-    /// How many outcomes it has with the steps as they are, half and double: one, if it does not depend on them. To
-    /// which side it overturns does not count. Or why a repetition failed. `None` where that was not asked, or there
-    /// is no history.
+    /// How many outcomes it has with all its repetitions: one, if it does not depend on how it is computed. To which side it
+    /// overturns does not count; whether it has come to rest does. Or why a repetition failed. `None` where that was not
+    /// asked, or there is no history.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spread: Option<Result<usize, String>>,
 }
@@ -73,7 +72,7 @@ pub struct OverturningMap<'a> {
     scenario: &'a Scenario,
     axes: [&'a Axis; 2],
     values: [Vec<f64>; 2],
-    /// Whether each cell tells how many outcomes it has with other steps.
+    /// Whether each cell tells how many outcomes it has when it is computed in other ways.
     spread: bool,
     /// The structures and pulses that serve more than one cell.
     structures: Shared<Result<Standing, ModelError>>,
@@ -196,7 +195,7 @@ impl<'a> OverturningMap<'a> {
         self.scenario.free_hinges.is_some()
     }
 
-    /// Whether each cell tells how many outcomes it has with other steps.
+    /// Whether each cell tells how many outcomes it has when it is computed in other ways.
     #[must_use]
     pub const fn has_spread(&self) -> bool {
         self.spread
@@ -379,41 +378,49 @@ impl<'a> OverturningMap<'a> {
         }
     }
 
-    /// What becomes of a cell, and how many outcomes it has with other steps.
+    /// What becomes of a cell, and how many outcomes it has when it is computed in other ways.
     fn result(&self, index: usize) -> Result<(Ending, Option<Outcomes>), CellResult> {
         let scenario = self.variant(index).map_err(CellResult::Failed)?;
         let standing = self.standing(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(CellResult::Failed)?;
         let request = scenario.request_from_rest();
-        let ending = Ending::of(standing.model(), &ground, &request).map_err(CellResult::Failed)?;
-        let outcomes = match &standing {
-            Standing::Row(row) if self.spread => {
-                Some(outcomes(row, &ground, &request, ending.outcome))
-            }
-            _ => None,
+        let (model, request) = (standing.model(), &request);
+        let ended = if self.spread {
+            all_outcomes(model, &ground, request).map(|(ending, all)| (ending, Some(all)))
+        } else {
+            Ending::of(model, &ground, request).map(|ending| (ending, None))
         };
-        Ok((ending, outcomes))
+        ended.map_err(CellResult::Failed)
     }
 }
 
 /// The model of a cell, and what asks it for a motion.
 pub(super) type Asked = (Box<dyn MechanismModel>, Request);
 
-/// How many outcomes a cell has with several steps, or why that is not known.
+/// How many outcomes a cell has when it is computed in several ways, or why that is not known.
 type Outcomes = Result<usize, String>;
 
-/// How many outcomes a row of blocks has with its own steps, half of them and double.
-fn outcomes(row: &FreeHinges, ground: &GroundMotion, request: &Request, own: Outcome) -> Outcomes {
-    let mut names = vec![own.name()];
-    for Repetition { name, model } in row.repetitions() {
-        let ending = Ending::of(&*model, ground, request)
-            .map_err(|error| format!("with {name}: {error}"))?;
-        let other = ending.outcome.name();
-        if !names.contains(&other) {
-            names.push(other);
+/// How a history ends, and how many outcomes it has with all its repetitions, none of which is spared or cut short.
+fn all_outcomes(
+    model: &dyn Model,
+    ground: &GroundMotion,
+    request: &Request,
+) -> Result<(Ending, Outcomes), String> {
+    let own = model.simulate(ground, request, None);
+    let own = own.map_err(|error| error.to_string())?;
+    let (mut names, mut doubt, mut failed) = (vec![own.outcome.name()], None, None);
+    for Repetition { name, model } in model.repetitions() {
+        let repeated = model.simulate(ground, request, None);
+        doubt = doubt.or_else(|| objection(own.outcome, name, &repeated));
+        match repeated {
+            Ok(other) => names.push(other.outcome.name()),
+            Err(error) => failed = failed.or(Some(format!("with {name}: {error}"))),
         }
     }
-    Ok(names.len())
+    names.sort_unstable();
+    names.dedup();
+    let outcomes = failed.map_or(Ok(names.len()), Err);
+    Ok((Ending::from_summary(&own, doubt)?, outcomes))
 }
 
 impl Study for OverturningMap<'_> {

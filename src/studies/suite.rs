@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::ending::{Ending, check_finite};
+use super::ending::{Ending, Verdict, check_finite};
 use super::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 use super::runner::Study;
 use super::survival::Survival;
@@ -37,16 +37,23 @@ impl CaseRow {
         }
     }
 
-    /// How the history ended, if there is one.
+    /// Whether it overturned, as far as that is known; `None` if there is no history.
     #[must_use]
-    pub fn outcome(&self) -> Option<Outcome> {
-        self.result.as_ref().ok().map(|ending| ending.outcome)
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.result.as_ref().ok().map(Ending::verdict)
     }
 
-    /// Whether it overturned.
+    /// Whether it certainly survived, but had not come to rest.
     #[must_use]
-    pub fn overturned(&self) -> bool {
-        matches!(self.outcome(), Some(Outcome::Overturned(_)))
+    pub fn still_rocking(&self) -> bool {
+        let rocking = |ending: &Ending| ending.outcome == Outcome::StillRocking;
+        self.verdict() == Some(Verdict::Survives) && self.result.as_ref().is_ok_and(rocking)
+    }
+
+    /// Whether it did the same as another one to the other side, to the last bit.
+    fn is_mirror_image_of(&self, other: &Self) -> bool {
+        let ended = self.result.as_ref().map(Ending::mirrored);
+        ended.ok() == other.result.as_ref().ok().cloned()
     }
 }
 
@@ -131,14 +138,18 @@ pub struct FragilityRow {
     pub intensity: f64,
     /// Number of cases that have an outcome.
     pub cases: usize,
-    /// Number of those that overturned.
+    /// Number of those that certainly overturned.
     pub overturned: usize,
+    /// Number of those of which that is uncertain.
+    pub uncertain: usize,
     /// Number of those that had neither overturned nor come to rest.
     pub still_rocking: usize,
     /// Number of cases whose history could not be computed.
     pub failed: usize,
     /// What the curve says, if there is one.
     pub curve: Option<CurvePoint>,
+    /// What it says with uncertain cases as overturned.
+    pub curve_with_uncertain: Option<CurvePoint>,
 }
 
 /// A fragility curve at an intensity.
@@ -152,11 +163,33 @@ pub struct CurvePoint {
     pub high: f64,
 }
 
+impl CurvePoint {
+    fn of(fit: &Result<Fragility, NoFit>, intensity: f64) -> Option<Self> {
+        let fit = fit.as_ref().ok()?;
+        let (low, high) = fit.band(intensity);
+        Some(Self {
+            probability: fit.probability(intensity),
+            low,
+            high,
+        })
+    }
+}
+
 impl FragilityRow {
-    /// The part of the cases that overturned.
+    /// The part of the cases that certainly overturned.
     #[must_use]
     pub fn fraction(&self) -> Option<f64> {
-        (self.cases > 0).then(|| self.overturned as f64 / self.cases as f64)
+        self.part(self.overturned)
+    }
+
+    /// The part of those that overturned or may have.
+    #[must_use]
+    pub fn fraction_with_uncertain(&self) -> Option<f64> {
+        self.part(self.overturned + self.uncertain)
+    }
+
+    fn part(&self, count: usize) -> Option<f64> {
+        (self.cases > 0).then(|| count as f64 / self.cases as f64)
     }
 }
 
@@ -172,62 +205,81 @@ pub struct RecordSurvival<'a> {
 }
 
 /// What all cases say together. Those that are still rocking have not overturned; those that failed do not
-/// count. Nor do mirrored records: the structures are symmetric, so that they do the same to the other side, and
-/// are no further evidence.
+/// count. Uncertain cases are taken both ways: as survived, and as overturned.
+///
+/// Both signs of a record count, as cases of one record, which are not independent. Where every mirrored case is the mirror
+/// image of the other to the last bit, as with four links on a symmetric structure, it is no further evidence and does
+/// not count. With free hinges rounding and the order of impacts that almost coincide break that symmetry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SuiteFragility {
     /// What the intensities are.
     pub measure: Measure,
     /// All cases.
     pub cases: Vec<CaseRow>,
+    /// Whether mirrored cases count.
+    pub mirrored_count: bool,
     /// By intensity, lowest first.
     pub levels: Vec<FragilityRow>,
-    /// The curve, if there is one.
+    /// The curve with uncertain cases as survived, if there is one.
     pub fit: Result<Fragility, NoFit>,
+    /// The curve with uncertain cases as overturned, if there is one.
+    pub fit_with_uncertain: Result<Fragility, NoFit>,
 }
 
 impl SuiteFragility {
     /// What these cases say.
     #[must_use]
     pub fn new(measure: Measure, cases: Vec<CaseRow>) -> Self {
-        let evidence: Vec<&CaseRow> = cases.iter().filter(|case| !case.mirrored).collect();
-        let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
-        let observations: Vec<Observation> = evidence
+        let mirrored_count = !mirrored_are_images(&cases);
+        let evidence: Vec<&CaseRow> = cases
             .iter()
-            .filter(|case| case.result.is_ok())
-            .map(|case| Observation {
-                intensity: case.level(measure),
-                overturned: case.overturned(),
-                record: indices[case.record.as_str()],
-            })
+            .filter(|case| mirrored_count || !case.mirrored)
             .collect();
-        let fit = fit(&observations);
+        let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
+        let fit_from = |least: Verdict| {
+            let known = evidence.iter().filter_map(|case| {
+                Some(Observation {
+                    intensity: case.level(measure),
+                    overturned: case.verdict()? >= least,
+                    record: indices[case.record.as_str()],
+                })
+            });
+            fit(&known.collect::<Vec<_>>())
+        };
+        let fit = fit_from(Verdict::Overturns);
+        let fit_with_uncertain = fit_from(Verdict::Uncertain);
         let levels = by_intensity(evidence, |case| case.level(measure));
         let levels = levels.into_iter().map(|(intensity, cases)| {
-            let count = |which: fn(&CaseRow) -> bool| cases.iter().filter(|c| which(c)).count();
-            let failed = count(|case| case.result.is_err());
+            let of = |verdict: Option<Verdict>| {
+                let cases = cases.iter();
+                cases.filter(|case| case.verdict() == verdict).count()
+            };
+            let failed = of(None);
             FragilityRow {
                 intensity,
                 cases: cases.len() - failed,
-                overturned: count(CaseRow::overturned),
-                still_rocking: count(|case| case.outcome() == Some(Outcome::StillRocking)),
+                overturned: of(Some(Verdict::Overturns)),
+                uncertain: of(Some(Verdict::Uncertain)),
+                still_rocking: cases.iter().filter(|case| case.still_rocking()).count(),
                 failed,
-                curve: fit.as_ref().ok().map(|fit| {
-                    let (low, high) = fit.band(intensity);
-                    CurvePoint {
-                        probability: fit.probability(intensity),
-                        low,
-                        high,
-                    }
-                }),
+                curve: CurvePoint::of(&fit, intensity),
+                curve_with_uncertain: CurvePoint::of(&fit_with_uncertain, intensity),
             }
         });
         Self {
             measure,
             levels: levels.collect(),
             fit,
+            fit_with_uncertain,
+            mirrored_count,
             cases,
         }
+    }
+
+    /// Whether it is uncertain of any case that counts whether it overturned.
+    #[must_use]
+    pub fn has_uncertain(&self) -> bool {
+        self.levels.iter().any(|level| level.uncertain > 0)
     }
 
     /// Where each record first overturns and is survived again, by intensity; mirrored ones only where these differ.
@@ -240,10 +292,7 @@ impl SuiteFragility {
         for cases in shakes {
             let levels: Vec<_> = cases
                 .iter()
-                .map(|case| {
-                    let overturned = case.outcome().map(|_| case.overturned());
-                    (case.level(self.measure), overturned)
-                })
+                .map(|case| (case.level(self.measure), case.verdict()))
                 .collect();
             let survival = Survival::of_levels(&levels);
             let (record, mirrored) = (cases[0].record.as_str(), cases[0].mirrored);
@@ -266,16 +315,33 @@ impl SuiteFragility {
         names(&self.cases).len()
     }
 
-    /// Names of the records of whose cases all overturned, or none, as `wanted`.
+    /// Names of the records of whose cases all certainly overturned, or all certainly survived, as `wanted`.
     #[must_use]
-    pub fn always(&self, overturned: bool) -> Vec<&str> {
+    pub fn always(&self, wanted: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
-        for case in self.cases.iter().filter(|case| case.result.is_ok()) {
-            *alike.entry(&case.record).or_insert(true) &= case.overturned() == overturned;
+        for case in &self.cases {
+            if let Some(verdict) = case.verdict() {
+                *alike.entry(&case.record).or_insert(true) &= verdict == wanted;
+            }
         }
         let alike = alike.into_iter().filter(|(_, alike)| *alike);
         alike.map(|(record, _)| record).collect()
     }
+}
+
+/// Whether every mirrored case did the same as the record itself, to the other side.
+fn mirrored_are_images(cases: &[CaseRow]) -> bool {
+    let key = |case: &CaseRow| (case.record.clone(), case.scale.to_bits());
+    let own: BTreeMap<_, &CaseRow> = cases
+        .iter()
+        .filter(|case| !case.mirrored)
+        .map(|case| (key(case), case))
+        .collect();
+    let mut mirrored = cases.iter().filter(|case| case.mirrored);
+    mirrored.all(|case| {
+        let own = own.get(&key(case));
+        own.is_some_and(|own| case.is_mirror_image_of(own))
+    })
 }
 
 /// Names of the records.

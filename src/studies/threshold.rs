@@ -1,20 +1,19 @@
 //! Thresholds: the factors on a ground motion at which structures overturn.
 //!
 //! A stronger motion need not be a worse one: after impacts there are **bands** of factors that overturn with
-//! safe **gaps** between them. So factors are sampled upwards in equal strides, and bisection only finds the edge
-//! between two neighbours of which one overturns and the other does not. Bands and gaps that are narrower than a
+//! safe **gaps** between them, and where repetitions disagree **uncertain** ranges. So factors are sampled upwards in equal
+//! strides, and bisection only finds the edge between two neighbours of different verdicts. Ranges that are narrower than a
 //! stride may be missed.
 
 use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use super::ending::Ending;
+use super::ending::{Ending, Verdict, doubt};
 use super::runner::{Progress, Runner, RunnerError};
 use crate::argument::{ArgumentError, above, within};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Model, Request, SimulationError};
 
 /// How closely an edge is enclosed, as a part of its factor: far closer than any motion of the ground is known,
@@ -114,10 +113,16 @@ impl FactorSample {
         let summary = ground
             .scaled(factor)
             .map_err(SimulationError::from)
-            .and_then(|ground| model.simulate(&ground, request, None));
-        let peak_rotation_rad = summary.as_ref().ok().map(Summary::largest_rotation_rad);
+            .and_then(|ground| {
+                let summary = model.simulate(&ground, request, None)?;
+                let doubt = doubt(model, &ground, request, &summary);
+                Ok((summary, doubt))
+            });
+        let peak_rotation_rad = summary.as_ref().ok().map(|(s, _)| s.largest_rotation_rad());
         let result = match summary {
-            Ok(summary) => Ending::from_summary(&summary).map_err(NoHistory::Failed),
+            Ok((summary, doubt)) => {
+                Ending::from_summary(&summary, doubt).map_err(NoHistory::Failed)
+            }
             Err(error @ SimulationError::FreeFall { .. }) => {
                 Err(NoHistory::GroundFalls(error.to_string()))
             }
@@ -130,12 +135,10 @@ impl FactorSample {
         }
     }
 
-    /// Whether the structure overturns; `None` where there is no history. What is still rocking at the end does
-    /// not.
+    /// Whether the structure overturns, as far as that is known; `None` where there is no history.
     #[must_use]
-    pub fn overturns(&self) -> Option<bool> {
-        let ending = self.result.as_ref().ok()?;
-        Some(matches!(ending.outcome, Outcome::Overturned(_)))
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.result.as_ref().ok().map(Ending::verdict)
     }
 }
 
@@ -169,19 +172,50 @@ pub struct FactorRange {
 pub struct Threshold {
     /// Name of the model.
     pub model: String,
-    /// The histories at all factors, ascending; where the search for an edge failed, that history is among them.
+    /// The histories at all factors, ascending; where the search for an edge failed or met the third verdict, that history
+    /// is among them.
     pub samples: Vec<FactorSample>,
-    /// Where it overturns, ascending.
-    pub bands: Vec<FactorRange>,
-    /// Where it survives between bands, ascending.
-    pub gaps: Vec<FactorRange>,
+    /// The ranges of one verdict, ascending.
+    pub ranges: Vec<(Verdict, FactorRange)>,
 }
 
 impl Threshold {
-    /// The least factor at which it overturns; `None` if it never does.
+    fn of(&self, wanted: Verdict) -> Vec<FactorRange> {
+        let ranges = self.ranges.iter();
+        ranges
+            .filter_map(|(verdict, range)| (*verdict == wanted).then_some(*range))
+            .collect()
+    }
+
+    /// Where it overturns, ascending.
+    #[must_use]
+    pub fn bands(&self) -> Vec<FactorRange> {
+        self.of(Verdict::Overturns)
+    }
+
+    /// Where it survives between bands, ascending.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<FactorRange> {
+        let bands = self.bands();
+        let between = |gap: &FactorRange| {
+            bands.iter().any(|band| band.to < gap.from)
+                && bands.iter().any(|band| band.from > gap.to)
+        };
+        let mut gaps = self.of(Verdict::Survives);
+        gaps.retain(between);
+        gaps
+    }
+
+    /// Where it is uncertain whether it overturns, ascending.
+    #[must_use]
+    pub fn uncertain(&self) -> Vec<FactorRange> {
+        self.of(Verdict::Uncertain)
+    }
+
+    /// The least factor at which it certainly overturns; `None` if it never does.
     #[must_use]
     pub fn lowest_factor(&self) -> Option<f64> {
-        self.bands.first().map(|band| band.from)
+        self.bands().first().map(|band| band.from)
     }
 }
 
@@ -227,33 +261,34 @@ pub fn thresholds(
     let mut changes: Vec<Change<'_>> = Vec::new();
     for (index, samples) in samples.iter().enumerate() {
         let pairs = samples.windows(2);
-        let pairs = pairs.filter(|pair| changes_outcome(&pair[0], &pair[1]));
+        let pairs = pairs.filter(|pair| changes_verdict(&pair[0], &pair[1]));
         changes.extend(pairs.map(|pair| (index, &pair[0], &pair[1])));
     }
-    let edge = |index: usize| shaking.edge(changes[index]);
-    let edges = runner.each(changes.len(), edge, |progress| {
+    let search = |index: usize| shaking.search(changes[index]);
+    let found = runner.each(changes.len(), search, |progress| {
         watch(Progress {
             done: sampled + progress.done,
             all: sampled + progress.all,
         })
     })?;
 
-    let mut results: Vec<(Vec<FactorSample>, Vec<Edge>)> = samples
+    let mut results: Vec<Found> = samples
         .into_iter()
-        .map(|samples| (samples.to_vec(), Vec::new()))
+        .map(|samples| Found {
+            samples: samples.to_vec(),
+            edges: Vec::new(),
+        })
         .collect();
-    for ((index, ..), edge) in changes.iter().zip(edges) {
-        let (samples, edges) = &mut results[*index];
-        match edge {
-            Ok(edge) => edges.push(edge),
-            Err(failed) => samples.push(failed),
-        }
+    for ((index, ..), found) in changes.iter().zip(found) {
+        results[*index].samples.extend(found.samples);
+        results[*index].edges.extend(found.edges);
     }
     let results = models.iter().zip(results);
     Ok(results
-        .map(|((name, _), (mut samples, edges))| {
+        .map(|((name, _), mut found)| {
+            let samples = &mut found.samples;
             samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-            Threshold::new((*name).to_owned(), samples, &edges)
+            Threshold::new((*name).to_owned(), found)
         })
         .collect())
 }
@@ -271,44 +306,69 @@ impl Shaking<'_> {
         FactorSample::of(self.models[model].1, self.ground, self.request, factor)
     }
 
-    /// The edge between neighbours of different outcomes, or the history that failed in the search.
-    fn edge(&self, (model, below, above): Change<'_>) -> Result<Edge, FactorSample> {
+    /// The edge between neighbours of different verdicts; or the two on both sides of a history of the third verdict that the
+    /// search met; or the history at which it failed.
+    fn search(&self, (model, below, above): Change<'_>) -> Found {
         let width = Width::Relative(EDGE_WIDTH);
-        try_bisect(below.factor, above.factor, width, |factor| {
+        let edge = try_bisect(below.factor, above.factor, width, |factor| {
             let sample = self.sample(model, factor);
-            match sample.overturns() {
-                None => Err(sample),
-                overturns => Ok(overturns == above.overturns()),
+            match sample.verdict() {
+                verdict if verdict == below.verdict() => Ok(false),
+                verdict if verdict == above.verdict() => Ok(true),
+                _ => Err(sample),
             }
-        })
+        });
+        let met = match edge {
+            Ok(edge) => {
+                return Found {
+                    samples: Vec::new(),
+                    edges: vec![edge],
+                };
+            }
+            Err(met) => met,
+        };
+        let mut found = Found::default();
+        if met.verdict().is_some() {
+            for sides in [(model, below, &met), (model, &met, above)] {
+                let side = self.search(sides);
+                found.samples.extend(side.samples);
+                found.edges.extend(side.edges);
+            }
+        }
+        found.samples.push(met);
+        found
     }
 }
 
-/// Neighbouring samples of a model, given by its index, of which one overturns and the other does not.
+/// Neighbouring samples of a model, given by its index, of different verdicts.
 type Change<'a> = (usize, &'a FactorSample, &'a FactorSample);
 
-/// Neighbouring factors of different outcomes, closely together.
-type Edge = (f64, f64);
+/// Samples, and pairs of neighbouring factors of different verdicts, closely together.
+#[derive(Default)]
+struct Found {
+    samples: Vec<FactorSample>,
+    edges: Vec<(f64, f64)>,
+}
 
-fn changes_outcome(below: &FactorSample, above: &FactorSample) -> bool {
-    let both = below.overturns().zip(above.overturns());
+fn changes_verdict(below: &FactorSample, above: &FactorSample) -> bool {
+    let both = below.verdict().zip(above.verdict());
     both.is_some_and(|(below, above)| below != above)
 }
 
 impl Threshold {
-    fn new(model: String, samples: Vec<FactorSample>, edges: &[Edge]) -> Self {
+    fn new(model: String, Found { samples, edges }: Found) -> Self {
         let between = |below: &FactorSample, above: &FactorSample| {
             let mut edges = edges.iter();
             edges.find(|(low, high)| below.factor <= *low && *high <= above.factor)
         };
-        let mut ranges: Vec<(bool, FactorRange)> = Vec::new();
+        let mut ranges = Vec::new();
         let mut start = 0_usize;
-        for run in samples.chunk_by(|a, b| a.overturns() == b.overturns()) {
+        for run in samples.chunk_by(|a, b| a.verdict() == b.verdict()) {
             let (first, last) = (&run[0], &run[run.len() - 1]);
             let before = start.checked_sub(1).map(|index| &samples[index]);
             start += run.len();
             let after = samples.get(start);
-            let Some(overturns) = first.overturns() else {
+            let Some(verdict) = first.verdict() else {
                 continue;
             };
             let (from, from_end) = match before.map(|before| between(before, first)) {
@@ -327,22 +387,12 @@ impl Threshold {
                 from_end,
                 to_end,
             };
-            ranges.push((overturns, range));
+            ranges.push((verdict, range));
         }
-        let of = |wanted: bool| {
-            let ranges = ranges.iter();
-            ranges.filter_map(move |(overturns, range)| (*overturns == wanted).then_some(*range))
-        };
-        let bands: Vec<FactorRange> = of(true).collect();
-        let gaps = of(false).filter(|gap| {
-            bands.iter().any(|band| band.to < gap.from)
-                && bands.iter().any(|band| band.from > gap.to)
-        });
         Self {
             model,
-            gaps: gaps.collect(),
-            bands,
             samples,
+            ranges,
         }
     }
 }

@@ -113,6 +113,8 @@ pub(super) fn run(
     let course = engine.course_mut();
     course.end_cycle(None);
     course.run.end_s = course.time;
+    course.run.longest_step_s = settings.longest_step_s;
+    course.run.shortest_step_s = settings.shortest_step_s;
     course.run.cost.longest_step = Elapsed(longest_step);
     Ok(engine.finish())
 }
@@ -152,6 +154,8 @@ impl Course {
             run: Run {
                 outcome: Outcome::Rocking,
                 end_s: 0.0,
+                longest_step_s: 0.0,
+                shortest_step_s: 0.0,
                 peaks_rad: vec![0.0; row.blocks().len()],
                 peak_potential_j: 0.0,
                 largest_kinetic_j: 0.0,

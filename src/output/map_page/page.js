@@ -39,7 +39,8 @@
       .filter(([, value]) => !Number.isNaN(value))
       .map(([name, value]) => `${name} ${Number(value.toPrecision(5))}`);
     const place = data.axes.map(({ label }, i) => `${label} ${Number([xs[column], ys[line]][i].toPrecision(6))}`);
-    find("numbers").textContent = `${place.join(", ")}: ${[data.labels[kinds[index]], ...numbers].join(", ")}`;
+    const label = data.doubts[index] ? `uncertain: ${data.doubts[index]}` : data.labels[kinds[index]];
+    find("numbers").textContent = `${place.join(", ")}: ${[label, ...numbers].join(", ")}`;
     find("command").textContent = command(column, line);
   }
 
