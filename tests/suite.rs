@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod common;
 mod program;
 
 use std::f64::consts::PI;
@@ -12,10 +13,12 @@ use std::path::Path;
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
-use archrock::output::suite::{Heading, draw, remarks, to_json, write_fragility};
+use archrock::output::ida;
+use archrock::output::suite::{Heading, draw, remarks, to_json, write_fragility, write_table};
 use archrock::scenario::{Form, Layout, Measure, Scenario};
-use archrock::studies::ending::{Ending, PeakRotation};
+use archrock::studies::ending::{Ending, PeakRotation, Steps, Verdict};
 use archrock::studies::suite::{CaseRow, SuiteFragility};
+use common::pairs;
 use program::{done, refused, scenarios};
 use serde_json::Value;
 
@@ -533,6 +536,187 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         }),
     });
     SuiteFragility::new(Measure::Scale, rows.collect())
+}
+
+/// Cases of records and levels that overturn (`x`), survive (`.`) or are uncertain (`~`, whose own history overturned), as many
+/// levels as letters; of a record with a minus sign mirrored.
+fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
+    let case = |(record, letters): &(&str, &str)| {
+        let mirrored = record.starts_with('-');
+        let record = record.trim_start_matches('-').to_owned();
+        let rows = letters.bytes().zip(1..).map(move |(letter, level)| {
+            let side = if mirrored { Sway::Right } else { Sway::Left };
+            let outcome = match letter {
+                b'.' => Outcome::Rest,
+                _ => Outcome::Overturned(side),
+            };
+            let uncertain = (letter == b'~').then(|| "overturns; survives so".to_owned());
+            CaseRow {
+                record: record.clone(),
+                mirrored,
+                scale: f64::from(level),
+                peak_g: 0.3 * f64::from(level),
+                result: Ok(Ending {
+                    outcome,
+                    outcome_time_s: 1.0,
+                    impacts: 0,
+                    peak: PeakRotation::Rad(0.5),
+                    energy_defect_ratio: 0.0,
+                    steps: Some(Steps {
+                        longest_s: 1e-4,
+                        shortest_s: 1e-5,
+                    }),
+                    uncertain,
+                }),
+            }
+        });
+        rows.collect::<Vec<_>>()
+    };
+    records.iter().flat_map(case).collect()
+}
+
+fn free_heading() -> Heading {
+    let scenario = "[free_hinges]\n[suite]\nscales = [1.0, 2.0]\n";
+    Heading::of_resolved(scenario).unwrap()
+}
+
+/// With uncertain cases as survived and as overturned the results are those of suites in which they did.
+#[test]
+fn uncertain_cases_are_taken_both_ways() {
+    let with = |letter: &str| {
+        let records = [
+            ("a", "..~xx"),
+            ("b", ".~.xx"),
+            ("c", "..xx~"),
+            ("d", ".xx.x"),
+        ];
+        let records = records.map(|(record, letters)| (record, letters.replace('~', letter)));
+        let records: Vec<_> = records.iter().map(|(a, b)| (*a, b.as_str())).collect();
+        SuiteFragility::new(Measure::Scale, levels_of(&records))
+    };
+    let (doubtful, survived, overturned) = (with("~"), with("."), with("x"));
+    assert_eq!(doubtful.fit, survived.fit);
+    assert_eq!(doubtful.fit_with_uncertain, overturned.fit);
+    assert!(doubtful.fit.as_ref().unwrap().median > overturned.fit.as_ref().unwrap().median);
+    assert_eq!(survived.fit, survived.fit_with_uncertain);
+    assert!(doubtful.has_uncertain() && !survived.has_uncertain());
+    for (level, (low, high)) in pairs(
+        &doubtful.levels,
+        &pairs(&survived.levels, &overturned.levels).collect::<Vec<_>>(),
+    ) {
+        assert_eq!(level.cases, 4);
+        assert_eq!(level.fraction(), low.fraction());
+        assert_eq!(level.fraction_with_uncertain(), high.fraction());
+        assert_eq!(level.curve, low.curve);
+        assert_eq!(level.curve_with_uncertain, high.curve);
+    }
+    assert_eq!(doubtful.always(Verdict::Survives), [""; 0]);
+    let survivals = doubtful.survivals();
+    assert_eq!(survivals[0].survival.overturns_from, Some(4.0));
+    assert_eq!(survivals[0].survival.uncertain, [[3.0, 3.0]]);
+
+    let mut table = Vec::new();
+    write_fragility(&mut table, &free_heading(), &doubtful).unwrap();
+    let mut table = csv::Reader::from_reader(&*table);
+    let header: Vec<_> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(header[9..11], ["uncertain", "fraction_with_uncertain"]);
+    let rows: Vec<_> = table.records().map(Result::unwrap).collect();
+    let counts: Vec<_> = rows.iter().map(|row| (&row[2], &row[9])).collect();
+    assert_eq!(
+        counts,
+        [("0", "0"), ("1", "1"), ("2", "1"), ("3", "0"), ("3", "1")]
+    );
+    for row in &rows {
+        let probability = |column: usize| number(&row[column]);
+        assert!(
+            probability(6) < probability(11) || &row[0] == "5.0",
+            "{row:?}"
+        );
+        assert!(number(&row[5]) <= number(&row[10]));
+    }
+    let json = to_json(&free_heading(), &doubtful).unwrap();
+    assert_eq!(
+        (&json["overturned"], &json["uncertain"]),
+        (&9.into(), &3.into())
+    );
+    assert_eq!(json["median"], survived.fit.as_ref().unwrap().median);
+    let with_uncertain = &json["with_uncertain_as_overturned"];
+    assert_eq!(
+        with_uncertain["median"],
+        overturned.fit.as_ref().unwrap().median
+    );
+    assert_eq!(json["uncertain_cases"].as_array().unwrap().len(), 3);
+    assert_eq!(json["uncertain_cases"][0]["case"], "a, scale 3.0");
+    assert_eq!(json["longest_step_s"]["max"], 1e-4);
+    let table = {
+        let mut table = Vec::new();
+        write_table(&mut table, &free_heading(), &doubtful.cases).unwrap();
+        String::from_utf8(table).unwrap()
+    };
+    // Neither side nor impacts before overturning.
+    assert_eq!(table.matches(",uncertain,,0,,1.0,").count(), 3);
+
+    let named =
+        |picture: &str, name: &str| picture.matches(&format!("data-name=\"{name}\"")).count();
+    let picture = draw(Figure::SCREEN, &free_heading(), &doubtful);
+    for name in ["fit", "fit-with-uncertain", "band", "between"] {
+        assert_eq!(named(&picture, name), 1, "{name}");
+    }
+    assert_eq!(named(&picture, "uncertain"), 3);
+    assert!(picture.contains("3 uncertain cases taken as survived"));
+    let plain = draw(Figure::SCREEN, &free_heading(), &survived);
+    for name in ["fit-with-uncertain", "between", "uncertain"] {
+        assert_eq!(named(&plain, name), 0, "{name}");
+    }
+    let curves = ida::draw(Figure::SCREEN, &free_heading(), &doubtful);
+    assert_eq!(named(&curves, "uncertain"), 3);
+}
+
+/// What a mirrored record did to the last bit is no further evidence; anything else is, of the same record.
+#[test]
+fn mirrored_records_count_where_they_are_not_mirror_images() {
+    let own = [("a", "..xx"), ("b", ".x.x"), ("c", ".xxx")];
+    let alone = SuiteFragility::new(Measure::Scale, levels_of(&own));
+    let images = [
+        own[0],
+        ("-a", "..xx"),
+        own[1],
+        ("-b", ".x.x"),
+        own[2],
+        ("-c", ".xxx"),
+    ];
+    let images = SuiteFragility::new(Measure::Scale, levels_of(&images));
+    assert!(!images.mirrored_count);
+    assert_eq!((&images.fit, &images.levels), (&alone.fit, &alone.levels));
+
+    let other = [
+        own[0],
+        ("-a", "..x."),
+        own[1],
+        ("-b", ".x.x"),
+        own[2],
+        ("-c", ".xxx"),
+    ];
+    let other = SuiteFragility::new(Measure::Scale, levels_of(&other));
+    assert!(other.mirrored_count);
+    assert_eq!((other.record_count(), other.levels[0].cases), (3, 6));
+    // Each sign is a case, and both are of one record, which the errors by record take for dependent: against the same cases
+    // of six records they are larger.
+    let six = [
+        own[0],
+        ("d", "..x."),
+        own[1],
+        ("e", ".x.x"),
+        own[2],
+        ("f", ".xxx"),
+    ];
+    let six = SuiteFragility::new(Measure::Scale, levels_of(&six));
+    let (other, six) = (other.fit.unwrap(), six.fit.unwrap());
+    assert_eq!(
+        (other.median, other.independent),
+        (six.median, six.independent)
+    );
+    assert!(other.clustered.unwrap().median > six.clustered.unwrap().median);
 }
 
 /// The heading of a suite with linear levels.

@@ -6,6 +6,7 @@
 mod common;
 mod program;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -14,7 +15,9 @@ use std::time::Duration;
 
 use archrock::dynamics::hybrid::engine::EngineError;
 use archrock::dynamics::hybrid::integrator::Cost;
-use archrock::output::threshold::outcome;
+use archrock::dynamics::model::Repetition;
+use archrock::output::Figure;
+use archrock::output::threshold::{draw, outcome};
 use archrock::studies::ending::Verdict;
 use archrock::studies::runner::{Progress, Runner, RunnerError};
 use archrock::studies::threshold::{
@@ -232,6 +235,103 @@ impl Model for Rule {
             free_hinges: None,
         })
     }
+}
+
+/// A rule, and what a repetition says instead.
+#[derive(Debug)]
+struct Doubtful {
+    own: fn(f64) -> Option<bool>,
+    repeated: fn(f64) -> Option<bool>,
+}
+
+impl Model for Doubtful {
+    fn bodies(&self) -> Vec<String> {
+        vec![String::new()]
+    }
+
+    fn incipient_acceleration_g(&self, _: Sway) -> Option<f64> {
+        None
+    }
+
+    fn repetitions(&self) -> Vec<Repetition> {
+        let model = Box::new(Rule::new(self.repeated));
+        let name = "another rule";
+        vec![Repetition { name, model }]
+    }
+
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+        recorder: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError> {
+        Rule::new(self.own).simulate(ground, request, recorder)
+    }
+}
+
+/// Where the repetition disagrees or fails is neither overturned nor survived, and the edges of that are found like others,
+/// also where neighbouring samples lie on both sides of it.
+#[test]
+fn uncertain_factors_are_ranges_of_their_own() {
+    let doubtful = Doubtful {
+        own: |x| Some((2.0..3.0).contains(&x) || x >= 4.0),
+        // Overturns a little earlier, and later; and fails somewhere.
+        repeated: |x| {
+            let fails = (6.0..6.5).contains(&x);
+            (!fails).then_some((1.99..3.0).contains(&x) || x >= 4.4)
+        },
+    };
+    let threshold = found(&doubtful, &unit_pulse(), 1.0, &factors(1.0, 8.0, 0.1));
+    let expected = [
+        (Verdict::Survives, 1.0, 1.99),
+        (Verdict::Uncertain, 1.99, 2.0),
+        (Verdict::Overturns, 2.0, 3.0),
+        (Verdict::Survives, 3.0, 4.0),
+        (Verdict::Uncertain, 4.0, 4.4),
+        (Verdict::Overturns, 4.4, 6.0),
+        (Verdict::Uncertain, 6.0, 6.5),
+        (Verdict::Overturns, 6.5, 8.0),
+    ];
+    assert_eq!(threshold.ranges.len(), expected.len());
+    for ((verdict, range), (other, from, to)) in pairs(&threshold.ranges, &expected) {
+        assert_eq!(verdict, other);
+        assert!((range.from / from - 1.0).abs() < EDGE_WIDTH, "{range:?}");
+        assert!((range.to / to - 1.0).abs() < EDGE_WIDTH, "{range:?}");
+    }
+    assert_eq!((threshold.bands().len(), threshold.gaps().len()), (3, 1));
+    // No sample in strides is from 1.99 to 2: the search met one.
+    let strides = factors(1.0, 8.0, 0.1).values();
+    let met: Vec<_> = threshold
+        .samples
+        .iter()
+        .filter(|sample| !strides.contains(&sample.factor))
+        .collect();
+    assert_eq!(met.len(), 1);
+    assert_eq!(met[0].verdict(), Some(Verdict::Uncertain));
+    let reasons: BTreeSet<_> = threshold
+        .samples
+        .iter()
+        .filter_map(|sample| sample.result.as_ref().unwrap().uncertain.clone())
+        .collect();
+    let failed = "overturns; failed with another rule: at 1 s";
+    assert_eq!(reasons.len(), 3);
+    assert!(reasons.contains("survives; overturns with another rule"));
+    assert!(reasons.contains("overturns; survives with another rule"));
+    assert!(
+        reasons.iter().any(|reason| reason.starts_with(failed)),
+        "{reasons:?}"
+    );
+    assert_eq!(threshold.lowest_factor(), Some(threshold.bands()[0].from));
+
+    let picture = draw(
+        Figure::SCREEN,
+        "Title",
+        0.1,
+        &factors(1.0, 8.0, 0.1),
+        &[threshold],
+    );
+    assert_eq!(picture.matches("data-name=\"model uncertain\"").count(), 3);
+    assert!(picture.contains("uncertain whether it overturns"));
 }
 
 fn unit_pulse() -> GroundMotion {

@@ -226,10 +226,12 @@ const FAR_FROM_OVERTURNING: f64 = 0.5;
 /// Whether repetitions can be spared: it never moved, it overturned before it changed side, up to which all ways agree, or it
 /// survived far from overturning.
 fn is_plain(own: &Summary) -> bool {
-    let half_cycles = own.free_hinges.as_ref().map(|run| run.half_cycles.len());
     match own.outcome {
         Outcome::NeverMoved => true,
-        Outcome::Overturned(_) => half_cycles <= Some(1),
+        Outcome::Overturned(_) => own
+            .free_hinges
+            .as_ref()
+            .is_some_and(|run| run.half_cycles.len() <= 1),
         Outcome::Rest | Outcome::StillRocking => own
             .peak_potential_over_barrier
             .is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING),
