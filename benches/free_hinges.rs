@@ -13,6 +13,9 @@ use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::joints::Placement;
+use archrock::scenario::Scenario;
+use archrock::studies::map::OverturningMap;
+use archrock::studies::runner::Study as _;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 
@@ -105,21 +108,22 @@ fn history_of_the_semicircle(bencher: Bencher) {
         .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ()).map(|r| r.end_s));
 }
 
-/// A grid of 6 x 6 pulses.
+/// A map of 6 x 6 pulses as the study computes it, with its repetitions: cells a second on one core.
 #[divan::bench(args = [7, 36], sample_count = 2, sample_size = 1)]
 fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
-    let row = arch(180.0, voussoirs, 5.0);
-    let settings = Settings::to_landings(&row, GRAVITY_M_S2, 30.0);
+    let text = format!(
+        "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = {voussoirs}\n\
+         [free_hinges]\n[ground.rectangular]\namplitude_g = -0.3\nduration_s = 0.2\n\
+         [simulation]\nduration_s = 30.0\n[map]\n\
+         duration_s = {{ from = 0.1, to = 0.5, count = 6 }}\n\
+         amplitude_g = {{ from = -0.65, to = -0.15, count = 6 }}\n"
+    );
+    let scenario = Scenario::parse(&text, "map.toml").expect("a scenario");
     bencher.counter(ItemsCount::new(36_usize)).bench(|| {
-        let cells = (0..36).map(|cell| (f64::from(cell / 6), f64::from(cell % 6)));
-        let runs = cells.map(|(x, y)| {
-            let amplitude = -(0.15 + 0.1 * x) * GRAVITY_M_S2;
-            let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude, 0.1 + 0.08 * y, 0.0)
-                .expect("a pulse");
-            simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ())
-                .map_or(0, |r| r.cost.steps)
-        });
-        runs.sum::<usize>()
+        let map = OverturningMap::new(&scenario).expect("a map");
+        (0..map.count())
+            .map(|cell| map.row(cell))
+            .collect::<Vec<_>>()
     });
 }
 

@@ -158,8 +158,8 @@ fn map_files(map: &OverturningMap<'_>, rows: Vec<MapRow>) -> PyResult<Files> {
     let title = scenario.title.as_deref().unwrap_or("Overturning map");
     let look = written::Look::of(Figure::SCREEN);
     let picture = written::draw(title, map, &cells, &boundaries, look);
-    let failures = written::failures(map, &cells, &boundaries);
-    let summary = output::results::study_summary(scenario, cells.len(), &failures);
+    let remarks = written::remarks(map, &cells, &boundaries);
+    let summary = output::results::study_summary(scenario, cells.len(), &remarks);
     let mut files = Vec::new();
     if MapWithBoundary::new(map).has_boundary() {
         let mut boundary = Vec::new();
@@ -187,8 +187,8 @@ fn spectrum_files(
     use output::spectrum as written;
     let title = scenario.title.as_deref().unwrap_or("Overturning spectrum");
     let picture = written::draw(Figure::SCREEN, title, spectrum, rows);
-    let failures = written::failures(rows);
-    let summary = output::results::study_summary(scenario, rows.len(), &failures);
+    let remarks = written::remarks(rows);
+    let summary = output::results::study_summary(scenario, rows.len(), &remarks);
     let mut table = Vec::new();
     written::write_table(&mut table, rows).map_err(not_written)?;
     Ok(vec![
@@ -202,7 +202,7 @@ fn suite_files(heading: &Heading, rows: Vec<CaseRow>) -> PyResult<Files> {
     use output::suite as written;
     let results = SuiteFragility::new(heading.measure, rows);
     let mut levels = Vec::new();
-    written::write_fragility(&mut levels, &results).map_err(not_written)?;
+    written::write_fragility(&mut levels, heading, &results).map_err(not_written)?;
     let json = written::to_json(heading, &results).map_err(not_written)?;
     let picture = written::draw(Figure::SCREEN, heading, &results);
     let curves = output::ida::draw(Figure::SCREEN, heading, &results);

@@ -147,8 +147,13 @@ class OverturningMap(Results):
 
     @property
     def outcome(self) -> npt.NDArray[np.str_]:
-        """What became of each cell, as in ``map.csv``, shape ``(len(x), len(y))``."""
+        """What became of each cell, as in ``map.csv``, ``uncertain`` included, shape ``(len(x), len(y))``."""
         return self._plane("outcome")
+
+    @property
+    def uncertain(self) -> npt.NDArray[np.bool_]:
+        """Of which cells it is uncertain whether they overturn, shape ``(len(x), len(y))``."""
+        return np.asarray(self.outcome == "uncertain")
 
     @property
     def impacts(self) -> npt.NDArray[np.float64]:
@@ -182,12 +187,20 @@ class Suite(Results):
 
     @property
     def fragility(self) -> dict[str, npt.NDArray[Any]]:
-        """By intensity: cases, how many overturned, and the curve with its 95 % band, as ``fragility.csv``."""
+        """By intensity: cases, how many overturned, and the curve with its 95 % band, as ``fragility.csv``.
+
+        With free hinges also the number of uncertain cases, and ``..._with_uncertain``: the same with these as overturned.
+        """
         return self.columns("fragility.csv")
+
+    @property
+    def uncertain(self) -> npt.NDArray[np.bool_]:
+        """Of which cases it is uncertain whether they overturn, one entry a row of ``suite.csv``."""
+        return np.asarray(self.columns()["outcome"] == "uncertain")
 
 
 class Threshold(Results):
-    """Factors on a ground motion that overturn a structure: bands with safe gaps between them."""
+    """Factors on a ground motion that overturn a structure: bands, safe gaps between them, and uncertain ranges."""
 
     __slots__ = ()
 
@@ -216,6 +229,12 @@ class Threshold(Results):
         """The safe ranges between bands, ascending, as in ``threshold.json``."""
         gaps: list[dict[str, Any]] = self._model()["gaps"]
         return gaps
+
+    @property
+    def uncertain(self) -> list[dict[str, Any]]:
+        """The ranges in which it is uncertain whether it overturns, ascending, as in ``threshold.json``."""
+        ranges: list[dict[str, Any]] = self._model()["uncertain"]
+        return ranges
 
 
 _KINDS: dict[str, type[Results]] = {"map": OverturningMap, "spectrum": Spectrum, "suite": Suite}
@@ -291,7 +310,7 @@ def overturning_map(
         axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``mean_radius_m``,
             ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``, of a record ``scale`` or ``peak_g``,
             or any number of the scenario by its table and key, such as ``column.width_m``.
-        spread: with free hinges, whether every cell is computed with half and with double steps as well.
+        spread: with free hinges, whether every cell is repeated in full, and its number of outcomes told, as in the column ``spread``.
         threads: how many threads work; ``None``: as many as there are processors.
         progress: called on this thread with the numbers of cells that are done and of all.
         settings: as of :func:`simulate`.
