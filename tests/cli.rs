@@ -279,7 +279,7 @@ fn every_command_refuses_wrong_input_with_exit_code_two() {
         &["merge", "none.part"],
         &["none.part: cannot be read"],
     );
-    refused(folder, &["merge", "."], &[".: cannot be read"]);
+    refused(folder, &["merge", "."], &[".: is not a file"]);
     refused(
         folder,
         &["merge", "s.toml"],

@@ -148,9 +148,10 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
         format!(
             "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 2\n\
              [free_hinges]\nlongest_step_s = 2e-2\nshortest_step_s = 1e-2\n\
-             [ground.one_sine]\namplitude_g = 0.5\nduration_s = 1.0\n[simulation]\nduration_s = 8.0\n\
+             [ground.one_sine]\namplitude_g = 0.5\nduration_s = 1.0\n\
+             [simulation]\nduration_s = 8.0\noutput_step_s = 1.0\n\
              [map]\nduration_s = [0.8, 1.0]\n\
-             amplitude_g = {{ from = 0.3, to = 0.9, count = 10 }}\n{spread}"
+             amplitude_g = {{ from = 0.3, to = 0.9, count = 100 }}\n{spread}"
         )
     };
     let scenario = parse(&text("spread = true"));
@@ -230,7 +231,8 @@ fn cells_and_cases_are_the_runs_of_the_same_scenario_to_the_last_bit() {
         assert_eq!(summary["outcome"], cell.outcome.name());
         assert_eq!(summary["outcome_time_s"], cell.outcome_time_s);
         assert_eq!(summary["impacts"], cell.impacts);
-        assert_eq!(summary["energy_defect_ratio"], cell.energy_defect_ratio);
+        // A run audits its samples too.
+        assert!(summary["energy_defect_ratio"].as_f64().unwrap() >= cell.energy_defect_ratio);
         assert_eq!(
             summary["largest_peak_rotation_rad"],
             cell.peak.rad().unwrap()
@@ -326,8 +328,9 @@ fn a_cell_that_fails_keeps_its_reason_to_the_end() {
     let found = steps_s.into_iter().find_map(|step_s| {
         let text = format!(
             "{ARCH}[free_hinges]\nlongest_step_s = {step_s}\n\
-             [ground.one_sine]\namplitude_g = 0.6\nduration_s = 0.5\n[simulation]\nduration_s = 4.0\n\
-             [map]\nduration_s = [0.4, 0.5]\namplitude_g = [0.1, 0.6, 1.0, 1.5]\n"
+             [ground.rectangular]\namplitude_g = 0.6\nduration_s = 0.2\n\
+             [simulation]\nduration_s = 4.0\noutput_step_s = 1.0\n\
+             [map]\nduration_s = [0.2, 0.3]\namplitude_g = [0.1, 0.5, 0.6, 0.8]\n"
         );
         let scenario = parse(&text);
         let map = OverturningMap::new(&scenario).unwrap();

@@ -313,7 +313,7 @@ fn uncertain_factors_are_ranges_of_their_own() {
         .iter()
         .filter_map(|sample| sample.result.as_ref().unwrap().uncertain.clone())
         .collect();
-    let failed = "overturns; failed with another rule: at 1 s";
+    let failed = "overturns; failed with another rule: more than 1 transitions by 1.0 s";
     assert_eq!(reasons.len(), 3);
     assert!(reasons.contains("survives; overturns with another rule"));
     assert!(reasons.contains("overturns; survives with another rule"));

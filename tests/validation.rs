@@ -18,7 +18,7 @@ use archrock::mechanics::masonry::{
     Dimensions, EllipticArch, Masonry, Material, Piers, PointedArch, Shape,
 };
 use archrock::mechanics::stability::{falls, onset};
-use program::{done, says_what_it_shows, scenarios};
+use program::{printed, says_what_it_shows, scenarios};
 use std::f64::consts::PI;
 
 /// The least number at which something holds that holds from there on, to 1e-6.
@@ -176,7 +176,7 @@ fn the_failure_domain_of_the_page_is_that_of_the_command() {
         let range = [
             "--from", &from, "--to", &to, "--stride", "0.03", "--out", "drums",
         ];
-        done(folder.path(), &[&arguments[..], &range[..]].concat());
+        printed(folder.path(), &[&arguments[..], &range[..]].concat());
         let results = fs::read_to_string(folder.path().join("drums/threshold.json")).unwrap();
         let results: serde_json::Value = serde_json::from_str(&results).unwrap();
         let factor = results["models"][0]["bands"][0]["from"].as_f64().unwrap();

@@ -132,7 +132,7 @@ pub(super) struct Fault {
 
 /// A piece of the file for a message: its first line, cut when long.
 pub(super) fn excerpt(text: &str) -> String {
-    const MAX_CHARS: usize = 60;
+    const MAX_CHARS: usize = 50;
     let line = text.trim().lines().next().unwrap_or_default();
     let mut short = shown(&line.chars().take(MAX_CHARS).collect::<String>());
     if line.chars().nth(MAX_CHARS).is_some() {
