@@ -243,7 +243,6 @@ fn second_peaks_converge() {
             *off += usize::from((ours / exact - 1.0).abs() > ratio);
         }
     }
-    println!("{off:?} of {compared}");
     assert!(
         off[0] <= compared / 10 && off[1] <= 1 + compared / 50,
         "{off:?} of {compared}"
