@@ -111,7 +111,7 @@ pub struct Changes<'a> {
 /// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scenario {
-    /// Free text for the results, as it is [shown].
+    /// Free text for the results, as it is [shown](fn@shown).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
     /// What stands on the ground.

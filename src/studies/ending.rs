@@ -4,7 +4,7 @@
 //! and where they do not agree on whether it overturns that is **uncertain**: neither overturned nor survived. To which side
 //! it overturns, and whether what survives has come to rest, does not count.
 //!
-//! Most repetitions can be spared, because nothing that follows an impact decides: of what [`is_plain`].
+//! Most repetitions can be spared, because nothing that follows an impact decides: of what `is_plain`.
 
 use std::ops::ControlFlow;
 

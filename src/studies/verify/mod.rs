@@ -2,7 +2,7 @@
 //!
 //! The mechanism that starts to a side is a chain of rigid bodies ([`Mechanism`]): its load multiplier, participating mass and
 //! capacity curve are compared with a spectrum ([`Spectrum`]) at each limit state. This study tells itself: [`to_json`] has every
-//! number, [`words`] the result, and [`page`] what another engineer needs to redo it by hand. Where the text of the Circolare
+//! number, [`words()`] the result, and [`page()`] what another engineer needs to redo it by hand. Where the text of the Circolare
 //! leaves room, what is done is among the [decisions](notes) that the page prints.
 
 mod mechanism;
