@@ -18,7 +18,7 @@ use archrock::mechanics::coulomb::{Along, Program};
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
-    Dimensions, GivenBlocks, Masonry, Material, Pier, Piers, PointedArch, Shape,
+    BasketArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier, Piers, PointedArch, Shape,
 };
 use archrock::mechanics::slip::{Contact, Faces, Position};
 use archrock::mechanics::stability;
@@ -878,6 +878,50 @@ fn random_histories_create_no_energy() {
     let bound = if given.is_some() { 1e-5 } else { 1e-6 };
     assert!(slipped > 10 && worst < bound, "{found}");
     assert!(unconverged * 100_000 <= steps, "{found}");
+}
+
+/// Long arches under fill much heavier than they are, near the least friction with which they stand: bounds of friction that follow the
+/// impulses swing there, by up to a fifth of the largest one. Coulomb's law holds at every step nevertheless.
+#[test]
+fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
+    let dimensions = |rise_m, thickness_m, voussoirs| Dimensions {
+        span_m: 8.0,
+        rise_m,
+        thickness_m,
+        voussoirs,
+        material: Material::default(),
+    };
+    let basket = |dimensions| {
+        Shape::BasketArch(BasketArch {
+            dimensions,
+            crown_deg: BasketArch::CROWN_DEG,
+        })
+    };
+    let elliptic = |dimensions| Shape::EllipticArch(EllipticArch { dimensions });
+    let (low, high) = (FillLevel::AboveSpringing(0.1), FillLevel::AboveCrown(4.0));
+    for (shape, level, density_kg_m3, excess, amplitude_g, duration_s, end_s) in [
+        (basket(dimensions(3.0, 0.5, 200)), low, 1e4, 0.1, -3.0, 0.2, 0.25),
+        (elliptic(dimensions(2.0, 0.5, 150)), high, 1e4, 1e-1, -1.0, 0.05, 0.08),
+        (basket(dimensions(2.0, 1.2, 150)), high, 1e5, 1e-6, -1.0, 0.05, 0.06),
+    ] {
+        let fill = Some(Fill {
+            level,
+            density_kg_m3,
+        });
+        let masonry = Masonry::new(shape, Piers::default(), fill, Vec::new()).unwrap();
+        let row = masonry.row();
+        let coefficient = least_coefficient(row).unwrap() * (1.0 + excess);
+        let peak = amplitude_g * GRAVITY;
+        let ground = GroundMotion::pulse(Pulse::HalfSine, peak, duration_s, 0.0).unwrap();
+        let settings = Settings {
+            friction_coefficient: Some(coefficient),
+            ..Settings::equal(row, GRAVITY, end_s)
+        };
+        let run = run(row, &ground, &settings);
+        assert!(slid(&run).unconverged == 0, "{coefficient} {:?}", slid(&run));
+        assert!(run.energy_defect_ratio < 1e-9, "{}", run.energy_defect_ratio);
+        assert!(slid(&run).friction_j > 0.0 && run.end_s > 0.99 * end_s);
+    }
 }
 
 /// Velocities of the blocks after a step by Coulomb's law as one linear complementarity problem of dense matrices: two unknowns for

@@ -126,7 +126,8 @@ pub enum FreeHingeError {
     },
     /// Friction was not found.
     #[error(
-        "at {time_s} s the bound of friction at a joint is wrong by {error:.1e} of the largest one"
+        "at {time_s} s the bound of friction at a joint is wrong by {error:.1e} of the largest one: give another \
+         longest_step_s in [free_hinges], or a friction_coefficient farther from the least one with which the row stands"
     )]
     Friction {
         /// When, in seconds.

@@ -8,13 +8,16 @@
 //!
 //! Where it does not, the bounds of friction are held at those of the last impulses (Tresca). That program is convex, and solved by
 //! projected Newton steps on its dual; from its modes Newton's method starts again, else the bounds follow the impulses. Bounds that do
-//! not settle, a case in a hundred thousand, are left to Lemke's method ([`crate::mechanics::complementarity`]).
+//! not settle, a case in a hundred thousand but for long rows near the least friction with which they stand, are left to an interior-point
+//! method (`interior`), and beyond that to Lemke's ([`crate::mechanics::complementarity`]).
 //! Whatever comes out never drives a slip and never pulls: an early stop makes a bound wrong, never the sign of the work.
 //!
 //! A small proximal term draws the impulses to those of the solution before. It settles them where the row does not, as at rest;
 //! where they jump, as at an impact, it leaves rates, which another solution from these impulses takes away.
 
-use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
+mod interior;
+
+use nalgebra::{DMatrix, Matrix3, RowVector3, Vector2, Vector3};
 
 use super::blocks::Row;
 use super::complementarity;
@@ -28,13 +31,11 @@ const PASSES: usize = 8;
 const SINGLE_PASSES: usize = 12;
 /// Steps of projected Newton on a program with given bounds.
 const BOUNDED_STEPS: usize = 60;
-/// How often bounds follow the impulses before the step counts as not converged.
-const BOUND_PASSES: usize = 16;
+/// How often bounds follow the impulses: those that do not settle soon swing.
+const BOUND_PASSES: usize = 5;
 /// Bounds that change by less than this part of the largest one are found.
 const SAME_BOUND: f64 = 1e-10;
-/// Passes after which bounds that have not settled swing.
-const SWINGING: usize = 5;
-/// Joints up to which Coulomb's law is solved as a complementarity problem where bounds do not settle.
+/// Joints up to which Lemke's method, whose work grows with their cube, is the last resort.
 const COMPLEMENTED: usize = 80;
 /// Part of the slope that a step along it has to achieve.
 const DESCENT: f64 = 1e-4;
@@ -101,6 +102,15 @@ enum Equation {
     Given(f64),
     /// Its impulse is so many times that at both ends.
     Friction(f64),
+}
+
+/// The equations of a joint: what its own impulses, those of the joint before and of the next one are multiplied by, and what
+/// comes out.
+struct Balance {
+    matrix: Matrix3<f64>,
+    coupling: Matrix3<f64>,
+    onward: Matrix3<f64>,
+    right: Vector3<f64>,
 }
 
 /// The program of a row, with all the memory that it needs, and the modes and impulses of the last solution.
@@ -370,42 +380,53 @@ impl Program {
         right
     }
 
-    /// Solves the equations for the impulses `target`, by elimination from left to right.
+    /// Solves the equations for the impulses `target`.
     fn balance(&mut self) {
+        self.sweep(|program, joint| {
+            let mut balance = Balance {
+                matrix: program.own[joint],
+                coupling: program.coupling(joint),
+                onward: program.next[joint],
+                right: -program.drive[joint],
+            };
+            for row in 0..3 {
+                match program.equations[joint][row] {
+                    Equation::Still => {
+                        let proximal = program.proximal(joint, row);
+                        balance.matrix[(row, row)] += proximal;
+                        balance.right[row] += proximal * program.before[joint][row];
+                        continue;
+                    }
+                    Equation::Given(value) => {
+                        balance.matrix.set_row(row, &RowVector3::zeros());
+                        balance.matrix[(row, row)] = 1.0;
+                        balance.right[row] = value;
+                    }
+                    Equation::Friction(factor) => {
+                        let friction = RowVector3::new(-factor, -factor, 1.0);
+                        balance.matrix.set_row(row, &friction);
+                        balance.right[row] = 0.0;
+                    }
+                }
+                balance.coupling.set_row(row, &RowVector3::zeros());
+                balance.onward.set_row(row, &RowVector3::zeros());
+            }
+            balance
+        });
+    }
+
+    /// Solves the equations of all joints for `target`, by elimination from left to right.
+    fn sweep(&mut self, system: impl Fn(&Self, usize) -> Balance) {
         let joints = self.own.len();
         let mut carried = Vector3::zeros();
         let mut gain = Matrix3::zeros();
         for joint in 0..joints {
-            let own = &self.own[joint];
-            let mut matrix = *own;
-            let mut right = -self.drive[joint];
-            let mut coupling = if joint == 0 {
-                Matrix3::zeros()
-            } else {
-                self.next[joint - 1].transpose()
-            };
-            let mut onward = self.next[joint];
-            for row in 0..3 {
-                match self.equations[joint][row] {
-                    Equation::Still => {
-                        let proximal = PROXIMAL * own[(row, row)];
-                        matrix[(row, row)] += proximal;
-                        right[row] += proximal * self.before[joint][row];
-                        continue;
-                    }
-                    Equation::Given(value) => {
-                        matrix.set_row(row, &nalgebra::RowVector3::zeros());
-                        matrix[(row, row)] = 1.0;
-                        right[row] = value;
-                    }
-                    Equation::Friction(factor) => {
-                        matrix.set_row(row, &nalgebra::RowVector3::new(-factor, -factor, 1.0));
-                        right[row] = 0.0;
-                    }
-                }
-                coupling.set_row(row, &nalgebra::RowVector3::zeros());
-                onward.set_row(row, &nalgebra::RowVector3::zeros());
-            }
+            let Balance {
+                mut matrix,
+                coupling,
+                onward,
+                mut right,
+            } = system(self, joint);
             if joint > 0 {
                 matrix -= coupling * gain;
                 right -= coupling * carried;
@@ -422,18 +443,35 @@ impl Program {
         }
     }
 
+    /// Compliance of a joint with the one before.
+    fn coupling(&self, joint: usize) -> Matrix3<f64> {
+        let before = joint.checked_sub(1);
+        before.map_or(Matrix3::zeros(), |before| self.next[before].transpose())
+    }
+
+    /// What the proximal term adds to the compliance of a row of a joint.
+    fn proximal(&self, joint: usize, row: usize) -> f64 {
+        PROXIMAL * self.own[joint][(row, row)]
+    }
+
     /// Rates that the impulses leave, with the proximal term.
     fn find_rates(&mut self) {
         for joint in 0..self.rates.len() {
-            let mut rate = self.drive[joint] + self.own[joint] * self.impulses[joint];
-            if let Some(before) = joint.checked_sub(1) {
-                rate += self.next[before].tr_mul(&self.impulses[before]);
-            }
-            if let Some(after) = self.impulses.get(joint + 1) {
-                rate += self.next[joint] * after;
-            }
+            let rate = self.drive[joint] + self.response(joint, &self.impulses);
             self.rates[joint] = rate + self.drawn(joint);
         }
+    }
+
+    /// Rates of a joint that the impulses alone give.
+    fn response(&self, joint: usize, impulses: &[Vector3<f64>]) -> Vector3<f64> {
+        let mut rate = self.own[joint] * impulses[joint];
+        if let Some(before) = joint.checked_sub(1) {
+            rate += self.next[before].tr_mul(&impulses[before]);
+        }
+        if let Some(after) = impulses.get(joint + 1) {
+            rate += self.next[joint] * after;
+        }
+        rate
     }
 
     /// Rates of a joint by the proximal term.
@@ -469,29 +507,33 @@ impl Program {
             if error <= SAME_BOUND {
                 return;
             }
-            self.move_bounds(pass);
-        }
-        if self.modes.len() <= COMPLEMENTED && self.complement() {
-            let modes = self.modes.clone();
-            if !self.newton(PASSES, false, tolerance, &mut solution.passes) {
-                // Modes on the edge to others do not confirm themselves, but the impulses are right.
-                self.impulses.copy_from_slice(&self.kept);
-                self.modes = modes;
+            for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
+                *bound = (self.coefficient * (impulse.x + impulse.y)).max(0.0);
             }
+        }
+        let impulses = self.kept.clone();
+        if self.interior(tolerance, &mut solution.passes)
+            || self.pivoted(tolerance, &mut solution.passes)
+        {
             solution.bound_error = 0.0;
             return;
         }
-        self.impulses.copy_from_slice(&self.kept);
+        self.impulses.copy_from_slice(&impulses);
         self.read_modes();
     }
 
-    /// Moves the bounds towards what the impulses allow: there, and halfway once that swings.
-    fn move_bounds(&mut self, pass: usize) {
-        let part = if pass < SWINGING { 1.0 } else { 0.5 };
-        for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
-            let allowed = self.coefficient * (impulse.x + impulse.y);
-            *bound = (*bound + part * (allowed - *bound)).max(0.0);
+    /// Modes and impulses by Lemke's method; false where the row is too long for it, or it fails.
+    fn pivoted(&mut self, tolerance: f64, passes: &mut usize) -> bool {
+        if self.modes.len() > COMPLEMENTED || !self.complement() {
+            return false;
         }
+        let modes = self.modes.clone();
+        if !self.newton(PASSES, false, tolerance, passes) {
+            // Modes on the edge to others do not confirm themselves, but the impulses are right.
+            self.impulses.copy_from_slice(&self.kept);
+            self.modes = modes;
+        }
+        true
     }
 
     /// Modes from Coulomb's law as a complementarity problem: `N` against the rates of the ends, friction to either side against
