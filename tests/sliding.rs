@@ -18,7 +18,8 @@ use archrock::mechanics::coulomb::{Along, Program};
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
-    BasketArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier, Piers, PointedArch, Shape,
+    BasketArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier,
+    Piers, PointedArch, Shape,
 };
 use archrock::mechanics::slip::{Contact, Faces, Position};
 use archrock::mechanics::stability;
@@ -900,9 +901,33 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
     let elliptic = |dimensions| Shape::EllipticArch(EllipticArch { dimensions });
     let (low, high) = (FillLevel::AboveSpringing(0.1), FillLevel::AboveCrown(4.0));
     for (shape, level, density_kg_m3, excess, amplitude_g, duration_s, end_s) in [
-        (basket(dimensions(3.0, 0.5, 200)), low, 1e4, 0.1, -3.0, 0.2, 0.25),
-        (elliptic(dimensions(2.0, 0.5, 150)), high, 1e4, 1e-1, -1.0, 0.05, 0.08),
-        (basket(dimensions(2.0, 1.2, 150)), high, 1e5, 1e-6, -1.0, 0.05, 0.06),
+        (
+            basket(dimensions(3.0, 0.5, 200)),
+            low,
+            1e4,
+            0.1,
+            -3.0,
+            0.2,
+            0.25,
+        ),
+        (
+            elliptic(dimensions(2.0, 0.5, 150)),
+            high,
+            1e4,
+            1e-1,
+            -1.0,
+            0.05,
+            0.08,
+        ),
+        (
+            basket(dimensions(2.0, 1.2, 150)),
+            high,
+            1e5,
+            1e-6,
+            -1.0,
+            0.05,
+            0.06,
+        ),
     ] {
         let fill = Some(Fill {
             level,
@@ -918,8 +943,16 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
             ..Settings::equal(row, GRAVITY, end_s)
         };
         let run = run(row, &ground, &settings);
-        assert!(slid(&run).unconverged == 0, "{coefficient} {:?}", slid(&run));
-        assert!(run.energy_defect_ratio < 1e-9, "{}", run.energy_defect_ratio);
+        assert!(
+            slid(&run).unconverged == 0,
+            "{coefficient} {:?}",
+            slid(&run)
+        );
+        assert!(
+            run.energy_defect_ratio < 1e-9,
+            "{}",
+            run.energy_defect_ratio
+        );
         assert!(slid(&run).friction_j > 0.0 && run.end_s > 0.99 * end_s);
     }
 }
