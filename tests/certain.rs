@@ -7,7 +7,7 @@ use archrock::dynamics::free_hinges::spread::Spread;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::Outcome;
-use archrock::dynamics::model::Model as _;
+use archrock::dynamics::model::Model;
 use archrock::{Request, Sway};
 use common::{GRAVITY, Random, noise, random_row};
 
@@ -125,4 +125,41 @@ fn what_is_called_certain_holds_with_other_steps() {
         counts.outcomes >= most && counts.first_peaks >= most,
         "{counts:?}"
     );
+}
+
+/// Where output times are closer than the longest step, they limit the steps; a repetition with other steps has others nevertheless.
+#[test]
+fn repetitions_have_other_steps_however_close_output_times_are() {
+    let row = random_row(&mut Random(7), 6);
+    for friction_coefficient in [None, Some(0.9)] {
+        let options = RowOptions {
+            friction_coefficient,
+            ..RowOptions::default()
+        };
+        let model = FreeHinges::new(row.clone()).unwrap();
+        let model = model.with_options(options).unwrap();
+        let onset_g = model.incipient_acceleration_g(Sway::Right).unwrap();
+        let ground =
+            GroundMotion::pulse(Pulse::HalfSine, 1.5 * onset_g * GRAVITY, 0.2, 0.0).unwrap();
+        let request = Request {
+            end_s: 0.3,
+            output_step_s: 2e-5 * (row.size_m() / GRAVITY).sqrt(),
+            ..Request::default()
+        };
+        let steps = |model: &dyn Model| {
+            let summary = model.simulate(&ground, &request, None).unwrap();
+            summary.cost.steps as f64
+        };
+        let own = steps(&model);
+        for other in model.repetitions() {
+            let factor = match other.name {
+                "half steps" => 2.0,
+                "double steps" => 0.5,
+                _ => continue,
+            };
+            let over = steps(&*other.model) / (factor * own);
+            // Steps also end at impacts.
+            assert!((0.8..1.25).contains(&over), "{} {over}", other.name);
+        }
+    }
 }

@@ -134,8 +134,10 @@ pub(super) struct Fault {
 pub(super) fn excerpt(text: &str) -> String {
     const MAX_CHARS: usize = 50;
     let line = text.trim().lines().next().unwrap_or_default();
-    let mut short = shown(&line.chars().take(MAX_CHARS).collect::<String>());
-    if line.chars().nth(MAX_CHARS).is_some() {
+    // What is escaped is longer.
+    let whole = shown(&line.chars().take(MAX_CHARS + 1).collect::<String>());
+    let mut short: String = whole.chars().take(MAX_CHARS).collect();
+    if short.len() < whole.len() {
         short.push_str("...");
     }
     short

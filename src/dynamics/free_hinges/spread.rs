@@ -31,9 +31,21 @@ const MERGED_RATIO: f64 = 4.0;
 impl Repeated {
     /// These settings, in this way.
     pub(super) fn of(self, settings: &Settings) -> Settings {
+        // Steps end at output times as well: where these limit them, they must vary too.
+        let limits = |output_step_s: &f64| *output_step_s < 2.0 * settings.longest_step_s;
+        let times = |factor: f64| Settings {
+            output_step_s: settings.output_step_s.map(|step_s| {
+                if limits(&step_s) {
+                    factor * step_s
+                } else {
+                    step_s
+                }
+            }),
+            ..settings.times(factor)
+        };
         match self {
-            Self::HalfSteps => settings.times(0.5),
-            Self::DoubleSteps => settings.times(2.0),
+            Self::HalfSteps => times(0.5),
+            Self::DoubleSteps => times(2.0),
             Self::MergedLandings => Settings {
                 shortest_step_s: (MERGED_RATIO * settings.shortest_step_s)
                     .min(settings.longest_step_s),
