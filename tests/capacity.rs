@@ -1,8 +1,6 @@
 //! Capacity curves against closed forms, the onset, the potential of the simulation and mirror images.
-#![allow(clippy::unwrap_used)]
 
-mod program;
-
+use crate::program;
 use archrock::mechanics::capacity::Capacity;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::scenario::Structure;

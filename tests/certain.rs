@@ -1,15 +1,12 @@
 //! What a run calls certain holds with other steps, and it still calls most things certain.
-#![expect(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
+use crate::common::{GRAVITY, Random, noise, random_row};
 use archrock::dynamics::free_hinges::spread::Spread;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
 use archrock::{Request, Sway};
-use common::{GRAVITY, Random, noise, random_row};
 
 /// Steps, over those of a run, with which what it calls certain must hold.
 const OTHER_STEPS: [f64; 4] = [0.37, 0.23, 1.7, 2.9];

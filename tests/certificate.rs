@@ -1,6 +1,5 @@
 //! The projection onto all admissible velocity fields: published values, convergence, both sides of the optimality
 //! conditions, and the four-link restitution coefficient below it.
-#![allow(clippy::unwrap_used)]
 
 use archrock::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, joints_rad, project,

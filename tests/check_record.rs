@@ -1,16 +1,12 @@
 //! Records as people have them: what `check` and `run` tell of them, formats, and input that is unlikely.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use program::{archrock, stderr};
+use crate::program::{archrock, stderr};
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 

@@ -1,14 +1,10 @@
 //! The program as a user meets it: exit codes, messages, files.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use program::{archrock, command, printed, refused, scenarios, stderr};
+use crate::program::{archrock, command, printed, refused, scenarios, stderr};
 use serde_json::Value;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";

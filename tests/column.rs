@@ -1,5 +1,4 @@
 //! Housner's free-standing column against closed forms and quadratures of its own.
-#![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::f64::consts::PI;
 

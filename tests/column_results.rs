@@ -1,13 +1,10 @@
 //! Result files and printed results of a column, and the events of any run.
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-mod program;
 
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-use program::{printed, refused};
+use crate::program::{printed, refused};
 use serde_json::{Value, json};
 
 const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";

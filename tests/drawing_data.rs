@@ -1,14 +1,11 @@
 //! What `run` gives to draw with: poses, snapshots, hinges in the tables; and `limit` as JSON beside its text.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
-
-mod program;
 
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
+use crate::program::{archrock, scenarios, stderr};
 use nalgebra::{Rotation2, Vector2};
-use program::{archrock, scenarios, stderr};
 use roxmltree::{Document, Node};
 use serde_json::Value;
 

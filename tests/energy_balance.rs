@@ -1,9 +1,6 @@
 //! The energy balance of a row: doubtful ones are told, and wrong ones fail.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-mod common;
-
+use crate::common::{GRAVITY, released, request};
 use archrock::dynamics::free_hinges::{
     DOUBTFUL_ENERGY_ERROR, FreeHingeError, FreeHinges, RowOptions,
 };
@@ -11,7 +8,6 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::model::{Model as _, SimulationError};
 use archrock::mechanics::column::Column;
 use archrock::mechanics::sway::Sway;
-use common::{GRAVITY, released, request};
 
 const COEFFICIENTS: [Option<f64>; 2] = [None, Some(0.8)];
 

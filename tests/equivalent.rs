@@ -1,5 +1,4 @@
 //! Equivalent blocks and the dimensionless view, against the motions they stand for.
-#![expect(clippy::unwrap_used, reason = "tests")]
 
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::equivalent::equivalent;

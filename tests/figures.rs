@@ -1,12 +1,9 @@
 //! `--figure-width`: every picture fits its sheet, with text of 8 pt at the width that is asked for.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
-
-mod program;
 
 use std::fs;
 use std::path::Path;
 
-use program::{archrock, scenarios, stderr};
+use crate::program::{archrock, scenarios, stderr};
 use roxmltree::Document;
 
 /// Characters are this wide at least, in pixels: texts that leave the sheet even so are cut.

@@ -1,5 +1,4 @@
 //! Four links on rows of blocks: circular voussoirs against the ring, static against kinematic theorem, mirror images.
-#![allow(clippy::unwrap_used)]
 
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::blocks::{Block, Row, Supports};

@@ -1,14 +1,11 @@
 //! Fragility curves: against published and independent fits, and against samples of known curves.
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::f64::consts::{LN_10, TAU};
 
+use crate::common::Random;
 use archrock::studies::fragility::{
     Errors, Fraction, Fragility, NoFit, Observation, fit, fractions,
 };
-use common::Random;
 use proptest::prelude::*;
 
 /// Cases of one record each, in counts by intensity.

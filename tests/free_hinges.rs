@@ -1,10 +1,8 @@
 //! Rows of blocks with free hinges: measured numbers, closed forms, linear programming, the four-link model.
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-mod common;
 
 use std::ops::ControlFlow;
 
+use crate::common::{GRAVITY, Random, random_history, random_row, ring};
 use archrock::dynamics::free_hinges::{
     FreeHingeError, Impact, Outcome, Recorder, Run, Sample, Settings, simulate,
 };
@@ -26,7 +24,6 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
 };
-use common::{GRAVITY, Random, random_history, random_row, ring};
 use nalgebra::Vector2;
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64) -> Row {

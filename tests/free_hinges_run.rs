@@ -1,15 +1,13 @@
 //! `archrock run` with free hinges: its files, its words, the override, and what it refuses.
-#![expect(clippy::unwrap_used, reason = "tests")]
 
-mod program;
-
+use crate::program;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::program::{archrock, stderr};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::free_hinges::spread::Spread;
 use archrock::{Column, GroundMotion, Model as _, Pulse, Request};
-use program::{archrock, stderr};
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -1,14 +1,11 @@
 //! Maps and suites on rows of blocks with free hinges: cells against single histories, pieces of work against the
 //! whole, what they depend on, and what they refuse.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use crate::program::{done, files, refused, scenarios};
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::output::Figure;
 use archrock::output::map::{Look, draw, outcome};
@@ -20,7 +17,6 @@ use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::{Runner, Study as _};
 use archrock::studies::threshold::{Factors, Threshold, thresholds};
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Model, Pulse, Request, RockingColumn};
-use program::{done, files, refused, scenarios};
 
 const ARCH: &str =
     "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n";

@@ -1,5 +1,4 @@
 //! Ground motions from any numbers: an error that names the number, or a motion that holds what it promises.
-#![allow(clippy::unwrap_used)]
 
 use archrock::{GroundError, GroundMotion, Pulse, WaveTrain};
 use nalgebra::Vector2;

@@ -1,18 +1,15 @@
 //! Whole histories: published numbers, exact invariances, and the ways in and out of rest.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common::{
+    GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, released, request, run, run_sampled,
+    sampled, semicircle, seven_voussoirs, three,
+};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{
     FourLinkArch, GroundMotion, History, ImpactModel, Model as _, Outcome, Pulse, Request, Sample,
     State, Sway,
-};
-use common::{
-    GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, released, request, run, run_sampled,
-    sampled, semicircle, seven_voussoirs, three,
 };
 
 fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {

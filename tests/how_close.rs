@@ -1,19 +1,15 @@
 //! How close it was: per record in a line, and in the picture of incremental dynamic analysis.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use crate::program::{archrock, scenarios, stderr};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::{Arch, GroundMotion, Initial, Model as _, Request, Sway};
-use program::{archrock, scenarios, stderr};
 use serde_json::Value;
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30\n";

@@ -1,8 +1,6 @@
 //! Impacts: momentum theorems, energy, and the largest restitution coefficient of all mechanisms.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common::{Random, assert_hinges, climb, degrees, ring, semicircle};
 use archrock::mechanics::four_link::impact::{
     ImpactModel, MomentumTheorems, closing_field, impact, projection,
 };
@@ -11,7 +9,6 @@ use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::four_link::resultant::ResultantLine;
 use archrock::mechanics::geometry::field::{Field, Side};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use common::{Random, assert_hinges, climb, degrees, ring, semicircle};
 use proptest::prelude::*;
 
 const MAX: ImpactModel = ImpactModel::MaxRestitution;

@@ -1,12 +1,10 @@
 //! What `impact` tells of rows of blocks: against the ring, the mirror image, the momentum of the blocks, and the free
 //! hinges.
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-mod program;
 
 use std::fs;
 use std::path::Path;
 
+use crate::program::{printed, refused};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::contact::{Load, Program};
 use archrock::mechanics::four_link::impact::closing_field;
@@ -14,7 +12,6 @@ use archrock::mechanics::geometry::field::{Field, Side, Twist};
 use archrock::scenario::Structure;
 use archrock::{FourLinkRow, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
-use program::{printed, refused};
 use serde_json::Value;
 
 const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];

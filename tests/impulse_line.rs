@@ -1,11 +1,9 @@
 //! The impulses of an impact against the momentum theorems, published numbers and statics by hand.
-#![allow(clippy::unwrap_used)]
-
-mod program;
 
 use std::f64::consts::PI;
 use std::path::Path;
 
+use crate::program::{printed, refused};
 use archrock::mechanics::four_link::impact::{
     ImpactModel, MomentumTheorems, closing_field, impact,
 };
@@ -15,7 +13,6 @@ use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::sway::Sway;
 use archrock::{Arch, FourLinkArch};
 use nalgebra::Vector2;
-use program::{printed, refused};
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
 

@@ -1,14 +1,10 @@
 //! Scenarios to begin with, and completions of the shell.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::f64::consts::PI;
 use std::fs;
 
+use crate::program::{archrock, stderr};
 use archrock::Scenario;
-use program::{archrock, stderr};
 
 /// Optional keys, which the comments give with their defaults.
 const OPTIONAL: [&str; 9] = [

@@ -1,5 +1,4 @@
 //! The integrator and the engine on systems that have nothing to do with arches, with exact solutions.
-#![allow(clippy::unwrap_used)]
 
 use std::ops::ControlFlow;
 

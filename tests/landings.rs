@@ -1,11 +1,9 @@
 //! Landings: which corners share an impact, and when. Sequences of impacts against Housner's restitution, the certificate of
 //! four links, and motions computed with far shorter steps.
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-mod common;
 
 use std::ops::ControlFlow;
 
+use crate::common::{GRAVITY, Random};
 use archrock::Sway;
 use archrock::dynamics::free_hinges::{Impact, Recorder, Run, Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
@@ -15,7 +13,6 @@ use archrock::mechanics::four_link::certificate;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::stability::{falls, onset};
-use common::{GRAVITY, Random};
 
 fn peaks_rad(run: &Run) -> Vec<f64> {
     run.half_cycles.iter().map(|cycle| cycle.peak_rad).collect()

@@ -2,10 +2,9 @@
 //!
 //! The independent reference is the static theorem: the largest push under which some thrust line stays in
 //! the ring, by linear programming over the reaction at the left springing. It knows no mechanism.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common;
+use crate::common::{Random, assert_hinges, climb, ring};
 use archrock::mechanics::chain::{Mechanism, critical_rad};
 use archrock::mechanics::four_link::limit::{
     LimitError, acceleration_g, incipient, least_thickness_ratio,
@@ -20,7 +19,6 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus,
 };
-use common::{Random, assert_hinges, climb, ring};
 use proptest::prelude::*;
 
 /// `row . x <= bound`.

@@ -1,6 +1,6 @@
 //! The ways to spread a study over machines, as docs/long-work.md shows them.
 
-#![allow(clippy::unwrap_used, clippy::print_stderr)]
+#![allow(clippy::print_stderr)]
 
 use std::env;
 use std::fs;

@@ -1,23 +1,19 @@
 //! The overturning map: its cells, its boundaries, and the work on it in pieces.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-mod program;
-
+use crate::common;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::common::{GRAVITY, request, seven_voussoirs};
+use crate::program::{command, done, files, refused};
 use archrock::studies::boundary::{Boundary, ImpactFreeBoundary};
 use archrock::studies::ending::Ending;
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::Study as _;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
-use common::{GRAVITY, request, seven_voussoirs};
-use program::{command, done, files, refused};
 
 const SEMICIRCLE: &str =
     "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";

@@ -1,10 +1,7 @@
 //! A map of many pulses at the usual tolerance is the map at a thousandth of it.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common::{GRAVITY, request, semicircle};
 use archrock::{GroundMotion, Model as _, Outcome, Pulse, Request};
-use common::{GRAVITY, request, semicircle};
 
 /// Cells along each side.
 const CELLS: u32 = 20;

@@ -1,15 +1,11 @@
 //! Maps as papers draw them: any number of the scenario along an axis, records, colours and dimensionless axes.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use program::{archrock, scenarios, stderr};
+use crate::program::{archrock, scenarios, stderr};
 use roxmltree::Document;
 use serde_json::Value;
 

@@ -1,14 +1,11 @@
 //! `map.html`: every cell that it shows against the table, in a real browser, and the commands against a run.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
-mod browser;
-mod program;
-
+use crate::browser;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use program::{archrock, stderr};
+use crate::program::{archrock, stderr};
 use serde_json::{Value, json};
 
 const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_m = 0.75\nembrace_deg = 180.0\n\

@@ -1,11 +1,11 @@
 //! What models tell: poses, open hinges, columns of samples, energies; and that they trust no argument.
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::fmt::Debug;
 use std::ops::ControlFlow;
 
+use crate::common::{
+    GRAVITY, four_links, number, run, run_sampled, sampled, semicircle, seven_voussoirs,
+};
 use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -15,7 +15,6 @@ use archrock::{
     ImpactModel, Initial, Model, OpenHinge, Pose, Pulse, Recorder, Request, RockingColumn, Sample,
     SimulationError, State, Sway,
 };
-use common::{GRAVITY, four_links, number, run, run_sampled, sampled, semicircle, seven_voussoirs};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 

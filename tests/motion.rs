@@ -1,17 +1,14 @@
 //! Motion between impacts: energy, the work of the ground, and the instants of events.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common::{
+    GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, pairs, released, request, run,
+    run_sampled, semicircle, seven_voussoirs, three,
+};
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Link, Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{FourLinkArch, GroundMotion, Outcome, Pulse, Request, Sway};
-use common::{
-    GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, pairs, released, request, run,
-    run_sampled, semicircle, seven_voussoirs, three,
-};
 
 /// `q''` at the start, by the equation of motion written out; a ground acceleration pushes it.
 fn acceleration_at_zero(arch: &FourLinkArch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {

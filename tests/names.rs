@@ -1,13 +1,9 @@
 //! Titles and names from outside: what would not be seen in them is shown escaped, everywhere.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::fs;
 use std::path::Path;
 
-use program::{archrock, files, printed, refused, stderr};
+use crate::program::{archrock, files, printed, refused, stderr};
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";

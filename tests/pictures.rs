@@ -1,11 +1,9 @@
 //! What the pictures show: read back from the SVG and compared with the mechanics.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
-
-mod program;
 
 use std::fs;
 use std::path::Path;
 
+use crate::program::{done, printed};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
@@ -18,7 +16,6 @@ use archrock::studies::runner::Study as _;
 use archrock::studies::survey::shape_result;
 use archrock::{Arch, FourLinkArch, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
-use program::{done, printed};
 use roxmltree::{Document, Node};
 
 /// Coordinates are written to thousandths of a pixel, paths of curves to hundredths.

@@ -1,8 +1,7 @@
 //! Random structures, grounds and starts: whatever is thrown at it, a history is sound.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common;
+use crate::common::three;
 use archrock::dynamics::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -10,7 +9,6 @@ use archrock::{
     FourLinkArch, GroundMotion, ImpactModel, Initial, Model as _, Outcome, Pulse, Request, Sample,
     State, Sway,
 };
-use common::three;
 use proptest::prelude::*;
 
 fn model() -> impl Strategy<Value = ImpactModel> {

@@ -1,12 +1,9 @@
 //! The README: its pictures are those that the program draws, what it prints is what it says, its links lead somewhere.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
-
-mod program;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use program::{archrock, scenarios, stderr};
+use crate::program::{archrock, scenarios, stderr};
 
 fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -1,21 +1,16 @@
 //! Records of ground motion: files, straight lines between samples, and whole histories.
-#![allow(clippy::unwrap_used)]
-
-mod common;
-mod motions;
-mod program;
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use crate::common::{impact_times_s, pairs};
+use crate::motions::{G, NGA_WEST2, Style, at2, run, scaled, semicircle, synthetic};
+use crate::program::refused;
 use archrock::dynamics::ground::GroundVelocity;
 use archrock::scenario::Ground;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
-use common::{impact_times_s, pairs};
-use motions::{G, NGA_WEST2, Style, at2, run, scaled, semicircle, synthetic};
-use program::refused;
 
 const ARCH: &str =
     "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n[ground.record]\n";

@@ -1,9 +1,7 @@
 //! `report.html`: what it shows against the tables, as text and in a real browser.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
-mod browser;
-mod program;
-
+use crate::browser;
+use crate::program;
 use std::fs;
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! The program under bad circumstances: killed, unread, out of space, and with very much to write.
 #![cfg(target_os = "linux")]
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "tests")]
+#![expect(clippy::print_stderr, reason = "tests")]
 
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};

@@ -1,13 +1,11 @@
 //! Rows of blocks from numbers of any kind: an error, or a row that can be shaken.
 
-mod common;
-
+use crate::common::number;
 use archrock::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::stability::StabilityError;
 use archrock::{Column, GroundMotion, Model as _, Pulse, Request, SimulationError};
-use common::number;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 

@@ -1,16 +1,12 @@
 //! What `run` takes and gives: standard input, several scenarios, the summary on standard output, and folders that
 //! hold the results of another scenario.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use program::{archrock, command, stderr};
+use crate::program::{archrock, command, stderr};
 use serde_json::Value;
 
 const TEXT: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\

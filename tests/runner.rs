@@ -1,8 +1,4 @@
 //! The runner as a library: in memory and in files, cancelled, resumed, merged; and rows that failed.
-#![allow(clippy::unwrap_used)]
-
-mod common;
-mod program;
 
 use std::fs;
 use std::num::NonZeroUsize;
@@ -12,6 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::common::{GRAVITY, pairs, request};
+use crate::program::{archrock, stderr};
 use archrock::studies::boundary::{ImpactFreeBoundary, MapRow, MapWithBoundary};
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::part::{self, Header, PartError, PartFile, Shard};
@@ -20,8 +18,6 @@ use archrock::{
     Column, GroundMotion, ImpactModel, MechanismModel as _, Model as _, Pulse, RockingColumn,
     Scenario, Sway,
 };
-use common::{GRAVITY, pairs, request};
-use program::{archrock, stderr};
 
 /// Cases of a few milliseconds whose rows are hard to write down, some of which fail.
 #[derive(Default)]

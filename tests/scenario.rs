@@ -1,5 +1,4 @@
 //! Scenario files: what is read, what is refused and where, and how it is written back.
-#![allow(clippy::unwrap_used)]
 
 use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::{

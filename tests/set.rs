@@ -1,13 +1,9 @@
 //! Values that take the place of those of a scenario: `--set`.
 
-#![allow(clippy::unwrap_used)]
-
-mod program;
-
 use std::fs;
 
+use crate::program::{archrock, stderr};
 use archrock::scenario::{Assignment, Changes, Scenario, Source};
-use program::{archrock, stderr};
 
 const TEXT: &str = "title = \"x\"\n\
                     [arch]\n\

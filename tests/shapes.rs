@@ -1,5 +1,4 @@
 //! Arches of other shapes, piers, fill and loads against circles, columns, closed forms and a published arch.
-#![allow(clippy::unwrap_used)]
 
 use std::f64::consts::PI;
 use std::fs;

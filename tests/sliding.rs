@@ -1,12 +1,9 @@
 //! Joints that slip: limit analysis, and the motion.
 
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-mod common;
-
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
+use crate::common::{GRAVITY, Random, random_history};
 use archrock::dynamics::free_hinges::{
     FreeHinges, Outcome, Recorder, Run, Sample, Settings, Sliding, simulate,
 };
@@ -24,7 +21,6 @@ use archrock::mechanics::masonry::{
 use archrock::mechanics::slip::{Contact, Faces, Position};
 use archrock::mechanics::stability;
 use archrock::mechanics::sway::Sway;
-use common::{GRAVITY, Random, random_history};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64) -> Row {

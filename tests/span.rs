@@ -1,7 +1,5 @@
 //! Arches given by their span.
 
-#![allow(clippy::unwrap_used)]
-
 use archrock::Scenario;
 use archrock::scenario::Structure;
 

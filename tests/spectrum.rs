@@ -1,18 +1,15 @@
 //! Overturning spectra against closed forms, similarity, and histories of their own; and the command.
-#![expect(clippy::unwrap_used, reason = "tests")]
-
-mod program;
 
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
+use crate::program::{done, printed, refused};
 use archrock::output::Figure;
 use archrock::output::spectrum::draw;
 use archrock::studies::runner::Study as _;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow, StructureKind};
 use archrock::{GroundMotion, MechanismModel, Outcome, Pulse, Request, Scenario, Sway};
-use program::{done, printed, refused};
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 

@@ -1,15 +1,12 @@
 //! Suites of records: rows against runs of the same scenario, parts against the whole, and what is said where
 //! there is no curve.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-mod program;
-
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
+use crate::common::pairs;
+use crate::program::{done, refused, scenarios};
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
@@ -18,8 +15,6 @@ use archrock::output::suite::{Heading, draw, remarks, to_json, write_fragility, 
 use archrock::scenario::{Form, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, PeakRotation, Steps, Verdict};
 use archrock::studies::suite::{CaseRow, SuiteFragility};
-use common::pairs;
-use program::{done, refused, scenarios};
 use serde_json::Value;
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n";

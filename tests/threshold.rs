@@ -1,11 +1,6 @@
 //! Thresholds: edges against closed forms and published numbers, bands and gaps against plain histories, and the
 //! command as a user meets it.
 
-#![allow(missing_docs, clippy::unwrap_used)]
-
-mod common;
-mod program;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::ops::ControlFlow;
@@ -13,6 +8,8 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
+use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
+use crate::program::{archrock, printed, refused, stderr};
 use archrock::dynamics::hybrid::engine::EngineError;
 use archrock::dynamics::hybrid::integrator::Cost;
 use archrock::dynamics::model::Repetition;
@@ -27,9 +24,7 @@ use archrock::{
     Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
     Scenario, SimulationError, Summary, Sway, WaveTrain,
 };
-use common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use nalgebra::Vector2;
-use program::{archrock, printed, refused, stderr};
 use serde_json::Value;
 
 fn found(model: &dyn Model, ground: &GroundMotion, end_s: f64, factors: &Factors) -> Threshold {

@@ -1,10 +1,9 @@
 //! The thrust line in motion, against statics, dynamics formulated otherwise, and published numbers.
-#![expect(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
-mod common;
-
+use crate::common;
 use std::ops::ControlFlow;
 
+use crate::common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoirs};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::model::Recorder;
 use archrock::mechanics::chain::{Demand, Hinge, Mechanism as _, MechanismChain as _, Motion};
@@ -18,7 +17,6 @@ use archrock::{
     Arch, Column, FourLinkArch, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
     Sample, State, Sway,
 };
-use common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoirs};
 use nalgebra::{SMatrix, SVector, Vector2};
 
 fn arches() -> [FourLinkArch; 4] {

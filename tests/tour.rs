@@ -1,18 +1,12 @@
 //! The tour of the documentation: its commands, run as they stand there, say what is shown there.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-mod motions;
-mod program;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use crate::motions::{NGA_WEST2, at2, scaled, synthetic};
+use crate::program::{says_what_it_shows, scenarios};
 use archrock::Scenario;
-use motions::{NGA_WEST2, at2, scaled, synthetic};
-use program::{says_what_it_shows, scenarios};
 
 /// The two records of the tour, made as their titles say: the first as a PEER file of 0.45 g, the second as a table of
 /// 380 cm/s2 after three lines of its own.

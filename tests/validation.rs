@@ -1,12 +1,10 @@
 //! The numbers of docs/validation.md.
-#![allow(clippy::unwrap_used)]
-
-mod program;
 
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
+use crate::program::{printed, says_what_it_shows, scenarios};
 use archrock::Arch;
 use archrock::Sway;
 use archrock::mechanics::blocks::Row;
@@ -18,7 +16,6 @@ use archrock::mechanics::masonry::{
     Dimensions, EllipticArch, Masonry, Material, Piers, PointedArch, Shape,
 };
 use archrock::mechanics::stability::{falls, onset};
-use program::{printed, says_what_it_shows, scenarios};
 use std::f64::consts::PI;
 
 /// The least number at which something holds that holds from there on, to 1e-6.

@@ -1,16 +1,13 @@
 //! The check by the Circolare 7/2019 as a whole: worked numbers that were computed apart from this program, both sides, on the
 //! ground and at a height; spectra from files; what cannot be checked, and why.
-#![allow(clippy::unwrap_used)]
 
-mod browser;
-mod program;
-
+use crate::browser;
+use crate::program::{archrock, printed as print_of, refused, scenarios};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
     ByDisplacement, Check, Method, NoCheck, SideCheck, to_json, words,
 };
 use archrock::{Scenario, Sway};
-use program::{archrock, printed as print_of, refused, scenarios};
 use serde_json::Value;
 
 const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";

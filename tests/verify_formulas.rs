@@ -1,9 +1,7 @@
 //! The formulas of the Circolare 7/2019 and of NTC 2018, clause by clause: against numbers computed apart from this program,
 //! closed forms, and a published check.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common::{GRAVITY, Random};
 use archrock::dynamics::demand::floor::{FloorSpectrum, Mode};
 use archrock::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
 use archrock::dynamics::demand::oscillator::peak_displacement;
@@ -13,7 +11,6 @@ use archrock::mechanics::capacity::{Capacity, CapacityError, Carried, Control, D
 use archrock::mechanics::virtual_work::{MovingBody, Participation, load_multiplier};
 use archrock::scenario::Structure;
 use archrock::{MechanismModel, Pose, Scenario, Sway};
-use common::{GRAVITY, Random};
 use nalgebra::Vector2;
 use std::f64::consts::PI;
 

@@ -1,16 +1,12 @@
 //! Vertical ground acceleration along with the horizontal one.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-mod motions;
-
+use crate::common::{impact_times_s, pairs};
+use crate::motions::{G, Random, run, scaled, semicircle, synthetic};
 use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::output::rotations::RotationsWriter;
 use archrock::{GroundMotion, Initial, Outcome, Pulse, Scenario, Sway, WaveTrain};
-use common::{impact_times_s, pairs};
-use motions::{G, Random, run, scaled, semicircle, synthetic};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 

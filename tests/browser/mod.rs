@@ -1,5 +1,5 @@
 //! Pages in a real browser, where there is one.
-#![allow(dead_code, missing_docs, clippy::unwrap_used, clippy::print_stderr)]
+#![allow(clippy::print_stderr)]
 
 use std::fs;
 use std::path::Path;

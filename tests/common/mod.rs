@@ -1,5 +1,4 @@
 //! What several test files share: arches by their published names, and short ways to run them.
-#![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
 use archrock::dynamics::ground::Pulse;
 use archrock::mechanics::blocks::{Drum, Row};

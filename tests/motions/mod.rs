@@ -1,10 +1,8 @@
 //! Synthetic ground motions, the files they are written to, and what they do to an arch.
-#![allow(dead_code, clippy::unwrap_used)]
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
-#[allow(unused_imports)]
 pub use crate::common::{Random, semicircle};
 use archrock::{FourLinkArch, GroundMotion, History, Initial, Model as _, Request, Sample};
 

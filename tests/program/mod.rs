@@ -1,5 +1,4 @@
 //! The program as tests run it.
-#![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
 use std::collections::BTreeMap;
 use std::fs;

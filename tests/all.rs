@@ -1,0 +1,82 @@
+//! All integration tests, as one program: what they share is compiled once, and the library is linked once.
+//! A file of tests is a line here; `cargo test --test all limit::` runs those of one.
+#![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
+mod browser;
+mod common;
+mod motions;
+mod program;
+
+mod capacity;
+mod certain;
+mod certificate;
+mod check_record;
+mod cli;
+mod column;
+mod column_results;
+mod drawing_data;
+mod energy_balance;
+mod equivalent;
+mod figures;
+mod four_link_rows;
+mod fragility;
+mod free_hinges;
+mod free_hinges_run;
+mod free_hinges_studies;
+mod ground;
+mod history;
+mod how_close;
+mod impact;
+mod impact_of_rows;
+mod impulse_line;
+mod init;
+mod integration;
+mod landings;
+mod limit;
+mod long_work;
+mod map;
+mod map_accuracy;
+mod map_axes;
+mod map_page;
+mod model;
+mod motion;
+mod names;
+mod pictures;
+mod properties;
+mod readme;
+mod records;
+mod report;
+mod rest;
+mod robustness;
+mod rows;
+mod run_input;
+mod runner;
+mod scenario;
+mod set;
+mod shapes;
+mod sliding;
+mod span;
+mod spectrum;
+mod suite;
+mod threshold;
+mod thrust;
+mod tour;
+mod validation;
+mod verify;
+mod verify_formulas;
+mod vertical;
+
+#[test]
+fn every_file_of_tests_is_compiled() {
+    let here = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let own = include_str!("all.rs");
+    for entry in std::fs::read_dir(here).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if let Some(name) = name.strip_suffix(".rs").filter(|name| *name != "all") {
+            assert!(
+                own.contains(&format!("mod {name};")),
+                "tests/{name}.rs is not in tests/all.rs"
+            );
+        }
+    }
+}
