@@ -112,7 +112,7 @@ fn poses_turn_by_the_rotations() {
         for ground in grounds() {
             let history = model.history(&ground, &sampled(10.0, 0.01)).unwrap();
             for sample in history.samples.iter() {
-                let turned: Vec<f64> = sample.poses.iter().map(|pose| pose.rotation_rad).collect();
+                let turned: Vec<f64> = sample.poses.iter().map(Pose::rotation_rad).collect();
                 assert_eq!(turned, sample.rotations_rad, "{} s", sample.time_s);
             }
         }
@@ -130,7 +130,7 @@ fn places(history: &History, in_a_mirror: bool) -> Vec<Vec<u64>> {
             sample.hinges.reverse();
         }
         let sign = if in_a_mirror { -1.0 } else { 1.0 };
-        let pose = |pose: &Pose| [pose.rotation_rad, pose.translation.x, pose.translation.y];
+        let pose = |pose: &Pose| [pose.rotation_rad(), pose.translation.x, pose.translation.y];
         let hinge = |open: &OpenHinge| [sign * open.position_m.x, open.position_m.y, 0.0];
         let poses = sample.poses.iter().flat_map(pose);
         let hinges = sample.hinges.iter().flat_map(hinge);
@@ -204,7 +204,7 @@ fn a_history_keeps_what_a_recorder_is_told() {
                 assert_eq!(columns.rotations_rad[by_body.clone()], sample.rotations_rad);
                 assert_eq!(columns.rates_rad_s[by_body.clone()], sample.rates_rad_s);
                 let flat =
-                    |pose: &Pose| [pose.rotation_rad, pose.translation.x, pose.translation.y];
+                    |pose: &Pose| [pose.rotation_rad(), pose.translation.x, pose.translation.y];
                 let poses: Vec<_> = sample.poses.iter().map(flat).collect();
                 assert_eq!(columns.poses[by_body], poses);
                 let hinges = &columns.hinges[columns.first_hinge[i]..];

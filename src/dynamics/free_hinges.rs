@@ -21,7 +21,8 @@ use super::ground::GroundMotion;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::contact::ContactError;
-use crate::mechanics::joints::{Frame, Placement, Pose};
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::joints::{Frame, Placement};
 use crate::mechanics::sway::Sway;
 
 /// The shortest step over the longest one, where it is not given.

@@ -373,8 +373,9 @@ impl Samples {
         self.rotations_rad.extend(&sample.rotations_rad);
         self.rates_rad_s.extend(&sample.rates_rad_s);
         let poses = sample.poses.iter();
-        self.poses
-            .extend(poses.map(|pose| [pose.rotation_rad, pose.translation.x, pose.translation.y]));
+        self.poses.extend(
+            poses.map(|pose| [pose.rotation_rad(), pose.translation.x, pose.translation.y]),
+        );
         self.first_hinge.push(self.hinges.len());
         self.hinges.extend(&sample.hinges);
         self.demand.push(sample.demand);
@@ -426,10 +427,7 @@ impl Samples {
 
 /// The pose of an entry of [`Samples::poses`].
 fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
-    Pose {
-        rotation_rad,
-        translation: Vector2::new(x_m, y_m),
-    }
+    Pose::new(rotation_rad, Vector2::new(x_m, y_m))
 }
 
 /// What the samples of a model tell of.

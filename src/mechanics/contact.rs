@@ -23,7 +23,7 @@ use thiserror::Error;
 
 use super::blocks::{Row, Supports};
 use super::joints::{Closure, Frame, Placement};
-use crate::mechanics::geometry::field::{Momentum, Twist};
+use crate::mechanics::geometry::field::{Momentum, Twist, turned};
 use crate::mechanics::geometry::ring::{Edge, MassMoments};
 
 /// Corner impulses pull when they are more negative than this part of the largest one.
@@ -136,7 +136,7 @@ impl Motion {
 
     fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
         let arm = point - self.centre;
-        self.velocity + Vector2::new(-arm.y, arm.x) * self.rate
+        self.velocity + turned(arm) * self.rate
     }
 
     fn twist(&self) -> Twist {

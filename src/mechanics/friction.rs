@@ -10,10 +10,10 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
 };
-use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::blocks::Row;
+use super::geometry::field::turned;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
@@ -187,7 +187,7 @@ impl Program {
         }
         for (index, joint) in row.joints().iter().enumerate() {
             let along = joint.along();
-            let normal = Vector2::new(-along.y, along.x) * row.handedness();
+            let normal = turned(along) * row.handedness();
             let forces = [
                 (joint.intrados_m, normal),
                 (joint.extrados_m, normal),

@@ -14,59 +14,11 @@ use nalgebra::Vector2;
 
 use super::blocks::{Joint, Row, Supports};
 use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::pose::{Pose, product, unit};
 use crate::mechanics::geometry::ring::Edge;
 
 /// A corner of a joint counts as shut when its gap is below this part of the thickness.
 pub const SHUT_RATIO: f64 = 1e-12;
-
-/// Rigid placement of a block: rotation about the origin, then displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Rotation in radians, anticlockwise.
-    pub rotation_rad: f64,
-    /// Cosine and sine of the rotation.
-    turn: Vector2<f64>,
-    /// Displacement in metres of the point that was at the origin.
-    pub shift_m: Vector2<f64>,
-}
-
-impl Pose {
-    /// Undeformed.
-    pub const UNDEFORMED: Self = Self {
-        rotation_rad: 0.0,
-        turn: Vector2::new(1.0, 0.0),
-        shift_m: Vector2::new(0.0, 0.0),
-    };
-
-    /// A rotation about the origin, then a displacement.
-    #[must_use]
-    pub fn new(rotation_rad: f64, shift_m: Vector2<f64>) -> Self {
-        Self {
-            rotation_rad,
-            turn: unit(rotation_rad),
-            shift_m,
-        }
-    }
-
-    /// Where the point is that was at `point_m`.
-    #[must_use]
-    pub fn of(&self, point_m: Vector2<f64>) -> Vector2<f64> {
-        self.shift_m + self.turned(point_m)
-    }
-
-    fn turned(&self, v: Vector2<f64>) -> Vector2<f64> {
-        rotated(self.turn, v)
-    }
-}
-
-fn unit(angle_rad: f64) -> Vector2<f64> {
-    let (sin, cos) = angle_rad.sin_cos();
-    Vector2::new(cos, sin)
-}
-
-fn rotated(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
-}
 
 /// The line on which the faces of a joint press each other, in its present position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -284,7 +236,7 @@ impl Placement {
             let right = if closing {
                 self.gaps_m[joint] = closed_gaps(
                     &self.gaps_m[joint],
-                    left.rotation_rad,
+                    left.rotation_rad(),
                     face,
                     self.handedness,
                 );
@@ -293,12 +245,8 @@ impl Placement {
                 left
             } else {
                 let opening = (self.gaps_m[joint][1] - self.gaps_m[joint][0]) / face.thickness;
-                let rotation_rad = left.rotation_rad + self.handedness * opening;
-                Pose {
-                    rotation_rad,
-                    turn: unit(rotation_rad),
-                    shift_m: Vector2::zeros(),
-                }
+                let rotation_rad = left.rotation_rad() + self.handedness * opening;
+                Pose::new(rotation_rad, Vector2::zeros())
             };
             let right = self.frame(joint, &left, right, closing);
             if let Some(pose) = self.poses.get_mut(joint) {
@@ -325,7 +273,7 @@ impl Placement {
             return right;
         }
         let opening = (gaps[1] - gaps[0]) / face.thickness;
-        let along = rotated(unit(left.rotation_rad + 0.5 * s * opening), face.along);
+        let along = product(unit(left.rotation_rad() + 0.5 * s * opening), face.along);
         let normal = turned(along) * s;
         let chord = face.thickness * (0.5 * opening.abs()).sin();
         let nearer = gaps[0].min(gaps[1]);
@@ -340,7 +288,7 @@ impl Placement {
             }
             self.closure = Some(Closure { joint, error_m });
         } else {
-            right.shift_m = start - right.turned(face.middle);
+            right.translation = start - right.turned(face.middle);
         }
         let gaps = self.gaps_m[joint];
         let (edge, offset) = if gaps[0] <= gaps[1] {

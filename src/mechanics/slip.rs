@@ -15,8 +15,10 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::blocks::{Joint, Row};
 use super::geometry::field::turned;
+use super::geometry::pose::{Pose, product, unit};
 
-/// The position of a block.
+/// The position of a block, as joints that slip need it: by its centre, whose velocity the motion steps, and by half its rotation,
+/// which adds up to the mean angle of two faces. It is no [`Pose`]: turning by the half twice is not, to the last bit, turning once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
     /// Its centre of gravity in metres.
@@ -38,12 +40,17 @@ impl Position {
     /// A block with the given centre and rotation.
     #[must_use]
     pub fn new(centre_m: Vector2<f64>, rotation_rad: f64) -> Self {
-        let (sin, cos) = (0.5 * rotation_rad).sin_cos();
         Self {
             centre_m,
             rotation_rad,
-            half: Vector2::new(cos, sin),
+            half: unit(0.5 * rotation_rad),
         }
+    }
+
+    /// The same, relative to the undeformed row in which the centre of gravity is at `undeformed_m`.
+    #[must_use]
+    pub fn pose(&self, undeformed_m: Vector2<f64>) -> Pose {
+        Pose::about(undeformed_m, self.centre_m, self.rotation_rad)
     }
 
     /// Where the point is that has this arm from the centre in the undeformed row.
@@ -51,11 +58,6 @@ impl Position {
     pub fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
         self.centre_m + product(product(self.half, self.half), arm_m)
     }
-}
-
-/// Product of complex numbers: turns one vector by the angle of a unit vector.
-fn product(a: Vector2<f64>, b: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(a.x * b.x - a.y * b.y, a.y * b.x + a.x * b.y)
 }
 
 /// A joint as it belongs to its two blocks.

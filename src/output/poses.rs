@@ -44,7 +44,7 @@ impl<W: Write> PosesWriter<W> {
     pub fn write(&mut self, sample: &Sample) -> Result<(), OutputError> {
         let poses = sample.poses.iter();
         let values: Vec<f64> = poses
-            .flat_map(|pose| [pose.translation.x, pose.translation.y, pose.rotation_rad])
+            .flat_map(|pose| [pose.translation.x, pose.translation.y, pose.rotation_rad()])
             .collect();
         self.csv
             .serialize((sample.time_s, values))

@@ -16,6 +16,7 @@ use super::timeline::LARGEST_EXCESS;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State};
 use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
@@ -241,7 +242,7 @@ impl Report {
             .iter()
             .map(|frame| frame.ground_m_s2 / self.gravity_m_s2);
         let poses = || frames.iter().flat_map(|frame| &frame.poses);
-        let (rotations, rotation_unit_rad) = whole(poses().map(|pose| pose.rotation_rad));
+        let (rotations, rotation_unit_rad) = whole(poses().map(Pose::rotation_rad));
         let shifts_m = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
         let (shifts, shift_unit_m) = whole(shifts_m);
         let thrust_unit = FARTHEST / MOST;

@@ -27,6 +27,7 @@ use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::contact::{Corners, Load, Program};
 use crate::mechanics::geometry::field::{Twist, turned};
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::{Placement, SHUT_RATIO};
 
@@ -273,7 +274,7 @@ impl<'a> Engine<'a> {
         self.weigh_pieces();
         self.start_energy = self.height_energy();
         self.stands = open == 0;
-        let rotations = self.placement.poses().iter().map(|pose| pose.rotation_rad);
+        let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
         self.course.released(rotations, self.start_energy, open > 0);
         Ok(())
     }

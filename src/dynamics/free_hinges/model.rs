@@ -23,7 +23,6 @@ use crate::mechanics::column::Column;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::friction::{self, FrictionError};
-use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::sway::Sway;
@@ -547,10 +546,7 @@ impl RowRecorder for Relay<'_, '_> {
         next.rates_rad_s.clear();
         next.rates_rad_s.extend(sample.rates_rad_s);
         next.poses.clear();
-        next.poses.extend(sample.poses.iter().map(|pose| Pose {
-            rotation_rad: pose.rotation_rad,
-            translation: pose.shift_m,
-        }));
+        next.poses.extend(sample.poses);
         next.hinges.clear();
         for (joint, (gaps, frame)) in sample.gaps_m.iter().zip(sample.frames).enumerate() {
             let Some(edge) = opening(gaps) else {

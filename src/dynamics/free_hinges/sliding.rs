@@ -16,7 +16,8 @@ use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode, Program};
-use crate::mechanics::joints::{Frame, Placement, Pose};
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::joints::{Frame, Placement};
 use crate::mechanics::slip::{Contact, Faces, Position};
 
 /// Rates are found to within this part of the fastest motion, and of what gravity does in a step.
@@ -104,7 +105,7 @@ impl<'a> Engine<'a> {
         let faces = Faces::of_row(row);
         let at = placement.centres_m().iter().zip(placement.poses());
         let positions: Vec<Position> = at
-            .map(|(centre, pose)| Position::new(*centre, pose.rotation_rad))
+            .map(|(centre, pose)| Position::new(*centre, pose.rotation_rad()))
             .collect();
         let contacts: Vec<Contact> = (0..joints)
             .map(|joint| contact(&faces, &positions, joint))
@@ -455,9 +456,7 @@ impl<'a> Engine<'a> {
     fn note_poses(&mut self) {
         let blocks = self.row.blocks().iter().zip(&self.positions).enumerate();
         for (index, (block, position)) in blocks {
-            let turned = Pose::new(position.rotation_rad, Vector2::zeros());
-            let shift_m = position.centre_m - turned.of(block.centre_m);
-            self.poses[index] = Pose::new(position.rotation_rad, shift_m);
+            self.poses[index] = position.pose(block.centre_m);
             self.rotations[index] = position.rotation_rad;
         }
         for (joint, contact) in self.contacts.iter().enumerate() {

@@ -8,7 +8,7 @@ use super::resultant::ResultantLine;
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
 use super::self_weight::carries_its_weight;
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::geometry::field::{Field, Side, Twist};
+use crate::mechanics::geometry::field::{Field, Side, Twist, turned};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::{Edge, Ring, RingError};
 
@@ -119,7 +119,7 @@ fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, 
             let part = profile.moments_to(*angle);
             [Edge::Intrados, Edge::Extrados].map(|edge| {
                 let arm = part.first - profile.point(*angle, edge) * part.mass;
-                Vector2::new(-arm.y, arm.x)
+                turned(arm)
             })
         })
         .collect();

@@ -1,13 +1,15 @@
 //! Where a rigid body is.
 
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::Vector2;
 
 /// Position of a rigid body relative to where it is in the undeformed structure: it is turned about the
 /// origin, then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Rotation in radians, positive anticlockwise.
-    pub rotation_rad: f64,
+    rotation_rad: f64,
+    /// Cosine and sine of the rotation.
+    turn: Vector2<f64>,
     /// Displacement of the body's point at the origin, in the unit of length of the structure that gives
     /// the pose; metres in a [`Sample`](crate::dynamics::history::Sample).
     pub translation: Vector2<f64>,
@@ -17,23 +19,47 @@ impl Pose {
     /// Undeformed.
     pub const UNDEFORMED: Self = Self {
         rotation_rad: 0.0,
+        turn: Vector2::new(1.0, 0.0),
         translation: Vector2::new(0.0, 0.0),
     };
+
+    /// Turned by `rotation_rad` about the origin, then moved.
+    #[must_use]
+    pub fn new(rotation_rad: f64, translation: Vector2<f64>) -> Self {
+        Self {
+            rotation_rad,
+            turn: unit(rotation_rad),
+            translation,
+        }
+    }
 
     /// Turned by `rotation_rad` about the point `pole` of the body, which moves to `moved`.
     #[must_use]
     pub fn about(pole: Vector2<f64>, moved: Vector2<f64>, rotation_rad: f64) -> Self {
+        // Adding zero makes a negative zero positive.
+        let turned = Self::new(rotation_rad + 0.0, Vector2::zeros());
         Self {
-            // Adding zero makes a negative zero positive.
-            rotation_rad: rotation_rad + 0.0,
-            translation: moved - Rotation2::new(rotation_rad) * pole,
+            translation: moved - turned.turned(pole),
+            ..turned
         }
+    }
+
+    /// Rotation in radians, positive anticlockwise.
+    #[must_use]
+    pub const fn rotation_rad(&self) -> f64 {
+        self.rotation_rad
     }
 
     /// Where a point of the undeformed body is now.
     #[must_use]
     pub fn of(&self, point: Vector2<f64>) -> Vector2<f64> {
-        Rotation2::new(self.rotation_rad) * point + self.translation
+        self.turned(point) + self.translation
+    }
+
+    /// Where a vector of the undeformed body points now.
+    #[must_use]
+    pub fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
+        product(self.turn, vector)
     }
 
     /// The same with lengths in a unit `per_unit` times smaller.
@@ -48,16 +74,33 @@ impl Pose {
     /// The mirror image about the vertical through the origin.
     #[must_use]
     pub fn mirrored(&self) -> Self {
+        // Adding zero makes a negative zero positive.
         Self {
-            // Adding zero makes a negative zero positive.
             rotation_rad: -self.rotation_rad + 0.0,
+            turn: Vector2::new(self.turn.x, -self.turn.y + 0.0),
             translation: Vector2::new(-self.translation.x + 0.0, self.translation.y),
         }
     }
 }
 
+/// Unit vector at this angle.
+pub(crate) fn unit(angle_rad: f64) -> Vector2<f64> {
+    let (sin, cos) = angle_rad.sin_cos();
+    Vector2::new(cos, sin)
+}
+
+/// Product of complex numbers: turns one vector by the angle of a unit vector.
+pub(crate) fn product(unit: Vector2<f64>, vector: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(
+        unit.x * vector.x - unit.y * vector.y,
+        unit.y * vector.x + unit.x * vector.y,
+    )
+}
+
 #[cfg(test)]
 mod tests {
+    use nalgebra::Rotation2;
+
     use super::*;
 
     #[test]

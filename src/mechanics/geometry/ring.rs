@@ -10,6 +10,8 @@ use std::ops::{Add, Mul, Sub};
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use super::field::turned;
+
 named! {
     /// Edge of the ring on which a hinge sits.
     pub enum Edge {
@@ -104,8 +106,7 @@ impl Ring {
     /// Unit vector along the axis at `angle_rad`, towards the right springing.
     #[must_use]
     pub fn tangent(&self, angle_rad: f64) -> Vector2<f64> {
-        let radial = self.radial(angle_rad);
-        Vector2::new(radial.y, -radial.x)
+        -turned(self.radial(angle_rad))
     }
 
     /// Point of the section at `angle_rad` on `edge`.

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::{Check, Mechanism, StateCheck, Way};
 use crate::dynamics::history::OpenHinge;
+use crate::mechanics::geometry::field::turned;
 use crate::output::scene::{Piece, Scene};
 use crate::output::svg::{Anchor, Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::scenario::{LimitState, Structure};
@@ -58,7 +59,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
         drawing.curve(&format!("delta {number}"), [at, end], arrow);
         if delta.norm() > 6.0 {
             let back = -delta.normalize() * 7.0;
-            let across = Vector2::new(-back.y, back.x) * 0.45;
+            let across = turned(back) * 0.45;
             drawing.polygon(
                 "",
                 [end, end + back + across, end + back - across],

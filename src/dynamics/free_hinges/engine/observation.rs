@@ -7,6 +7,7 @@ use crate::dynamics::free_hinges::course::{Stepper as _, heading};
 use crate::dynamics::free_hinges::{FreeHingeError, Impact, Recorder, Sample, Uplift};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 
 /// At rest, kinetic and potential energy are below this part of weight times size.
@@ -77,7 +78,7 @@ impl Engine<'_> {
         self.course.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
         let potential = self.height_energy();
         let sway = sway(self.row, self.placement.centres_m());
-        let rotations = self.placement.poses().iter().map(|pose| pose.rotation_rad);
+        let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
         let kinetic = kinetic(&self.pieces);
         self.course.observe(rotations, potential, kinetic, sway);
     }
@@ -157,7 +158,7 @@ impl Engine<'_> {
 
     pub(super) fn note_rotations(&mut self) {
         for (rotation, pose) in self.rotations.iter_mut().zip(self.placement.poses()) {
-            *rotation = pose.rotation_rad;
+            *rotation = pose.rotation_rad();
         }
     }
 
