@@ -7,7 +7,7 @@ use crate::program::{archrock, stderr};
 use archrock::Scenario;
 
 /// Optional keys, which the comments give with their defaults.
-const OPTIONAL: [&str; 9] = [
+const OPTIONAL: [&str; 12] = [
     "depth_m",
     "density_kg_m3",
     "start_s",
@@ -17,6 +17,9 @@ const OPTIONAL: [&str; 9] = [
     "wrapped",
     "format",
     "scale",
+    "confidence_factor",
+    "behaviour_factor",
+    "sides",
 ];
 
 /// The text with these no longer comments.
@@ -42,6 +45,7 @@ fn every_kind_runs_at_once_and_its_comments_are_true() {
         ("record", "run"),
         ("map", "map"),
         ("suite", "suite"),
+        ("verify", "verify"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let init = archrock(folder.path(), &["init", kind]);

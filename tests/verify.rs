@@ -358,7 +358,21 @@ fn what_is_out_of_the_range_of_the_code_is_refused() {
             "ag_g = 0.9",
             &["a.toml:12:8", "at most 0.85 on soil B", "§ 3.2.3.2"],
         ),
-        ("ag_g = 0.25", "ag_g = 25", &["a.toml:12:8", "out of range"]),
+        (
+            "ag_g = 0.25",
+            "ag_g = 25",
+            &["a.toml:12:8", "out of range", "at most 0.85", "§ 3.2.3.2"],
+        ),
+        (
+            "ag_g = 0.25",
+            "ag_g = 0",
+            &["a.toml:12:8", "above 0 (NTC 2018, § 3.2)"],
+        ),
+        (
+            "f0 = 2.40",
+            "f0 = 12",
+            &["a.toml:9:6", "2.2 (NTC 2018, § 3.2.1) to 10"],
+        ),
         (
             "tc_star_s = 0.35",
             "tc_star_s = 3.5",
@@ -372,7 +386,7 @@ fn what_is_out_of_the_range_of_the_code_is_refused() {
         (
             "topography = 'T1'",
             "topographic_factor = 0.5",
-            &["a.toml:6:22", "from 1 to 2"],
+            &["a.toml:6:22", "from 1 to 2 (NTC 2018, Tab. 3.2.V"],
         ),
         ("topography = 'T1'", "", &["topography, topographic_factor"]),
         (
@@ -410,7 +424,16 @@ fn what_is_out_of_the_range_of_the_code_is_refused() {
     refused(
         folder.path(),
         &["verify", "a.toml"],
-        &["a.toml:20:21", "from 1 to 2"],
+        &["a.toml:20:21", "from 1 to 2", "Tab. C8.5.IV"],
+    );
+    let folder = in_folder(
+        COLUMN,
+        &format!("{DEMAND}[verify]\nbehaviour_factor = 0.9\n"),
+    );
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["a.toml:20:20", "from 1 to 5", "C8.7.1.2.1.7"],
     );
 }
 

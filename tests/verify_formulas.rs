@@ -636,3 +636,70 @@ fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
     let refused = Capacity::new(Sway::Right, rising, &masses, Control::point(body), GRAVITY);
     assert_eq!(refused, Err(CapacityError::Locks { sway: Sway::Right }));
 }
+
+/// What strengthens first and weakens then is borne up to where it bears nothing, along its own curve.
+#[test]
+fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
+    let law = |part: f64| (1.0 - part) * (0.1 + 0.4 * part);
+    let displaced = |part: f64| Displaced {
+        q_rad: part,
+        acceleration_g: law(part),
+        poses: vec![Pose::about(Vector2::zeros(), Vector2::zeros(), -0.1 * part)],
+        hinges_m: Vec::new(),
+        friction: 0.0,
+    };
+    let body = Carried {
+        at_m: Vector2::new(0.0, 1.0),
+        body: Some(0),
+    };
+    let capacity = Capacity::new(
+        Sway::Right,
+        displaced,
+        &[(1.0, body)],
+        Control::point(body),
+        GRAVITY,
+    )
+    .unwrap();
+    assert!((capacity.end().displacement_m - 0.1_f64.sin()).abs() < 1e-12);
+    assert!(capacity.oscillator_acceleration_g(0.3) > capacity.oscillator_acceleration_g(0.0));
+    // The displacement at 0.4 d0 is sin(0.1 s); straight between a hundred points, off by at most an eighth of the curvature times
+    // the square of their distance.
+    let part = (0.4 * 0.1_f64.sin()).asin() / 0.1;
+    let own_g = capacity.oscillator_acceleration_g(0.4);
+    assert!(
+        (own_g - law(part)).abs() < 0.125 * 0.8 * 1e-4 * 1.1,
+        "{own_g}"
+    );
+}
+
+/// The curve of the semicircle is straight between a hundred points: its period at 0.4 d0 is that of the curve itself to 3e-6.
+#[test]
+fn c8_7_1_10_the_period_of_a_curve_that_is_not_straight() {
+    let model = model(&scenario(SEMICIRCLE));
+    let bodies = model.moving_bodies(Sway::Right).unwrap();
+    let capacity = of_bodies(&*model, Sway::Right);
+    let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
+    let centre_m = |part: f64| {
+        let displaced = model.displaced(Sway::Right, part).unwrap();
+        let moved = bodies.iter().zip(&displaced.poses);
+        let moved =
+            moved.map(|(body, pose)| body.mass_kg * (pose.of(body.centre_m) - body.centre_m).x);
+        moved.sum::<f64>() / mass_kg
+    };
+    let aim_m = 0.4 * centre_m(1.0);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if centre_m(middle) < aim_m {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    let exact_g =
+        model.displaced(Sway::Right, low).unwrap().acceleration_g / capacity.mass_fraction;
+    let own_g = capacity.oscillator_acceleration_g(0.4);
+    // T goes with one over the root of a.
+    let ratio = (exact_g / own_g).sqrt();
+    assert!((ratio - 1.0).abs() < 3e-6 && ratio != 1.0, "{ratio}");
+}

@@ -34,6 +34,8 @@ enum Kind {
     Map,
     /// A suite of records.
     Suite,
+    /// An arch and the hazard of its site, to be checked.
+    Verify,
 }
 
 /// The record that scenarios of records begin with, beside them.
@@ -47,6 +49,7 @@ impl Kind {
             Self::Record => include_str!("init/record.toml"),
             Self::Map => include_str!("init/map.toml"),
             Self::Suite => include_str!("init/suite.toml"),
+            Self::Verify => include_str!("init/verify.toml"),
         }
     }
 
@@ -58,6 +61,7 @@ impl Kind {
             Self::Record => ("record", "run", true),
             Self::Map => ("map", "map", false),
             Self::Suite => ("suite", "suite", true),
+            Self::Verify => ("verify", "verify", false),
         }
     }
 }

@@ -149,6 +149,10 @@ pub trait MechanismModel: Model {
     /// Its first mechanism to this side, at this part of its way to the unstable equilibrium; `None` if it has none.
     fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
+    /// Mass times horizontal displacement of the common centre of gravity, in kg m and to the side that it sways to, of the
+    /// mechanism after so many impacts and a first sway to this side, at this coordinate; `None` when there is no such mechanism.
+    fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64>;
+
     /// The rigid bodies of its first mechanism to this side, as [`crate::mechanics::capacity::moving_bodies`]; `None` if it
     /// has none.
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;

@@ -31,6 +31,7 @@ mod free_hinges;
 mod ground;
 mod impact;
 mod initial;
+mod listing;
 mod map;
 mod masonry;
 mod record;
@@ -80,7 +81,7 @@ use table::{Reading, Table, Text};
 pub(crate) use toml_text::toml_text;
 pub use verify::{
     BEHAVIOUR_FACTOR, BuildingMode, ByState, CONFIDENCE_FACTOR, CodeDemand, Demand, FreeStanding,
-    Height, LimitState, ModeState, PointDemand, Relief, Sides, StateRule, Verify,
+    Height, LimitState, ModeState, PointDemand, Records, Relief, Sides, StateRule, Verify,
 };
 
 named! {
@@ -227,7 +228,7 @@ impl Scenario {
         let suite = table.table("suite", |table| {
             Suite::read(table, folder, simulation.as_ref().ok())
         });
-        let verify = table.table("verify", Verify::read);
+        let verify = table.table("verify", |table| Verify::read(table, folder, gravity_m_s2));
         let demand = table.table("demand", |table| {
             let factor =
                 |verify: &Option<Verify>| verify.clone().unwrap_or_default().confidence_factor;
@@ -237,6 +238,10 @@ impl Scenario {
                 verify.as_ref().map(factor).map_err(|reported| *reported),
             )
         });
+        let (verify, demand) = (verify?, demand?);
+        if let Some(verify) = &verify {
+            verify.suits(table, demand.as_ref())?;
+        }
         let (steps, structure) = (steps?, structure?);
         if let Some(options) = steps.filter(|_| free) {
             free_hinges::carries(table, &structure, options)?;
@@ -252,8 +257,8 @@ impl Scenario {
             map: map?,
             spectrum: spectrum?,
             suite: suite?,
-            demand: demand?,
-            verify: verify?,
+            demand,
+            verify,
             motion: Arc::new(motion),
         })
     }
@@ -273,6 +278,12 @@ impl Scenario {
             motion: Arc::new(motion),
             ..self.clone()
         }
+    }
+
+    /// The ground motion of a record under this scenario's gravity, multiplied by a factor.
+    #[must_use]
+    pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
+        suite::shaking(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
     }
 
     /// The model of motion that the scenario chooses.

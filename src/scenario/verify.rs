@@ -6,6 +6,7 @@
 //! behaviour_factor = 2.0
 //! sides = "both"                # or "right", "left"
 //! free_standing = { t0_s = 0.143 }     # or { kappa = 6.2, length_m = 4, thickness_m = 0.8, modulus_gpa = 1.5 }
+//! slv_records = "slv/*.at2"     # the dynamic route; likewise slc_records; of tables, columns and units as in [suite]
 //!
 //! [demand]
 //! soil = "B"
@@ -27,15 +28,18 @@
 //! state = { part_of_d0 = 0.4, period_factor = 1.68, damping_percent = 8, divide_acceleration = 1.35, divide_displacement = 1 }
 //! ```
 
-use std::ops::Bound::{Excluded, Included};
+use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::path::Path;
 
 use serde::Serialize;
+use serde::ser::{SerializeMap as _, Serializer};
+use toml::de::DeValue;
 
 use super::LineFault;
-use super::record::{faulty, read_numbers};
+use super::listing::{Listing, serialize_layout};
+use super::record::{Format, Series, faulty, read_numbers};
 use super::structure::MAGNITUDE;
-use super::table::{Number, OneOf, Reading, Table, Text};
+use super::table::{Number, OneOf, OneOrMore, Reading, Rule, Table, Text};
 use crate::dynamics::demand::floor::Mode;
 use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
 use crate::dynamics::demand::points::PointSpectrum;
@@ -118,6 +122,98 @@ pub struct Verify {
     /// Free to vibrate before it moves; `None`: held by walls all along.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free_standing: Option<FreeStanding>,
+    /// Records of the dynamic route.
+    #[serde(flatten)]
+    pub records: Records,
+}
+
+/// Records of the motion where the mechanism stands, for each limit state; none for one that is not checked so.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Records {
+    /// For SLV.
+    pub slv: Vec<Series>,
+    /// For SLC.
+    pub slc: Vec<Series>,
+}
+
+const SLV_RECORDS: &str = "slv_records";
+const SLC_RECORDS: &str = "slc_records";
+/// The fewest whose worst counts (NTC 2018, § 7.3.5).
+const LEAST_RECORDS: usize = 3;
+
+impl Records {
+    /// Those of a state.
+    #[must_use]
+    pub fn of(&self, state: LimitState) -> &[Series] {
+        match state {
+            LimitState::Sld => &[],
+            LimitState::Slv => &self.slv,
+            LimitState::Slc => &self.slc,
+        }
+    }
+
+    fn read(table: &mut Table<'_>, folder: &Path, gravity_m_s2: Reading<f64>) -> Reading<Self> {
+        let keys = [SLV_RECORDS, SLC_RECORDS];
+        let patterns = keys.map(|key| (key, table.optional(key, &OneOrMore(&Text))));
+        let given = patterns
+            .into_iter()
+            .filter_map(|(key, patterns)| match patterns {
+                Ok(None) => None,
+                Ok(Some(patterns)) => Some((key, Ok(patterns))),
+                Err(reported) => Some((key, Err(reported))),
+            });
+        let given: Vec<_> = given.collect();
+        if given.is_empty() {
+            return Ok(Self::default());
+        }
+        let asked: Vec<&str> = given.iter().map(|(key, _)| *key).collect();
+        let format = Format::read(table);
+        let listing = Listing::read(table, folder, given, format)?;
+        let gravity_m_s2 = gravity_m_s2?;
+        let accept = |series: &Series| match series.peak_g(gravity_m_s2) {
+            0.0 => Err("is zero throughout".to_owned()),
+            _ => series.check_strength(gravity_m_s2),
+        };
+        let mut records = Self::default();
+        for (key, series) in listing.series(table, folder, accept)? {
+            match key {
+                SLV_RECORDS => records.slv.push(series),
+                _ => records.slc.push(series),
+            }
+        }
+        for key in asked {
+            let count = if key == SLV_RECORDS {
+                records.slv.len()
+            } else {
+                records.slc.len()
+            };
+            if count < LEAST_RECORDS {
+                let wrong = format!(
+                    "has {count} records; must be at least {LEAST_RECORDS}, of which the worst counts, or 7 for their mean \
+                     (NTC 2018, § 7.3.5)"
+                );
+                return Err(table.wrong(key, wrong));
+            }
+        }
+        Ok(records)
+    }
+}
+
+impl Serialize for Records {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for (key, records) in [(SLV_RECORDS, &self.slv), (SLC_RECORDS, &self.slc)] {
+            if !records.is_empty() {
+                let files: Vec<_> = records.iter().map(|series| &series.file).collect();
+                map.serialize_entry(key, &files)?;
+            }
+        }
+        let all = self.slv.iter().chain(&self.slc);
+        if all.clone().next().is_some() {
+            serialize_layout(&mut map, all)?;
+        }
+        map.end()
+    }
 }
 
 /// FC of the least level of knowledge, LC1 (Tab. C8.5.IV): what counts where the load multiplier takes no account of the
@@ -126,8 +222,29 @@ pub const CONFIDENCE_FACTOR: f64 = 1.35;
 /// q without better knowledge (C8.7.1.2.1.7).
 pub const BEHAVIOUR_FACTOR: f64 = 2.0;
 
-const CONFIDENCE: Number = Number(Included(1.0), Included(2.0));
-const BEHAVIOUR: Number = Number(Included(1.0), Included(5.0));
+/// A number in a range, and the clause that it is of.
+struct ByClause(Number, &'static str);
+
+impl Rule for ByClause {
+    type Value = f64;
+
+    fn allowed(&self) -> String {
+        format!("{} ({})", self.0.allowed(), self.1)
+    }
+
+    fn read(&self, value: &DeValue<'_>) -> Result<f64, String> {
+        self.0.read(value)
+    }
+}
+
+const CONFIDENCE: ByClause = ByClause(
+    Number(Included(1.0), Included(2.0)),
+    "Circolare 7/2019, Tab. C8.5.IV has 1.00 to 1.35",
+);
+const BEHAVIOUR: ByClause = ByClause(
+    Number(Included(1.0), Included(5.0)),
+    "Circolare 7/2019, C8.7.1.2.1.7 has 2 without better knowledge",
+);
 const PERIOD_S: Number = Number(Excluded(0.0), Included(10.0));
 const KAPPA: Number = Number(Excluded(0.0), Included(100.0));
 const MODULUS_GPA: Number = Number(Excluded(0.0), Included(1e3));
@@ -139,13 +256,18 @@ impl Default for Verify {
             behaviour_factor: BEHAVIOUR_FACTOR,
             sides: Sides::Both,
             free_standing: None,
+            records: Records::default(),
         }
     }
 }
 
 impl Verify {
-    /// Reads `[verify]`.
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+    /// Reads `[verify]`, whose files are relative to `folder`.
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        gravity_m_s2: Reading<f64>,
+    ) -> Reading<Self> {
         let default = Self::default();
         let confidence_factor =
             table.or("confidence_factor", &CONFIDENCE, default.confidence_factor);
@@ -156,12 +278,39 @@ impl Verify {
         };
         let sides = table.or("sides", &names, default.sides);
         let free_standing = table.table("free_standing", FreeStanding::read);
+        let records = Records::read(table, folder, gravity_m_s2);
         Ok(Self {
             confidence_factor: confidence_factor?,
             behaviour_factor: behaviour_factor?,
             sides: sides?,
             free_standing: free_standing?,
+            records: records?,
         })
+    }
+
+    /// Refuses records of states that are not checked, and of one side only.
+    pub(super) fn suits(&self, table: &mut Table<'_>, demand: Option<&Demand>) -> Reading<()> {
+        for (key, state) in [
+            (SLV_RECORDS, LimitState::Slv),
+            (SLC_RECORDS, LimitState::Slc),
+        ] {
+            if self.records.of(state).is_empty() {
+                continue;
+            }
+            let asked = demand.is_some_and(|demand| demand.states().any(|one| one == state));
+            if !asked {
+                let wrong = format!(
+                    "needs [demand.{}], which tells what is allowed",
+                    state.name()
+                );
+                return Err(table.wrong_in("verify", key, wrong));
+            }
+            if self.sides != Sides::Both {
+                let wrong = "goes with sides = \"both\": histories sway to both sides";
+                return Err(table.wrong_in("verify", key, wrong));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -351,9 +500,12 @@ impl StateRule {
     }
 }
 
-const ACCELERATION_G: Number = Number(Excluded(0.0), Included(10.0));
-const AMPLIFICATION: Number = Number(Excluded(0.0), Included(10.0));
-const TOPOGRAPHIC_FACTOR: Number = Number(Included(1.0), Included(2.0));
+/// The code's own ranges depend on the soil: [`GroundSpectrum::new`] knows them.
+const HAZARD: ByClause = ByClause(Number(Excluded(0.0), Unbounded), "NTC 2018, § 3.2");
+const TOPOGRAPHIC_FACTOR: ByClause = ByClause(
+    Number(Included(1.0), Included(2.0)),
+    "NTC 2018, Tab. 3.2.V has 1.0 to 1.4",
+);
 const GAMMA: Number = Number(Excluded(0.0), Included(10.0));
 const PSI: Number = Number(Included(-10.0), Included(10.0));
 /// Beyond it the spectrum of a floor is no longer larger than its peak.
@@ -448,9 +600,9 @@ impl CodeDemand {
 }
 
 fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> Reading<Hazard> {
-    let ag_g = table.required("ag_g", &ACCELERATION_G);
-    let f0 = table.required("f0", &AMPLIFICATION);
-    let tc_star_s = table.required("tc_star_s", &PERIOD_S);
+    let ag_g = table.required("ag_g", &HAZARD);
+    let f0 = table.required("f0", &HAZARD);
+    let tc_star_s = table.required("tc_star_s", &HAZARD);
     let hazard = Hazard {
         ag_g: ag_g?,
         f0: f0?,

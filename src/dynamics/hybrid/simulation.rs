@@ -141,6 +141,11 @@ impl<C: MechanismChain> MechanismModel for C {
         displaced(self, sway, part)
     }
 
+    fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64> {
+        let mechanism = &self.link_from(first, impacts)?.mechanism;
+        Some(mechanism.displacement(q_rad).x * self.mass_unit_kg() * self.length_m())
+    }
+
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>> {
         moving_bodies(self, sway)
     }

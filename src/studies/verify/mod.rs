@@ -5,6 +5,7 @@
 //! number, [`words()`] the result, and [`page()`] what another engineer needs to redo it by hand. Where the text of the Circolare
 //! leaves room, what is done is among the [decisions](notes) that the page prints.
 
+pub mod histories;
 mod mechanism;
 pub mod notes;
 mod page;
@@ -23,6 +24,7 @@ use crate::dynamics::demand::points::Beyond;
 use crate::mechanics::capacity::Capacity;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{Demand, LimitState, PointDemand, Scenario, Sides, StateRule, Verify};
+pub use histories::{Histories, HistorySide};
 pub use mechanism::{Mechanism, PlacedHinge, Way};
 pub use page::{page, today};
 pub use summary::to_json;
@@ -61,6 +63,14 @@ pub enum NoCheck {
          with q (C8.7.1.2.1.7), from the parameters of NTC 2018: give [demand.sld] and [demand.slv]"
     )]
     NoCurve(String),
+    /// Histories cannot be computed.
+    #[error("the histories of {}_records are not possible: {why}", .state.name())]
+    Histories {
+        /// Of which state.
+        state: LimitState,
+        /// Why.
+        why: String,
+    },
     /// A spectrum of points ends too early.
     #[error("[demand.{}] {beyond}", .state.name())]
     Beyond {
@@ -301,6 +311,8 @@ pub struct StateCheck {
     pub rule: Option<StateRule>,
     /// To each side that is checked.
     pub sides: Vec<SideCheck>,
+    /// By histories, where there are records.
+    pub histories: Option<Histories>,
 }
 
 impl StateCheck {
@@ -363,7 +375,7 @@ impl Check {
             states: Vec::new(),
         };
         for state in check.demand.states().collect::<Vec<_>>() {
-            let one = check.state(state)?;
+            let one = check.state(scenario, state)?;
             check.states.push(one);
         }
         let ultimate = check
@@ -415,7 +427,7 @@ impl Check {
         mechanism.alpha0 / (mechanism.participation.mass_fraction * self.settings.confidence_factor)
     }
 
-    fn state(&self, state: LimitState) -> Result<StateCheck, NoCheck> {
+    fn state(&self, scenario: &Scenario, state: LimitState) -> Result<StateCheck, NoCheck> {
         let spectrum = Spectrum::of(&self.demand, state).expect("the state is asked for");
         let rule = match &spectrum {
             Spectrum::Points(demand) => demand.state,
@@ -441,9 +453,13 @@ impl Check {
                 displacement,
             })
         });
-        let sides = sides.collect::<Result<_, Beyond>>();
+        let sides = sides.collect::<Result<Vec<SideCheck>, Beyond>>();
+        let sides = sides.map_err(|beyond| NoCheck::Beyond { state, beyond })?;
+        let histories =
+            histories::histories(scenario, self, (state, &sides), &spectrum, rule.as_ref())?;
         Ok(StateCheck {
-            sides: sides.map_err(|beyond| NoCheck::Beyond { state, beyond })?,
+            sides,
+            histories,
             state,
             spectrum,
             rule,

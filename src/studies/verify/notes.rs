@@ -1,5 +1,6 @@
 //! What a check decides, assumes and leaves out, in the words of its page.
 
+use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{Check, Spectrum};
 use crate::scenario::{CONFIDENCE_FACTOR, Scenario, Sides, Structure};
 
@@ -84,6 +85,9 @@ pub fn decisions(check: &Check) -> Vec<(&'static str, String)> {
             ),
         },
     ));
+    if check.states.iter().any(|one| one.histories.is_some()) {
+        notes.push(("D9", of_histories(check)));
+    }
     if settings.confidence_factor != CONFIDENCE_FACTOR {
         notes.push((
             "FC",
@@ -106,6 +110,26 @@ pub fn decisions(check: &Check) -> Vec<(&'static str, String)> {
         ));
     }
     notes
+}
+
+fn of_histories(check: &Check) -> String {
+    let (clause, more) = if check.by_the_code() {
+        (
+            " (\u{a7} 7.3.5)",
+            " C8.7.1.2.1.9 asks for more records than that, natural ones that match the spectrum and hold long periods: the engineer \
+             answers for them.",
+        )
+    } else {
+        ("", "")
+    };
+    format!(
+        "Histories are of four-link mechanisms, one degree of freedom at a time, with losses at impacts only. That model is not on the \
+         safe side: with joints that open and close at any time arches fall at weaker motions. Every record acts in either \
+         direction, and the larger peak counts; after many impacts a peak may hang on the last digit of its record. Their displacement is the sum of m u over M*, that of the common centre over e* while \
+         the first mechanism moves, and is compared with what that mechanism allows, though later ones reach farther. Where FC enters is not said: histories pass where they do with d and d_0 divided by FC; both are \
+         printed. From {FOR_THE_MEAN} records on the mean of the peaks counts, of fewer the largest{clause}.{more} They stand beside \
+         the check by displacement, which is in bold: which one decides is the engineer's."
+    )
 }
 
 /// What is assumed.
@@ -145,7 +169,30 @@ pub fn warnings(check: &Check) -> Vec<String> {
             )
         })
     });
-    slides.collect()
+    let mut warnings: Vec<String> = slides.collect();
+    for one in &check.states {
+        let Some(histories) = &one.histories else {
+            continue;
+        };
+        if let (Some(false), Some([least, largest])) =
+            (histories.fits_the_spectrum(), histories.spectrum_ratios)
+        {
+            let [from_s, to_s] = histories.periods_s;
+            let clause = if check.by_the_code() {
+                "\u{a7} 3.2.3.6 has"
+            } else {
+                "it should be"
+            };
+            warnings.push(format!(
+                "{}: the mean spectrum of the records at 5 % is {least:.2} to {largest:.2} times the one demanded, between {from_s:.2} \
+                 and {to_s:.2} s; {clause} {} to {} over the periods of interest.",
+                super::words::name(one.state),
+                SPECTRUM_MARGIN[0],
+                SPECTRUM_MARGIN[1]
+            ));
+        }
+    }
+    warnings
 }
 
 /// What is left out.

@@ -4,8 +4,9 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use super::histories::{Histories, HistorySide, Peak};
 use super::summary::{Sums, scenario_sha256};
-use super::words::{name, of_method};
+use super::words::{in_passes, name, of_method};
 use super::{
     Activation, ByDisplacement, Check, Margin, Mechanism, Method, SideCheck, Simplified, Spectrum,
     StateCheck, Way, notes, picture,
@@ -54,6 +55,7 @@ pub fn page(scenario: &Scenario, check: &Check, date: &str) -> String {
             ("MECHANISM", &writer.sides(Writer::mechanism)),
             ("DEMAND", &writer.demand()),
             ("CHECKS", &writer.sides(Writer::checks)),
+            ("HISTORIES", &writer.histories()),
             ("NOTES", &writer.notes()),
             ("FOOTER", footer),
             ("SCENARIO", &escaped(&scenario.to_toml())),
@@ -232,6 +234,9 @@ impl Writer<'_> {
                     body += &self.result_row(state, side.sway, method, &margin, &what, is_it);
                 }
             }
+            if let Some(histories) = &state.histories {
+                body += &self.histories_rows(state.state, histories);
+            }
             if counts.is_none() {
                 let cells = [
                     name(state.state),
@@ -267,6 +272,28 @@ impl Writer<'_> {
         let warnings =
             warnings.map(|line| format!("<p class=\"warning\">{}</p>\n", typeset(&line)));
         text + &warnings.collect::<String>()
+    }
+
+    fn histories_rows(&self, state: LimitState, histories: &Histories) -> String {
+        let sides = &histories.sides[..if self.is_symmetric() {
+            1
+        } else {
+            histories.sides.len()
+        }];
+        let rows = sides.iter().map(|side| {
+            let class = if side.passes[1] { "verdict" } else { "verdict no" };
+            let to = if self.is_symmetric() { "either side" } else { side.sway.name() };
+            let demand = side.demand_m.map_or("overturns".to_owned(), |demand_m| n(demand_m, 4) + " m");
+            format!(
+                "<tr><td class=\"word\">{}</td><td class=\"word\">histories{}</td><td class=\"word\">{to}</td><td>{} m</td>\
+                 <td>{demand}</td><td></td><td></td><td></td><td class=\"word\"><span class=\"{class}\">{}</span></td></tr>\n",
+                name(state),
+                self.clause("C8.7.1.2.1.9"),
+                n(side.capacity_over_fc_m, 4),
+                in_passes(side.passes)
+            )
+        });
+        rows.collect()
     }
 
     fn result_row(
@@ -368,9 +395,10 @@ impl Writer<'_> {
         let settings = &self.check.settings;
         let mut text = formula(&format!(
             "\u{3b1}<sub>0</sub> = \u{2211}P\u{3b4}<sub>y</sub> / \u{2211}P\u{3b4}<sub>x</sub> = {} / {} = <b>{}</b>; A<sub>L</sub> = \
-             \u{3b1}<sub>0</sub> g{}",
+             \u{3b1}<sub>0</sub> g = {} g{}",
             n(sums.rise_kn, 4),
             n(sums.sway_kn, 4),
+            n(mechanism.alpha0, 5),
             n(mechanism.alpha0, 5),
             self.clause("C8.7.1.1")
         ));
@@ -734,6 +762,60 @@ impl Writer<'_> {
         }
     }
 
+    // Histories.
+
+    /// Record by record, where there are histories.
+    fn histories(&self) -> String {
+        let mut text = String::new();
+        for state in &self.check.states {
+            if let Some(histories) = &state.histories {
+                text += &self.histories_of(state, histories);
+            }
+        }
+        text
+    }
+
+    fn histories_of(&self, state: &StateCheck, histories: &Histories) -> String {
+        let peak = |peak: Peak| {
+            if peak.overturned {
+                "overturns".to_owned()
+            } else {
+                n(peak.displacement_m, 5)
+            }
+        };
+        let rows = histories.records.iter().map(|record| {
+            let [right, left] = record.peaks.map(peak);
+            format!(
+                "<tr><td class=\"word\">{} <span class=\"clause\">CRC {:08x}</span></td><td>{}</td><td>{right}</td><td>{left}</td></tr>\n",
+                escaped(&record.file),
+                record.checksum,
+                n(record.peak_g, 4)
+            )
+        });
+        let mut text = format!(
+            "<h3>{}: histories{}</h3>\n<table><thead><tr><th class=\"word\">Record</th><th>peak (g)</th><th>peak d to the right (m)\
+             </th><th>to the left (m)</th></tr></thead>\n<tbody>\n{}</tbody></table>\n",
+            name(state.state),
+            self.clause("C8.7.1.2.1.9"),
+            rows.collect::<String>()
+        );
+        for side in &histories.sides {
+            text += &formula(&history_side(state.state, histories, side));
+        }
+        if let Some([least, largest]) = histories.spectrum_ratios {
+            let [from_s, to_s] = histories.periods_s;
+            text += &formula(&format!(
+                "Mean spectrum of the records at 5 % over the one demanded, {} to {} s: {} to {}{}.",
+                n(from_s, 2),
+                n(to_s, 2),
+                n(least, 3),
+                n(largest, 3),
+                self.clause("\u{a7} 3.2.3.6")
+            ));
+        }
+        text
+    }
+
     // Notes.
 
     fn notes(&self) -> String {
@@ -778,6 +860,39 @@ fn rows_of(side: &SideCheck) -> Vec<(Method, Margin, (String, String))> {
         ));
     }
     rows
+}
+
+/// What the histories of a side come to.
+fn history_side(state: LimitState, histories: &Histories, side: &HistorySide) -> String {
+    let counted = if histories.is_mean() {
+        "mean of the peaks"
+    } else {
+        "largest peak"
+    };
+    let demand = side
+        .demand_m
+        .map_or("a record overturns it".to_owned(), |demand_m| {
+            format!("{counted} <b>{}</b> m", n(demand_m, 5))
+        });
+    let restitution = side.restitution.map_or(String::new(), |kept| {
+        format!(
+            " The first impact after it leaves {} of the energy.",
+            n(kept, 4)
+        )
+    });
+    format!(
+        "To the {}: {demand}; d<sub>{}</sub> = {} m, over FC {} m; d<sub>0</sub> = {} m is exceeded by {} of {} records, over FC by {}: \
+         <b>{}</b>.{restitution}",
+        side.sway.name(),
+        name(state),
+        n(side.capacity_m, 5),
+        n(side.capacity_over_fc_m, 5),
+        n(side.d0_m, 5),
+        side.exceeded[0],
+        histories.records.len(),
+        side.exceeded[1],
+        in_passes(side.passes)
+    )
 }
 
 fn parameters(state: LimitState, ground: &GroundSpectrum, gravity_m_s2: f64) -> String {

@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
+use super::histories::{Histories, Peak};
 use super::{
     Activation, ByDisplacement, Check, Margin, Mechanism, SideCheck, Simplified, Spectrum,
     StateCheck, notes,
@@ -185,11 +186,60 @@ fn state(check: &Check, one: &StateCheck) -> Value {
         "method": one.governing().map(|(_, method, _)| method.name()),
         "demand": demand(check, one),
         "rule": one.rule,
+        "histories": one.histories.as_ref().map(histories),
     });
     if let Some(state) = state.as_object_mut() {
         state.extend(sides);
     }
     state
+}
+
+fn histories(one: &Histories) -> Value {
+    let records = one.records.iter().map(|record| {
+        let [right, left] = record.peaks;
+        let peak = |peak: Peak| {
+            let peak_m = (!peak.overturned).then_some(peak.displacement_m);
+            json!({ "peak_m": peak_m, "overturned": peak.overturned })
+        };
+        json!({
+            "file": record.file,
+            "crc32": format!("{:08x}", record.checksum),
+            "peak_g": record.peak_g,
+            "right": peak(right),
+            "left": peak(left),
+        })
+    });
+    let sides = one.sides.iter().map(|side| {
+        let told = json!({
+            "restitution": side.restitution,
+            "demand_m": side.demand_m,
+            "capacity_m": side.capacity_m,
+            "capacity_over_fc_m": side.capacity_over_fc_m,
+            "d0_m": side.d0_m,
+            "records_beyond_d0": side.exceeded[0],
+            "records_beyond_d0_over_fc": side.exceeded[1],
+            "passed": side.passes[0],
+            "passed_over_fc": side.passes[1],
+        });
+        (side.sway.name().to_owned(), told)
+    });
+    let mut value = json!({
+        "demand": if one.is_mean() { "mean of the peaks" } else { "largest peak" },
+        "passed": one.passes()[0],
+        "passed_over_fc": one.passes()[1],
+        "records": records.collect::<Vec<_>>(),
+        "mean_spectrum": {
+            "from_s": one.periods_s[0],
+            "to_s": one.periods_s[1],
+            "least_ratio": one.spectrum_ratios.map(|ratios| ratios[0]),
+            "largest_ratio": one.spectrum_ratios.map(|ratios| ratios[1]),
+            "fits": one.fits_the_spectrum(),
+        },
+    });
+    if let Some(value) = value.as_object_mut() {
+        value.extend(sides);
+    }
+    value
 }
 
 fn demand(check: &Check, one: &StateCheck) -> Value {

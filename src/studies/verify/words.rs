@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::summary::verdict;
-use super::{Check, Method, StateCheck, notes};
+use super::{Check, Histories, Method, StateCheck, notes};
 use crate::mechanics::sway::Sway;
 use crate::scenario::LimitState;
 
@@ -118,5 +118,46 @@ fn state_in_words(state: &StateCheck) -> String {
             );
         }
     }
+    if let Some(histories) = &state.histories {
+        text += &in_histories(histories);
+    }
     text
+}
+
+fn in_histories(histories: &Histories) -> String {
+    let counted = if histories.is_mean() {
+        "mean"
+    } else {
+        "largest"
+    };
+    let mut text = String::new();
+    for side in &histories.sides {
+        let demand = match side.demand_m {
+            Some(demand_m) => format!(
+                "{counted} of {} peaks {demand_m:.5} m",
+                histories.records.len()
+            ),
+            None => "overturns".to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "  to the {:5}  histories: {demand}, allowed {:.5} m ({:.5} m over FC), d0 exceeded by {} ({}): {}",
+            side.sway.name(),
+            side.capacity_m,
+            side.capacity_over_fc_m,
+            side.exceeded[0],
+            side.exceeded[1],
+            in_passes(side.passes)
+        );
+    }
+    text
+}
+
+/// Whether histories pass as they are and with FC, in words.
+pub(super) const fn in_passes(passes: [bool; 2]) -> &'static str {
+    match passes {
+        [true, true] => "passed",
+        [true, false] => "passed without FC only",
+        [false, _] => "not passed",
+    }
 }

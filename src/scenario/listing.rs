@@ -1,0 +1,251 @@
+//! Records that keys of a table name, by files or by patterns of files, with the keys that say how tables are read.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Component as PathPart, Path, PathBuf};
+
+use glob::MatchOptions;
+use serde::ser::{Error as _, SerializeMap};
+
+use super::record::{Form, Format, Layout, Series};
+use super::shown;
+use super::table::{Reading, Table};
+
+/// The files that keys of a table name, and how they are read.
+pub(super) struct Listing {
+    files: Vec<Listed>,
+    layout: Layout,
+}
+
+/// A file.
+struct Listed {
+    /// The key that names it.
+    key: &'static str,
+    file: String,
+    /// Index of the element that names it first.
+    element: usize,
+    format: Format,
+}
+
+impl Listing {
+    /// Finds the files of keys, each given with its patterns, in this format or as their endings tell, and reads the keys that
+    /// say how tables are read.
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        keys: Vec<(&'static str, Reading<Vec<String>>)>,
+        format: Reading<Option<Format>>,
+    ) -> Reading<Self> {
+        let listed: Vec<Reading<Vec<Listed>>> = keys
+            .into_iter()
+            .map(|(key, patterns)| match (patterns, format) {
+                (Ok(patterns), Ok(format)) => list(table, folder, (key, &patterns), format),
+                (Err(reported), _) | (_, Err(reported)) => Err(reported),
+            })
+            .collect();
+        let listed: Reading<Vec<Vec<Listed>>> = listed.into_iter().collect();
+        let files = listed.map(|listed| listed.into_iter().flatten().collect::<Vec<_>>());
+        // The keys of tables are needed if and only if one of the files is a table.
+        let layout = Layout::read(
+            table,
+            files.as_ref().map_err(|reported| *reported).map(|files| {
+                let formats = || files.iter().map(|listed| listed.format);
+                let first = formats().next().unwrap_or(Format::At2);
+                formats()
+                    .find(|format| *format == Format::Csv)
+                    .unwrap_or(first)
+            }),
+        );
+        Ok(Self {
+            files: files?,
+            layout: layout?,
+        })
+    }
+
+    /// Number of files.
+    pub(super) const fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// The records, each with the key that names it, sorted by file name for each key; those that are not accepted are errors.
+    pub(super) fn series(
+        self,
+        table: &mut Table<'_>,
+        folder: &Path,
+        accept: impl Fn(&Series) -> Result<(), String>,
+    ) -> Reading<Vec<(&'static str, Series)>> {
+        let layout = self.layout;
+        let read = |listed: Listed| {
+            let Listed {
+                key,
+                file,
+                element,
+                format,
+            } = listed;
+            let form = match format {
+                format if format == layout.format() => layout.form.clone(),
+                Format::At2 => Form::At2 { unit: None },
+                Format::Asc => Form::Asc,
+                Format::Knet => Form::Knet,
+                Format::Csv => layout.form.clone(),
+            };
+            let layout = Layout {
+                form,
+                ..layout.clone()
+            };
+            Series::of_file(folder, file.clone(), layout)
+                .and_then(|series| accept(&series).map(|()| (key, series)))
+                .map_err(|wrong| {
+                    let wrong = format!("names {}, which {wrong}", shown(&file));
+                    table.wrong_element(key, element, wrong)
+                })
+        };
+        let records: Vec<_> = self.files.into_iter().map(read).collect();
+        records.into_iter().collect()
+    }
+}
+
+/// Writes the keys that say how records are read.
+pub(super) fn serialize_layout<'a, M: SerializeMap>(
+    map: &mut M,
+    records: impl Iterator<Item = &'a Series> + Clone,
+) -> Result<(), M::Error> {
+    let mut layouts = records.map(|series| &series.layout);
+    // Files of both formats were told apart by their endings.
+    if let Some(first) = layouts.clone().next()
+        && layouts
+            .clone()
+            .all(|layout| layout.format() == first.format())
+    {
+        map.serialize_entry("format", &first.format())?;
+    }
+    // What tables have in common is that of all, or else AT2 files may have a unit in common.
+    let telling = layouts
+        .clone()
+        .find(|layout| layout.format() == Format::Csv)
+        .or_else(|| layouts.next());
+    let keys = serde_json::to_value(telling).map_err(M::Error::custom)?;
+    for (key, value) in keys.as_object().into_iter().flatten() {
+        if key != "format" {
+            map.serialize_entry(key, value)?;
+        }
+    }
+    Ok(())
+}
+
+/// All files that match the patterns, sorted by name, each once.
+fn list(
+    table: &mut Table<'_>,
+    folder: &Path,
+    (key, patterns): (&'static str, &[String]),
+    format: Option<Format>,
+) -> Reading<Vec<Listed>> {
+    let mut found = BTreeMap::new();
+    // A file with several names counts once.
+    let mut seen = BTreeSet::new();
+    let mut all_well = Ok(());
+    for (element, pattern) in patterns.iter().enumerate() {
+        match find(folder, pattern) {
+            Ok(files) => {
+                for file in files {
+                    let path = folder.join(&file);
+                    if seen.insert(path.canonicalize().unwrap_or(path)) {
+                        found.insert(file, element);
+                    }
+                }
+            }
+            Err(wrong) => all_well = Err(table.wrong_element(key, element, wrong)),
+        }
+    }
+    let listed: Vec<_> = found
+        .into_iter()
+        .map(|(file, element)| {
+            let format = format
+                .map_or_else(|| Format::of_ending(&file), Ok)
+                .map_err(|wrong| {
+                    let wrong = format!("names {}, which {wrong}", shown(&file));
+                    table.wrong_element(key, element, wrong)
+                })?;
+            Ok(Listed {
+                key,
+                file,
+                element,
+                format,
+            })
+        })
+        .collect();
+    all_well?;
+    listed.into_iter().collect()
+}
+
+/// The files that match a pattern, relative to the folder; or why there are none, as words to follow the pattern.
+fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
+    // A file whose name looks like a pattern is taken as that file, so that a resolved scenario reads back the
+    // same.
+    let path = folder.join(pattern);
+    if path.is_dir() {
+        return Err("is a folder; must be a file or a pattern such as \"folder/*.at2\"".to_owned());
+    }
+    if path.is_file() {
+        return Ok(vec![file_name(Path::new(pattern))?]);
+    }
+    if !pattern.contains(['*', '?', '[']) {
+        return Err(
+            "does not exist; must be a file or a pattern such as \"folder/*.at2\"".to_owned(),
+        );
+    }
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    // `glob` has no folder to start from: its patterns are made absolute.
+    let folder =
+        std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
+    let escaped = folder
+        .to_str()
+        .map(glob::Pattern::escape)
+        .ok_or("is relative to a folder whose name is not UTF-8 text; name the files one by one")?;
+    let absolute = Path::new(&escaped).join(pattern);
+    let options = MatchOptions {
+        // As in a shell, `*` does not match hidden files.
+        require_literal_leading_dot: true,
+        require_literal_separator: true,
+        case_sensitive: true,
+    };
+    let matches = glob::glob_with(&absolute.to_string_lossy(), options)
+        .map_err(|error| format!("is not a valid file pattern: {}", error.msg))?;
+    let mut files = Vec::new();
+    for path in matches {
+        let path = path.map_err(|error| format!("cannot be searched: {}", error.error()))?;
+        if path.is_file() {
+            files.push(file_name(path.strip_prefix(&folder).unwrap_or(&path))?);
+        }
+    }
+    if files.is_empty() {
+        return Err("matches no file".to_owned());
+    }
+    Ok(files)
+}
+
+/// What a cell begins with that spreadsheets compute; so does a tab, a control character.
+const FORMULA: [char; 4] = ['=', '+', '-', '@'];
+
+/// The name of a file for scenarios and results, where it must fit on a line and in a cell.
+fn file_name(path: &Path) -> Result<String, String> {
+    let plain: PathBuf = path
+        .components()
+        .filter(|part| *part != PathPart::CurDir)
+        .collect();
+    match plain.to_str() {
+        Some(name) if name.starts_with(FORMULA) => Err(format!(
+            "names {}, which spreadsheets that open the table of results would take for a formula: give the file a name \
+             that does not begin with any of = + - @",
+            shown(name)
+        )),
+        Some(name) if !name.contains(char::is_control) => Ok(name.to_owned()),
+        _ => Err(format!(
+            "names \"{}\"; file names must be UTF-8 without control characters",
+            shown(&plain.display().to_string())
+        )),
+    }
+}
