@@ -64,6 +64,7 @@ mod tour;
 mod validation;
 mod verify;
 mod verify_formulas;
+mod verify_histories;
 mod vertical;
 
 #[test]

@@ -1,13 +1,11 @@
 //! The dynamic route of the check, C8.7.1.2.1.9: peaks against an integration and a geometry of this test's own, what counts of
 //! them, both sides, and what is refused.
-#![allow(clippy::unwrap_used)]
-
-mod browser;
-mod program;
 
 use std::fs;
 use std::path::Path;
 
+use crate::browser;
+use crate::program::{printed, refused, says_what_it_shows, scenarios};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::scenario::LimitState;
@@ -15,7 +13,6 @@ use archrock::studies::verify::histories::{HistorySide, RecordPeaks};
 use archrock::studies::verify::{Check, Histories, NoCheck, words};
 use archrock::{Request, Scenario, State, Sway};
 use nalgebra::{Rotation2, Vector2};
-use program::{printed, refused, says_what_it_shows, scenarios};
 use serde_json::Value;
 
 const GRAVITY: f64 = 9.81;
