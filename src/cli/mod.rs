@@ -11,13 +11,10 @@ mod figure;
 mod first;
 mod impact;
 mod init;
-mod map;
-mod merge;
 mod run;
 mod scenario_file;
-mod spectrum;
+mod studies;
 mod study;
-mod suite;
 mod threshold;
 mod verify;
 
@@ -75,16 +72,16 @@ enum Command {
     /// Chart the incipient acceleration and the restitution against thickness for several embrace angles.
     Chart(chart::Arguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
-    Map(map::Arguments),
+    Map(studies::MapArguments),
     /// Find the weakest pulse that overturns, against size, for a structure and its equivalent column: see
     /// [spectrum] in the scenario.
-    Spectrum(spectrum::Arguments),
+    Spectrum(studies::SpectrumArguments),
     /// Run every record of a suite at every level and fit a fragility curve: see [suite] in the scenario.
-    Suite(suite::Arguments),
+    Suite(studies::SuiteArguments),
     /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them.
     Threshold(threshold::Arguments),
     /// Merge the parts of a study computed with --shard.
-    Merge(merge::Arguments),
+    Merge(studies::MergeArguments),
     /// Check a scenario and print it with every default written out, or tell what is in a record file.
     Check(check::Arguments),
     /// Print a script that completes commands and options in a shell.
@@ -165,11 +162,11 @@ pub fn main() -> ExitCode {
         Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),
         Command::Verify(verify) => verify::verify(&verify, arguments.quiet),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
-        Command::Map(map) => map::map(&map, arguments.quiet),
-        Command::Spectrum(spectrum) => spectrum::spectrum(&spectrum, arguments.quiet),
-        Command::Suite(suite) => suite::suite(&suite, arguments.quiet),
+        Command::Map(map) => studies::map(&map, arguments.quiet),
+        Command::Spectrum(spectrum) => studies::spectrum(&spectrum, arguments.quiet),
+        Command::Suite(suite) => studies::suite(&suite, arguments.quiet),
         Command::Threshold(threshold) => threshold::threshold(&threshold, arguments.quiet),
-        Command::Merge(merge) => merge::merge(&merge, arguments.quiet),
+        Command::Merge(merge) => studies::merge(&merge, arguments.quiet),
         Command::Check(check) => check::check(&check, arguments.quiet),
         Command::Completions { shell } => completions(shell),
     };

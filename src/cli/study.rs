@@ -1,6 +1,5 @@
 //! Long work as the program does it: its options, its progress on the terminal, and Ctrl-C.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::num::NonZeroUsize;
@@ -10,20 +9,17 @@ use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use archrock::dynamics::history::Outcome;
 use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::output::ending::{Remark, Remarks};
-use archrock::output::pretty;
-use archrock::output::results;
 use archrock::scenario::{Hinges, Scenario, shown_lines};
-use archrock::studies::ending::Ending;
+use archrock::studies::catalogue::{Done, StudyError, StudyKind};
 use archrock::studies::part::{PartError, PartFile, Shard};
-use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
+use archrock::studies::results::Look;
+use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Failure;
-use super::scenario_file::{Destination, Input, ScenarioFile};
+use super::scenario_file::{Input, ScenarioFile};
 
 /// Options of every study.
 #[derive(clap::Args)]
@@ -132,28 +128,22 @@ impl From<RunnerError> for Failure {
     }
 }
 
-/// All rows of a study, and the file that they are in until the results are complete.
-type Complete<R> = (Vec<R>, PartFile);
-
 impl Options {
     /// Takes the text of the scenario.
     pub fn open(&self) -> Result<Input<'_>, Failure> {
         self.scenario.open()
     }
 
-    /// Where the results go.
-    pub fn results(&self, input: &Input<'_>) -> Result<Destination, Failure> {
-        input.results(self.out.as_deref())
-    }
-
-    /// Computes the rows of all cases, or of the part that was asked for: all rows, with the file that they are in
-    /// until the results are complete, or `None` after a part, whose file is then the result.
-    pub fn compute<S: Study>(
+    /// Computes the study of a scenario, or the part that was asked for, and writes the results if all is there.
+    pub fn study(
         &self,
-        study: &S,
-        place: &Destination,
+        kind: StudyKind,
+        input: &Input<'_>,
+        scenario: &Scenario,
+        look: Look,
         quiet: bool,
-    ) -> Result<Option<Complete<S::Row>>, Failure> {
+    ) -> Result<(), Failure> {
+        let place = input.results(self.out.as_deref())?;
         let runner = self.threads.runner();
         let task = Task {
             folder: place.path(),
@@ -162,13 +152,13 @@ impl Options {
         };
         listen_to_interrupts();
         let mut display = None;
-        let computed = runner.rows_in(study, task, |progress| {
+        let watch = |progress| {
             let display = display.get_or_insert_with(|| Display::new(progress, quiet));
             // All rows so far are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.bar.abandon();
                 let Progress { done, all } = progress;
-                let file = task.folder.join(task.shard.file_name(S::NAME));
+                let file = task.folder.join(task.shard.file_name(kind.name()));
                 say(&if file.exists() {
                     format!("interrupted: {done} of {all} cases are done; continue with --resume")
                 } else {
@@ -178,21 +168,29 @@ impl Options {
             }
             display.show(progress);
             ControlFlow::Continue(())
-        })?;
+        };
+        let done = kind
+            .compute(scenario, look, runner, Some(task), watch)
+            .map_err(|error| match error {
+                StudyError::Scenario(_) => input.about(error.into()),
+                error => error.into(),
+            })?;
         if let Some(display) = display {
             display.finish();
         }
-        match computed {
-            Computed::Whole(rows, part) => Ok(Some((rows, part))),
-            Computed::Shard(part) => {
+        match done {
+            Done::Whole(results, part) => {
+                super::studies::write(&results, &place, quiet)?;
+                Ok(part.map_or(Ok(()), PartFile::remove)?)
+            }
+            Done::Part { part, cases, all } => {
                 if !quiet {
-                    let (shard, all, path) = (task.shard, study.count(), part.path().display());
-                    let count = shard.cases(all).count();
+                    let (shard, path) = (task.shard, part.path().display());
                     say(&format!(
-                        "part {shard}: {count} of {all} cases in {path}; join the parts with archrock merge"
+                        "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
                     ));
                 }
-                Ok(None)
+                Ok(())
             }
         }
     }
@@ -213,68 +211,6 @@ fn listen_to_interrupts() {
 
 /// The exit code of shells for a program ended by Ctrl-C.
 const INTERRUPTED_CODE: i32 = 130;
-
-/// Writes the summary of a study: its scenario, number of cases, and what is to be remarked of these.
-pub fn write_summary(
-    mut file: impl io::Write,
-    scenario: &Scenario,
-    cases: usize,
-    remarks: &Remarks,
-) -> Result<(), Failure> {
-    let summary = results::study_summary(scenario, cases, remarks);
-    file.write_all(pretty(&summary).as_bytes())
-        .map_err(|error| Failure::Work(format!("cannot write the summary: {error}")))
-}
-
-/// How many cases failed, why the first did, and where the others are; `None` where none did.
-pub fn failed_in_words(failures: &[Remark], file: &str) -> Option<String> {
-    let first = failures.first()?;
-    let (count, more) = (failures.len(), failures.len() > 1);
-    let others = if more {
-        format!("; all are in {file}")
-    } else {
-        String::new()
-    };
-    Some(format!("failed: {count}; the first: {first}{others}"))
-}
-
-/// What is uncertain, and where it is told; `None` where nothing is.
-pub fn uncertain_in_words(uncertain: &[Remark], file: &str) -> Option<String> {
-    let first = uncertain.first()?;
-    let listed = match uncertain.len() {
-        1 => String::new(),
-        _ => format!("; all are in {file}"),
-    };
-    Some(format!(
-        "uncertain is what other steps, or landings merged, answer otherwise; the first: {first}{listed}"
-    ))
-}
-
-/// Words for what became of cases, and their place among the counts.
-pub type Words = (u8, &'static str);
-
-/// The words of how a case ended.
-pub const fn in_words(ending: &Ending) -> Words {
-    match (&ending.uncertain, ending.outcome) {
-        (Some(_), _) => (4, "are uncertain"),
-        (None, Outcome::NeverMoved) => (0, "never move"),
-        (None, Outcome::Rest) => (1, "come to rest"),
-        (None, Outcome::Overturned(_)) => (2, "overturn"),
-        (None, Outcome::StillRocking) => (3, "are still rocking"),
-    }
-}
-
-/// How many cases came to what.
-pub fn counts(cases: impl Iterator<Item = Words>) -> String {
-    let mut counts = BTreeMap::new();
-    for words in cases {
-        *counts.entry(words).or_insert(0_usize) += 1;
-    }
-    let parts = counts
-        .into_iter()
-        .map(|((_, words), count)| format!("{count} {words}"));
-    parts.collect::<Vec<_>>().join(", ")
-}
 
 /// Prints a line on standard error.
 pub fn say(text: &str) {

@@ -1,22 +1,14 @@
 //! The command `threshold`.
 
-use std::fmt::Write as _;
-use std::io::Write as _;
 use std::iter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use archrock::dynamics::ground::GroundMotion;
-use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
 use archrock::output::pretty;
-use archrock::output::survival;
-use archrock::output::threshold::{self as output, rounded};
-use archrock::scenario::{Ground, Scenario, Structure};
-use archrock::studies::ending::Verdict;
-use archrock::studies::survival::Survival;
+use archrock::scenario::{Scenario, Structure};
 use archrock::studies::threshold::{
-    FactorSample, Factors, NoHistory, RangeEnd, Threshold, ThresholdError, thresholds,
+    FILES, Factors, NoHistory, Threshold, ThresholdError, tell, thresholds,
 };
 use serde_json::Value;
 
@@ -55,11 +47,6 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
-
-const PICTURE: &str = "threshold.svg";
-const TABLE: &str = "threshold.csv";
-/// Written last: a folder that has it is complete.
-const SUMMARY: &str = "threshold.json";
 
 pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
@@ -107,8 +94,8 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         Format::Text => {
             let title = tasks[0].0[0].title.as_ref();
             let title = title.map_or(String::new(), |title| format!("{title}\n"));
-            let sampled = sampled(&factors);
-            print(&format!("{title}{}{sampled}", texts.concat()))
+            let sampled = factors.in_words();
+            print(&format!("{title}{}  {sampled}\n", texts.concat()))
         }
     }
 }
@@ -130,7 +117,7 @@ fn find(
         .collect();
     let ground = scenario.ground_motion();
     // Opened before the work starts, so that a folder that cannot be written costs no time.
-    let mut folder = place.open(&[PICTURE, TABLE, SUMMARY])?;
+    let folder = place.open(&FILES)?;
 
     let runner = arguments.threads.runner();
     let mut display = None;
@@ -148,30 +135,17 @@ fn find(
         refuse_if_nothing_is_known(threshold)?;
     }
 
-    let title = scenario
-        .title
-        .as_deref()
-        .unwrap_or("Threshold of overturning");
-    let peak_g = output::peak_g(scenario, ground);
     let of_models: Vec<&Scenario> = scenarios.iter().collect();
-    let json = output::to_json(&of_models, ground, factors, &found)?;
-    let picture = output::draw(arguments.figure.get(), title, peak_g, factors, &found);
-    let summary = pretty(&json);
-    for (name, text) in [(PICTURE, &picture), (SUMMARY, &summary)] {
-        folder
-            .file(name)
-            .write_all(text.as_bytes())
-            .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
-    }
-    output::write_table(folder.file(TABLE), &found)?;
-    folder.complete()?;
+    let (results, json) = tell(&of_models, factors, &found, arguments.figure.get())?;
+    results.write(folder)?;
     if !quiet {
         say(&format!(
-            "results in {}: {PICTURE}, {TABLE}, {SUMMARY}",
-            place.path().display()
+            "results in {}: {}",
+            place.path().display(),
+            FILES.join(", ")
         ));
     }
-    Ok((words(scenario, ground, &found), json))
+    Ok((results.words, json))
 }
 
 /// A model of motion, and its name in the results.
@@ -229,167 +203,5 @@ fn refuse_if_nothing_is_known(threshold: &Threshold) -> Result<(), Failure> {
         Some(NoHistory::GroundFalls(reason)) => Err(Failure::Input(reason.clone())),
         Some(NoHistory::Failed(reason)) => Err(Failure::Work(reason.clone())),
         None => Ok(()),
-    }
-}
-
-/// What was found: of a record in a line, of a pulse a line per range.
-fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -> String {
-    let mut text = String::new();
-    let peak_g = output::peak_g(scenario, ground);
-    for threshold in thresholds {
-        let model = threshold.model.replace('_', " ");
-        let several = thresholds.len() > 1;
-        if let Some(Ground::Record(record)) = &scenario.ground {
-            let model = if several {
-                format!(", {model}")
-            } else {
-                String::new()
-            };
-            let line = survival::in_words(&Survival::of_threshold(threshold), "");
-            let file = record.main.name();
-            let _ = writeln!(text, "  {file}{model}: {line} (1 is {} g)", rounded(peak_g));
-        } else {
-            if several {
-                let _ = writeln!(text, "{model}");
-            }
-            ranges(&mut text, peak_g, threshold);
-        }
-        doubts(&mut text, threshold);
-    }
-    let end_s = scenario.simulation.duration_s;
-    if ground.end_s() > end_s {
-        let _ = writeln!(
-            text,
-            "  the histories end at {end_s:.4} s and the ground moves until {:.4} s: a longer duration_s in \
-             [simulation] shows the rest",
-            ground.end_s()
-        );
-    }
-    text
-}
-
-/// Which factors were tried.
-fn sampled(factors: &Factors) -> String {
-    format!(
-        "  sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed\n",
-        factors.first(),
-        factors.last(),
-        (1e6 * factors.stride()).round() / 1e4,
-    )
-}
-
-fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
-    let at = |factor: f64| format!("{} ({} g)", rounded(factor), rounded(factor * peak_g));
-    let certainly = if threshold.uncertain().is_empty() {
-        ""
-    } else {
-        "certainly "
-    };
-    if threshold.bands().is_empty() {
-        let mut known = threshold.samples.iter().rev();
-        let last = known.find(|sample| sample.result.is_ok());
-        let last = at(last.map_or(0.0, |sample| sample.factor));
-        let _ = writeln!(text, "  does not {certainly}overturn up to factor {last}");
-    }
-    if let Some((verdict, first)) = threshold.ranges.first()
-        && *verdict != Verdict::Survives
-        && first.from_end == RangeEnd::Sampled
-    {
-        let (what, range) = match verdict {
-            Verdict::Overturns => ("overturns", "band"),
-            _ => ("uncertain", "range"),
-        };
-        let _ = writeln!(
-            text,
-            "  {what} at the smallest factor already: a smaller --from finds where this {range} begins"
-        );
-    }
-    // A line for each band, with what follows it.
-    let mut lines: Vec<String> = Vec::new();
-    for (verdict, range) in &threshold.ranges {
-        let to = at(range.to);
-        let (ends, beyond) = match range.to_end {
-            RangeEnd::Sampled => ("up to the largest factor".to_owned(), ""),
-            RangeEnd::Unknown => (format!("to {to}"), "; not known beyond"),
-            RangeEnd::Edge => (format!("to {to}"), ""),
-        };
-        let begins = at(range.from);
-        match (verdict, lines.last_mut()) {
-            (Verdict::Overturns, _) => {
-                lines.push(format!("overturns from factor {begins} {ends}{beyond}"));
-            }
-            (Verdict::Survives, None) => {}
-            (Verdict::Uncertain, None) => {
-                lines.push(format!("uncertain from factor {begins} {ends}{beyond}"));
-            }
-            (verdict, Some(line)) => {
-                let what = match verdict {
-                    Verdict::Uncertain => "uncertain",
-                    _ => "survives",
-                };
-                *line += &match range.to_end {
-                    RangeEnd::Sampled => format!("; {what} from there on"),
-                    _ if what == "survives" => format!("; survives again up to {to}{beyond}"),
-                    _ => format!("; {what} up to {to}{beyond}"),
-                };
-            }
-        }
-    }
-    for line in lines {
-        let _ = writeln!(text, "  {line}");
-    }
-}
-
-/// What is doubtful about the ranges.
-fn doubts(text: &mut String, threshold: &Threshold) {
-    let uncertain = threshold.samples.iter().filter_map(|sample| {
-        let reason = sample.result.as_ref().ok()?.uncertain.as_ref()?;
-        Some((sample.factor, reason))
-    });
-    let uncertain: Vec<_> = uncertain.collect();
-    if let Some((factor, reason)) = uncertain.first() {
-        let _ = writeln!(
-            text,
-            "  uncertain: {} of {} histories; the first, at factor {}: {reason}",
-            uncertain.len(),
-            threshold.samples.len(),
-            rounded(*factor)
-        );
-    }
-    let falls = |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
-    let samples = &threshold.samples;
-    if let Some(first) = samples.iter().find(falls) {
-        let _ = writeln!(
-            text,
-            "  from factor {} on, the ground falls as fast as a free body at some time, which this model does \
-             not cover",
-            rounded(first.factor)
-        );
-    }
-    let failed: Vec<_> = samples
-        .iter()
-        .filter(|sample| !falls(sample))
-        .filter_map(|sample| Some((sample.factor, sample.result.as_ref().err()?)))
-        .collect();
-    if let Some((factor, reason)) = failed.first() {
-        let _ = writeln!(
-            text,
-            "  failed: {} of {} histories; the first, at factor {}: {reason}",
-            failed.len(),
-            samples.len(),
-            rounded(*factor)
-        );
-    }
-    let rocking = samples.iter().filter(|sample| {
-        let ending = sample.result.as_ref();
-        ending.is_ok_and(|ending| ending.outcome == Outcome::StillRocking)
-    });
-    let rocking = rocking.count();
-    if rocking > 0 {
-        let _ = writeln!(
-            text,
-            "  still rocking at duration_s of [simulation], which counts as survived: {rocking} of {} histories",
-            samples.len()
-        );
     }
 }

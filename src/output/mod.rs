@@ -5,17 +5,12 @@
 pub mod capacity;
 pub mod caption;
 pub mod chart;
-pub mod ending;
 mod envelope;
 mod film;
 mod folder;
 pub mod free_hinges;
 mod ground;
-pub mod ida;
 pub mod impact;
-mod kind;
-pub mod map;
-pub mod map_page;
 pub mod mechanisms;
 pub mod overlay;
 pub(crate) mod page;
@@ -29,12 +24,8 @@ pub mod rotations;
 pub mod row_timeline;
 pub mod scene;
 pub mod snapshots;
-pub mod spectrum;
-pub mod suite;
-pub mod survival;
 pub(crate) mod svg;
-mod table;
-pub mod threshold;
+pub(crate) mod table;
 pub mod timeline;
 
 use std::io;
@@ -81,7 +72,7 @@ impl OutputError {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
     }
 
-    fn io(what: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+    pub(crate) fn io(what: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
         let what = what.into();
         |source| match source.downcast::<NotFinite>() {
             Ok(NotFinite(what)) => Self::NotFinite { what },
@@ -108,7 +99,7 @@ pub fn pretty(value: &Value) -> String {
 }
 
 /// Refuses what is not finite. Tables check their cells themselves.
-fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
+pub(crate) fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())
     } else {

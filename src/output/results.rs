@@ -4,7 +4,6 @@ use std::io::Write;
 
 use serde_json::{Value, json};
 
-use super::ending::Remarks;
 use super::rotations::{Scales, columns};
 use super::table::{Table, table};
 use super::{OutputError, finite};
@@ -247,19 +246,6 @@ pub(super) fn edges(hinges: &[Hinge]) -> String {
         Hinge::Section { .. } | Hinge::Toe(_) => None,
     });
     names.collect::<Vec<_>>().join(" ")
-}
-
-/// What a study was of: program, version, scenario as resolved, number of cases; and what is to be remarked of these.
-#[must_use]
-pub fn study_summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> Value {
-    let mut summary = json!({
-        "program": env!("CARGO_PKG_NAME"),
-        "version": env!("CARGO_PKG_VERSION"),
-        "scenario": scenario.to_json(),
-        "cases": cases,
-    });
-    remarks.add_to(&mut summary);
-    summary
 }
 
 /// The summary of a run as JSON.

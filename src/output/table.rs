@@ -1,7 +1,92 @@
-//! Tables as CSV, in which every number is finite.
+//! Tables: lists of columns, written as CSV in which every number is finite.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, Write};
+
+use serde::Serialize;
+
+use super::OutputError;
+
+/// A column of a table over rows of some kind: its name, and the cell of a row.
+pub(crate) struct Column<'a, R> {
+    name: Cow<'a, str>,
+    cell: Box<dyn Fn(&R) -> Cell + 'a>,
+}
+
+/// A cell; numbers are written with the fewest digits that read back as the same.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(crate) enum Cell {
+    Nothing,
+    Text(Cow<'static, str>),
+    Count(usize),
+    Number(f64),
+}
+
+/// A column, of a cell that is anything which makes one.
+pub(crate) fn column<'a, R, C: Into<Cell>>(
+    name: impl Into<Cow<'a, str>>,
+    cell: impl Fn(&R) -> C + 'a,
+) -> Column<'a, R> {
+    Column {
+        name: name.into(),
+        cell: Box::new(move |row| cell(row).into()),
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Self::Count(count)
+    }
+}
+
+impl From<&'static str> for Cell {
+    fn from(text: &'static str) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl<C: Into<Self>> From<Option<C>> for Cell {
+    fn from(cell: Option<C>) -> Self {
+        cell.map_or(Self::Nothing, Into::into)
+    }
+}
+
+/// The bytes of a table.
+///
+/// # Errors
+/// When a number is not finite.
+pub(crate) fn csv<'r, R: 'r>(
+    columns: &[Column<'_, R>],
+    rows: impl IntoIterator<Item = &'r R>,
+) -> Result<Vec<u8>, OutputError> {
+    const WHAT: &str = "cannot make a table";
+    let mut bytes = Vec::new();
+    let mut csv = table(&mut bytes);
+    csv.write_record(columns.iter().map(|column| &*column.name))
+        .map_err(OutputError::csv(WHAT))?;
+    for row in rows {
+        let cells = columns.iter().map(|column| (column.cell)(row));
+        csv.serialize(cells.collect::<Vec<_>>())
+            .map_err(OutputError::csv(WHAT))?;
+    }
+    csv.flush().map_err(OutputError::io(WHAT))?;
+    drop(csv);
+    Ok(bytes)
+}
 
 /// Writes a table.
 pub(super) type Table<W> = csv::Writer<Finite<W>>;

@@ -5,23 +5,25 @@
 //! [runner](runner::Runner) does so, in memory or in [files](part) that can be resumed and merged. The result
 //! of a case is a row, a typed value from the computation to the last file.
 //!
-//! - [`map`]: which pulses overturn, over two quantities; [`boundary`]: the amplitudes from which they do so
+//! - [`map`]: which pulses overturn, over two quantities; [`boundary`](map::boundary): the amplitudes from which they do so
 //!   without impact;
 //! - [`spectrum`]: how strong a pulse must be, over the size of a structure;
 //! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them;
-//! - [`suite`]: what records overturn, at several levels, and the [`fragility`] curve of that;
+//! - [`suite`]: what records overturn, at several levels, and the [`fragility`](suite::fragility) curve of that;
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
 //! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, which tells itself: numbers, words and page;
 //! - [`survey`]: arches of many shapes compared, without a history.
 
-pub mod boundary;
 pub mod capacity;
+pub mod catalogue;
 pub mod ending;
-pub mod fragility;
 mod impact_free;
+mod kind;
 pub mod map;
 pub mod part;
+mod remarks;
+pub mod results;
 pub mod runner;
 pub mod spectrum;
 pub mod suite;

@@ -5,6 +5,12 @@
 //! strides, and bisection only finds the edge between two neighbours of different verdicts. Ranges that are narrower than a
 //! stride may be missed.
 
+pub mod picture;
+mod told;
+
+pub(super) use told::rounded;
+pub use told::{FILES, outcome, tell};
+
 use std::ops::ControlFlow;
 
 use thiserror::Error;

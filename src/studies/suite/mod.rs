@@ -1,11 +1,17 @@
 //! A suite of records: a history for every record at every level, and the fragility that they add up to.
 
+pub mod fragility;
+pub mod ida;
+pub mod picture;
+mod told;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
+pub use self::told::Heading;
 use super::ending::{Ending, Verdict, check_finite};
-use super::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 use super::runner::Study;
 use super::survival::Survival;
 use crate::dynamics::history::Outcome;
@@ -68,6 +74,30 @@ pub struct RecordSuite<'a> {
 }
 
 impl<'a> RecordSuite<'a> {
+    /// The suite of a scenario that starts from rest.
+    ///
+    /// # Errors
+    /// In words, what to change.
+    pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
+        if scenario.initial.is_some() {
+            return Err("the histories of a suite start from rest: leave [initial] out".to_owned());
+        }
+        let suite = scenario.suite.as_ref().ok_or_else(|| {
+            "the scenario has no [suite]: give it a table with records and levels, such as\n\n\
+             [suite]\n\
+             records = \"records/*.at2\"\n\
+             peaks_g = { from = 0.1, to = 2.0, count = 20, spacing = \"logarithmic\" }"
+                .to_owned()
+        })?;
+        Self::new(scenario, suite).map_err(|error| error.to_string())
+    }
+
+    /// What its results say of the scenario.
+    #[must_use]
+    pub fn heading(&self) -> Heading {
+        Heading::of(self.scenario, self.suite)
+    }
+
     /// The cases of a scenario's suite.
     ///
     /// # Errors

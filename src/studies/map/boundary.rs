@@ -3,11 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::ending::check_finite;
-use super::map::{CellResult, CellRow, OverturningMap};
-use super::runner::Study;
+use super::{CellResult, CellRow, OverturningMap};
 use crate::mechanics::sway::Sway;
 use crate::scenario::Quantity;
+use crate::studies::ending::check_finite;
+use crate::studies::runner::Study;
 
 /// The boundaries at a value of x, as magnitudes: the mirror image of a pulse has the same.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,14 +6,15 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
 
-use super::kind::Kind;
-use super::map::{self, Drawn, Look};
-use super::page::{escaped, filled, script_safe};
-use super::svg::Figure;
+use super::boundary::BoundaryRow;
+use super::picture::{self, Drawn};
+use super::{CellResult, CellRow, OverturningMap};
+use crate::output::page::{escaped, filled, script_safe};
+use crate::output::svg::Figure;
 use crate::scenario::{Ground, Quantity, toml_text};
-use crate::studies::boundary::BoundaryRow;
 use crate::studies::ending::Ending;
-use crate::studies::map::{CellResult, CellRow, OverturningMap};
+use crate::studies::kind::Kind;
+use crate::studies::results::Look;
 
 /// The page.
 #[must_use]
@@ -28,18 +29,18 @@ pub fn page(
         figure: Figure::SCREEN,
         ..look
     };
-    let drawn = map::drawn(title, map, rows, boundaries, look);
+    let drawn = picture::drawn(title, map, rows, boundaries, look);
     let data = data(map, rows, &drawn, look);
     let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
     filled(
-        include_str!("map_page/page.html"),
+        include_str!("page/page.html"),
         &[
             ("PROGRAM", &version),
             ("TITLE", &escaped(title)),
             ("PICTURE", &drawn.picture),
             ("SCENARIO", &escaped(&map.scenario().to_toml())),
             ("DATA", &script_safe(&data)),
-            ("SCRIPT", include_str!("map_page/page.js")),
+            ("SCRIPT", include_str!("page/page.js")),
         ],
     )
 }
@@ -53,7 +54,7 @@ const fn ended(row: &CellRow) -> Option<&Ending> {
 }
 
 fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -> Value {
-    let kinds = rows.iter().map(|row| map::kind_of(&row.result, look));
+    let kinds = rows.iter().map(|row| picture::kind_of(&row.result, look));
     let kinds: Vec<Kind> = kinds.collect();
     let index = |kind: &Kind| {
         Kind::ALL
@@ -86,7 +87,7 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -
     let values = map.values();
     let axis = |i: usize| {
         json!({
-            "label": map::label(axes[i]),
+            "label": picture::label(axes[i]),
             "values": values[i],
             "edges_px": drawn.edges_px[i],
         })

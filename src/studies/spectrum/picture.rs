@@ -1,88 +1,9 @@
-//! The overturning spectrum: its table and its picture.
-
-use std::io::Write;
+//! The picture of an overturning spectrum.
 
 use nalgebra::Vector2;
 
-use super::ending::{Remark, Remarks, number};
-use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
-use super::table::table;
-use super::{OutputError, finite};
-use crate::studies::spectrum::{OverturningSpectrum, PointRow, StructureKind};
-
-/// Names of the columns.
-const COLUMNS: [&str; 9] = [
-    "structure",
-    "p_t",
-    "duration_s",
-    "no_impact_over_incipient",
-    "least_over_incipient",
-    "impacts_before_overturning",
-    "overturning_sway",
-    "still_rocking",
-    "failed",
-];
-
-/// Writes the table: structure by structure, sizes ascending.
-///
-/// # Errors
-/// When the system refuses, or a value is not finite.
-pub fn write_table(writer: impl Write, rows: &[PointRow]) -> Result<(), OutputError> {
-    const WHAT: &str = "cannot write the table";
-    let mut csv = table(writer);
-    csv.write_record(COLUMNS).map_err(OutputError::csv(WHAT))?;
-    for row in rows {
-        csv.write_record(fields(row)?)
-            .map_err(OutputError::csv(WHAT))?;
-    }
-    csv.flush().map_err(OutputError::io(WHAT))
-}
-
-/// What failed: where, and why.
-#[must_use]
-pub fn remarks(rows: &[PointRow]) -> Remarks {
-    let mut remarks = Remarks::default();
-    for row in rows {
-        for failure in &row.failures {
-            let what = match failure.over_incipient {
-                Some(over_incipient) => format!("at {over_incipient:?} A_L"),
-                None => "least without impact".to_owned(),
-            };
-            let case = format!("{} with p t_p {:?}, {what}", row.structure.name(), row.p_t);
-            let remark = Remark::new(case, &failure.reason);
-            remarks.failures.push(remark);
-        }
-    }
-    remarks
-}
-
-fn fields(row: &PointRow) -> Result<[String; 9], OutputError> {
-    const WHAT: &str = "of a point of the spectrum";
-    let PointRow {
-        structure,
-        p_t,
-        duration_s,
-        no_impact_over_incipient,
-        minimum,
-        still_rocking,
-        failures,
-    } = row;
-    finite(WHAT, &[*p_t, *duration_s])?;
-    finite(WHAT, no_impact_over_incipient.as_slice())?;
-    finite(WHAT, minimum.map(|one| one.over_incipient).as_slice())?;
-    let optional = |value: Option<f64>| value.map_or(String::new(), number);
-    Ok([
-        structure.name().to_owned(),
-        number(*p_t),
-        number(*duration_s),
-        optional(*no_impact_over_incipient),
-        optional(minimum.map(|one| one.over_incipient)),
-        minimum.map_or(String::new(), |one| one.impacts.to_string()),
-        minimum.map_or(String::new(), |one| one.sway.name().to_owned()),
-        still_rocking.to_string(),
-        failures.len().to_string(),
-    ])
-}
+use super::{OverturningSpectrum, PointRow, StructureKind};
+use crate::output::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 
 /// How a structure is drawn.
 struct Look {

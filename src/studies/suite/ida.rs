@@ -1,10 +1,11 @@
 //! Incremental dynamic analysis: how far each record drives the structure as it gets stronger.
 
-use super::suite::{Heading, intensity_label, intensity_scale};
-use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use super::picture::{intensity_label, intensity_scale};
+use super::told::Heading;
+use super::{CaseRow, SuiteFragility};
 use crate::dynamics::history::Outcome;
+use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::studies::ending::Verdict;
-use crate::studies::suite::{CaseRow, SuiteFragility};
 
 /// Records that get curves of their own looks and names.
 const NAMED: usize = CURVES.len();

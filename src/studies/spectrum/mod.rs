@@ -4,6 +4,9 @@
 //! parameter, and the restitution of the scenario if that is prescribed, else Housner's: how much of the arch is
 //! told by that one block.
 
+pub mod picture;
+mod told;
+
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 

@@ -1,21 +1,21 @@
 //! Kinds of outcomes and their colours, the same in all pictures.
 
-use super::ending;
-use super::svg::{Key, Sign, color};
+use super::ending::columns::{FAILED, UNCERTAIN};
+use crate::output::svg::{Key, Sign, color};
 
 /// Outcome of an arch that cannot carry its own weight.
-pub(super) const CANNOT_STAND: &str = "cannot_stand";
+pub(crate) const CANNOT_STAND: &str = "cannot_stand";
 /// Outcome of an arch that is too thick for four links.
-pub(super) const NOT_FOUR_LINKS: &str = "not_four_links";
+pub(crate) const NOT_FOUR_LINKS: &str = "not_four_links";
 /// Outcome where the ground falls as fast as a free body.
-pub(super) const GROUND_FALLS: &str = "ground_falls";
+pub(crate) const GROUND_FALLS: &str = "ground_falls";
 
 /// Kind of outcome, which sets the colour of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Kind {
-    pub(super) name: &'static str,
-    pub(super) label: &'static str,
-    pub(super) fill: &'static str,
+pub(crate) struct Kind {
+    pub(crate) name: &'static str,
+    pub(crate) label: &'static str,
+    pub(crate) fill: &'static str,
 }
 
 const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Kind {
@@ -34,13 +34,13 @@ const SURVIVED: [Kind; 6] = [
 
 impl Kind {
     /// That of what survived with this largest rotation over the critical one.
-    pub(super) fn survived(peak_over_critical: f64) -> Self {
+    pub(crate) fn survived(peak_over_critical: f64) -> Self {
         let bounds = [0.2, 0.4, 0.6, 0.8, 1.0];
         SURVIVED[bounds.partition_point(|bound| *bound <= peak_over_critical)]
     }
 
     /// In the order of the legend.
-    pub(super) const ALL: [Self; 19] = [
+    pub(crate) const ALL: [Self; 19] = [
         kind("never_moved", "never moves", "#e4e4e4"),
         kind("rest", "comes to rest", "#bcdcf0"),
         SURVIVED[0],
@@ -55,20 +55,16 @@ impl Kind {
         kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
         kind("overturned-more", "overturns after more", color::PURPLE),
         kind("overturned", "overturns", color::VERMILION),
-        kind(
-            ending::UNCERTAIN,
-            "uncertain whether it overturns",
-            color::GREEN,
-        ),
+        kind(UNCERTAIN, "uncertain whether it overturns", color::GREEN),
         kind(CANNOT_STAND, "cannot stand", "#ffffff"),
         kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
         kind(GROUND_FALLS, "the ground falls freely", "#ffffff"),
-        kind(ending::FAILED, "failed", color::BLACK),
+        kind(FAILED, "failed", color::BLACK),
     ];
 
     /// That of an outcome by its name, with the number of impacts before overturning where all hinges close at
     /// once: the landings of free hinges, which come in cascades, tell no kinds apart.
-    pub(super) fn of(outcome: &str, impacts: Option<usize>) -> Self {
+    pub(crate) fn of(outcome: &str, impacts: Option<usize>) -> Self {
         let name = match (outcome, impacts) {
             ("overturned", Some(0)) => "overturned-0",
             ("overturned", Some(1)) => "overturned-1",
@@ -82,7 +78,7 @@ impl Kind {
 }
 
 /// What the colours of these kinds mean.
-pub(super) fn keys(kinds: &[Kind]) -> Vec<Key<'static>> {
+pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key<'static>> {
     let present = Kind::ALL.into_iter().filter(|kind| kinds.contains(kind));
     present
         .map(|kind| (kind.label, Sign::Band(kind.fill, 1.0)))

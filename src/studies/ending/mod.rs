@@ -6,6 +6,8 @@
 //!
 //! Most repetitions can be spared, because nothing that follows an impact decides: of what `is_plain`.
 
+pub(crate) mod columns;
+
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};

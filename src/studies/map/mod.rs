@@ -1,5 +1,10 @@
 //! The overturning map: a history for every cell of a plane of two quantities.
 
+pub mod boundary;
+mod page;
+pub mod picture;
+mod told;
+
 use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
@@ -133,6 +138,27 @@ impl<T: Clone> Shared<T> {
 }
 
 impl<'a> OverturningMap<'a> {
+    /// The map of a scenario that starts from rest, of which at least one cell makes sense.
+    ///
+    /// # Errors
+    /// In words, what to change.
+    pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
+        if scenario.initial.is_some() {
+            return Err("the histories of a map start from rest: leave [initial] out".to_owned());
+        }
+        let map = Self::new(scenario).ok_or_else(|| {
+            "the scenario has no [map]: give it a table with two axes, such as\n\n\
+             [map]\n\
+             duration_s = { from = 0.05, to = 1.0, count = 40 }\n\
+             amplitude_g = { from = 0.1, to = 1.5, count = 40 }"
+                .to_owned()
+        })?;
+        match map.fault() {
+            None => Ok(map),
+            Some(fault) => Err(format!("no cell of [map] has a scenario: {fault}")),
+        }
+    }
+
     /// The cells of a scenario's map; `None` if it has no map or no ground motion.
     #[must_use]
     pub fn new(scenario: &'a Scenario) -> Option<Self> {

@@ -1,0 +1,194 @@
+//! The commands `map`, `suite` and `spectrum`, and `merge`, which joins their parts.
+
+use std::path::{Path, PathBuf};
+
+use archrock::output::Figure;
+use archrock::scenario::Scenario;
+use archrock::studies::catalogue::{StudyError, StudyKind, merge as merged};
+use archrock::studies::map::OverturningMap;
+use archrock::studies::map::boundary::MapWithBoundary;
+use archrock::studies::results::{Look, Results};
+use clap::ValueEnum;
+
+use super::Failure;
+use super::figure::FigureOption;
+use super::scenario_file::Destination;
+use super::study::{HingesOption, Options, say};
+
+#[derive(clap::Args)]
+pub struct MapArguments {
+    #[command(flatten)]
+    options: Options,
+    #[command(flatten)]
+    map: MapOption,
+    #[command(flatten)]
+    hinges: HingesOption,
+    #[command(flatten)]
+    figure: FigureOption,
+}
+
+#[derive(clap::Args)]
+pub struct SuiteArguments {
+    #[command(flatten)]
+    options: Options,
+    #[command(flatten)]
+    hinges: HingesOption,
+    #[command(flatten)]
+    figure: FigureOption,
+}
+
+#[derive(clap::Args)]
+pub struct SpectrumArguments {
+    #[command(flatten)]
+    options: Options,
+    #[command(flatten)]
+    figure: FigureOption,
+}
+
+#[derive(clap::Args)]
+pub struct MergeArguments {
+    /// All parts of one study.
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// Folder for the results [default: that of the first part].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    map: MapOption,
+    #[command(flatten)]
+    figure: FigureOption,
+}
+
+/// What the results of a map have besides, and how its picture looks.
+#[derive(clap::Args, Clone, Copy)]
+pub struct MapOption {
+    /// Also write the least amplitude that overturns without impact, as no_impact.csv.
+    #[arg(long)]
+    no_impact: bool,
+    /// What the cells of a map that survive are coloured by.
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t)]
+    color: Color,
+    /// Draw a map over p t_p and a / A_L; its axes are duration_s and amplitude_g.
+    #[arg(long)]
+    dimensionless: bool,
+}
+
+/// What tells survivors apart.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum Color {
+    /// Their outcome.
+    #[default]
+    Outcome,
+    /// Their largest rotation over the critical one.
+    Peak,
+}
+
+impl MapOption {
+    /// The look of a map.
+    fn look(self, scenario: &Scenario, figure: Figure) -> Result<Look, String> {
+        let by_peak = self.color == Color::Peak;
+        let free_hinges = scenario.free_hinges.is_some();
+        if self.no_impact && free_hinges {
+            return Err(
+                "--no-impact is about four links, and the hinges of this map are free: leave it out, or give \
+                 --hinges four"
+                    .to_owned(),
+            );
+        }
+        let map = OverturningMap::new(scenario);
+        if self.no_impact && map.is_none_or(|map| !MapWithBoundary::new(&map).has_boundary()) {
+            return Err(NO_BOUNDARY.to_owned());
+        }
+        if by_peak && free_hinges {
+            return Err(
+                "--color peak goes with four links and columns: free hinges have no critical rotation"
+                    .to_owned(),
+            );
+        }
+        let factors = self.dimensionless.then(|| Look::dimensionless(scenario));
+        Ok(Look {
+            figure,
+            by_peak,
+            factors: factors
+                .transpose()
+                .map_err(|wrong| format!("--dimensionless {wrong}"))?,
+            no_impact: self.no_impact,
+        })
+    }
+
+    /// The look of what is no map.
+    fn of_no_map(self, figure: Figure) -> Result<Look, String> {
+        if self.no_impact {
+            return Err(NO_BOUNDARY.to_owned());
+        }
+        if self.dimensionless || self.color != Color::Outcome {
+            return Err("--color and --dimensionless are about maps".to_owned());
+        }
+        Ok(Look::of(figure))
+    }
+}
+
+const NO_BOUNDARY: &str = "--no-impact is about maps one of whose axes is amplitude_g";
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Scenario(message) => Self::Input(message),
+            StudyError::Runner(error) => error.into(),
+            StudyError::Part(error) => error.into(),
+            StudyError::Read(error) => error.into(),
+            StudyError::Output(error) => error.into(),
+        }
+    }
+}
+
+pub fn map(arguments: &MapArguments, quiet: bool) -> Result<(), Failure> {
+    let options = &arguments.options;
+    let input = options.open()?;
+    let scenario = arguments.hinges.read(&input, quiet)?;
+    OverturningMap::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
+    let look = arguments.map.look(&scenario, arguments.figure.get());
+    let look = look.map_err(Failure::Input)?;
+    options.study(StudyKind::Map, &input, &scenario, look, quiet)
+}
+
+pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
+    let options = &arguments.options;
+    let input = options.open()?;
+    let scenario = arguments.hinges.read(&input, quiet)?;
+    let look = Look::of(arguments.figure.get());
+    options.study(StudyKind::Suite, &input, &scenario, look, quiet)
+}
+
+pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failure> {
+    let options = &arguments.options;
+    let input = options.open()?;
+    let scenario = input.read(None)?;
+    let look = Look::of(arguments.figure.get());
+    options.study(StudyKind::Spectrum, &input, &scenario, look, quiet)
+}
+
+pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
+    let (parts, figure) = (&arguments.parts, arguments.figure.get());
+    let beside = parts[0].parent();
+    let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
+    let beside = beside.unwrap_or(Path::new("."));
+    let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
+    let (_, results) = merged(parts, None, |kind, scenario| match (kind, scenario) {
+        (StudyKind::Map, Some(scenario)) => arguments.map.look(scenario, figure),
+        _ => arguments.map.of_no_map(figure),
+    })?;
+    write(&results, &place, quiet)
+}
+
+/// Writes results into their folder, and says what they are.
+pub fn write(results: &Results, place: &Destination, quiet: bool) -> Result<(), Failure> {
+    let names = results.names();
+    results.write(place.open(&names)?)?;
+    if !quiet {
+        say(&results.words);
+        let files = names.join(", ");
+        say(&format!("  results in {}: {files}", place.path().display()));
+    }
+    Ok(())
+}

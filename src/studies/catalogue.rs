@@ -1,0 +1,185 @@
+//! The studies that a scenario describes by a table of their name, computed and told whichever is meant.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::map::OverturningMap;
+use super::map::boundary::MapWithBoundary;
+use super::part::{self, PartError, PartFile};
+use super::results::{Look, Results};
+use super::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
+use super::spectrum::{OverturningSpectrum, PointRow};
+use super::suite::{Heading, RecordSuite};
+use crate::output::OutputError;
+use crate::scenario::{Scenario, ScenarioErrors};
+
+named! {
+    /// A study that a scenario describes.
+    pub enum StudyKind {
+        /// Which pulses overturn, over two quantities.
+        Map = "map",
+        /// How strong a pulse must be, over the size of the structure.
+        Spectrum = "spectrum",
+        /// What records overturn.
+        Suite = "suite",
+    }
+}
+
+/// Why a study has no results.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// The scenario does not describe it.
+    #[error("{0}")]
+    Scenario(String),
+    /// Its rows are not complete.
+    #[error(transparent)]
+    Runner(#[from] RunnerError),
+    /// Its parts cannot be joined.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// The scenario of its parts cannot be read.
+    #[error(transparent)]
+    Read(#[from] ScenarioErrors),
+    /// A result is not a number.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+/// What was computed.
+#[derive(Debug)]
+pub enum Done {
+    /// All cases, and the file that has their rows until the results are written; `None` where they are in memory.
+    Whole(Results, Option<PartFile>),
+    /// A part of them.
+    Part {
+        /// The file that has its rows.
+        part: PartFile,
+        /// How many cases it has.
+        cases: usize,
+        /// How many the study has.
+        all: usize,
+    },
+}
+
+impl StudyKind {
+    /// The one of this name.
+    #[must_use]
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|kind| kind.name() == name)
+    }
+
+    /// Computes the study of a scenario in a folder, where it can be resumed, or in memory. `watch` is as in [`Runner::rows`].
+    ///
+    /// # Errors
+    /// When the scenario does not describe the study, or its rows do not get complete.
+    pub fn compute(
+        self,
+        scenario: &Scenario,
+        look: Look,
+        runner: Runner,
+        task: Option<Task<'_>>,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Done, StudyError> {
+        match self {
+            Self::Map => {
+                let map = OverturningMap::of(scenario).map_err(StudyError::Scenario)?;
+                let study = MapWithBoundary::new(&map);
+                complete(&study, runner, task, watch, |rows| map.tell(rows, look))
+            }
+            Self::Spectrum => {
+                let spectrum = spectrum_of(scenario)?;
+                complete(&spectrum, runner, task, watch, |rows| {
+                    spectrum.tell(&rows, look.figure)
+                })
+            }
+            Self::Suite => {
+                let study = RecordSuite::of(scenario).map_err(StudyError::Scenario)?;
+                let heading = study.heading();
+                complete(&study, runner, task, watch, |rows| {
+                    heading.tell(rows, look.figure)
+                })
+            }
+        }
+    }
+}
+
+/// Computes the cases that are asked for, and tells them if they are all.
+fn complete<S: Study>(
+    study: &S,
+    runner: Runner,
+    task: Option<Task<'_>>,
+    watch: impl FnMut(Progress) -> ControlFlow<()>,
+    tell: impl FnOnce(Vec<S::Row>) -> Result<Results, OutputError>,
+) -> Result<Done, StudyError> {
+    let Some(task) = task else {
+        let rows = runner.rows(study, watch)?;
+        return Ok(Done::Whole(tell(rows)?, None));
+    };
+    Ok(match runner.rows_in(study, task, watch)? {
+        Computed::Whole(rows, part) => Done::Whole(tell(rows)?, Some(part)),
+        Computed::Shard(part) => {
+            let all = study.count();
+            let cases = task.shard.cases(all).count();
+            Done::Part { part, cases, all }
+        }
+    })
+}
+
+/// Joins the parts of a study. The scenario of the parts is read again, or is the one `given`; of a suite it is not asked for, because
+/// its records may be elsewhere. `look` says how the results look, and may refuse what does not go with the study.
+///
+/// # Errors
+/// When the parts are not all there, are of no study or of another scenario than the one given, or `look` refuses.
+pub fn merge(
+    parts: &[PathBuf],
+    given: Option<&Scenario>,
+    look: impl FnOnce(StudyKind, Option<&Scenario>) -> Result<Look, String>,
+) -> Result<(StudyKind, Results), StudyError> {
+    let first = parts.first().map(|part| part::read_header(part));
+    let study = first
+        .transpose()?
+        .map_or(String::new(), |first| first.study);
+    let kind = StudyKind::of_name(&study).ok_or_else(|| {
+        StudyError::Scenario(format!(
+            "unknown study {study:?}: merge with the version of archrock that wrote the parts"
+        ))
+    })?;
+    let read = |text: &str| match given {
+        None => Ok(Scenario::parse(text, "the scenario of the parts")?),
+        Some(given) if given.to_toml() == text => Ok(given.clone()),
+        Some(_) => Err(StudyError::Scenario(
+            "the parts are of another scenario than the one given".to_owned(),
+        )),
+    };
+    let results = match kind {
+        StudyKind::Map => {
+            let (header, rows) = part::merge(parts)?;
+            let scenario = read(&header.scenario)?;
+            let map = OverturningMap::of(&scenario).map_err(StudyError::Scenario)?;
+            let look = look(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
+            map.tell(rows, look)?
+        }
+        StudyKind::Spectrum => {
+            let look = look(kind, None).map_err(StudyError::Scenario)?;
+            let (header, rows) = part::merge::<PointRow>(parts)?;
+            let scenario = read(&header.scenario)?;
+            spectrum_of(&scenario)?.tell(&rows, look.figure)?
+        }
+        StudyKind::Suite => {
+            let look = look(kind, None).map_err(StudyError::Scenario)?;
+            let (header, rows) = part::merge(parts)?;
+            let heading = Heading::of_resolved(&header.scenario).ok_or_else(|| {
+                let message = "the scenario of the parts is damaged: compute them again";
+                StudyError::Scenario(message.to_owned())
+            })?;
+            heading.tell(rows, look.figure)?
+        }
+    };
+    Ok((kind, results))
+}
+
+fn spectrum_of(scenario: &Scenario) -> Result<OverturningSpectrum<'_>, StudyError> {
+    OverturningSpectrum::new(scenario).map_err(|error| StudyError::Scenario(error.to_string()))
+}

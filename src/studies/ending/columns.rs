@@ -1,0 +1,72 @@
+//! How histories ended, as columns of a table.
+
+use super::{Ending, Outcome};
+use crate::output::table::{Column, column};
+
+/// Outcome where a history could not be computed.
+pub(crate) const FAILED: &str = "failed";
+/// Outcome where it is uncertain whether it overturns.
+pub(crate) const UNCERTAIN: &str = "uncertain";
+
+impl Ending {
+    /// The outcome of a case of a study, by its name in results.
+    #[must_use]
+    pub const fn outcome_name(&self) -> &'static str {
+        match self.uncertain {
+            Some(_) => UNCERTAIN,
+            None => self.outcome.name(),
+        }
+    }
+
+    /// To which side a case overturned, where it certainly did.
+    pub(crate) const fn overturning_sway(&self) -> Option<&'static str> {
+        match (self.outcome, &self.uncertain) {
+            (Outcome::Overturned(sway), None) => Some(sway.name()),
+            _ => None,
+        }
+    }
+}
+
+/// The ending of a row, or the outcome that stands for none.
+type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
+
+/// The columns of the ending of a row. Only what certainly overturned has a sway and impacts before it; the numbers of what is uncertain
+/// are those of the history itself, not of its repetitions.
+pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
+    let number = |name: &'static str, of: fn(&Ending) -> Option<f64>| {
+        column(name, move |row| ended(row).ok().and_then(of).map(number))
+    };
+    let mut columns = vec![
+        column("outcome", move |row| {
+            ended(row).map_or_else(|reason| reason, Ending::outcome_name)
+        }),
+        column("overturning_sway", move |row| {
+            ended(row).ok().and_then(Ending::overturning_sway)
+        }),
+        column("impacts", move |row| {
+            ended(row).ok().map(|ending| ending.impacts)
+        }),
+        column("impacts_before_overturning", move |row| {
+            let overturned = ended(row)
+                .ok()
+                .filter(|one| one.overturning_sway().is_some());
+            overturned.map(|ending| ending.impacts)
+        }),
+        number("outcome_time_s", |ending| Some(ending.outcome_time_s)),
+        number("peak_rotation_over_critical", |ending| {
+            ending.peak.over_critical()
+        }),
+        number("energy_defect_ratio", |ending| {
+            Some(ending.energy_defect_ratio)
+        }),
+    ];
+    if free_hinges {
+        columns.push(number("peak_rotation_rad", |ending| ending.peak.rad()));
+    }
+    columns
+}
+
+/// A number with the fewest digits that read back as the same `f64`.
+pub(crate) fn number(value: f64) -> String {
+    format!("{value:?}")
+}

@@ -1,0 +1,192 @@
+//! What an overturning map tells: its table, its boundaries, its words.
+
+use super::boundary::{Boundary, BoundaryRow, MapRow};
+use super::{CellResult, CellRow, OverturningMap, page, picture};
+use crate::dynamics::history::Outcome;
+use crate::output::rotations::Scales;
+use crate::output::table::{Column, column, csv};
+use crate::output::{OutputError, pretty};
+use crate::scenario::{Quantity, Scenario};
+use crate::studies::ending::columns::{self, FAILED, number};
+use crate::studies::kind::{CANNOT_STAND, NOT_FOUR_LINKS};
+use crate::studies::remarks::{self, Remark, Remarks, counts, in_words};
+use crate::studies::results::{Look, Results};
+
+const SUMMARY: &str = "map.json";
+const BOUNDARY: &str = "no_impact.csv";
+
+impl OverturningMap<'_> {
+    /// Files and words of all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn tell(&self, rows: Vec<MapRow>, look: Look) -> Result<Results, OutputError> {
+        let scenario = self.scenario();
+        let (cells, boundaries) = MapRow::sorted(rows);
+        let title = scenario.title.as_deref().unwrap_or("Overturning map");
+        let remarks = remarks(self, &cells, &boundaries);
+        let summary = remarks::summary(scenario, cells.len(), &remarks);
+        let picture = picture::draw(title, self, &cells, &boundaries, look);
+        let page = page::page(title, self, &cells, &boundaries, look);
+        let mut files = vec![
+            ("map.svg", picture.into_bytes()),
+            ("map.html", page.into_bytes()),
+            (SUMMARY, pretty(&summary).into_bytes()),
+            ("map.csv", csv(&self.columns(), &cells)?),
+        ];
+        if look.no_impact {
+            files.insert(0, (BOUNDARY, self.boundary_table(&boundaries)?));
+        }
+        Ok(Results {
+            files,
+            obsolete: (!look.no_impact).then_some(BOUNDARY),
+            words: words(self, &cells, &remarks),
+        })
+    }
+
+    /// A row per cell: x varies slowly, y fast.
+    fn columns(&self) -> Vec<Column<'_, CellRow>> {
+        let [x, y] = self.axes().map(|axis| axis.key.as_str());
+        let mut all = vec![
+            column(x, |row: &CellRow| number(row.x)),
+            column(y, |row: &CellRow| number(row.y)),
+        ];
+        all.extend(columns::columns(
+            self.has_free_hinges(),
+            |row: &CellRow| match &row.result {
+                CellResult::Ended(ending) => Ok(ending),
+                other => Err(outcome(other)),
+            },
+        ));
+        if self.has_spread() {
+            all.push(column(SPREAD, |row: &CellRow| {
+                let spread = row.spread.as_ref();
+                spread.map(|spread| match spread {
+                    Ok(count) => count.to_string(),
+                    Err(_) => FAILED.to_owned(),
+                })
+            }));
+        }
+        all
+    }
+
+    /// The boundaries that were found, a row per value of x.
+    fn boundary_table(&self, boundaries: &[BoundaryRow]) -> Result<Vec<u8>, OutputError> {
+        type Row = (f64, Boundary);
+        let rows: Vec<Row> = found(boundaries).collect();
+        let columns = [
+            column(self.axes()[0].key.as_str(), |row: &Row| row.0),
+            column("incipient_acceleration_g", |row: &Row| row.1.incipient_g),
+            column("no_impact_amplitude_g", |row: &Row| row.1.impact_free_g),
+        ];
+        csv(&columns, &rows)
+    }
+}
+
+/// The boundaries that there are, with their x.
+pub(super) fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
+    let rows = boundaries.iter();
+    rows.filter_map(|row| Some((row.x, row.result.as_ref().ok().copied()??)))
+}
+
+/// The outcome of a cell, as it stands in the table.
+#[must_use]
+pub const fn outcome(result: &CellResult) -> &'static str {
+    match result {
+        CellResult::Ended(ending) => ending.outcome_name(),
+        CellResult::CannotStand => CANNOT_STAND,
+        CellResult::NotFourLinks => NOT_FOUR_LINKS,
+        CellResult::Failed(_) => FAILED,
+    }
+}
+
+/// The number of outcomes of a cell with its repetitions, as it stands in the table.
+const SPREAD: &str = "spread";
+
+/// How many cells have an outcome that depends on how they are computed.
+fn doubtful(rows: &[CellRow]) -> usize {
+    rows.iter().filter(|row| is_doubtful(row)).count()
+}
+
+pub(super) fn is_doubtful(row: &CellRow) -> bool {
+    matches!(row.spread, Some(Ok(2..)))
+}
+
+/// What is to be remarked of the cells: which failed, and of which a repetition or a boundary did; which are uncertain.
+fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRow]) -> Remarks {
+    let [x_name, y_name] = map.axes().map(|axis| axis.key.as_str());
+    let mut remarks = Remarks::default();
+    for cell in cells {
+        let case = || format!("{x_name} {:?}, {y_name} {:?}", cell.x, cell.y);
+        match &cell.result {
+            CellResult::Ended(ending) => remarks.note(case, Ok(ending)),
+            CellResult::Failed(reason) => remarks.note(case, Err(reason)),
+            CellResult::CannotStand | CellResult::NotFourLinks => {}
+        }
+        if let Some(Err(reason)) = &cell.spread {
+            remarks.failures.push(Remark::new(case(), reason));
+        }
+    }
+    for row in boundaries {
+        if let Err(reason) = &row.result {
+            let case = format!("boundary without impact at {x_name} {:?}", row.x);
+            remarks.failures.push(Remark::new(case, reason));
+        }
+    }
+    remarks
+}
+
+/// How many cells came to what, what is doubtful about them, and what failed.
+fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> String {
+    let words = |cell: &CellRow| match &cell.result {
+        CellResult::Ended(ending)
+            if ending.uncertain.is_none() && ending.outcome == Outcome::StillRocking =>
+        {
+            (3, "are still rocking at duration_s of [simulation]")
+        }
+        CellResult::Ended(ending) => in_words(ending),
+        CellResult::CannotStand => (5, "cannot stand"),
+        CellResult::NotFourLinks => (6, "are too thick for four links"),
+        CellResult::Failed(_) => (7, "failed"),
+    };
+    let counts = counts(cells.iter().map(words));
+    let mut lines = vec![format!("{} cells: {counts}", cells.len())];
+    if map.has_spread() {
+        lines.push(format!(
+            "{} of them have another outcome in a repetition, be it only rest instead of rocking on",
+            doubtful(cells)
+        ));
+    }
+    if map.has_free_hinges() && map.axes()[1].quantity == Quantity::Amplitude {
+        lines.push(
+            "free hinges: without the boundary of overturning without impact, which is of four links"
+                .to_owned(),
+        );
+    }
+    lines.extend(remarks.uncertain_in_words(SUMMARY));
+    lines.extend(remarks.failed_in_words(SUMMARY));
+    lines.join("\n  ")
+}
+
+impl Look {
+    /// The factors that make p t_p of durations, and a / A_L of amplitudes.
+    ///
+    /// # Errors
+    /// Says what a map needs for that.
+    pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
+        let map = scenario.map.as_ref().ok_or("there is no map")?;
+        if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
+            return Err("needs the axes `duration_s` and `amplitude_g`");
+        }
+        if scenario.free_hinges.is_some() {
+            return Err("goes with four links and columns: free hinges have no p");
+        }
+        let model = scenario.structure.model(scenario.impact);
+        let scales = model
+            .ok()
+            .and_then(|model| Scales::new(&*model, scenario.simulation.gravity_m_s2))
+            .ok_or("needs a mechanism that has an unstable equilibrium")?;
+        let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+        Ok([scales.frequency_rad_s, gravity_m_s2 / scales.incipient_m_s2])
+    }
+}

@@ -1,0 +1,162 @@
+//! What a study says of its cases beside their rows: what became of them, which failed, which are uncertain.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde_json::{Value, json};
+
+use super::ending::{Ending, Steps};
+use crate::dynamics::history::Outcome;
+use crate::scenario::Scenario;
+
+/// A case of a study that failed or is uncertain, as results list it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// Which case, in words.
+    pub case: String,
+    /// Why.
+    pub reason: String,
+}
+
+impl Remark {
+    pub(crate) fn new(case: String, reason: &str) -> Self {
+        Self {
+            case,
+            reason: reason.to_owned(),
+        }
+    }
+}
+
+/// What a study says of its cases beside their rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Remarks {
+    /// The cases that failed, and why.
+    pub failures: Vec<Remark>,
+    /// The cases of which it is uncertain whether they overturn, and why.
+    pub uncertain: Vec<Remark>,
+    /// The shortest and the longest of the longest steps of the cases, in seconds, and of their shortest ones.
+    steps_s: Option<[[f64; 2]; 2]>,
+}
+
+impl Remarks {
+    /// Notes how a case ended.
+    pub(crate) fn note(&mut self, case: impl Fn() -> String, ended: Result<&Ending, &str>) {
+        let ending = match ended {
+            Ok(ending) => ending,
+            Err(reason) => return self.failures.push(Remark::new(case(), reason)),
+        };
+        if let Some(reason) = &ending.uncertain {
+            self.uncertain.push(Remark::new(case(), reason));
+        }
+        self.note_steps(ending);
+    }
+
+    /// Notes the steps of a case.
+    pub(crate) fn note_steps(&mut self, ending: &Ending) {
+        if let Some(Steps {
+            longest_s,
+            shortest_s,
+        }) = ending.steps
+        {
+            let own_s = [longest_s, shortest_s].map(|step_s| [step_s; 2]);
+            let all_s = self.steps_s.get_or_insert(own_s);
+            for ([least_s, most_s], [step_s, _]) in all_s.iter_mut().zip(own_s) {
+                *least_s = least_s.min(step_s);
+                *most_s = most_s.max(step_s);
+            }
+        }
+    }
+
+    /// Adds them to a summary, as far as there are any.
+    pub(crate) fn add_to(&self, summary: &mut Value) {
+        let list = |remarks: &[Remark]| -> Value {
+            let list = remarks.iter();
+            list.map(|remark| json!({ "case": remark.case, "reason": remark.reason }))
+                .collect()
+        };
+        let lists = [
+            ("failures", &self.failures),
+            ("uncertain_cases", &self.uncertain),
+        ];
+        for (name, remarks) in lists {
+            if !remarks.is_empty() {
+                summary[name] = list(remarks);
+            }
+        }
+        if let Some(steps_s) = self.steps_s {
+            let names = ["longest_step_s", "shortest_step_s"];
+            for (name, [least_s, most_s]) in names.into_iter().zip(steps_s) {
+                summary[name] = json!({ "min": least_s, "max": most_s });
+            }
+        }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.case, self.reason)
+    }
+}
+
+/// The summary of a study as JSON: its scenario, the number of its cases, and what is to be remarked of these.
+pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> Value {
+    let mut summary = json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenario": scenario.to_json(),
+        "cases": cases,
+    });
+    remarks.add_to(&mut summary);
+    summary
+}
+
+impl Remarks {
+    /// How many cases failed, why the first did, and where the others are; `None` where none did.
+    pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
+        let (count, first) = (self.failures.len(), self.failures.first()?);
+        let others = if count > 1 {
+            format!("; all are in {file}")
+        } else {
+            String::new()
+        };
+        Some(format!("failed: {count}; the first: {first}{others}"))
+    }
+
+    /// What is uncertain, and where it is told; `None` where nothing is.
+    pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
+        let first = self.uncertain.first()?;
+        let listed = match self.uncertain.len() {
+            1 => String::new(),
+            _ => format!("; all are in {file}"),
+        };
+        Some(format!(
+            "uncertain is what other steps, or landings merged, answer otherwise; the first: {first}{listed}"
+        ))
+    }
+}
+
+/// Words for what became of cases, and their place among the counts.
+pub(crate) type Words = (u8, &'static str);
+
+/// The words of how a case ended.
+pub(crate) const fn in_words(ending: &Ending) -> Words {
+    match (&ending.uncertain, ending.outcome) {
+        (Some(_), _) => (4, "are uncertain"),
+        (None, Outcome::NeverMoved) => (0, "never move"),
+        (None, Outcome::Rest) => (1, "come to rest"),
+        (None, Outcome::Overturned(_)) => (2, "overturn"),
+        (None, Outcome::StillRocking) => (3, "are still rocking"),
+    }
+}
+
+/// How many cases came to what.
+pub(crate) fn counts(cases: impl Iterator<Item = Words>) -> String {
+    let mut counts = BTreeMap::new();
+    for words in cases {
+        *counts.entry(words).or_insert(0_usize) += 1;
+    }
+    let parts = counts
+        .into_iter()
+        .map(|((_, words), count)| format!("{count} {words}"));
+    parts.collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,108 @@
+//! What an overturning spectrum tells: its table, its summary, its words.
+
+use super::{OverturningSpectrum, PointRow, picture};
+use crate::output::table::{Column, column, csv};
+use crate::output::{Figure, OutputError, pretty};
+use crate::studies::ending::columns::number;
+use crate::studies::remarks::{self, Remark, Remarks};
+use crate::studies::results::Results;
+
+const SUMMARY: &str = "spectrum.json";
+
+impl OverturningSpectrum<'_> {
+    /// Files and words of all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn tell(&self, rows: &[PointRow], figure: Figure) -> Result<Results, OutputError> {
+        let title = self.scenario.title.as_deref();
+        let title = title.unwrap_or("Overturning spectrum");
+        let remarks = remarks(rows);
+        let summary = remarks::summary(self.scenario, rows.len(), &remarks);
+        Ok(Results {
+            files: vec![
+                (
+                    "spectrum.svg",
+                    picture::draw(figure, title, self, rows).into_bytes(),
+                ),
+                (SUMMARY, pretty(&summary).into_bytes()),
+                ("spectrum.csv", csv(&columns(), rows)?),
+            ],
+            obsolete: None,
+            words: words(self, rows, &remarks),
+        })
+    }
+}
+
+/// A row per point: structure by structure, sizes ascending.
+fn columns() -> [Column<'static, PointRow>; 9] {
+    let least = |row: &PointRow| row.minimum;
+    [
+        column("structure", |row: &PointRow| row.structure.name()),
+        column("p_t", |row: &PointRow| number(row.p_t)),
+        column("duration_s", |row: &PointRow| number(row.duration_s)),
+        column("no_impact_over_incipient", |row: &PointRow| {
+            row.no_impact_over_incipient.map(number)
+        }),
+        column("least_over_incipient", move |row| {
+            least(row).map(|one| number(one.over_incipient))
+        }),
+        column("impacts_before_overturning", move |row| {
+            least(row).map(|one| one.impacts)
+        }),
+        column("overturning_sway", move |row| {
+            least(row).map(|one| one.sway.name())
+        }),
+        column("still_rocking", |row: &PointRow| row.still_rocking),
+        column("failed", |row: &PointRow| row.failures.len()),
+    ]
+}
+
+/// What failed: where, and why.
+fn remarks(rows: &[PointRow]) -> Remarks {
+    let mut remarks = Remarks::default();
+    for row in rows {
+        for failure in &row.failures {
+            let what = match failure.over_incipient {
+                Some(over_incipient) => format!("at {over_incipient:?} A_L"),
+                None => "least without impact".to_owned(),
+            };
+            let case = format!("{} with p t_p {:?}, {what}", row.structure.name(), row.p_t);
+            let remark = Remark::new(case, &failure.reason);
+            remarks.failures.push(remark);
+        }
+    }
+    remarks
+}
+
+/// Counts the points by outcome, and says what is uncertain.
+fn words(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], remarks: &Remarks) -> String {
+    let count = |wanted: fn(Option<usize>) -> bool| {
+        let impacts = rows
+            .iter()
+            .map(|row| row.minimum.map(|least| least.impacts));
+        impacts.filter(|impacts| wanted(*impacts)).count()
+    };
+    let mut text = format!(
+        "{} points: the weakest pulse that overturns does so without impact at {}, after impacts at {}",
+        rows.len(),
+        count(|impacts| impacts == Some(0)),
+        count(|impacts| impacts > Some(0)),
+    );
+    let none = count(|impacts| impacts.is_none());
+    if let Some(last) = spectrum.over_incipient().last()
+        && none > 0
+    {
+        text += &format!("; at {none} no pulse up to {last} A_L overturns");
+    }
+    let rocking: usize = rows.iter().map(|row| row.still_rocking).sum();
+    if rocking > 0 {
+        text += &format!(
+            "; {rocking} histories were still rocking long after their pulse, and count as survived"
+        );
+    }
+    if let Some(words) = remarks.failed_in_words(SUMMARY) {
+        text += &format!("; {words}");
+    }
+    text
+}

@@ -1,0 +1,355 @@
+//! What a suite of records tells: its table, the fragility of the structure, its words.
+
+use serde_json::{Value, json};
+
+use super::fragility::{Errors, Fragility, NoFit};
+use super::{CaseRow, CurvePoint, FragilityRow, SuiteFragility, ida, picture};
+use crate::output::table::{Column, column, csv};
+use crate::output::{Figure, OutputError, finite, pretty};
+use crate::scenario::{Measure, Scenario, Spacing, Suite, shown};
+use crate::studies::ending::Verdict;
+use crate::studies::ending::columns::{self, FAILED, number};
+use crate::studies::remarks::{Remarks, counts, in_words};
+use crate::studies::results::Results;
+use crate::studies::survival;
+
+const FRAGILITY: &str = "fragility.json";
+
+/// What the results of a suite say of its scenario. That can be had from the resolved text alone, so that parts
+/// are joined where the records are not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heading {
+    scenario: Value,
+    /// What the intensities are.
+    pub measure: Measure,
+    pub(super) spacing: Spacing,
+}
+
+impl Heading {
+    /// The heading of a scenario with this suite.
+    #[must_use]
+    pub fn of(scenario: &Scenario, suite: &Suite) -> Self {
+        Self {
+            scenario: scenario.to_json(),
+            measure: suite.measure,
+            spacing: suite.levels.spacing(),
+        }
+    }
+
+    /// The heading of a scenario, every default resolved; `None` if that is not the text of one with a suite.
+    #[must_use]
+    pub fn of_resolved(scenario: &str) -> Option<Self> {
+        let scenario: Value = toml::from_str(scenario).ok()?;
+        let suite = scenario.get("suite")?;
+        let (measure, levels) = Measure::ALL
+            .iter()
+            .find_map(|measure| Some((*measure, suite.get(measure.name())?)))?;
+        let logarithmic = levels["spacing"] == Spacing::Logarithmic.name();
+        let spacing = if logarithmic {
+            Spacing::Logarithmic
+        } else {
+            Spacing::Linear
+        };
+        Some(Self {
+            scenario,
+            measure,
+            spacing,
+        })
+    }
+
+    /// Files and words of all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn tell(&self, rows: Vec<CaseRow>, figure: Figure) -> Result<Results, OutputError> {
+        let results = SuiteFragility::new(self.measure, rows);
+        Ok(Results {
+            files: vec![
+                (
+                    "suite.svg",
+                    picture::draw(figure, self, &results).into_bytes(),
+                ),
+                ("ida.svg", ida::draw(figure, self, &results).into_bytes()),
+                (
+                    "fragility.csv",
+                    csv(&self.level_columns(), &results.levels)?,
+                ),
+                (FRAGILITY, pretty(&to_json(self, &results)?).into_bytes()),
+                ("suite.csv", csv(&self.case_columns(), &results.cases)?),
+            ],
+            obsolete: None,
+            words: words(&results),
+        })
+    }
+
+    /// A row per case.
+    fn case_columns(&self) -> Vec<Column<'static, CaseRow>> {
+        let mut all = vec![
+            column("record", |case: &CaseRow| shown(&case.record)),
+            column(
+                "sign",
+                |case: &CaseRow| if case.mirrored { "-1" } else { "1" },
+            ),
+            column("scale", |case: &CaseRow| number(case.scale)),
+            column("peak_g", |case: &CaseRow| number(case.peak_g)),
+        ];
+        all.extend(columns::columns(
+            self.has_free_hinges(),
+            |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
+        ));
+        all
+    }
+
+    /// A row per level. Missing values are left empty.
+    fn level_columns(&self) -> Vec<Column<'static, FragilityRow>> {
+        type Curve = fn(&FragilityRow) -> Option<CurvePoint>;
+        let probability = |[probability, low, high]: [&'static str; 3], curve: Curve| {
+            [
+                column(probability, move |level| {
+                    curve(level).map(|point| point.probability)
+                }),
+                column(low, move |level| curve(level).map(|point| point.low)),
+                column(high, move |level| curve(level).map(|point| point.high)),
+            ]
+        };
+        let mut all = vec![
+            column(self.measure.column(), |level: &FragilityRow| {
+                level.intensity
+            }),
+            column("cases", |level: &FragilityRow| level.cases),
+            column("overturned", |level: &FragilityRow| level.overturned),
+            column("still_rocking", |level: &FragilityRow| level.still_rocking),
+            column("failed", |level: &FragilityRow| level.failed),
+            column("fraction", FragilityRow::fraction),
+        ];
+        let names = ["probability", "probability_low", "probability_high"];
+        all.extend(probability(names, |level| level.curve));
+        if self.has_free_hinges() {
+            // The number of uncertain cases, and what counts them as overturned.
+            all.extend([
+                column("uncertain", |level: &FragilityRow| level.uncertain),
+                column(
+                    "fraction_with_uncertain",
+                    FragilityRow::fraction_with_uncertain,
+                ),
+            ]);
+            let names = [
+                "probability_with_uncertain",
+                "probability_with_uncertain_low",
+                "probability_with_uncertain_high",
+            ];
+            all.extend(probability(names, |level| level.curve_with_uncertain));
+        }
+        all
+    }
+
+    fn has_free_hinges(&self) -> bool {
+        self.scenario.get("free_hinges").is_some()
+    }
+
+    pub(super) fn title(&self) -> &str {
+        let title = self.scenario.get("title").and_then(Value::as_str);
+        title.unwrap_or("Fragility under a suite of records")
+    }
+}
+
+/// How many records there are.
+pub(super) fn records_in_words(results: &SuiteFragility) -> String {
+    match results.record_count() {
+        1 => "1 record".to_owned(),
+        count => format!("{count} records"),
+    }
+}
+
+/// The fragility as JSON. Missing values are null.
+///
+/// # Errors
+/// When a value is not finite.
+fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputError> {
+    let total =
+        |count: fn(&FragilityRow) -> usize| -> usize { results.levels.iter().map(count).sum() };
+    let mut json = json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenario": heading.scenario,
+        "intensity": results.measure.column(),
+    });
+    let curve = curve_to_json(&results.fit)?;
+    if let (Some(json), Value::Object(curve)) = (json.as_object_mut(), curve) {
+        json.extend(curve);
+    }
+    let counts = [
+        ("records", results.record_count()),
+        ("cases", total(|level| level.cases)),
+        ("overturned", total(|level| level.overturned)),
+        ("uncertain", total(|level| level.uncertain)),
+        (
+            "still_rocking_counted_as_not_overturned",
+            total(|level| level.still_rocking),
+        ),
+        ("failed_left_out", total(|level| level.failed)),
+    ];
+    for (name, count) in counts {
+        json[name] = json!(count);
+    }
+    json["mirrored_cases_count"] = json!(results.mirrored_count);
+    json["records_that_never_overturn"] = json!(results.always(Verdict::Survives));
+    json["records_that_always_overturn"] = json!(results.always(Verdict::Overturns));
+    if results.has_uncertain() {
+        json["with_uncertain_as_overturned"] = curve_to_json(&results.fit_with_uncertain)?;
+    }
+    remarks(results).add_to(&mut json);
+    Ok(json)
+}
+
+/// A curve with its standard errors, or why there is none.
+fn curve_to_json(fit: &Result<Fragility, NoFit>) -> Result<Value, OutputError> {
+    let no_fit = fit.as_ref().err().map(ToString::to_string);
+    let fit = fit.as_ref().ok();
+    let errors = |errors: Option<&Errors>| {
+        errors.map_or([None; 2], |errors| {
+            [Some(errors.median), Some(errors.dispersion)]
+        })
+    };
+    let [median_error, dispersion_error] = errors(fit.map(|fit| &fit.independent));
+    let [median_error_by_record, dispersion_error_by_record] =
+        errors(fit.and_then(|fit| fit.clustered.as_ref()));
+    let mut json = json!({});
+    for (name, value) in [
+        ("median", fit.map(|fit| fit.median)),
+        ("median_standard_error", median_error),
+        ("median_standard_error_by_record", median_error_by_record),
+        ("dispersion", fit.map(|fit| fit.dispersion)),
+        ("dispersion_standard_error", dispersion_error),
+        (
+            "dispersion_standard_error_by_record",
+            dispersion_error_by_record,
+        ),
+        ("log_likelihood", fit.map(|fit| fit.log_likelihood)),
+    ] {
+        finite("of fragility.json", value.as_slice())?;
+        json[name] = json!(value);
+    }
+    json["no_fit"] = json!(no_fit);
+    Ok(json)
+}
+
+/// What is to be remarked of the cases: which failed or are uncertain, and why.
+fn remarks(results: &SuiteFragility) -> Remarks {
+    let mut remarks = Remarks::default();
+    for case in &results.cases {
+        let name = || {
+            let mirrored = if case.mirrored { " mirrored" } else { "" };
+            let (column, level) = (results.measure.column(), case.level(results.measure));
+            format!("{}{mirrored}, {column} {level:?}", case.record)
+        };
+        remarks.note(name, case.result.as_ref().map_err(String::as_str));
+    }
+    remarks
+}
+
+/// A curve in words, or why there is none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct CurveInWords {
+    /// How uncertain cases are taken: `, 2 uncertain cases taken as survived`; empty where there are none.
+    pub(super) taken: String,
+    /// The curve, or the reason.
+    pub(super) curve: Result<String, String>,
+}
+
+/// The curve in words; where cases are uncertain, first with these as survived, then as overturned.
+pub(super) fn curves_in_words(results: &SuiteFragility) -> Vec<CurveInWords> {
+    let uncertain: usize = results.levels.iter().map(|level| level.uncertain).sum();
+    let curve = |fit: &Result<Fragility, NoFit>, how: &str| CurveInWords {
+        taken: match uncertain {
+            0 => String::new(),
+            1 => format!(", 1 uncertain case taken as {how}"),
+            _ => format!(", {uncertain} uncertain cases taken as {how}"),
+        },
+        curve: match fit {
+            Ok(fit) => Ok(fit_in_words(fit, results.measure)),
+            Err(reason) => Err(reason.to_string()),
+        },
+    };
+    let mut curves = vec![curve(&results.fit, "survived")];
+    if uncertain > 0 {
+        curves.push(curve(&results.fit_with_uncertain, "overturned"));
+    }
+    curves
+}
+
+/// A curve in words, with its standard errors, the larger ones last.
+fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
+    let unit = unit(measure);
+    let quantity = |value: f64, error: fn(&Errors) -> f64, unit: &str| {
+        let independent = error(&fit.independent);
+        // The error has two significant digits at best.
+        let digits = digits(independent);
+        let by_record = fit.clustered.as_ref().map_or(String::new(), |clustered| {
+            format!(" (by record ± {:.digits$}{unit})", error(clustered))
+        });
+        format!("{value:.digits$}{unit} ± {independent:.digits$}{unit}{by_record}")
+    };
+    format!(
+        "median {}, dispersion {}",
+        quantity(fit.median, |errors| errors.median, unit),
+        quantity(fit.dispersion, |errors| errors.dispersion, "")
+    )
+}
+
+/// Digits after the point that show two digits of an error.
+fn digits(error: f64) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number"
+    )]
+    let digits = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
+    digits
+}
+
+/// What the results say, line by line.
+fn words(results: &SuiteFragility) -> String {
+    let mut lines = vec![counted(results)];
+    let column = results.measure.column();
+    let curves = curves_in_words(results).into_iter();
+    lines.extend(curves.map(|CurveInWords { taken, curve }| match curve {
+        Ok(curve) => format!("fragility over {column}{taken}: {curve}"),
+        Err(reason) => format!("no fragility curve{taken}: {reason}"),
+    }));
+    for record in results.survivals() {
+        let mirrored = if record.mirrored { " mirrored" } else { "" };
+        let words = survival::in_words(&record.survival, unit(results.measure));
+        lines.push(format!("{}{mirrored}: {words}", record.record));
+    }
+    if results.cases.iter().any(CaseRow::still_rocking) {
+        lines.push(
+            "those still rocking at duration_s of [simulation] count as not overturned".to_owned(),
+        );
+    }
+    let remarks = remarks(results);
+    lines.extend(remarks.uncertain_in_words(FRAGILITY));
+    if let Some(words) = remarks.failed_in_words(FRAGILITY) {
+        lines.push(format!("{words}; what failed does not count"));
+    }
+    lines.join("\n  ")
+}
+
+/// How many cases came to what.
+fn counted(results: &SuiteFragility) -> String {
+    let words = |case: &CaseRow| case.result.as_ref().map_or((5, "failed"), in_words);
+    format!(
+        "{} cases of {}: {}",
+        results.cases.len(),
+        records_in_words(results),
+        counts(results.cases.iter().map(words))
+    )
+}
+
+/// What stands behind an intensity.
+const fn unit(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Scale => "",
+        Measure::PeakG => " g",
+    }
+}

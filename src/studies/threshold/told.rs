@@ -1,0 +1,366 @@
+//! What thresholds of overturning tell: their table, their JSON, their words.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::{FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, picture};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::Outcome;
+use crate::output::table::{column, csv};
+use crate::output::{Figure, OutputError, finite, pretty};
+use crate::scenario::{Ground, Scenario};
+use crate::studies::ending::columns::FAILED;
+use crate::studies::ending::{Ending, Verdict};
+use crate::studies::kind::GROUND_FALLS;
+use crate::studies::remarks::Remarks;
+use crate::studies::results::Results;
+use crate::studies::survival::{self, Survival};
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
+
+/// Files and words of the thresholds of scenarios that differ in their models only; and the JSON among the files.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn tell(
+    scenarios: &[&Scenario],
+    factors: &Factors,
+    thresholds: &[Threshold],
+    figure: Figure,
+) -> Result<(Results, Value), OutputError> {
+    let scenario = scenarios[0];
+    let ground = scenario.ground_motion();
+    let title = scenario.title.as_deref();
+    let title = title.unwrap_or("Threshold of overturning");
+    let peak_g = peak_g(scenario, ground);
+    let json = to_json(scenarios, ground, factors, thresholds)?;
+    let picture = picture::draw(figure, title, peak_g, factors, thresholds);
+    let contents = [
+        picture.into_bytes(),
+        table(thresholds)?,
+        pretty(&json).into_bytes(),
+    ];
+    let results = Results {
+        files: FILES.into_iter().zip(contents).collect(),
+        obsolete: None,
+        words: words(scenario, ground, thresholds),
+    };
+    Ok((results, json))
+}
+
+/// The outcome of a sample, also where there is no history.
+#[must_use]
+pub const fn outcome(sample: &FactorSample) -> &'static str {
+    match &sample.result {
+        Ok(ending) => ending.outcome_name(),
+        Err(NoHistory::GroundFalls(_)) => GROUND_FALLS,
+        Err(NoHistory::Failed(_)) => FAILED,
+    }
+}
+
+/// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.
+#[must_use]
+pub fn peak_g(scenario: &Scenario, ground: &GroundMotion) -> f64 {
+    ground.peaks_m_s2(f64::INFINITY).x / scenario.simulation.gravity_m_s2
+}
+
+/// A factor or an acceleration for people: with four digits, about as many as are certain of an edge.
+#[must_use]
+pub fn rounded(value: f64) -> String {
+    let before_point = if value > 0.0 {
+        value.log10().floor() + 1.0
+    } else {
+        1.0
+    };
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number, not negative"
+    )]
+    let digits = (4.0 - before_point).max(0.0) as usize;
+    format!("{value:.digits$}")
+}
+
+/// The samples, model by model, factors ascending.
+fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
+    type Row<'a> = (&'a str, &'a FactorSample);
+    let rows: Vec<Row<'_>> = thresholds
+        .iter()
+        .flat_map(|threshold| {
+            let samples = threshold.samples.iter();
+            samples.map(|sample| (&*threshold.model, sample))
+        })
+        .collect();
+    fn ending<'a>(row: &Row<'a>) -> Option<&'a Ending> {
+        row.1.result.as_ref().ok()
+    }
+    let columns = [
+        column("model", |row: &Row<'_>| row.0.to_owned()),
+        column("factor", |row: &Row<'_>| row.1.factor),
+        column("outcome", |row: &Row<'_>| outcome(row.1)),
+        column("overturning_sway", |row| {
+            ending(row).and_then(Ending::overturning_sway)
+        }),
+        column("impacts", |row| ending(row).map(|ending| ending.impacts)),
+        column("outcome_time_s", |row| {
+            ending(row).map(|ending| ending.outcome_time_s)
+        }),
+        column("peak_rotation_over_critical", |row| {
+            ending(row).and_then(|ending| ending.peak.over_critical())
+        }),
+        column("peak_rotation_rad", |row: &Row<'_>| row.1.peak_rotation_rad),
+    ];
+    csv(&columns, &rows)
+}
+
+/// All that was found, as JSON: per model the least factor that overturns, the bands that overturn, the safe gaps between
+/// them, the uncertain ranges, the steps where it has such, and all samples; beside the edges the peak acceleration of the ground, in units of gravity.
+///
+/// # Errors
+/// When a value is not finite.
+fn to_json(
+    scenarios: &[&Scenario],
+    ground: &GroundMotion,
+    factors: &Factors,
+    thresholds: &[Threshold],
+) -> Result<Value, OutputError> {
+    let peak_g = scenarios.first().map_or(0.0, |first| peak_g(first, ground));
+    finite("peak_acceleration_g", &[peak_g])?;
+    let ranges = |ranges: Vec<FactorRange>| -> Vec<Value> {
+        let ranges = ranges.iter();
+        ranges.map(|range| range_to_json(range, peak_g)).collect()
+    };
+    let models: Vec<Value> = thresholds
+        .iter()
+        .zip(scenarios)
+        .map(|(threshold, scenario)| {
+            let samples: Vec<Value> = threshold.samples.iter().map(sample_to_json).collect();
+            let mut model = json!({
+                "model": threshold.model,
+                "scenario": scenario.to_json(),
+                "lowest_factor": threshold.lowest_factor(),
+                "bands": ranges(threshold.bands()),
+                "gaps": ranges(threshold.gaps()),
+                "uncertain": ranges(threshold.uncertain()),
+            });
+            let mut remarks = Remarks::default();
+            for ending in threshold.samples.iter().flat_map(|sample| &sample.result) {
+                remarks.note_steps(ending);
+            }
+            remarks.add_to(&mut model);
+            model["samples"] = samples.into();
+            model
+        })
+        .collect();
+    Ok(json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "peak_acceleration_g": peak_g,
+        "factors": { "from": factors.first(), "to": factors.last(), "stride": factors.stride() },
+        "models": models,
+    }))
+}
+
+fn range_to_json(range: &FactorRange, peak_g: f64) -> Value {
+    json!({
+        "from": range.from,
+        "to": range.to,
+        "from_end": range.from_end.name(),
+        "to_end": range.to_end.name(),
+        "from_peak_g": range.from * peak_g,
+        "to_peak_g": range.to * peak_g,
+    })
+}
+
+fn sample_to_json(sample: &FactorSample) -> Value {
+    match &sample.result {
+        Ok(ending) => {
+            let mut json = json!({
+                "factor": sample.factor,
+                "outcome": outcome(sample),
+                "overturning_sway": ending.overturning_sway(),
+                "impacts": ending.impacts,
+                "outcome_time_s": ending.outcome_time_s,
+                "peak_rotation_over_critical": ending.peak.over_critical(),
+                "peak_rotation_rad": sample.peak_rotation_rad,
+            });
+            if let Some(reason) = &ending.uncertain {
+                json["reason"] = json!(reason);
+            }
+            json
+        }
+        Err(error) => json!({
+            "factor": sample.factor,
+            "outcome": outcome(sample),
+            "reason": error.to_string(),
+        }),
+    }
+}
+
+/// What was found: of a record in a line, of a pulse a line per range.
+fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -> String {
+    let mut text = String::new();
+    let peak_g = peak_g(scenario, ground);
+    for threshold in thresholds {
+        let model = threshold.model.replace('_', " ");
+        let several = thresholds.len() > 1;
+        if let Some(Ground::Record(record)) = &scenario.ground {
+            let model = if several {
+                format!(", {model}")
+            } else {
+                String::new()
+            };
+            let line = survival::in_words(&Survival::of_threshold(threshold), "");
+            let file = record.main.name();
+            let _ = writeln!(text, "  {file}{model}: {line} (1 is {} g)", rounded(peak_g));
+        } else {
+            if several {
+                let _ = writeln!(text, "{model}");
+            }
+            ranges(&mut text, peak_g, threshold);
+        }
+        doubts(&mut text, threshold);
+    }
+    let end_s = scenario.simulation.duration_s;
+    if ground.end_s() > end_s {
+        let _ = writeln!(
+            text,
+            "  the histories end at {end_s:.4} s and the ground moves until {:.4} s: a longer duration_s in \
+             [simulation] shows the rest",
+            ground.end_s()
+        );
+    }
+    text
+}
+
+impl Factors {
+    /// Which factors were tried, in words.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        format!(
+            "sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed",
+            self.first(),
+            self.last(),
+            (1e6 * self.stride()).round() / 1e4,
+        )
+    }
+}
+
+/// A line for each range.
+fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
+    let at = |factor: f64| format!("{} ({} g)", rounded(factor), rounded(factor * peak_g));
+    let certainly = if threshold.uncertain().is_empty() {
+        ""
+    } else {
+        "certainly "
+    };
+    if threshold.bands().is_empty() {
+        let mut known = threshold.samples.iter().rev();
+        let last = known.find(|sample| sample.result.is_ok());
+        let last = at(last.map_or(0.0, |sample| sample.factor));
+        let _ = writeln!(text, "  does not {certainly}overturn up to factor {last}");
+    }
+    if let Some((verdict, first)) = threshold.ranges.first()
+        && *verdict != Verdict::Survives
+        && first.from_end == RangeEnd::Sampled
+    {
+        let (what, range) = match verdict {
+            Verdict::Overturns => ("overturns", "band"),
+            _ => ("uncertain", "range"),
+        };
+        let _ = writeln!(
+            text,
+            "  {what} at the smallest factor already: a smaller --from finds where this {range} begins"
+        );
+    }
+    // A line for each band, with what follows it.
+    let mut lines: Vec<String> = Vec::new();
+    for (verdict, range) in &threshold.ranges {
+        let to = at(range.to);
+        let (ends, beyond) = match range.to_end {
+            RangeEnd::Sampled => ("up to the largest factor".to_owned(), ""),
+            RangeEnd::Unknown => (format!("to {to}"), "; not known beyond"),
+            RangeEnd::Edge => (format!("to {to}"), ""),
+        };
+        let begins = at(range.from);
+        match (verdict, lines.last_mut()) {
+            (Verdict::Overturns, _) => {
+                lines.push(format!("overturns from factor {begins} {ends}{beyond}"));
+            }
+            (Verdict::Survives, None) => {}
+            (Verdict::Uncertain, None) => {
+                lines.push(format!("uncertain from factor {begins} {ends}{beyond}"));
+            }
+            (verdict, Some(line)) => {
+                let what = match verdict {
+                    Verdict::Uncertain => "uncertain",
+                    _ => "survives",
+                };
+                *line += &match range.to_end {
+                    RangeEnd::Sampled => format!("; {what} from there on"),
+                    _ if what == "survives" => format!("; survives again up to {to}{beyond}"),
+                    _ => format!("; {what} up to {to}{beyond}"),
+                };
+            }
+        }
+    }
+    for line in lines {
+        let _ = writeln!(text, "  {line}");
+    }
+}
+
+/// What is doubtful about the ranges.
+fn doubts(text: &mut String, threshold: &Threshold) {
+    let uncertain = threshold.samples.iter().filter_map(|sample| {
+        let reason = sample.result.as_ref().ok()?.uncertain.as_ref()?;
+        Some((sample.factor, reason))
+    });
+    let uncertain: Vec<_> = uncertain.collect();
+    if let Some((factor, reason)) = uncertain.first() {
+        let _ = writeln!(
+            text,
+            "  uncertain: {} of {} histories; the first, at factor {}: {reason}",
+            uncertain.len(),
+            threshold.samples.len(),
+            rounded(*factor)
+        );
+    }
+    let falls = |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
+    let samples = &threshold.samples;
+    if let Some(first) = samples.iter().find(falls) {
+        let _ = writeln!(
+            text,
+            "  from factor {} on, the ground falls as fast as a free body at some time, which this model does \
+             not cover",
+            rounded(first.factor)
+        );
+    }
+    let failed: Vec<_> = samples
+        .iter()
+        .filter(|sample| !falls(sample))
+        .filter_map(|sample| Some((sample.factor, sample.result.as_ref().err()?)))
+        .collect();
+    if let Some((factor, reason)) = failed.first() {
+        let _ = writeln!(
+            text,
+            "  failed: {} of {} histories; the first, at factor {}: {reason}",
+            failed.len(),
+            samples.len(),
+            rounded(*factor)
+        );
+    }
+    let rocking = samples.iter().filter(|sample| {
+        let ending = sample.result.as_ref();
+        ending.is_ok_and(|ending| ending.outcome == Outcome::StillRocking)
+    });
+    let rocking = rocking.count();
+    if rocking > 0 {
+        let _ = writeln!(
+            text,
+            "  still rocking at duration_s of [simulation], which counts as survived: {rocking} of {} histories",
+            samples.len()
+        );
+    }
+}
