@@ -3,7 +3,7 @@
 use std::f64::consts::{LN_10, TAU};
 
 use crate::common::Random;
-use archrock::studies::fragility::{
+use archrock::studies::suite::fragility::{
     Errors, Fraction, Fragility, NoFit, Observation, fit, fractions,
 };
 use proptest::prelude::*;

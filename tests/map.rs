@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use crate::common::{GRAVITY, request, seven_voussoirs};
 use crate::program::{command, done, files, refused};
-use archrock::studies::boundary::{Boundary, ImpactFreeBoundary};
 use archrock::studies::ending::Ending;
+use archrock::studies::map::boundary::{Boundary, ImpactFreeBoundary};
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::Study as _;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};

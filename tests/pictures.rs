@@ -8,10 +8,11 @@ use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::output::impact::LinkImpact;
-use archrock::output::{Figure, map, pictures};
+use archrock::output::{Figure, pictures};
 use archrock::scenario::Structure;
-use archrock::studies::boundary::ImpactFreeBoundary;
-use archrock::studies::map::OverturningMap;
+use archrock::studies::map::boundary::ImpactFreeBoundary;
+use archrock::studies::map::{OverturningMap, outcome, picture};
+use archrock::studies::results::Look;
 use archrock::studies::runner::Study as _;
 use archrock::studies::survey::shape_result;
 use archrock::{Arch, FourLinkArch, ImpactModel, Scenario, Sway};
@@ -700,12 +701,12 @@ fn the_map_shows_every_cell_and_the_boundaries() {
     let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
     let boundary = ImpactFreeBoundary::new(&cells).unwrap();
     let boundaries: Vec<_> = (0..3).map(|x| boundary.row(x)).collect();
-    let picture = map::draw(
+    let picture = picture::draw(
         "a < b",
         &cells,
         &rows,
         &boundaries,
-        map::Look::of(Figure::SCREEN),
+        Look::of(Figure::SCREEN),
     );
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));
@@ -731,7 +732,7 @@ fn the_map_shows_every_cell_and_the_boundaries() {
     let y_edge = |row: u32| top + height * (1.0 - f64::from(row) / 5.0);
     let y_of = |amplitude_g: f64| top + height * (1.0 - ((amplitude_g / 0.1).log2() + 0.5) / 5.0);
     let mut shown = 0;
-    for (name, outcome) in [
+    for (name, wanted) in [
         ("never_moved", "never_moved"),
         ("rest", "rest"),
         ("overturned-0", "overturned"),
@@ -746,7 +747,7 @@ fn the_map_shows_every_cell_and_the_boundaries() {
             };
             for row in at(b)..at(t) {
                 let row = &rows[column * 5 + row as usize];
-                assert_eq!(map::outcome(&row.result), outcome);
+                assert_eq!(outcome(&row.result), wanted);
                 shown += 1;
             }
         }

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use crate::common::{GRAVITY, pairs, request};
 use crate::program::{archrock, stderr};
-use archrock::studies::boundary::{ImpactFreeBoundary, MapRow, MapWithBoundary};
+use archrock::studies::map::boundary::{ImpactFreeBoundary, MapRow, MapWithBoundary};
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::part::{self, Header, PartError, PartFile, Shard};
 use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::program::{done, printed, refused};
 use archrock::output::Figure;
-use archrock::output::spectrum::draw;
 use archrock::studies::runner::Study as _;
+use archrock::studies::spectrum::picture::draw;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow, StructureKind};
 use archrock::{GroundMotion, MechanismModel, Outcome, Pulse, Request, Scenario, Sway};
 

@@ -1,6 +1,7 @@
 //! Suites of records: rows against runs of the same scenario, parts against the whole, and what is said where
 //! there is no curve.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
@@ -10,10 +11,9 @@ use crate::program::{done, refused, scenarios};
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
-use archrock::output::ida;
-use archrock::output::suite::{Heading, draw, remarks, to_json, write_fragility, write_table};
 use archrock::scenario::{Form, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, PeakRotation, Steps, Verdict};
+use archrock::studies::suite::Heading;
 use archrock::studies::suite::{CaseRow, SuiteFragility};
 use serde_json::Value;
 
@@ -610,9 +610,8 @@ fn uncertain_cases_are_taken_both_ways() {
     assert_eq!(survivals[0].survival.overturns_from, Some(4.0));
     assert_eq!(survivals[0].survival.uncertain, [[3.0, 3.0]]);
 
-    let mut table = Vec::new();
-    write_fragility(&mut table, &free_heading(), &doubtful).unwrap();
-    let mut table = csv::Reader::from_reader(&*table);
+    let told = told(&free_heading(), &doubtful);
+    let mut table = csv::Reader::from_reader(told["fragility.csv"].as_bytes());
     let header: Vec<_> = table.headers().unwrap().iter().map(str::to_owned).collect();
     assert_eq!(header[9..11], ["uncertain", "fraction_with_uncertain"]);
     let rows: Vec<_> = table.records().map(Result::unwrap).collect();
@@ -629,7 +628,7 @@ fn uncertain_cases_are_taken_both_ways() {
         );
         assert!(number(&row[5]) <= number(&row[10]));
     }
-    let json = to_json(&free_heading(), &doubtful).unwrap();
+    let json: Value = told["fragility.json"].parse().unwrap();
     assert_eq!(
         (&json["overturned"], &json["uncertain"]),
         (&9.into(), &3.into())
@@ -643,28 +642,22 @@ fn uncertain_cases_are_taken_both_ways() {
     assert_eq!(json["uncertain_cases"].as_array().unwrap().len(), 3);
     assert_eq!(json["uncertain_cases"][0]["case"], "a, scale 3.0");
     assert_eq!(json["longest_step_s"]["max"], 1e-4);
-    let table = {
-        let mut table = Vec::new();
-        write_table(&mut table, &free_heading(), &doubtful.cases).unwrap();
-        String::from_utf8(table).unwrap()
-    };
     // Neither side nor impacts before overturning.
-    assert_eq!(table.matches(",uncertain,,0,,1.0,").count(), 3);
+    assert_eq!(told["suite.csv"].matches(",uncertain,,0,,1.0,").count(), 3);
 
     let named =
         |picture: &str, name: &str| picture.matches(&format!("data-name=\"{name}\"")).count();
-    let picture = draw(Figure::SCREEN, &free_heading(), &doubtful);
+    let picture = &told["suite.svg"];
     for name in ["fit", "fit-with-uncertain", "band", "between"] {
-        assert_eq!(named(&picture, name), 1, "{name}");
+        assert_eq!(named(picture, name), 1, "{name}");
     }
-    assert_eq!(named(&picture, "uncertain"), 3);
+    assert_eq!(named(picture, "uncertain"), 3);
     assert!(picture.contains("3 uncertain cases taken as survived"));
-    let plain = draw(Figure::SCREEN, &free_heading(), &survived);
+    assert_eq!(named(&told["ida.svg"], "uncertain"), 3);
+    let plain = crate::suite::told(&free_heading(), &survived);
     for name in ["fit-with-uncertain", "between", "uncertain"] {
-        assert_eq!(named(&plain, name), 0, "{name}");
+        assert_eq!(named(&plain["suite.svg"], name), 0, "{name}");
     }
-    let curves = ida::draw(Figure::SCREEN, &free_heading(), &doubtful);
-    assert_eq!(named(&curves, "uncertain"), 3);
 }
 
 /// What a mirrored record did to the last bit is no further evidence; anything else is, of the same record.
@@ -714,6 +707,15 @@ fn mirrored_records_count_where_they_are_not_mirror_images() {
     assert!(other.clustered.unwrap().median > six.clustered.unwrap().median);
 }
 
+/// The files of the results, by their names.
+fn told(heading: &Heading, results: &SuiteFragility) -> BTreeMap<&'static str, String> {
+    let told = heading.tell(results.cases.clone(), Figure::SCREEN).unwrap();
+    let files = told.files.into_iter();
+    files
+        .map(|(name, contents)| (name, String::from_utf8(contents).unwrap()))
+        .collect()
+}
+
 /// The heading of a suite with linear levels.
 fn heading() -> Heading {
     Heading::of_resolved("[suite]\nscales = [1.0, 2.0]\n").unwrap()
@@ -749,7 +751,9 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         })
         .collect();
     assert_eq!(counts, [(1.0, 2, 1, 1, 2), (2.0, 3, 2, 0, 2)]);
-    let json = to_json(&heading(), &results).unwrap();
+    let json: Value = told(&heading(), &results)["fragility.json"]
+        .parse()
+        .unwrap();
     assert_eq!(json["cases"], 5);
     assert_eq!(json["records"], 4);
     assert_eq!(json["failed_left_out"], 4);
@@ -763,14 +767,11 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         json["records_that_never_overturn"],
         serde_json::json!(["c.at2"])
     );
-    let failed: Vec<_> = remarks(&results)
-        .failures
-        .iter()
-        .map(ToString::to_string)
-        .collect();
-    assert_eq!(failed.len(), 4);
-    assert_eq!(failed[0], "a, b.at2, scale 1.0: it broke");
     assert_eq!(json["failures"].as_array().unwrap().len(), 4);
+    assert_eq!(
+        json["failures"][0],
+        serde_json::json!({ "case": "a, b.at2, scale 1.0", "reason": "it broke" })
+    );
     // Two levels fit exactly: Phi(-ln(m)/b) = 1/2 at 1 and Phi(ln(2/m)/b) = 2/3 at 2.
     let fit = results.fit.unwrap();
     assert!((fit.median - 1.0).abs() < 1e-9);
@@ -780,19 +781,16 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
 #[test]
 fn a_level_of_which_all_failed_has_no_fraction() {
     let results = results(&[("a.at2", 1.0, FAILED), ("a.at2", 2.0, OVERTURNED)]);
-    let mut levels = Vec::new();
-    write_fragility(&mut levels, &heading(), &results).unwrap();
-    let levels = String::from_utf8(levels).unwrap();
+    let told = told(&heading(), &results);
+    let levels = &told["fragility.csv"];
     assert!(
         levels.contains("\n1.0,0,0,0,1,,,,\n2.0,1,1,0,0,1.0,,,\n"),
         "{levels}"
     );
-    let json = to_json(&heading(), &results).unwrap();
+    let json: Value = told["fragility.json"].parse().unwrap();
     assert!(json["no_fit"].as_str().unwrap().starts_with("all 1 cases"));
     assert_eq!(
-        draw(Figure::SCREEN, &heading(), &results)
-            .matches("data-name=\"fraction\"")
-            .count(),
+        told["suite.svg"].matches("data-name=\"fraction\"").count(),
         1
     );
 }

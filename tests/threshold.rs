@@ -14,9 +14,10 @@ use archrock::dynamics::hybrid::engine::EngineError;
 use archrock::dynamics::hybrid::integrator::Cost;
 use archrock::dynamics::model::Repetition;
 use archrock::output::Figure;
-use archrock::output::threshold::{draw, outcome};
 use archrock::studies::ending::Verdict;
 use archrock::studies::runner::{Progress, Runner, RunnerError};
+use archrock::studies::threshold::outcome;
+use archrock::studies::threshold::picture::draw;
 use archrock::studies::threshold::{
     EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, ThresholdError, thresholds,
 };

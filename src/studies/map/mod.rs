@@ -5,6 +5,8 @@ mod page;
 pub mod picture;
 mod told;
 
+pub use told::outcome;
+
 use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};

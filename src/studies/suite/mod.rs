@@ -1,8 +1,8 @@
 //! A suite of records: a history for every record at every level, and the fragility that they add up to.
 
 pub mod fragility;
-pub mod ida;
-pub mod picture;
+mod ida;
+mod picture;
 mod told;
 
 use std::collections::{BTreeMap, BTreeSet};
