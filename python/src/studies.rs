@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use archrock::output::{Figure, Folder};
+use archrock::output::{Figure, Folder, pretty};
 use archrock::scenario::Structure;
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
 use archrock::studies::map::OverturningMap;
@@ -13,6 +13,7 @@ use archrock::studies::part::Shard;
 use archrock::studies::results::Look;
 use archrock::studies::runner::{Runner, Task};
 use archrock::studies::threshold::{Factors, ThresholdError, tell, thresholds};
+use archrock::studies::verify::{Check, page, to_json, today};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -82,7 +83,8 @@ pub fn study<'py>(
     let scenario = Arc::clone(&scenario.inner);
     let done = watched(py, progress, move |watch| {
         let look = look(Some(&scenario));
-        kind.compute(&scenario, look, runner, None, watch).map_err(failed)
+        kind.compute(&scenario, look, runner, None, watch)
+            .map_err(failed)
     })?;
     match done {
         Done::Whole(results, _) => Ok(to_python(py, results.files)),
@@ -133,8 +135,10 @@ pub fn merge<'py>(
         return Err(PyValueError::new_err("no parts given"));
     }
     let (kind, results) = watched(py, None, move |_| {
-        studies::merge(&parts, scenario.as_deref(), |_, scenario| Ok(look(scenario)))
-            .map_err(failed)
+        studies::merge(&parts, scenario.as_deref(), |_, scenario| {
+            Ok(look(scenario))
+        })
+        .map_err(failed)
     })?;
     Ok((kind.name().to_owned(), to_python(py, results.files)))
 }
@@ -175,8 +179,25 @@ pub fn threshold<'py>(
             ThresholdError::Argument(error) => refused(error),
             ThresholdError::Runner(error) => not_run(error),
         })?;
-        let (results, _) = tell(&[&scenario], &factors, &found, Figure::SCREEN).map_err(not_written)?;
+        let (results, _) =
+            tell(&[&scenario], &factors, &found, Figure::SCREEN).map_err(not_written)?;
         Ok(results.files)
+    })?;
+    Ok(to_python(py, files))
+}
+
+/// Checks the first mechanism of a scenario by the Circolare 7/2019, as `archrock verify`.
+#[pyfunction]
+pub fn verify<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py>> {
+    let scenario = Arc::clone(&scenario.inner);
+    let files = watched(py, None, move |_| {
+        let check = Check::new(&scenario).map_err(refused)?;
+        let json = to_json(&scenario, &check).map_err(not_written)?;
+        let page = page(&scenario, &check, &today());
+        Ok(vec![
+            ("verify.html", page.into_bytes()),
+            ("verify.json", pretty(&json).into_bytes()),
+        ])
     })?;
     Ok(to_python(py, files))
 }

@@ -21,6 +21,7 @@ from ._history import Event, History, Impact
 from ._scenario import Scenario, simulate
 from ._structure import Arch, Column, Structure
 from ._studies import (
+    Check,
     OverturningMap,
     Results,
     Spectrum,
@@ -35,11 +36,13 @@ from ._studies import (
     suite,
     suite_scenario,
     threshold,
+    verify,
 )
 
 __all__ = [
     "Arch",
     "ChainLink",
+    "Check",
     "Column",
     "Event",
     "Ground",
@@ -68,6 +71,7 @@ __all__ = [
     "suite",
     "suite_scenario",
     "threshold",
+    "verify",
 ]
 
 __version__ = _version("archrock")

@@ -14,10 +14,8 @@ from ._history import History
 from ._native import MEMORY_GB
 from ._native import Scenario as NativeScenario
 from ._settings import Settings
-from ._structure import Structure
+from ._structure import Model, Structure
 from ._tables import Tables, to_toml
-
-Model = Literal["four_links", "free_hinges"]
 
 
 class Scenario(Described):
@@ -118,6 +116,8 @@ class Scenario(Described):
         map: Mapping[str, Any] | None = None,
         spectrum: Mapping[str, Any] | None = None,
         suite: Mapping[str, Any] | None = None,
+        demand: Mapping[str, Any] | None = None,
+        verify: Mapping[str, Any] | None = None,
         files: Mapping[str, bytes] | None = None,
         **settings: Any,
     ) -> Scenario:
@@ -130,6 +130,8 @@ class Scenario(Described):
             map: table ``[map]``: two axes.
             spectrum: table ``[spectrum]``.
             suite: table ``[suite]``.
+            demand: table ``[demand]``.
+            verify: table ``[verify]``.
             files: contents of files that the tables name.
             settings: how it is simulated, as of :func:`simulate`.
 
@@ -146,7 +148,7 @@ class Scenario(Described):
         if ground is not None:
             tables["ground"] = ground._tables
             held.update(ground._files)
-        tables.update(map=map, spectrum=spectrum, suite=suite)
+        tables.update(map=map, spectrum=spectrum, suite=suite, demand=demand, verify=verify)
         return cls(tables, files=held, model=_model(chosen.model))
 
     def run(self, *, memory_gb: float = MEMORY_GB) -> History:
@@ -221,6 +223,10 @@ def _names(tables: Tables) -> list[str]:
     names = [record.get("file"), record.get("vertical", {}).get("file")]
     names += [blocks.get("joints"), blocks.get("outlines")]
     names += tables.get("suite", {}).get("records", [])
+    states = tables.get("demand", {}).values()
+    names += [state.get("spectrum") for state in states if isinstance(state, dict)]
+    check = tables.get("verify", {})
+    names += check.get("slv_records", []) + check.get("slc_records", [])
     return [name for name in names if name is not None]
 
 

@@ -15,6 +15,8 @@ from ._tables import Tables, arguments, plain_table, to_toml
 
 _MOST_BASES = 64
 
+Model = Literal["four_links", "free_hinges"]
+
 
 class Structure(Described):
     """What stands on the ground, of any shape that a scenario knows: its tables as keyword arguments.
@@ -35,10 +37,11 @@ class Structure(Described):
         OSError: when a file cannot be read.
     """
 
-    __slots__ = ("_bases", "_native")
+    __slots__ = ("_bases", "_model", "_native")
 
     _native: NativeScenario
     _bases: dict[Any, NativeScenario]
+    _model: Model
 
     def __init__(self, **tables: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> None:
         read = plain_table(tables)
@@ -57,8 +60,8 @@ class Structure(Described):
         whole = set(tables) == {"arch"} and isinstance(arch, dict)
         # Where hinges open anywhere, there are no blocks.
         four = whole and isinstance(arch, dict) and not {"voussoirs", "joints_deg"} & set(arch)
-        model = "four_links" if four else "free_hinges"
-        self._native = NativeScenario(to_toml(tables), None, files, model, ())
+        self._model = "four_links" if four else "free_hinges"
+        self._native = NativeScenario(to_toml(tables), None, files, self._model, ())
         self._bases = {}
         self._describe(json.loads(self._native.structure_json()), files)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 import io
 import json
 import os
@@ -40,13 +41,11 @@ def span(
     return {"from": start, "to": end, "count": count, "spacing": spacing}
 
 
-class Results:
-    """Results of a study: the files that the program writes, held in memory."""
+class Files:
+    """Files that the program writes, held in memory."""
 
     __slots__ = ("_files",)
 
-    _picture: str
-    _table: str
     _json: str
 
     def __init__(self, files: Iterable[tuple[str, bytes]]) -> None:
@@ -65,31 +64,14 @@ class Results:
         """
         _native.save(folder, self._files)
 
-    def columns(self, file: str | None = None) -> dict[str, npt.NDArray[Any]]:
-        """The columns of a table, by default the study's main one; empty cells of numbers are NaN."""
-        rows = list(csv.reader(io.StringIO(self.files[file or self._table].decode())))
-        return {
-            name: _column([row[index] for row in rows[1:]]) for index, name in enumerate(rows[0])
-        }
-
     @property
     def summary(self) -> dict[str, Any]:
-        """The JSON file of the study: scenario as resolved, numbers, what failed."""
+        """The JSON file: scenario as resolved, numbers, what failed."""
         summary: dict[str, Any] = json.loads(self.files[self._json])
         return summary
 
-    def to_pandas(self, file: str | None = None) -> pandas.DataFrame:
-        """A table of the study, by default its main one. Needs pandas."""
-        import pandas
-
-        table: pandas.DataFrame = pandas.DataFrame(self.columns(file))
-        return table
-
-    def _repr_svg_(self) -> str:
-        return self.files[self._picture].decode()
-
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Results):
+        if not isinstance(other, Files):
             return NotImplemented
         return self._files == other._files
 
@@ -101,6 +83,32 @@ class Results:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {', '.join(self.files)}>"
+
+
+class Results(Files):
+    """Results of a study: tables, a picture and a summary."""
+
+    __slots__ = ()
+
+    _picture: str
+    _table: str
+
+    def columns(self, file: str | None = None) -> dict[str, npt.NDArray[Any]]:
+        """The columns of a table, by default the study's main one; empty cells of numbers are NaN."""
+        rows = list(csv.reader(io.StringIO(self.files[file or self._table].decode())))
+        return {
+            name: _column([row[index] for row in rows[1:]]) for index, name in enumerate(rows[0])
+        }
+
+    def to_pandas(self, file: str | None = None) -> pandas.DataFrame:
+        """A table of the study, by default its main one. Needs pandas."""
+        import pandas
+
+        table: pandas.DataFrame = pandas.DataFrame(self.columns(file))
+        return table
+
+    def _repr_svg_(self) -> str:
+        return self.files[self._picture].decode()
 
 
 def _column(cells: list[str]) -> npt.NDArray[Any]:
@@ -235,6 +243,35 @@ class Threshold(Results):
         """The ranges in which it is uncertain whether it overturns, ascending, as in ``threshold.json``."""
         ranges: list[dict[str, Any]] = self._model()["uncertain"]
         return ranges
+
+
+class Check(Files):
+    """A check by the Circolare 7/2019: numbers and the page to be filed."""
+
+    __slots__ = ()
+
+    _json = "verify.json"
+
+    @property
+    def page(self) -> str:
+        """The page, HTML that prints on A4."""
+        return self.files["verify.html"].decode()
+
+    @property
+    def zeta_e(self) -> float:
+        """What is borne over what is demanded, the least of the limit states asked for."""
+        zeta_e: float = self.summary["zeta_e"]
+        return zeta_e
+
+    @property
+    def verdict(self) -> dict[str, str]:
+        """By limit state, ``passed``, ``not_passed`` or ``not_checked``."""
+        verdict: dict[str, str] = self.summary["verdict"]
+        return verdict
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.page, quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 60em; border: 0"></iframe>'
 
 
 _KINDS: dict[str, type[Results]] = {"map": OverturningMap, "spectrum": Spectrum, "suite": Suite}
@@ -378,29 +415,10 @@ def suite_scenario(
     Raises:
         ValueError: as of :func:`suite`.
     """
-    for record in records:
-        if not isinstance(record, Record):
-            raise TypeError(f"`records` are Records, not {type(record).__name__}")
-    units = {record.unit for record in records}
-    if len(units) > 1:
-        raise ValueError(f"the records of a suite must be in one unit, not in {sorted(units)}")
-    files: dict[str, bytes] = {}
-    for record in records:
-        told = record._tables["record"]
-        if "vertical" in told or told.get("component") == "vertical":
-            raise ValueError(f"{record.name!r}: the records of a suite are horizontal")
-        if told.get("scale") != 1.0:
-            raise ValueError(
-                f"{record.name!r} is scaled itself: leave `scale` and `peak_g` out, the suite has its own levels"
-            )
-        if record.name in files:
-            raise ValueError(f"{record.name!r} is the name of two records: give each its own")
-        files[record.name] = _csv(*record._samples())
+    layout, files = _record_files(records)
     table = {
         "records": sorted(files),
-        "format": "csv",
-        "unit": next(iter(units), "g"),
-        "quantity": next((record.quantity for record in records), None),
+        **layout,
         "peaks_g": peaks_g,
         "scales": scales,
         "both_signs": both_signs,
@@ -486,6 +504,105 @@ def threshold(
         scenario = Scenario.of(of, ground, **settings)
     factors = (from_factor, to_factor, stride)
     return Threshold(_native.threshold(scenario._native, factors, _allowed(threads), progress))
+
+
+def verify(
+    of: Structure | Scenario,
+    demand: Mapping[str, Any] | None = None,
+    *,
+    title: str | None = None,
+    slv_records: Sequence[Record] | None = None,
+    slc_records: Sequence[Record] | None = None,
+    **how: Any,
+) -> Check:
+    """Checks the mechanism that starts to either side by the Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018.
+
+    >>> arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
+    >>> site = {"soil": "B", "topography": "T1", "slv": {"ag_g": 0.25, "f0": 2.40, "tc_star_s": 0.35}}
+    >>> round(verify(arch, site).zeta_e, 3)
+    0.487
+
+    Args:
+        of: what stands, or a scenario with a table ``[demand]``, which says everything itself.
+        demand: the table ``[demand]``: soil, relief, the hazard of each limit state, and where in a building it stands. A
+            spectrum by points is the path of its file, or a pair of periods in s and accelerations in g.
+        title: free text for the page.
+        slv_records: records for the dynamic route at SLV, in one unit, each with a name of its own.
+        slc_records: the same at SLC.
+        how: keys of ``[verify]``: ``confidence_factor``, ``behaviour_factor``, ``sides``, ``free_standing``.
+
+    Raises:
+        ValueError: when there is nothing to check, or a number is out of the range of the code, in the library's words.
+        OSError: when a file cannot be read.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    records = {"slv_records": slv_records, "slc_records": slc_records}
+    if _whole(of, {"demand": demand, "title": title, **records, **how}):
+        assert isinstance(of, Scenario)
+        return Check(_native.verify(of._native))
+    assert isinstance(of, Structure)
+    if demand is None:
+        raise ValueError("a check needs a demand")
+    table, files = _with_points(demand)
+    # One record may shake it at both states.
+    given = {id(record): record for some in records.values() for record in some or ()}
+    if given:
+        told, held = _record_files(list(given.values()))
+        named = {key: [one.name for one in some] for key, some in records.items() if some}
+        how = {**how, **told, **named}
+        files.update(held)
+    scenario = Scenario.of(
+        of, title=title, demand=table, verify=how or None, files=files, model=of._model
+    )
+    return Check(_native.verify(scenario._native))
+
+
+def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, bytes]]:
+    """The table ``[demand]``, and the contents of the files that it names."""
+    table: dict[str, Any] = dict(demand)
+    files: dict[str, bytes] = {}
+    for state in ("sld", "slv", "slc"):
+        told = table.get(state)
+        if not isinstance(told, Mapping) or "spectrum" not in told:
+            continue
+        points = told["spectrum"]
+        if isinstance(points, (str, os.PathLike)):
+            contents = Path(points).read_bytes()
+        else:
+            periods, accelerations = points
+            contents = _csv(periods, accelerations)
+        name = f"{state}.csv"
+        files[name] = contents
+        table[state] = {**told, "spectrum": name}
+    return table, files
+
+
+def _record_files(records: Sequence[Record]) -> tuple[dict[str, Any], dict[str, bytes]]:
+    """How the files of records are read, and their contents by name."""
+    for record in records:
+        if not isinstance(record, Record):
+            raise TypeError(f"`records` are Records, not {type(record).__name__}")
+    units = {record.unit for record in records}
+    if len(units) > 1:
+        raise ValueError(f"the records must be in one unit, not in {sorted(units)}")
+    files: dict[str, bytes] = {}
+    for record in records:
+        told = record._tables["record"]
+        if "vertical" in told or told.get("component") == "vertical":
+            raise ValueError(f"{record.name!r}: the records must be horizontal")
+        if told.get("scale") != 1.0:
+            raise ValueError(
+                f"{record.name!r} is scaled itself: leave `scale` and `peak_g` out, records are taken as they are"
+            )
+        if record.name in files:
+            raise ValueError(f"{record.name!r} is the name of two records: give each its own")
+        files[record.name] = _csv(*record._samples())
+    layout = {
+        "format": "csv",
+        "unit": next(iter(units), "g"),
+        "quantity": next((record.quantity for record in records), None),
+    }
+    return layout, files
 
 
 def compute_part(
