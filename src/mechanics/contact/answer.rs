@@ -1,0 +1,287 @@
+//! What the impulses between bodies are under a load, and how the bodies then move.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::factor::{Body, Factor, Pin};
+use crate::mechanics::blocks::Supports;
+use crate::mechanics::geometry::field::{Momentum, Twist, turned};
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::Closure;
+
+const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
+
+/// Motion of a body by the velocity of its centre.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    centre: Vector2<f64>,
+    velocity: Vector2<f64>,
+    rate: f64,
+}
+
+impl Motion {
+    /// Of a body with a momentum.
+    fn with(body: &Body, momentum: &Momentum) -> Self {
+        Self {
+            centre: body.centre,
+            velocity: momentum.linear * body.inverse_mass,
+            rate: momentum.about(body.centre) * body.inverse_inertia,
+        }
+    }
+
+    /// Of a body that a support holds.
+    fn held(twist: Twist) -> Self {
+        Self {
+            centre: Vector2::zeros(),
+            velocity: twist.at_center,
+            rate: twist.rate,
+        }
+    }
+
+    fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
+        let arm = point - self.centre;
+        self.velocity + turned(arm) * self.rate
+    }
+
+    pub fn twist(&self) -> Twist {
+        Twist {
+            at_center: self.at(Vector2::zeros()),
+            rate: self.rate,
+        }
+    }
+
+    fn push(&mut self, body: &Body, point: Vector2<f64>, impulse: Vector2<f64>) {
+        self.velocity += impulse * body.inverse_mass;
+        self.rate += (point - self.centre).perp(&impulse) * body.inverse_inertia;
+    }
+}
+
+impl Pin {
+    /// Velocity of its right body against its left one, along the joint and across it.
+    fn rate(&self, left: &Motion, right: &Motion) -> Vector2<f64> {
+        let apart = right.velocity - left.velocity;
+        let [on_left, on_right] = self.turns;
+        let rate = |axis: usize| {
+            self.axes[axis].dot(&apart) + (on_right[axis] * right.rate - on_left[axis] * left.rate)
+        };
+        Vector2::new(rate(0), rate(1))
+    }
+
+    /// An impulse along the joint and across it.
+    fn impulse(&self, shares: &Vector2<f64>) -> Vector2<f64> {
+        self.axes[0] * shares.x + self.axes[1] * shares.y
+    }
+}
+
+/// An impulse at one corner of an open joint, on both its bodies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Press {
+    pub pin: usize,
+    pub edge: usize,
+    pub impulse: f64,
+}
+
+/// Solution of a pin system: of the load, or the response to a unit impulse.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Answer {
+    pub motions: Vec<Motion>,
+    /// Impulses on the right body at the open joints, along the joint and across it.
+    pub pins: Vec<Vector2<f64>>,
+    /// Impulses at the corners of all joints.
+    pub corners: Vec<[f64; 2]>,
+    /// Rates of the gaps at the open joints.
+    pub rates: Vec<[f64; 2]>,
+}
+
+impl Answer {
+    pub fn with_capacity(joints: usize) -> Self {
+        Self {
+            motions: Vec::with_capacity(joints + 1),
+            pins: Vec::with_capacity(joints),
+            corners: vec![[0.0; 2]; joints],
+            rates: Vec::with_capacity(joints),
+        }
+    }
+
+    /// Under the load and an impulse at one corner.
+    pub fn take_load(&mut self, factor: &Factor, press: Option<Press>) {
+        self.free_motions(factor);
+        self.complete(factor, press, None, true);
+    }
+
+    /// Under a unit impulse at one corner alone.
+    pub fn take_unit(&mut self, factor: &Factor, pin: usize, edge: usize) {
+        self.motions.clear();
+        let still = |body: &Body| Motion::with(body, &Momentum::ZERO);
+        self.motions.extend(factor.bodies.iter().map(still));
+        let impulse = 1.0;
+        self.complete(factor, Some(Press { pin, edge, impulse }), None, false);
+    }
+
+    /// Under the load and the closure error of an arch.
+    pub fn take_closure(&mut self, factor: &Factor, closure: &Closure) {
+        self.free_motions(factor);
+        self.complete(factor, None, Some(closure), true);
+    }
+
+    /// Motions of the bodies without impulses between them.
+    fn free_motions(&mut self, factor: &Factor) {
+        let row = &factor.row;
+        self.motions.clear();
+        for (index, body) in factor.bodies.iter().enumerate() {
+            self.motions.push(if body.is_held() {
+                Motion::held(match row.supports {
+                    Supports::Both if index > 0 => row.datum[row.own.len()] * -1.0,
+                    _ => Twist::ZERO,
+                })
+            } else {
+                let blocks = factor.blocks(index);
+                Motion::with(body, &(row.momenta[blocks.end] - row.momenta[blocks.start]))
+            });
+        }
+    }
+
+    /// From motions without impulses between the bodies to those with them.
+    fn complete(
+        &mut self,
+        factor: &Factor,
+        press: Option<Press>,
+        closure: Option<&Closure>,
+        loaded: bool,
+    ) {
+        if let Some(Press { pin, edge, impulse }) = press {
+            let frame = &factor.row.frames[factor.pins[pin].joint];
+            let (corner, impulse) = (frame.corner_m(EDGES[edge]), frame.normal * impulse);
+            self.motions[pin].push(&factor.bodies[pin], corner, -impulse);
+            self.motions[pin + 1].push(&factor.bodies[pin + 1], corner, impulse);
+        }
+        self.solve_pins(factor, closure);
+        self.move_bodies(factor);
+        self.open_gaps(factor);
+        self.press_corners(factor, press, loaded);
+    }
+
+    /// Impulses at the pins that leave their bodies together.
+    fn solve_pins(&mut self, factor: &Factor, closure: Option<&Closure>) {
+        self.pins.clear();
+        let mut carried = Vector2::zeros();
+        for (pin, sides) in factor.pins.iter().zip(self.motions.windows(2)) {
+            let mut rate = pin.rate(&sides[0], &sides[1]);
+            if let Some(closure) = closure.filter(|closure| closure.joint == pin.joint) {
+                rate += Vector2::from(pin.axes.map(|axis| axis.dot(&closure.error_m)));
+            }
+            if pin.parted {
+                rate.y = 0.0;
+            }
+            carried = -rate - pin.gain.transpose() * carried;
+            self.pins.push(carried);
+        }
+        let mut next = Vector2::zeros();
+        let mut gain = Matrix2::zeros();
+        for (pin, impulse) in factor.pins.iter().zip(&mut self.pins).rev() {
+            *impulse = pin.pivot * *impulse - gain * next;
+            (next, gain) = (*impulse, pin.gain);
+        }
+    }
+
+    /// Each body takes the impulses of the pins to both its sides.
+    fn move_bodies(&mut self, factor: &Factor) {
+        let mut left: Option<(&Pin, Vector2<f64>)> = None;
+        for (index, (body, motion)) in factor.bodies.iter().zip(&mut self.motions).enumerate() {
+            let right = factor.pins.get(index).map(|pin| (pin, self.pins[index]));
+            let (mut linear, mut angular) = (Vector2::zeros(), 0.0);
+            if let Some((pin, shares)) = left {
+                linear += pin.impulse(&shares);
+                angular += pin.turns[1][0] * shares.x + pin.turns[1][1] * shares.y;
+            }
+            if let Some((pin, shares)) = right {
+                linear -= pin.impulse(&shares);
+                angular -= pin.turns[0][0] * shares.x + pin.turns[0][1] * shares.y;
+            }
+            motion.velocity += linear * body.inverse_mass;
+            motion.rate += angular * body.inverse_inertia;
+            left = right;
+        }
+    }
+
+    fn open_gaps(&mut self, factor: &Factor) {
+        self.rates.clear();
+        for (pin, sides) in factor.pins.iter().zip(self.motions.windows(2)) {
+            let frame = &factor.row.frames[pin.joint];
+            let (left, right) = (&sides[0], &sides[1]);
+            let opening = factor.row.handedness * frame.thickness_m * (right.rate - left.rate);
+            self.rates.push(match factor.active[pin.joint] {
+                [true, _] => [0.0, opening],
+                [_, true] => [-opening, 0.0],
+                _ => {
+                    let gap = right.at(frame.intrados_m) - left.at(frame.intrados_m);
+                    let intrados = frame.normal.dot(&gap);
+                    [intrados, intrados + opening]
+                }
+            });
+        }
+    }
+
+    /// Impulses at the corners: at hinges those of the pins, at shut joints by the running sum.
+    fn press_corners(&mut self, factor: &Factor, press: Option<Press>, loaded: bool) {
+        let row = &factor.row;
+        for body in 0..factor.bodies.len() {
+            let joints = factor.shut_joints(body);
+            if joints.is_empty() {
+                continue;
+            }
+            let start = self.start(factor, body, press, loaded);
+            let twist = self.motions[body].twist();
+            for joint in joints {
+                let resultant = start - row.change(&twist, joint, loaded);
+                let frame = &row.frames[joint];
+                let normal = frame.normal.dot(&resultant.linear);
+                let extrados =
+                    row.handedness * resultant.about(frame.intrados_m) / frame.thickness_m;
+                self.corners[joint] = [normal - extrados, extrados];
+            }
+        }
+        for (pin, impulse) in factor.pins.iter().zip(&self.pins) {
+            self.corners[pin.joint] = match factor.active[pin.joint] {
+                [true, _] => [impulse.y, 0.0],
+                [_, true] => [0.0, impulse.y],
+                _ => [0.0; 2],
+            };
+        }
+    }
+
+    /// The resultant impulse at some joint of a body plus the change of momentum before it: what is constant along
+    /// the body. It is taken at a hinge, or at the free end.
+    fn start(&self, factor: &Factor, body: usize, press: Option<Press>, loaded: bool) -> Momentum {
+        let row = &factor.row;
+        let twist = self.motions[body].twist();
+        let index = body.saturating_sub(1);
+        let Some(pin) = factor.pins.get(index) else {
+            return row.change(&twist, row.own.len(), loaded);
+        };
+        let impulse = pin.impulse(&self.pins[index]);
+        let mut resultant = Momentum::applied_at(pin.point, impulse);
+        if let Some(press) = press.filter(|press| press.pin == index) {
+            let frame = &row.frames[pin.joint];
+            let corner = frame.corner_m(EDGES[press.edge]);
+            resultant = resultant + Momentum::applied_at(corner, frame.normal * press.impulse);
+        }
+        resultant + row.change(&twist, pin.joint, loaded)
+    }
+
+    /// Impulses under the load on the right block of every joint: along the joint towards the extrados, and normal.
+    pub fn joint_impulses(&self, factor: &Factor, into: &mut [[f64; 2]]) {
+        let row = &factor.row;
+        for body in 0..factor.bodies.len() {
+            let start = self.start(factor, body, None, true);
+            let twist = self.motions[body].twist();
+            for joint in factor.shut_joints(body) {
+                let linear = (start - row.change(&twist, joint, true)).linear;
+                let frame = &row.frames[joint];
+                into[joint] = [frame.along.dot(&linear), frame.normal.dot(&linear)];
+            }
+        }
+        for (pin, impulse) in factor.pins.iter().zip(&self.pins) {
+            into[pin.joint] = [impulse.x, impulse.y];
+        }
+    }
+}

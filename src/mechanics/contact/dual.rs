@@ -1,0 +1,154 @@
+//! The dual method of Goldfarb and Idnani, one corner at a time.
+
+use super::answer::Press;
+use super::{ContactError, Corners, DEPENDENCE, Effort, Program, RATE_TOLERANCE, exceeds};
+
+/// To this it is relaxed, tenfold at a time, before a program counts as unsolved.
+const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
+/// A corner whose impulse falls by less than this part of a unit impulse elsewhere keeps it.
+const LEAST_SLOPE: f64 = 1e-12;
+
+impl Program {
+    /// Releases what pulls, and stops one corner after the other. False when that takes too many
+    /// iterations, or a corner depends on others none of which gives way: its closing is rounding.
+    fn exchange_singly(
+        &mut self,
+        touching: &[Corners],
+        tolerance: f64,
+        iterations: &mut usize,
+    ) -> bool {
+        let cap = *iterations + 60 + 2 * self.active.len();
+        while *iterations <= cap {
+            if self.release() {
+                self.factor.update(&self.active);
+                self.answer.take_load(&self.factor, None);
+                *iterations += 1;
+                continue;
+            }
+            let Some((pin, edge)) = self.fastest_closing(touching, tolerance) else {
+                return true;
+            };
+            if !self.stop(pin, edge, iterations, cap) {
+                self.factor.update(&self.active);
+                self.answer.take_load(&self.factor, None);
+                *iterations += 1;
+                return false;
+            }
+        }
+        false
+    }
+
+    /// The dual method, with tolerances that are relaxed where it does not come to an end.
+    pub(super) fn exchange_tolerantly(
+        &mut self,
+        touching: &[Corners],
+        largest_rate: f64,
+        effort: &mut Effort,
+    ) -> Result<(), ContactError> {
+        let mut tolerance = RATE_TOLERANCE;
+        let iterations = &mut effort.iterations;
+        while !self.exchange_singly(touching, tolerance * largest_rate, iterations) {
+            tolerance *= 10.0;
+            effort.relaxed += 1;
+            if tolerance > LARGEST_RATE_TOLERANCE {
+                let iterations = *iterations;
+                return Err(ContactError { iterations });
+            }
+        }
+        Ok(())
+    }
+
+    /// Releases the corners that pull, the worst one of each run of neighbours. False if none does.
+    fn release(&mut self) -> bool {
+        let limit = self.pull_limit();
+        self.wrong.clear();
+        for edge in 0..2 {
+            self.find_pulling(edge, limit);
+        }
+        self.keep_worst(false);
+        self.flip_wrong();
+        !self.wrong.is_empty()
+    }
+
+    /// Pin and edge of the corner that closes fastest, beyond a tolerance.
+    fn fastest_closing(&self, touching: &[Corners], tolerance: f64) -> Option<(usize, usize)> {
+        let mut fastest = None;
+        let mut least = -tolerance;
+        for (index, (pin, rates)) in self.factor.pins.iter().zip(&self.answer.rates).enumerate() {
+            for edge in 0..2 {
+                let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
+                if free && rates[edge] < least {
+                    least = rates[edge];
+                    fastest = Some((index, edge));
+                }
+            }
+        }
+        fastest
+    }
+
+    /// Makes a closing corner active; others that would pull on the way are released. False when it is not possible
+    /// within the iterations.
+    fn stop(&mut self, pin: usize, edge: usize, iterations: &mut usize, cap: usize) -> bool {
+        let joint = self.factor.pins[pin].joint;
+        let mut impulse = 0.0;
+        loop {
+            let Some(pin) = self.factor.pins.iter().position(|pin| pin.joint == joint) else {
+                return false;
+            };
+            self.response.take_unit(&self.factor, pin, edge);
+            *iterations += 1;
+            let compliance = self.response.rates[pin][edge];
+            let free =
+                self.factor.bodies[pin].inverse_mass + self.factor.bodies[pin + 1].inverse_mass;
+            let full = if compliance > DEPENDENCE * free {
+                (-self.answer.rates[pin][edge] / compliance).max(0.0)
+            } else {
+                f64::INFINITY
+            };
+            let (partial, blocking) = self.first_to_pull();
+            if full <= partial && full < f64::INFINITY {
+                self.active[joint][edge] = true;
+                if exceeds(self.factor.update(&self.active), DEPENDENCE) {
+                    self.answer.take_load(&self.factor, None);
+                    *iterations += 1;
+                    return true;
+                }
+                // It depends on the others all the same.
+                self.active[joint][edge] = false;
+                self.factor.update(&self.active);
+            }
+            let Some((blocked, blocked_edge)) = blocking else {
+                return false;
+            };
+            impulse += partial;
+            self.active[blocked][blocked_edge] = false;
+            self.factor.update(&self.active);
+            let Some(pin) = self.factor.pins.iter().position(|pin| pin.joint == joint) else {
+                return false;
+            };
+            let press = Press { pin, edge, impulse };
+            self.answer.take_load(&self.factor, Some(press));
+            *iterations += 1;
+            if *iterations > cap {
+                return true;
+            }
+        }
+    }
+
+    /// The impulse at which the first active corner stops pressing, and that corner.
+    fn first_to_pull(&self) -> (f64, Option<(usize, usize)>) {
+        let mut first = (f64::INFINITY, None);
+        for (joint, active) in self.active.iter().enumerate() {
+            for (edge, active) in active.iter().enumerate() {
+                let slope = self.response.corners[joint][edge];
+                if *active && slope < -LEAST_SLOPE {
+                    let impulse = (self.answer.corners[joint][edge] / -slope).max(0.0);
+                    if impulse < first.0 {
+                        first = (impulse, Some((joint, edge)));
+                    }
+                }
+            }
+        }
+        first
+    }
+}

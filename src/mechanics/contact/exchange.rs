@@ -1,0 +1,161 @@
+//! Exchanges of many corners at once.
+
+use super::{Corners, DEPENDENCE, Program, exceeds, higher};
+
+/// Rounds of exchanging many corners without progress after which the dual method takes over.
+const EXCHANGE_PATIENCE: usize = 30;
+/// Corner impulses pull when they are more negative than this part of the largest one.
+const FORCE_TOLERANCE: f64 = 1e-9;
+
+/// A corner that pulls or closes, and the run of joints whose corners change with it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wrong {
+    joint: usize,
+    edge: usize,
+    /// Its impulse or its rate, below zero.
+    by: f64,
+    first: usize,
+    last: usize,
+}
+
+impl Wrong {
+    fn new(joint: usize, edge: usize, by: f64) -> Self {
+        Self {
+            joint,
+            edge,
+            by,
+            first: joint,
+            last: joint,
+        }
+    }
+}
+
+impl Program {
+    /// Releases the corner that pulls most in each run of neighbours that do, because that often lets the others press again, and
+    /// stops all that close, again and again while that leaves fewer of them; then only the one of each run that closes fastest. It
+    /// solves impacts at which many corners change in a few rounds, but may go in circles: what it leaves is for
+    /// the dual method. True if that is nothing.
+    pub(super) fn exchange(
+        &mut self,
+        touching: &[Corners],
+        tolerance: f64,
+        iterations: &mut usize,
+    ) -> bool {
+        let mut fewest = usize::MAX;
+        let mut patience = EXCHANGE_PATIENCE;
+        let mut worst_only = false;
+        self.earlier.copy_from_slice(&self.active);
+        loop {
+            self.find_wrong(touching, tolerance);
+            if self.wrong.is_empty() {
+                return true;
+            }
+            if self.wrong.len() < fewest {
+                fewest = self.wrong.len();
+                patience = EXCHANGE_PATIENCE;
+            } else if patience > 0 {
+                patience -= 1;
+            } else if worst_only {
+                return false;
+            } else {
+                worst_only = true;
+                patience = EXCHANGE_PATIENCE;
+            }
+            self.keep_worst(worst_only);
+            if !worst_only {
+                self.go_on(touching);
+            }
+            self.flip_wrong();
+            if !exceeds(self.factor.update(&self.active), DEPENDENCE) {
+                self.active.copy_from_slice(&self.earlier);
+                self.factor.update(&self.active);
+                if worst_only {
+                    return false;
+                }
+                worst_only = true;
+                continue;
+            }
+            self.answer.take_load(&self.factor, None);
+            *iterations += 1;
+        }
+    }
+
+    /// Finds the corners that pull and those that close, edge by edge from left to right.
+    fn find_wrong(&mut self, touching: &[Corners], tolerance: f64) {
+        let pulling = self.pull_limit();
+        self.wrong.clear();
+        for edge in 0..2 {
+            self.find_pulling(edge, pulling);
+            for (pin, rates) in self.factor.pins.iter().zip(&self.answer.rates) {
+                let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
+                if free && rates[edge] < -tolerance {
+                    self.wrong.push(Wrong::new(pin.joint, edge, rates[edge]));
+                }
+            }
+        }
+    }
+
+    /// Adds the corners at an edge whose impulses are below a limit; those that are not active have none.
+    pub(super) fn find_pulling(&mut self, edge: usize, limit: f64) {
+        for (joint, impulses) in self.answer.corners.iter().enumerate() {
+            if impulses[edge] < limit {
+                self.wrong.push(Wrong::new(joint, edge, impulses[edge]));
+            }
+        }
+    }
+
+    /// Keeps the worst one of each run of neighbours that pull, on request also of those that close.
+    pub(super) fn keep_worst(&mut self, of_closing: bool) {
+        let active = &self.active;
+        let mut end = None;
+        self.wrong.dedup_by(|next, kept| {
+            let pulls = [&*kept, &*next].map(|wrong| active[wrong.joint][wrong.edge]);
+            let alike = pulls[0] == pulls[1] && (pulls[0] || of_closing);
+            let follows = next.edge == kept.edge && next.joint == end.unwrap_or(kept.joint) + 1;
+            let run = alike && follows;
+            end = run.then_some(next.joint);
+            if run && next.by < kept.by {
+                *kept = *next;
+            }
+            run
+        });
+    }
+
+    /// Openings and closings travel along the row from joint to joint: takes as many joints more as the last exchange changed
+    /// next to a corner in the same way.
+    fn go_on(&mut self, touching: &[Corners]) {
+        let (active, earlier) = (&self.active, &self.earlier);
+        for wrong in &mut self.wrong {
+            let (joint, edge) = (wrong.joint, wrong.edge);
+            let before = active[joint][edge];
+            let changed = |j: &usize| active[*j][edge] != before && earlier[*j][edge] == before;
+            let same = |j: &usize| active[*j][edge] == before && touching[*j][edge];
+            let (left, right) = (0..joint, joint + 1..active.len());
+            let from_left = left.clone().rev().take_while(changed).count();
+            let from_right = right.clone().take_while(changed).count();
+            wrong.first -= left.rev().take(from_right).take_while(same).count();
+            wrong.last += right.take(from_left).take_while(same).count();
+        }
+    }
+
+    /// Releases the wrong corners that are active, and stops the others.
+    pub(super) fn flip_wrong(&mut self) {
+        self.earlier.copy_from_slice(&self.active);
+        for wrong in &self.wrong {
+            let before = self.earlier[wrong.joint][wrong.edge];
+            for corners in &mut self.active[wrong.first..=wrong.last] {
+                corners[wrong.edge] = !before;
+            }
+        }
+    }
+
+    /// Impulses below this pull.
+    pub(super) fn pull_limit(&self) -> f64 {
+        // Edge by edge, so that one comparison does not wait for the other.
+        let corners = self.answer.corners.iter();
+        let [intrados, extrados] = corners.fold([0.0_f64; 2], |most, corner| {
+            [0, 1].map(|edge| higher(most[edge], corner[edge].abs()))
+        });
+        -(FORCE_TOLERANCE * higher(intrados, extrados)).max(self.force_floor)
+    }
+}

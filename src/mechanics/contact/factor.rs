@@ -1,0 +1,240 @@
+//! Bodies between open joints, and the block-tridiagonal system of the impulses between them, factored from left to right. What
+//! the joints before the first change of corners have made of them stays.
+
+use std::ops::Range;
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::placed::Placed;
+use super::{Corners, lower};
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::geometry::ring::{Edge, MassMoments};
+use crate::mechanics::joints::Placement;
+
+/// A run of blocks that move as one, with its inverse inertia; zero for one that a support holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body {
+    pub inverse_mass: f64,
+    pub inverse_inertia: f64,
+    pub centre: Vector2<f64>,
+}
+
+impl Body {
+    /// A body whose motion is prescribed.
+    const HELD: Self = Self {
+        inverse_mass: 0.0,
+        inverse_inertia: 0.0,
+        centre: Vector2::new(0.0, 0.0),
+    };
+
+    fn free(moments: &MassMoments) -> Self {
+        let inverse_mass = 1.0 / moments.mass;
+        let centre = moments.first * inverse_mass;
+        Self {
+            inverse_mass,
+            inverse_inertia: 1.0 / (moments.polar - moments.first.dot(&centre)),
+            centre,
+        }
+    }
+
+    pub fn is_held(&self) -> bool {
+        self.inverse_mass == 0.0
+    }
+}
+
+/// An open joint of the present active set, left of body `index + 1` and right of body `index`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pin {
+    pub joint: usize,
+    pub point: Vector2<f64>,
+    pub parted: bool,
+    /// Unit vectors along the joint and across it.
+    pub axes: [Vector2<f64>; 2],
+    /// Moments of unit impulses along them about the centres of the left and of the right body.
+    pub turns: [[f64; 2]; 2],
+    /// Inverse of the pivot of the elimination.
+    pub pivot: Matrix2<f64>,
+    /// Pivot of the joint before times the coupling with it.
+    pub gain: Matrix2<f64>,
+}
+
+/// The system of a placed row under an active set.
+#[derive(Clone, Debug)]
+pub(super) struct Factor {
+    pub row: Placed,
+    /// The active set that bodies and pins are of, at the joints before `factored`.
+    pub active: Vec<Corners>,
+    factored: usize,
+    pub bodies: Vec<Body>,
+    pub pins: Vec<Pin>,
+    /// The least pivot up to each pin, over what it would be without the other rows.
+    least: Vec<f64>,
+}
+
+impl Factor {
+    pub fn new(row: &Row) -> Self {
+        let joints = row.joints().len();
+        Self {
+            row: Placed::new(row),
+            active: vec![[true; 2]; joints],
+            factored: 0,
+            bodies: Vec::with_capacity(joints + 1),
+            pins: Vec::with_capacity(joints),
+            least: Vec::with_capacity(joints),
+        }
+    }
+
+    /// Takes the positions of the blocks.
+    pub fn place(&mut self, placement: &Placement) {
+        self.row.place(placement);
+        self.factored = 0;
+    }
+
+    /// Bodies, pins and pivots of the active set. Returns the least pivot over what it would be without the other rows: zero
+    /// when rows depend on each other.
+    pub fn update(&mut self, active: &[Corners]) -> f64 {
+        let known = active.iter().zip(&self.active);
+        let same = known.take_while(|(now, then)| now == then).count();
+        let from = same.min(self.factored);
+        if from == active.len() {
+            return self.least_pivot();
+        }
+        self.active[from..].copy_from_slice(&active[from..]);
+        self.factored = active.len();
+        // The body after the last pin that stays depends on where the next one is.
+        let kept = self.pins.partition_point(|pin| pin.joint < from);
+        self.pins.truncate(kept);
+        self.bodies.truncate(kept);
+        let mut first = self.pins.last().map(|pin| pin.joint);
+        for (joint, active) in active.iter().enumerate().skip(from) {
+            let frame = &self.row.frames[joint];
+            let point = match active {
+                [true, true] => continue,
+                [false, true] => frame.corner_m(Edge::Extrados),
+                _ => frame.intrados_m,
+            };
+            let axes = [frame.along, frame.normal];
+            self.bodies.push(match first {
+                None => Body::HELD,
+                Some(first) => self.body(first, joint),
+            });
+            self.pins.push(Pin {
+                joint,
+                point,
+                parted: *active == [false; 2],
+                axes,
+                turns: [[0.0; 2]; 2],
+                pivot: Matrix2::zeros(),
+                gain: Matrix2::zeros(),
+            });
+            first = Some(joint);
+        }
+        self.bodies.push(match (self.row.supports, first) {
+            (Supports::Left, Some(first)) => self.body(first, self.row.own.len()),
+            (Supports::Left, None) | (Supports::Both, _) => Body::HELD,
+        });
+        // The pivot of a pin depends on the bodies to both sides.
+        self.eliminate(kept.saturating_sub(1));
+        self.least_pivot()
+    }
+
+    fn least_pivot(&self) -> f64 {
+        match (self.least.last(), self.row.supports) {
+            (Some(least), _) => *least,
+            (None, Supports::Left) => 1.0,
+            // An arch without any hinge is held twice.
+            (None, Supports::Both) => 0.0,
+        }
+    }
+
+    fn body(&self, first: usize, end: usize) -> Body {
+        Body::free(&(self.row.moments[end] - self.row.moments[first]))
+    }
+
+    /// Forward elimination of the compliances at the pins from this one on, in axes along and across each joint.
+    fn eliminate(&mut self, start: usize) {
+        self.least.truncate(start);
+        let mut least = self.least.last().copied().unwrap_or(1.0);
+        for index in start..self.pins.len() {
+            let (before, from) = self.pins.split_at_mut(index);
+            let pin = &mut from[0];
+            let sides = [&self.bodies[index], &self.bodies[index + 1]];
+            pin.turns = sides.map(|body| {
+                let arm = pin.point - body.centre;
+                pin.axes.map(|axis| arm.perp(&axis))
+            });
+            let mut own = Matrix2::<f64>::zeros();
+            for (body, turn) in sides.iter().zip(&pin.turns) {
+                let share = body.inverse_inertia;
+                own.m11 += body.inverse_mass + share * turn[0] * turn[0];
+                own.m12 += share * turn[0] * turn[1];
+                own.m22 += body.inverse_mass + share * turn[1] * turn[1];
+            }
+            let free = [own.m11, own.m22];
+            if let Some(previous) = before.last() {
+                let body = sides[0];
+                let coupling = |p: usize, q: usize| {
+                    -(body.inverse_mass * previous.axes[p].dot(&pin.axes[q])
+                        + body.inverse_inertia * previous.turns[1][p] * pin.turns[0][q])
+                };
+                let mut b = Matrix2::new(
+                    coupling(0, 0),
+                    coupling(0, 1),
+                    coupling(1, 0),
+                    coupling(1, 1),
+                );
+                if previous.parted {
+                    b.m21 = 0.0;
+                    b.m22 = 0.0;
+                }
+                if pin.parted {
+                    b.m12 = 0.0;
+                    b.m22 = 0.0;
+                }
+                pin.gain = previous.pivot * b;
+                let taken = b.transpose() * pin.gain;
+                own.m11 -= taken.m11;
+                own.m12 -= taken.m12;
+                own.m22 -= taken.m22;
+            }
+            if pin.parted {
+                least = lower(least, own.m11 / free[0]);
+                pin.pivot = Matrix2::new(1.0 / own.m11, 0.0, 0.0, 0.0);
+            } else {
+                let determinant = own.m11 * own.m22 - own.m12 * own.m12;
+                least = lower(least, own.m11 / free[0]);
+                least = lower(least, determinant / (own.m11 * free[1]));
+                let inverse = 1.0 / determinant;
+                pin.pivot = Matrix2::new(
+                    own.m22 * inverse,
+                    -own.m12 * inverse,
+                    -own.m12 * inverse,
+                    own.m11 * inverse,
+                );
+            }
+            self.least.push(least);
+        }
+    }
+
+    /// The shut joints inside a body.
+    pub fn shut_joints(&self, body: usize) -> Range<usize> {
+        let start = body
+            .checked_sub(1)
+            .map_or(0, |pin| self.pins[pin].joint + 1);
+        let end = self
+            .pins
+            .get(body)
+            .map_or(self.active.len(), |pin| pin.joint);
+        start..end
+    }
+
+    /// The blocks of a body.
+    pub fn blocks(&self, body: usize) -> Range<usize> {
+        let start = body.checked_sub(1).map_or(0, |pin| self.pins[pin].joint);
+        let end = self
+            .pins
+            .get(body)
+            .map_or(self.row.own.len(), |pin| pin.joint);
+        start..end
+    }
+}

@@ -1,0 +1,102 @@
+//! A row where it stands and what acts on it, as sums over its blocks from the left: those over any run of blocks are differences.
+
+use nalgebra::Vector2;
+
+use super::{Load, higher};
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::geometry::field::{Momentum, Twist};
+use crate::mechanics::geometry::ring::MassMoments;
+use crate::mechanics::joints::{Frame, Placement};
+
+const NO_MASS: MassMoments = MassMoments {
+    mass: 0.0,
+    first: Vector2::new(0.0, 0.0),
+    polar: 0.0,
+};
+
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    pub supports: Supports,
+    pub handedness: f64,
+    /// Mass and moment of inertia of every block.
+    masses: Vec<(f64, f64)>,
+    pub frames: Vec<Frame>,
+    /// Mass moments of every block.
+    pub own: Vec<MassMoments>,
+    /// Sums over the blocks before each joint.
+    pub moments: Vec<MassMoments>,
+    pub momenta: Vec<Momentum>,
+    /// Sums of the jumps up to each block.
+    pub datum: Vec<Twist>,
+}
+
+impl Placed {
+    pub fn new(row: &Row) -> Self {
+        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        Self {
+            supports: row.supports(),
+            handedness: row.handedness(),
+            masses: row
+                .blocks()
+                .iter()
+                .map(|b| (b.mass_kg, b.inertia_kg_m2))
+                .collect(),
+            frames: Vec::with_capacity(joints),
+            own: vec![NO_MASS; blocks],
+            moments: vec![NO_MASS; blocks + 1],
+            momenta: vec![Momentum::ZERO; blocks + 1],
+            datum: vec![Twist::ZERO; blocks + 1],
+        }
+    }
+
+    /// Takes the positions of the blocks.
+    pub fn place(&mut self, placement: &Placement) {
+        self.frames.clear();
+        self.frames.extend_from_slice(placement.frames());
+        let mut moments = NO_MASS;
+        for (block, centre) in placement.centres_m().iter().enumerate() {
+            let (mass, inertia) = self.masses[block];
+            let own = MassMoments {
+                mass,
+                first: centre * mass,
+                polar: inertia + mass * centre.norm_squared(),
+            };
+            moments = moments + own;
+            self.own[block] = own;
+            self.moments[block + 1] = moments;
+        }
+    }
+
+    /// Takes the load; returns the largest velocity, and all momentum.
+    pub fn load(&mut self, load: &Load) -> (f64, f64) {
+        let (mut momentum, mut datum) = (Momentum::ZERO, Twist::ZERO);
+        let (mut largest, mut total) = (0.0_f64, 0.0);
+        for block in 0..self.own.len() {
+            datum = datum + load.jumps[block];
+            self.datum[block] = datum;
+            let motion = load.free[block] - datum;
+            let added = motion.momentum(&self.own[block]);
+            let (x, y) = (added.linear.x.abs(), added.linear.y.abs());
+            total += x + y;
+            largest = higher(largest, (x + y) / self.own[block].mass);
+            momentum = momentum + added;
+            self.momenta[block + 1] = momentum;
+        }
+        if self.supports == Supports::Both {
+            datum = datum + load.jumps[self.own.len()];
+        }
+        let count = self.own.len();
+        self.datum[count] = datum;
+        (largest, total)
+    }
+
+    /// Change of momentum of the blocks before a joint, did they all move so.
+    pub fn change(&self, twist: &Twist, joint: usize, loaded: bool) -> Momentum {
+        let change = twist.momentum(&self.moments[joint]);
+        if loaded {
+            change - self.momenta[joint]
+        } else {
+            change
+        }
+    }
+}
