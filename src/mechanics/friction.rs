@@ -14,6 +14,7 @@ use thiserror::Error;
 
 use super::blocks::Row;
 use super::geometry::field::turned;
+use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
@@ -120,19 +121,14 @@ pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
 /// # Errors
 /// When the row falls with any, or a programme is not solved.
 pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
-    let (mut low, mut high) = (0.0, LARGEST_COEFFICIENT);
-    if !stands(row, high)? {
+    if !stands(row, LARGEST_COEFFICIENT)? {
         return Err(FrictionError::NeverStands);
     }
-    while high - low > COEFFICIENT_TOLERANCE {
-        let middle = 0.5 * (low + high);
-        if stands(row, middle)? {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Ok(high)
+    let width = Width::Absolute(COEFFICIENT_TOLERANCE);
+    let (_, least) = try_bisect(0.0, LARGEST_COEFFICIENT, width, |coefficient| {
+        stands(row, coefficient)
+    })?;
+    Ok(least)
 }
 
 /// What a programme asks for.
