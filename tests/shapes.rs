@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use archrock::mechanics::blocks::{Row, Supports};
+use archrock::mechanics::blocks::{Joint, Row, Supports};
 use archrock::mechanics::masonry::{
-    BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, Masonry, Material, Pier,
-    Piers, PlacedLoad, PointedArch, Shape,
+    BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry,
+    MasonryError, Material, Pier, Piers, PlacedLoad, PointedArch, Shape,
 };
 use archrock::mechanics::stability::onset;
 use archrock::scenario::{Scenario, Structure};
@@ -561,4 +561,50 @@ fn what_is_wrong_with_blocks_is_told_with_the_line_of_their_file() {
     }
     let missing = check("", None).unwrap_err();
     assert!(missing.contains("has 0 joints"), "{missing}");
+}
+
+/// What the reader refuses of files, the constructor refuses of anyone.
+#[test]
+fn blocks_that_are_none_are_refused_by_their_type() {
+    let joint = |x: f64| Joint {
+        intrados_m: Vector2::new(x, 0.0),
+        extrados_m: Vector2::new(x, 1.0),
+    };
+    let corners = |corners: &[[f64; 2]]| corners.iter().map(|c| Vector2::from(*c)).collect();
+    let build = |joints: &[f64], density_kg_m3: &[f64], outlines| {
+        let given = GivenBlocks {
+            joints_file: String::new(),
+            outlines_file: None,
+            supports: Supports::Both,
+            depth_m: 1.0,
+            density_kg_m3: density_kg_m3.to_vec(),
+            joints: joints.iter().copied().map(joint).collect(),
+            outlines,
+        };
+        Masonry::new(Shape::Blocks(given), Piers::default(), None, Vec::new())
+    };
+    let joints = [0.0, 1.0, 2.0];
+    let square = [[1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, 0.0]];
+    assert!(build(&joints, &[2000.0], vec![(1, corners(&square))]).is_ok());
+    for joints in [&[][..], &joints[..1]] {
+        assert!(matches!(
+            build(joints, &[2000.0], Vec::new()),
+            Err(MasonryError::Shape(_))
+        ));
+    }
+    assert!(matches!(
+        build(&joints, &[1.0; 3], Vec::new()),
+        Err(MasonryError::Shape(_))
+    ));
+    let bow_tie = [square[0], square[2], square[1], square[3]];
+    let beside = square.map(|[x, y]| [x + 0.5, y]);
+    for (block, outline, words) in [
+        (2, &square[..], "there is no block 3"),
+        (1, &square[..2], "block 2 has 2 corners"),
+        (1, &bow_tie, "block 2 crosses itself (sides 1 and 3)"),
+        (1, &beside, "does not pass through the corner (1.0, 0.0)"),
+    ] {
+        let error = build(&joints, &[2000.0], vec![(block, corners(outline))]).unwrap_err();
+        assert!(error.to_string().contains(words), "{error}");
+    }
 }

@@ -19,12 +19,11 @@ use super::record::{faulty, read_numbers};
 use super::structure::{MAGNITUDE, VOUSSOIRS};
 use super::table::{Count, Number, OneOf, OneOrMore, Reading, Reported, Switch, Table, Text};
 use crate::argument::ArgumentError;
-use crate::bisection::{Width, try_bisect};
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
 use crate::mechanics::blocks::{Joint, MAX_BLOCKS, RowError, Supports};
 use crate::mechanics::masonry::{
     BasketArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry, MasonryError,
-    Material, Pier, Piers, PlacedLoad, PointedArch, Shape,
+    Material, Pier, Piers, PlacedLoad, PointedArch, Remedy, Shape,
 };
 use crate::mechanics::stability::falls;
 
@@ -229,70 +228,15 @@ fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
         }
     }
     for ((block, corners), line) in outlines.iter().zip(lines) {
-        let number = block + 1;
-        if corners.len() < 3 {
-            let message = format!(
-                "block {number} has {} corners; give at least three",
-                corners.len()
-            );
-            return Err(fault(line, message));
-        }
-        if let Some((one, two)) = crossing_sides(corners) {
-            let message = format!(
-                "the outline of block {number} crosses itself (sides {} and {}): give its corners in order around it",
-                one + 1,
-                two + 1
-            );
-            return Err(fault(line, message));
-        }
-        let joints = [&given.joints[*block], &given.joints[block + 1]];
-        let needed = joints
-            .iter()
-            .flat_map(|joint| [joint.intrados_m, joint.extrados_m]);
-        for corner in needed {
-            if !is_on(corners, corner) {
-                let message = format!(
-                    "the outline of block {number} does not pass through the corner ({:?}, {:?}) of its joint",
-                    corner.x, corner.y
-                );
-                return Err(fault(line, message));
-            }
-        }
+        given
+            .check_outline(*block, corners)
+            .map_err(|error| fault(line, error.to_string()))?;
     }
     Ok(outlines)
 }
 
-type Line = [Vector2<f64>; 2];
-
 /// Corners of the outlines of blocks, with their indices.
 type Outlines = Vec<(usize, Vec<Vector2<f64>>)>;
-
-fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = Line> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(from, to)| [*from, *to])
-}
-
-fn is_on(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
-    sides(corners).any(|[from, to]| {
-        let along = to - from;
-        let part = ((point - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-        (from + along * part - point).norm() <= 1e-6 * along.norm()
-    })
-}
-
-/// Two sides of a polygon that cross, by their indices.
-fn crossing_sides(corners: &[Vector2<f64>]) -> Option<(usize, usize)> {
-    let sides: Vec<Line> = sides(corners).collect();
-    let turns = |[from, to]: Line, point: Vector2<f64>| (to - from).perp(&(point - from));
-    let crosses = |one: Line, two: Line| {
-        turns(one, two[0]) * turns(one, two[1]) < 0.0
-            && turns(two, one[0]) * turns(two, one[1]) < 0.0
-    };
-    (0..sides.len()).find_map(|one| {
-        let two = (one + 1..sides.len()).find(|two| crosses(sides[one], sides[*two]))?;
-        Some((one, two))
-    })
-}
 
 /// What stands beside an arch.
 pub(super) struct Beside {
@@ -358,6 +302,7 @@ impl Beside {
                 let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
                 table.wrong_element("load", *index, wrong)
             }
+            MasonryError::Outline(error) => table.wrong(shape, error),
             MasonryError::Blocks => self.refused(
                 table,
                 "goes with arches that are given by their dimensions: give piers and fill of [blocks] as blocks",
@@ -472,89 +417,28 @@ fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Repor
     let falls = format!(
         "cannot carry its own weight: it opens at joints {joints} (0: the left base or springing)"
     );
-    let arch_stands = masonry
-        .without_piers()
-        .is_ok_and(|arch| arch.stands().unwrap_or(false));
-    if !masonry.piers.are_none() && arch_stands {
-        let wider = |factor: f64| {
-            let wider = |pier: Pier| Pier {
-                width_m: pier.width_m * factor,
-                ..pier
-            };
-            let piers = Piers {
-                left: masonry.piers.left.map(wider),
-                right: masonry.piers.right.map(wider),
-            };
-            stands_as(masonry.shape.clone(), piers, masonry)
-        };
-        let remedy = least_factor(wider).map_or("give wider or lower piers".to_owned(), |factor| {
-            format!("it stands with piers {factor:.4} times as wide")
-        });
-        let wrong = format!(
-            "gives piers that are too slender for this arch, which stands on rigid ground: joints {joints} open under \
-             its weight; {remedy}"
-        );
-        return table.wrong("piers", wrong);
-    }
-    let thicker = |factor: f64| {
-        let shape = thicker(&masonry.shape, factor)?;
-        stands_as(shape, Piers::default(), masonry)
-    };
-    let (key, remedy) = match least_factor(thicker) {
-        Some(factor) => (
-            "thickness",
-            format!("it stands if it is {factor:.4} times as thick"),
-        ),
-        None => ("shape", "give a thicker arch, or less load".to_owned()),
-    };
-    let wrong = format!("{falls}; {remedy}");
-    for candidate in ["thickness_m", "thickness_ratio"] {
-        if key == "thickness" && table.gives_in(shape, candidate) {
-            return table.wrong_in(shape, candidate, format!("makes an arch that {wrong}"));
+    match masonry.remedy() {
+        Remedy::WiderPiers(factor) => {
+            let remedy = factor.map_or("give wider or lower piers".to_owned(), |factor| {
+                format!("it stands with piers {factor:.4} times as wide")
+            });
+            let wrong = format!(
+                "gives piers that are too slender for this arch, which stands on rigid ground: joints {joints} open under \
+                 its weight; {remedy}"
+            );
+            table.wrong("piers", wrong)
+        }
+        Remedy::ThickerArch(Some(factor)) => {
+            let wrong = format!("{falls}; it stands if it is {factor:.4} times as thick");
+            for candidate in ["thickness_m", "thickness_ratio"] {
+                if table.gives_in(shape, candidate) {
+                    return table.wrong_in(shape, candidate, format!("makes an arch that {wrong}"));
+                }
+            }
+            table.wrong(shape, wrong)
+        }
+        Remedy::ThickerArch(None) => {
+            table.wrong(shape, format!("{falls}; give a thicker arch, or less load"))
         }
     }
-    table.wrong(shape, wrong)
-}
-
-fn stands_as(shape: Shape, piers: Piers, like: &Masonry) -> Option<bool> {
-    let masonry = Masonry::new(shape, piers, like.fill, like.loads.clone()).ok()?;
-    masonry.stands().ok()
-}
-
-fn thicker(shape: &Shape, factor: f64) -> Option<Shape> {
-    let scaled = |dimensions: Dimensions| Dimensions {
-        thickness_m: dimensions.thickness_m * factor,
-        ..dimensions
-    };
-    Some(match shape {
-        Shape::PointedArch(arch) => Shape::PointedArch(PointedArch {
-            dimensions: scaled(arch.dimensions),
-        }),
-        Shape::EllipticArch(arch) => Shape::EllipticArch(EllipticArch {
-            dimensions: scaled(arch.dimensions),
-        }),
-        Shape::BasketArch(arch) => Shape::BasketArch(BasketArch {
-            dimensions: scaled(arch.dimensions),
-            ..*arch
-        }),
-        Shape::Circular(circular) => {
-            let mut thicker = circular.clone();
-            let ratio = circular.arch.thickness_ratio() * factor;
-            thicker.arch = circular.arch.clone().with_thickness_ratio(ratio).ok()?;
-            Shape::Circular(thicker)
-        }
-        Shape::Blocks(_) => return None,
-    })
-}
-
-/// The least factor, rounded up to four decimals, with which something stands; `None` if that is above four.
-fn least_factor(stands: impl Fn(f64) -> Option<bool>) -> Option<f64> {
-    let high = [1.25, 1.5, 2.0, 3.0, 4.0]
-        .into_iter()
-        .find(|factor| stands(*factor) == Some(true))?;
-    let (_, least) = try_bisect(1.0, high, Width::Absolute(1e-5), |factor| {
-        stands(factor).ok_or(())
-    })
-    .ok()?;
-    Some((least * 1e4).ceil() / 1e4)
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 use serde::Serialize;
+use thiserror::Error;
 
 use super::cut::{CutArch, Place};
 use crate::argument::{ArgumentError, within};
@@ -11,6 +12,47 @@ use crate::mechanics::geometry::curve::Curve;
 
 /// Corners that differ in height by less than this part of the size are at one level.
 const LEVEL_RATIO: f64 = 1e-9;
+
+/// Why the outline of a block is none. Blocks count from 0 here, and from 1 in words.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum OutlineError {
+    /// There is no such block.
+    #[error("there is no block {number}", number = .block + 1)]
+    NoBlock {
+        /// Which one.
+        block: usize,
+    },
+    /// Too few corners.
+    #[error("block {number} has {count} corners; give at least three", number = .block + 1)]
+    Corners {
+        /// Of which block.
+        block: usize,
+        /// How many it has.
+        count: usize,
+    },
+    /// Two sides cross.
+    #[error(
+        "the outline of block {number} crosses itself (sides {one} and {two}): give its corners in order around it",
+        number = .block + 1, one = .sides.0 + 1, two = .sides.1 + 1
+    )]
+    Crossing {
+        /// Of which block.
+        block: usize,
+        /// From 0 on.
+        sides: (usize, usize),
+    },
+    /// It leaves a corner of a joint aside.
+    #[error(
+        "the outline of block {number} does not pass through the corner ({x:?}, {y:?}) of its joint",
+        number = .block + 1, x = .corner_m.x, y = .corner_m.y
+    )]
+    Misses {
+        /// Of which block.
+        block: usize,
+        /// The corner, in metres.
+        corner_m: Vector2<f64>,
+    },
+}
 
 /// Blocks between joints, from left to right (of a stack: from the base up).
 ///
@@ -66,6 +108,40 @@ impl GivenBlocks {
             value: densities as f64,
             allowed: format!("one number, or one for each of the {blocks} blocks"),
         })
+    }
+
+    /// Checks the outline of a block: its sides do not cross, and the corners of its joints are on them.
+    ///
+    /// # Errors
+    /// When that is not so.
+    pub fn check_outline(
+        &self,
+        block: usize,
+        corners: &[Vector2<f64>],
+    ) -> Result<(), OutlineError> {
+        let Some([before, after]) = self
+            .joints
+            .get(block..)
+            .and_then(|joints| joints.first_chunk())
+        else {
+            return Err(OutlineError::NoBlock { block });
+        };
+        if corners.len() < 3 {
+            let count = corners.len();
+            return Err(OutlineError::Corners { block, count });
+        }
+        if let Some(sides) = crossing_sides(corners) {
+            return Err(OutlineError::Crossing { block, sides });
+        }
+        for corner_m in [before, after]
+            .into_iter()
+            .flat_map(|joint| [joint.intrados_m, joint.extrados_m])
+        {
+            if !is_on(corners, corner_m) {
+                return Err(OutlineError::Misses { block, corner_m });
+            }
+        }
+        Ok(())
     }
 
     /// The outline of every block.
@@ -169,4 +245,33 @@ impl GivenBlocks {
             _ => None,
         }
     }
+}
+
+type Line = [Vector2<f64>; 2];
+
+fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = Line> {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(from, to)| [*from, *to])
+}
+
+fn is_on(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
+    sides(corners).any(|[from, to]| {
+        let along = to - from;
+        let part = ((point - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (from + along * part - point).norm() <= 1e-6 * along.norm()
+    })
+}
+
+/// Two sides of a polygon that cross, by their indices.
+fn crossing_sides(corners: &[Vector2<f64>]) -> Option<(usize, usize)> {
+    let sides: Vec<Line> = sides(corners).collect();
+    let turns = |[from, to]: Line, point: Vector2<f64>| (to - from).perp(&(point - from));
+    let crosses = |one: Line, two: Line| {
+        turns(one, two[0]) * turns(one, two[1]) < 0.0
+            && turns(two, one[0]) * turns(two, one[1]) < 0.0
+    };
+    (0..sides.len()).find_map(|one| {
+        let two = (one + 1..sides.len()).find(|two| crosses(sides[one], sides[*two]))?;
+        Some((one, two))
+    })
 }

@@ -11,6 +11,7 @@ mod load;
 mod middle_line;
 mod pier;
 mod pointed;
+mod remedy;
 
 use serde::Serialize;
 use thiserror::Error;
@@ -23,11 +24,12 @@ use crate::mechanics::contact::ContactError;
 use crate::mechanics::sway::Sway;
 use cut::CutArch;
 pub use fill::{Fill, FillLevel};
-pub use given::GivenBlocks;
+pub use given::{GivenBlocks, OutlineError};
 pub use load::PlacedLoad;
 pub use middle_line::{BasketArch, CircularArch, EllipticArch};
 pub use pier::{Pier, Piers};
 pub use pointed::PointedArch;
+pub use remedy::Remedy;
 
 /// What a structure is made of, out of plane and by weight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -160,7 +162,13 @@ impl Shape {
             Self::PointedArch(arch) => arch.cut()?,
             Self::EllipticArch(arch) => arch.cut()?,
             Self::BasketArch(arch) => arch.cut()?,
-            Self::Blocks(blocks) => return Ok(blocks.cut()),
+            Self::Blocks(blocks) => {
+                blocks.check()?;
+                for (block, corners) in &blocks.outlines {
+                    blocks.check_outline(*block, corners)?;
+                }
+                return Ok(blocks.cut());
+            }
         })
     }
 
@@ -221,6 +229,9 @@ pub enum MasonryError {
         /// What is wrong.
         error: ArgumentError,
     },
+    /// An outline of a block is none.
+    #[error(transparent)]
+    Outline(#[from] OutlineError),
     /// The blocks make no row.
     #[error(transparent)]
     Row(#[from] RowError),

@@ -1,0 +1,91 @@
+//! What would hold an arch that falls under its own weight.
+
+use super::{BasketArch, Dimensions, EllipticArch, Masonry, Pier, Piers, PointedArch, Shape};
+use crate::bisection::{Width, try_bisect};
+
+/// What to change of masonry that falls, and by which factor: the least one, rounded up to four decimals; none if four do not do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Remedy {
+    /// The arch stands on rigid ground: the width of its piers.
+    WiderPiers(Option<f64>),
+    /// The thickness of the arch.
+    ThickerArch(Option<f64>),
+}
+
+impl Masonry {
+    /// What would hold masonry that falls under its own weight.
+    #[must_use]
+    pub fn remedy(&self) -> Remedy {
+        let arch_stands = || {
+            let arch = self.without_piers();
+            arch.is_ok_and(|arch| arch.stands().unwrap_or(false))
+        };
+        if !self.piers.are_none() && arch_stands() {
+            return Remedy::WiderPiers(least_factor(|factor| {
+                self.stands_as(self.shape.clone(), self.piers.widened(factor))
+            }));
+        }
+        Remedy::ThickerArch(least_factor(|factor| {
+            self.stands_as(self.shape.thickened(factor)?, Piers::default())
+        }))
+    }
+
+    fn stands_as(&self, shape: Shape, piers: Piers) -> Option<bool> {
+        let masonry = Self::new(shape, piers, self.fill, self.loads.clone()).ok()?;
+        masonry.stands().ok()
+    }
+}
+
+impl Piers {
+    fn widened(&self, factor: f64) -> Self {
+        let wider = |pier: Pier| Pier {
+            width_m: pier.width_m * factor,
+            ..pier
+        };
+        Self {
+            left: self.left.map(wider),
+            right: self.right.map(wider),
+        }
+    }
+}
+
+impl Shape {
+    /// None of blocks, which are as thick as they are.
+    fn thickened(&self, factor: f64) -> Option<Self> {
+        let scaled = |dimensions: Dimensions| Dimensions {
+            thickness_m: dimensions.thickness_m * factor,
+            ..dimensions
+        };
+        Some(match self {
+            Self::PointedArch(arch) => Self::PointedArch(PointedArch {
+                dimensions: scaled(arch.dimensions),
+            }),
+            Self::EllipticArch(arch) => Self::EllipticArch(EllipticArch {
+                dimensions: scaled(arch.dimensions),
+            }),
+            Self::BasketArch(arch) => Self::BasketArch(BasketArch {
+                dimensions: scaled(arch.dimensions),
+                ..*arch
+            }),
+            Self::Circular(circular) => {
+                let mut thicker = circular.clone();
+                let ratio = circular.arch.thickness_ratio() * factor;
+                thicker.arch = circular.arch.clone().with_thickness_ratio(ratio).ok()?;
+                Self::Circular(thicker)
+            }
+            Self::Blocks(_) => return None,
+        })
+    }
+}
+
+/// The least factor with which something stands, rounded up to four decimals; `None` if that is above four.
+fn least_factor(stands: impl Fn(f64) -> Option<bool>) -> Option<f64> {
+    let high = [1.25, 1.5, 2.0, 3.0, 4.0]
+        .into_iter()
+        .find(|factor| stands(*factor) == Some(true))?;
+    let (_, least) = try_bisect(1.0, high, Width::Absolute(1e-5), |factor| {
+        stands(factor).ok_or(())
+    })
+    .ok()?;
+    Some((least * 1e4).ceil() / 1e4)
+}
