@@ -6,6 +6,7 @@ mod browser;
 mod common;
 mod motions;
 mod program;
+mod results;
 
 mod capacity;
 mod certain;

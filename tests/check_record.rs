@@ -4,21 +4,12 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
 
 use crate::program::{archrock, stderr};
+use crate::program::{refusal, stdout};
+use crate::results::named;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
-
-fn stdout(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn refused(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(2));
-    stderr(output)
-}
 
 /// A full sine of 0.4 g and 1 s from 0.5 s on, 200 samples a second, in g.
 fn sine() -> Vec<f64> {
@@ -202,18 +193,18 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         "{said}"
     );
     // Alone, a key of tables is refused on an AT2 file.
-    let said = refused(&check(&["g.AT2", "--set", "skip_rows=3"]));
+    let said = refusal(&check(&["g.AT2", "--set", "skip_rows=3"]));
     assert!(
         said.contains("--set skip_rows=3: `skip_rows = 3` applies to `format = \"csv\"` only"),
         "{said}"
     );
-    let said = refused(&check(&["single.csv"]));
+    let said = refusal(&check(&["single.csv"]));
     assert!(
         said.contains("single.csv: the record lacks `unit`: give one of \"g\""),
         "{said}"
     );
     assert!(said.contains("--set unit=cm/s2"), "{said}");
-    let said = refused(&check(&["single.csv", "--set", "unit=g"]));
+    let said = refusal(&check(&["single.csv", "--set", "unit=g"]));
     assert!(
         said.contains("single.csv:2: there is no column 2"),
         "{said}"
@@ -232,14 +223,10 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
     let picture = fs::read_to_string(folder.path().join("r.svg")).unwrap();
     let picture = roxmltree::Document::parse(&picture).unwrap();
     for name in ["acceleration", "velocity", "displacement", "arias"] {
-        let mut named = picture.descendants();
-        assert!(
-            named.any(|node| node.attribute("data-name") == Some(name)),
-            "{name}"
-        );
+        assert!(!named(&picture, name).is_empty(), "{name}");
     }
-    assert!(refused(&check(&["s.toml", "--plot", "r.svg"])).contains("--plot is of records"));
-    let both = refused(&check(&["g.AT2", "gal.at2", "--plot", "r.svg"]));
+    assert!(refusal(&check(&["s.toml", "--plot", "r.svg"])).contains("--plot is of records"));
+    let both = refusal(&check(&["g.AT2", "gal.at2", "--plot", "r.svg"]));
     assert!(both.contains("--plot is of one record"));
 }
 
@@ -248,7 +235,7 @@ fn a_record_in_the_place_of_a_scenario_is_one_error() {
     let folder = tempfile::tempdir().unwrap();
     files(folder.path());
     for file in ["g.AT2", "esm.ASC", "comma.csv", "blanks.txt"] {
-        let said = refused(&archrock(folder.path(), &["run", file]));
+        let said = refusal(&archrock(folder.path(), &["run", file]));
         assert_eq!(said.lines().count(), 1, "{said}");
         assert!(said.contains("this is no scenario: "), "{said}");
         assert!(said.contains("[ground.record]"), "{said}");

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::program::{archrock, command, printed, refused, scenarios, stderr};
+use crate::results::{Row, Table, summary};
 use serde_json::Value;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
@@ -22,21 +23,16 @@ fn entries(folder: &Path) -> Vec<String> {
     names
 }
 
-fn summary(folder: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
-}
-
 /// Runs a scenario of the repository in a fresh folder, and returns its summary and its rows.
-fn run(name: &str) -> (Value, Vec<csv::StringRecord>) {
+fn run(name: &str) -> (Value, Vec<Row>) {
     let folder = tempfile::tempdir().unwrap();
     let file = scenarios().join(name).with_extension("toml");
     let output = archrock(folder.path(), &["run", file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(output.stderr.is_empty());
     let results = folder.path().join("results").join(name);
-    let mut rows = csv::Reader::from_path(results.join("rotations.csv")).unwrap();
-    let rows = rows.records().map(Result::unwrap).collect();
-    (summary(&results), rows)
+    let rotations = Table::read(results.join("rotations.csv"));
+    (summary(&results), rotations.rows)
 }
 
 #[test]
@@ -52,7 +48,7 @@ fn the_readme_scenario_comes_to_rest() {
     assert!(summary["impacts"].as_u64().unwrap() > 50);
     assert!(summary["energy_defect_ratio"].as_f64().unwrap() < 1e-7);
     // Rows every 0.005 s from zero, and one at the end.
-    let time = |row: &csv::StringRecord| row[0].parse::<f64>().unwrap();
+    let time = |row: &Row| row.number("time_s");
     let (last, regular) = rows.split_last().unwrap();
     for (index, row) in (0_u32..).zip(regular) {
         assert!((time(row) - 0.005 * f64::from(index)).abs() < 1e-12);
@@ -85,7 +81,7 @@ fn outcomes_of_the_other_scenarios() {
 
     let (summary, rows) = run("never-moved");
     assert_eq!(summary["outcome"], "never_moved");
-    assert!(rows.iter().all(|row| &row[3] == "rest" && &row[4] == "0.0"));
+    assert!(rows.iter().all(|row| row[3] == "rest" && row[4] == "0.0"));
 
     let (summary, _) = run("voussoirs-step-pair");
     assert_eq!(summary["outcome"], "rest");
@@ -130,26 +126,22 @@ fn impacts_are_a_table_of_what_the_summary_counts() {
     let output = archrock(folder.path(), &arguments);
     assert!(output.status.success() && output.stderr.is_empty());
     let results = folder.path().join("o");
-    let mut table = csv::Reader::from_path(results.join("impacts.csv")).unwrap();
-    let header = table.headers().unwrap().clone();
-    let column = |name: &str| header.iter().position(|known| known == name).unwrap();
-    let rows: Vec<_> = table.records().map(Result::unwrap).collect();
+    let rows = Table::read(results.join("impacts.csv")).rows;
     assert_eq!(
         rows.len() as u64,
         summary(&results)["impacts"].as_u64().unwrap()
     );
     let mut sway = "right".to_owned();
     for (index, row) in rows.iter().enumerate() {
-        let number = |name: &str| row[column(name)].parse::<f64>().unwrap();
-        assert_eq!(row[column("impact")], (index + 1).to_string());
-        assert_eq!(row[column("sway_before")], sway);
-        row[column("sway_after")].clone_into(&mut sway);
-        let ratio = number("energy_after_j") / number("energy_before_j");
+        assert_eq!(row["impact"], (index + 1).to_string());
+        assert_eq!(row["sway_before"], sway);
+        row["sway_after"].clone_into(&mut sway);
+        let ratio = row.number("energy_after_j") / row.number("energy_before_j");
         // Two ways to the same quotient, which rounding parts.
-        assert!((ratio - number("restitution")).abs() < 1e-12);
+        assert!((ratio - row.number("restitution")).abs() < 1e-12);
     }
     // The published first impact: r, and the hinges of the mechanism after it.
-    let first = |name: &str| rows[0][column(name)].parse::<f64>().unwrap();
+    let first = |name| rows[0].number(name);
     assert!((first("restitution") - 0.681_185_59).abs() < 5e-9);
     assert!((first("hinge_b_deg") - 76.37611).abs() < 5e-6);
     assert!((first("hinge_c_deg") - 133.81620).abs() < 5e-6);
@@ -534,12 +526,10 @@ fn random_scenarios_run_to_an_outcome() {
         let outcomes = ["never_moved", "rest", "overturned", "still_rocking"];
         prop_assert!(outcomes.contains(&outcome.as_str()));
         for table in ["rotations.csv", "events.csv", "impacts.csv"] {
-            let mut reader = csv::Reader::from_path(results.join(table)).unwrap();
-            let header = reader.headers().unwrap().clone();
             let names = ["state", "kind", "sway", "sway_before", "sway_after"];
             let mut last_s = f64::NEG_INFINITY;
-            for row in reader.records().map(Result::unwrap) {
-                for (column, value) in header.iter().zip(&row) {
+            for row in Table::read(results.join(table)).rows {
+                for (column, value) in row.cells() {
                     if names.contains(&column) || column.ends_with("_edge") || value.is_empty() {
                         continue;
                     }

@@ -1,10 +1,10 @@
 //! Result files and printed results of a column, and the events of any run.
 
-use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
 use crate::program::{printed, refused};
+use crate::results::{Row, Table, summary};
 use serde_json::{Value, json};
 
 const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
@@ -24,22 +24,6 @@ fn results(scenario: &str, arguments: &[&str]) -> tempfile::TempDir {
     folder
 }
 
-/// Header and rows of a table.
-fn table(path: &Path) -> (String, Vec<HashMap<String, String>>) {
-    let mut csv = csv::Reader::from_path(path).unwrap();
-    let header = csv.headers().unwrap().clone();
-    let rows = csv.deserialize().map(Result::unwrap).collect();
-    (header.iter().collect::<Vec<_>>().join(","), rows)
-}
-
-fn number(row: &HashMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap()
-}
-
-fn summary(folder: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
-}
-
 /// The tangent of the slenderness, 0.8 m over 4 m, but for the last digit.
 fn assert_incipient(both: &Value) {
     for side in ["right", "left"] {
@@ -51,11 +35,13 @@ fn assert_incipient(both: &Value) {
 fn files_have_one_body_and_no_hinges() {
     let scenario = format!("{COLUMN}[ground.half_sine]\namplitude_g = -0.5\nduration_s = 0.4\n");
     let folder = results(&scenario, &[]);
-    let (header, rows) = table(&folder.path().join("rotations.csv"));
+    let table = Table::read(folder.path().join("rotations.csv"));
+    let (header, rows) = (table.header.join(","), table.rows);
     let expected = "time_s,ground_acceleration_m_s2,phase,state,rotation_rad,rate_rad_s,\
                     thrust_excess_ratio,friction_demand";
     assert_eq!(header, expected);
-    let (header, impacts) = table(&folder.path().join("impacts.csv"));
+    let table = Table::read(folder.path().join("impacts.csv"));
+    let (header, impacts) = (table.header.join(","), table.rows);
     let expected = "impact,time_s,sway_before,sway_after,restitution,energy_before_j,energy_after_j,\
                     rate_before_rad_s,rate_after_rad_s";
     assert_eq!(header, expected);
@@ -66,20 +52,20 @@ fn files_have_one_body_and_no_hinges() {
         (&*first["sway_before"], &*first["sway_after"]),
         ("right", "left")
     );
-    assert!((number(first, "restitution") - rate_ratio * rate_ratio).abs() < 1e-15);
+    assert!((first.number("restitution") - rate_ratio * rate_ratio).abs() < 1e-15);
     let (before, after) = (
-        number(first, "rate_before_rad_s"),
-        number(first, "rate_after_rad_s"),
+        first.number("rate_before_rad_s"),
+        first.number("rate_after_rad_s"),
     );
     assert!(before > 0.0 && (after / before - rate_ratio).abs() < 1e-15);
     // Half of m (H^2 + W^2) / 3 times the square of the rate.
     let inertia = 4.0 * 0.8 * 2000.0 * (16.0 + 0.64) / 3.0;
     let energy_j = 0.5 * inertia * before * before;
-    assert!((number(first, "energy_before_j") / energy_j - 1.0).abs() < 1e-13);
+    assert!((first.number("energy_before_j") / energy_j - 1.0).abs() < 1e-13);
 
     let summary = summary(folder.path());
     let peak = summary["peak_rotation_rad"].as_f64().unwrap();
-    let sampled = rows.iter().map(|row| number(row, "rotation_rad").abs());
+    let sampled = rows.iter().map(|row| row.number("rotation_rad").abs());
     let sampled = sampled.fold(0.0, f64::max);
     // At most p^2 alpha dt^2 / 8 apart.
     assert!(peak >= sampled && peak - sampled < 3e-6);
@@ -96,20 +82,21 @@ fn dimensionless_columns_come_last() {
         results(&scenario, &[]),
         results(&scenario, &["--dimensionless"]),
     );
-    let (_, plain_rows) = table(&plain.path().join("rotations.csv"));
-    let (header, rows) = table(&with.path().join("rotations.csv"));
+    let plain_rows = Table::read(plain.path().join("rotations.csv")).rows;
+    let table = Table::read(with.path().join("rotations.csv"));
+    let (header, rows) = (table.header.join(","), table.rows);
     assert!(
         header.ends_with("friction_demand,p_t,acceleration_over_incipient,rotation_over_critical")
     );
     let p = (0.75 * 9.81 / 1.04_f64.sqrt() / 2.0).sqrt();
     assert_eq!(rows.len(), plain_rows.len());
     for (row, plain) in rows.iter().zip(&plain_rows) {
-        assert!(plain.iter().all(|(column, value)| row[column] == *value));
-        let close = |column, expected: f64| (number(row, column) - expected).abs() < 1e-11;
-        assert!(close("p_t", p * number(row, "time_s")));
-        let push = number(row, "ground_acceleration_m_s2") / (0.2 * 9.81);
+        assert!(plain.cells().all(|(column, value)| row[column] == value));
+        let close = |column, expected: f64| (row.number(column) - expected).abs() < 1e-11;
+        assert!(close("p_t", p * row.number("time_s")));
+        let push = row.number("ground_acceleration_m_s2") / (0.2 * 9.81);
         assert!(close("acceleration_over_incipient", push));
-        let rotation = number(row, "rotation_rad") / 0.2_f64.atan();
+        let rotation = row.number("rotation_rad") / 0.2_f64.atan();
         assert!(close("rotation_over_critical", rotation));
     }
     let scales = &summary(plain.path())["dimensionless"];
@@ -149,50 +136,49 @@ fn events_are_the_phases_of_the_rotations() {
         (format!("{arch}{}", rectangle(-0.3, 0.2)), "rest"),
     ] {
         let folder = results(&scenario, &[]);
-        let (header, events) = table(&folder.path().join("events.csv"));
+        let table = Table::read(folder.path().join("events.csv"));
+        let (header, events) = (table.header.join(","), table.rows);
         assert!(header.starts_with("time_s,phase,kind,sway,mechanism,rotation_"));
         let hinged = "energy_j,hinge_a_deg,hinge_a_edge,hinge_b_deg,hinge_b_edge,hinge_c_deg,hinge_c_edge,\
                       hinge_d_deg,hinge_d_edge";
         assert!(header.ends_with("energy_j") || header.ends_with(hinged));
-        let (_, impacts) = table(&folder.path().join("impacts.csv"));
-        let (_, rows) = table(&folder.path().join("rotations.csv"));
-        let closing =
-            |event: &&HashMap<String, String>| ["impact", "rest"].contains(&event["kind"].as_str());
+        let impacts = Table::read(folder.path().join("impacts.csv")).rows;
+        let rows = Table::read(folder.path().join("rotations.csv")).rows;
+        let closing = |event: &&Row| ["impact", "rest"].contains(&event["kind"].as_str());
         let closings: Vec<_> = events.iter().filter(closing).collect();
         assert_eq!(closings.len(), impacts.len());
         for (event, impact) in closings.iter().zip(&impacts) {
             assert_eq!(event["time_s"], impact["time_s"]);
             if event["kind"] == "impact" {
                 assert_eq!(event["sway"], impact["sway_after"]);
-                let (energy, after) = (number(event, "energy_j"), number(impact, "energy_after_j"));
+                let (energy, after) = (event.number("energy_j"), impact.number("energy_after_j"));
                 // Positions of the linkage at `q = 0` are rounded: 1e-16 of its weight times its size.
                 assert!((energy - after).abs() < 1e-9);
-                for (column, value) in impact
-                    .iter()
-                    .filter(|(column, _)| column.contains("_after_rad"))
-                {
-                    assert_eq!(event[&column.replace("_after", "")], *value, "{column}");
+                for (column, value) in impact.cells() {
+                    if column.contains("_after_rad") {
+                        assert_eq!(&event[&*column.replace("_after", "")], value, "{column}");
+                    }
                 }
             } else {
                 assert!(event["sway"].is_empty() && event["mechanism"].is_empty());
-                assert!(number(event, "energy_j") == 0.0);
+                assert!(event.number("energy_j") == 0.0);
             }
         }
         for (index, event) in events.iter().enumerate() {
             assert_eq!(event["phase"], (index + 1).to_string());
-            let begun = number(event, "time_s");
-            let phase = |row: &&HashMap<String, String>| number(row, "phase") > index as f64;
+            let begun = event.number("time_s");
+            let phase = |row: &&Row| row.number("phase") > index as f64;
             assert!(
                 rows.iter()
                     .filter(phase)
-                    .all(|row| number(row, "time_s") >= begun)
+                    .all(|row| row.number("time_s") >= begun)
             );
             if let Some(row) = rows.iter().find(|row| row["phase"] == event["phase"]) {
                 let state = match event["kind"].as_str() {
                     kind @ ("rest" | "overturned") => kind,
                     _ => &event["sway"],
                 };
-                assert_eq!(row["state"], state);
+                assert_eq!(&row["state"], state);
             }
         }
         assert_eq!(events.last().unwrap()["kind"], end);
@@ -237,8 +223,8 @@ fn limit_and_impact_name_the_toes() {
     assert!(archrock(&["impact"], &path).contains("the structure stops"));
     let flat = "[column]\nheight_m = 1\nwidth_m = 2\n[initial]\nsway = 'left'\nrotation_rad = 0.3";
     let folder = results(flat, &[]);
-    let (_, impacts) = table(&folder.path().join("impacts.csv"));
-    assert_eq!(number(&impacts[0], "restitution"), 0.0);
-    assert_eq!(number(&impacts[0], "rate_after_rad_s"), 0.0);
+    let impacts = Table::read(folder.path().join("impacts.csv")).rows;
+    assert_eq!(impacts[0].number("restitution"), 0.0);
+    assert_eq!(impacts[0].number("rate_after_rad_s"), 0.0);
     assert_eq!(summary(folder.path())["outcome"], "rest");
 }

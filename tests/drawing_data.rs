@@ -1,31 +1,13 @@
 //! What `run` gives to draw with: poses, snapshots, hinges in the tables; and `limit` as JSON beside its text.
 
-use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
 use crate::program::{archrock, scenarios, stderr};
+use crate::results::{Row, Table, named, points};
 use nalgebra::{Rotation2, Vector2};
-use roxmltree::{Document, Node};
+use roxmltree::Document;
 use serde_json::Value;
-
-/// Rows of a table, each by its columns.
-fn table(path: &Path) -> Vec<HashMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let header = reader.headers().unwrap().clone();
-    let named = |row: csv::StringRecord| {
-        let cells = header.iter().zip(&row);
-        cells
-            .map(|(name, cell)| (name.to_owned(), cell.to_owned()))
-            .collect()
-    };
-    reader.records().map(|row| named(row.unwrap())).collect()
-}
-
-fn number(row: &HashMap<String, String>, column: &str) -> f64 {
-    let cell = row.get(column).unwrap_or_else(|| panic!("no {column}"));
-    cell.parse().unwrap()
-}
 
 fn run(folder: &Path, scenario: &str, more: &[&str]) -> String {
     let path = scenarios().join(scenario);
@@ -36,9 +18,9 @@ fn run(folder: &Path, scenario: &str, more: &[&str]) -> String {
 }
 
 /// A body of a row of `poses.csv`, in the words of its documentation.
-fn moved(row: &HashMap<String, String>, body: &str, point: Vector2<f64>) -> Vector2<f64> {
+fn moved(row: &Row, body: &str, point: Vector2<f64>) -> Vector2<f64> {
     let [x, y, rotation] = [("x", "m"), ("y", "m"), ("rotation", "rad")]
-        .map(|(quantity, unit)| number(row, &format!("{quantity}_{body}_{unit}")));
+        .map(|(quantity, unit)| row.number(&format!("{quantity}_{body}_{unit}")));
     Vector2::new(x, y) + Rotation2::new(rotation) * point
 }
 
@@ -60,9 +42,9 @@ fn bodies_meet_at_the_hinges_of_the_tables() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), "semicircle-pulse.toml", &["--poses"]);
     let (poses, rotations, events) = (
-        table(&folder.path().join("poses.csv")),
-        table(&folder.path().join("rotations.csv")),
-        table(&folder.path().join("events.csv")),
+        Table::read(folder.path().join("poses.csv")).rows,
+        Table::read(folder.path().join("rotations.csv")).rows,
+        Table::read(folder.path().join("events.csv")).rows,
     );
     assert_eq!(poses.len(), rotations.len());
     let mut checked = 0;
@@ -76,7 +58,7 @@ fn bodies_meet_at_the_hinges_of_the_tables() {
         let event = &events[phase - 1];
         assert_eq!(event["phase"], rotation["phase"]);
         let [a, b, c, d] = ["a", "b", "c", "d"].map(|hinge| {
-            let angle_deg = number(event, &format!("hinge_{hinge}_deg"));
+            let angle_deg = event.number(&format!("hinge_{hinge}_deg"));
             point(angle_deg, &event[&format!("hinge_{hinge}_edge")])
         });
         let on = |body: &str, at| moved(pose, body, at);
@@ -101,11 +83,11 @@ fn bodies_meet_at_the_hinges_of_the_tables() {
 fn an_impact_closes_the_hinges_that_opened_before() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), "semicircle-pulse.toml", &[]);
-    let impacts = table(&folder.path().join("impacts.csv"));
-    let cells = |row: &HashMap<String, String>, what: &str| {
+    let impacts = Table::read(folder.path().join("impacts.csv")).rows;
+    let cells = |row: &Row, what: &str| {
         ["a", "b", "c", "d"].map(|hinge| {
-            let place = number(row, &format!("{what}_{hinge}_deg"));
-            (place, row[&format!("{what}_{hinge}_edge")].clone())
+            let place = row.number(&format!("{what}_{hinge}_deg"));
+            (place, row[&format!("{what}_{hinge}_edge")].to_owned())
         })
     };
     // Those of `archrock limit`, from the README.
@@ -131,24 +113,9 @@ fn an_impact_closes_the_hinges_that_opened_before() {
     }
 }
 
-/// Corners of the polygons of that name, panel by panel.
-fn polygons(document: &Document<'_>, name: &str) -> Vec<Vec<Vector2<f64>>> {
-    let of_name = |node: &Node<'_, '_>| node.attribute("data-name") == Some(name);
-    let nodes = document.descendants().filter(of_name);
-    nodes
-        .map(|node| {
-            let path = node.attribute("d").unwrap();
-            let numbers: Vec<f64> = path
-                .trim_matches(['M', 'Z'])
-                .split_whitespace()
-                .map(|text| text.parse().unwrap())
-                .collect();
-            numbers
-                .chunks_exact(2)
-                .map(|xy| Vector2::new(xy[0], xy[1]))
-                .collect()
-        })
-        .collect()
+/// Corners of the bodies of that name, panel by panel.
+fn bodies(document: &Document<'_>, name: &str) -> Vec<Vec<Vector2<f64>>> {
+    named(document, name).iter().map(points).collect()
 }
 
 fn snapshots(folder: &Path) -> String {
@@ -163,20 +130,20 @@ fn snapshots_are_to_scale() {
     run(folder.path(), "column-pulse.toml", &times);
     let picture = snapshots(folder.path());
     let document = Document::parse(&picture).unwrap();
-    let rotations = table(&folder.path().join("rotations.csv"));
-    let drawn = polygons(&document, "body 0");
+    let rotations = Table::read(folder.path().join("rotations.csv")).rows;
+    let drawn = bodies(&document, "body 0");
     assert_eq!(drawn.len(), 3);
     for (corners, time_s) in drawn.iter().zip([0.5, 1.0, 2.345]) {
         let row = rotations
             .iter()
-            .find(|row| (number(row, "time_s") - time_s).abs() < 1e-9)
+            .find(|row| (row.number("time_s") - time_s).abs() < 1e-9)
             .unwrap();
         let (side, top) = (corners[1] - corners[0], corners[2] - corners[1]);
         assert!((side.norm() / top.norm() - 4.0 / 0.8).abs() < 2e-3);
         // On the sheet y points downwards.
         let turned_rad = (-side.x).atan2(-side.y);
         assert!(
-            (turned_rad - number(row, "rotation_rad")).abs() < 2e-4,
+            (turned_rad - row.number("rotation_rad")).abs() < 2e-4,
             "{time_s} {turned_rad}"
         );
         assert!(picture.contains(&format!("{time_s:.3} s, sways")));
@@ -195,8 +162,8 @@ fn exaggerated_snapshots_move_so_many_times_as_far() {
         );
         let picture = snapshots(folder.path());
         let document = Document::parse(&picture).unwrap();
-        assert!(!polygons(&document, "thrust line").is_empty());
-        polygons(&document, "body 25").remove(0)
+        assert!(!named(&document, "thrust line").is_empty());
+        bodies(&document, "body 25").remove(0)
     };
     let tenfold = corners(&["--exaggerate", "10"]);
     let (once, twice) = (corners(&[]), corners(&["--exaggerate", "2"]));

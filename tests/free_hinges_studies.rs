@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use crate::program::{done, files, refused, scenarios};
+use crate::results::Table;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::output::Figure;
 use archrock::scenario::{Changes, Hinges, Scenario, ScenarioErrors, Source};
@@ -509,25 +510,20 @@ fn a_suite_shakes_the_row_of_its_scenario() {
     assert_eq!(files(&path.join("merged")), whole);
 
     // The rows are single histories under the records as scaled.
-    let mut table = csv::Reader::from_reader(&*whole["suite.csv"]);
-    let headers = table.headers().unwrap().clone();
-    let column = |name: &str| headers.iter().position(|header| header == name).unwrap();
-    let [record, peak_g, outcome, peak_rad] =
-        ["record", "peak_g", "outcome", "peak_rotation_rad"].map(column);
     let mut overturned = 0;
-    for row in table.records().map(Result::unwrap) {
+    for row in Table::parse(&whole["suite.csv"]).rows {
         let text = format!(
             "{DRUMS}[ground.record]\nfile = {:?}\npeak_g = {}\n",
-            &row[record], &row[peak_g]
+            &row["record"], &row["peak_g"]
         );
         fs::write(path.join("single.toml"), text).unwrap();
         let single = Scenario::read(&path.join("single.toml")).unwrap();
         let model = single.model().unwrap();
         let ending = Ending::of(&*model, single.ground_motion(), &single.request()).unwrap();
-        assert_eq!(&row[outcome], ending.outcome.name());
+        assert_eq!(&row["outcome"], ending.outcome.name());
         let expected_rad = ending.peak.rad().unwrap();
-        assert_eq!(row[peak_rad].parse::<f64>().unwrap(), expected_rad);
-        overturned += usize::from(&row[outcome] == "overturned");
+        assert_eq!(row.number("peak_rotation_rad"), expected_rad);
+        overturned += usize::from(row["outcome"] == "overturned");
     }
     assert!(0 < overturned && overturned < 6, "{overturned}");
 }

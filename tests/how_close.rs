@@ -1,10 +1,10 @@
 //! How close it was: per record in a line, and in the picture of incremental dynamic analysis.
 
 use std::fs;
-use std::path::Path;
-use std::process::Output;
 
+use crate::program::stdout;
 use crate::program::{archrock, scenarios, stderr};
+use crate::results::{Row, Table, json, named, strokes};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::arch::FourLinkArch;
@@ -13,11 +13,6 @@ use archrock::{Arch, GroundMotion, Initial, Model as _, Request, Sway};
 use serde_json::Value;
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30\n";
-
-fn stdout(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
 
 /// A folder with two records and a scenario of them.
 fn folder() -> tempfile::TempDir {
@@ -35,10 +30,6 @@ fn folder() -> tempfile::TempDir {
     );
     fs::write(folder.path().join("s.toml"), text).unwrap();
     folder
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// The words as they follow from the bands and gaps of `threshold.json`.
@@ -175,35 +166,35 @@ fn a_suite_says_a_line_per_record_and_draws_how_far_each_goes() {
     let output = archrock(path, &["suite", "s.toml"]);
     stdout(&output);
     let said = stderr(&output);
-    let mut table = csv::Reader::from_path(path.join("results/s/suite.csv")).unwrap();
-    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let rows = Table::read(path.join("results/s/suite.csv")).rows;
     let picture = fs::read_to_string(path.join("results/s/ida.svg")).unwrap();
     let picture = roxmltree::Document::parse(&picture).unwrap();
-    let marks = |name: &str| {
-        let nodes = picture.descendants();
-        nodes
-            .filter(|node| node.attribute("data-name") == Some(name))
-            .count()
-    };
+    let marks = |name: &str| named(&picture, name).len();
     let mut overturned = 0;
     for record in ["wave-1.at2", "wave-2.at2"] {
         let own: Vec<_> = rows
             .iter()
-            .filter(|row| &row[0] == record && &row[1] == "1")
+            .filter(|row| row["record"] == record && row["sign"] == "1")
             .collect();
         assert_eq!(own.len(), 20);
-        overturned += own.iter().filter(|row| &row[4] == "overturned").count();
+        overturned += own
+            .iter()
+            .filter(|row| row["outcome"] == "overturned")
+            .count();
         // The least level that overturns, and from there on the others, each run of survivors by its ends.
-        let first = own.iter().position(|row| &row[4] == "overturned").unwrap();
-        let four = |row: &csv::StringRecord| {
-            let value: f64 = row[3].parse().unwrap();
+        let first = own
+            .iter()
+            .position(|row| row["outcome"] == "overturned")
+            .unwrap();
+        let four = |row: &Row| {
+            let value = row.number("peak_g");
             let digits = (3.0 - value.log10().floor()).max(0.0) as usize;
             format!("{value:.digits$}")
         };
         let mut expected = format!("  {record}: first overturns at {} g", four(own[first]));
         let again: Vec<String> = own[first..]
-            .chunk_by(|a, b| (&a[4] == "overturned") == (&b[4] == "overturned"))
-            .filter(|run| &run[0][4] != "overturned")
+            .chunk_by(|a, b| (a["outcome"] == "overturned") == (b["outcome"] == "overturned"))
+            .filter(|run| run[0]["outcome"] != "overturned")
             .map(|run| match run {
                 [only] => format!("{} g", four(only)),
                 [from, .., to] => format!("{} to {} g", four(from), four(to)),
@@ -324,21 +315,9 @@ fn the_picture_marks_the_barrier() {
         let picture = fs::read_to_string(folder.path().join("o/history.svg")).unwrap();
         let picture = roxmltree::Document::parse(&picture).unwrap();
         ["energy", "barrier"].map(|name| -> Vec<f64> {
-            let mut nodes = picture.descendants();
-            let node = nodes.find(|node| node.attribute("data-name") == Some(name));
-            let points = node.map_or("", |node| {
-                node.attribute("points")
-                    .or(node.attribute("d"))
-                    .unwrap()
-                    .trim_start_matches('M')
-            });
-            points
-                .split(['L', ' ', ','])
-                .filter(|text| !text.is_empty())
-                .skip(1)
-                .step_by(2)
-                .map(|y| y.parse().unwrap())
-                .collect()
+            let found = named(&picture, name);
+            let strokes = found.first().map(strokes).unwrap_or_default();
+            strokes.concat().iter().map(|point| point.y).collect()
         })
     };
     let [energy, barrier] = curves(0.7);

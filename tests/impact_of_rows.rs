@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::program::{printed, refused};
+use crate::results::{self, Table};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::contact::{Load, Program};
 use archrock::mechanics::four_link::impact::closing_field;
@@ -90,9 +91,11 @@ fn equal_voussoirs_given_one_by_one_are_told_as_those_of_the_ring() {
                 let line = |file: &str| -> (String, Vec<[f64; 4]>) {
                     let options = ["--line", "-", "--link", link, "--first", side];
                     let text = printed(folder, &[&["impact", file], &options[..]].concat());
-                    let mut table = csv::Reader::from_reader(text.as_bytes());
-                    let first = table.headers().unwrap()[0].to_owned();
-                    (first, table.deserialize().map(Result::unwrap).collect())
+                    let table = Table::parse(text);
+                    (
+                        table.header[0].clone(),
+                        table.rows.iter().map(four).collect(),
+                    )
                 };
                 let ((row_key, row), (ring_key, ring)) = (line("row.toml"), line("ring.toml"));
                 assert_eq!([&row_key[..], &ring_key], ["joint", "angle_deg"]);
@@ -108,6 +111,11 @@ fn equal_voussoirs_given_one_by_one_are_told_as_those_of_the_ring() {
             }
         }
     }
+}
+
+/// A row of a table of four columns.
+fn four(row: &results::Row) -> [f64; 4] {
+    [0, 1, 2, 3].map(|column| row.number(column))
 }
 
 /// An uneven arch and its mirror image.
@@ -200,8 +208,7 @@ fn a_mirror_image_is_told_as_seen_in_a_mirror() {
             let line = |file: &str, side: &str| -> Vec<[f64; 4]> {
                 let options = ["--line", "-", "--link", link, "--first", side];
                 let text = printed(folder, &[&["impact", file], &options[..]].concat());
-                let mut table = csv::Reader::from_reader(text.as_bytes());
-                table.deserialize().map(Result::unwrap).collect()
+                Table::parse(text).rows.iter().map(four).collect()
             };
             let (own, there) = (line("own.toml", side), line("mirrored.toml", other));
             assert_eq!([own.len(), there.len()], [last + 1; 2]);

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use crate::program::{printed, refused};
+use crate::results::{Row, Table};
 use archrock::mechanics::four_link::impact::{
     ImpactModel, MomentumTheorems, closing_field, impact,
 };
@@ -404,21 +405,20 @@ fn the_line_as_csv_touches_the_edges_at_the_hinges() {
         ),
     ] {
         text(&["impact", &path, "--line", file, "--link", link]);
-        let mut table = csv::Reader::from_path(file).unwrap();
-        let header: Vec<_> = table.headers().unwrap().iter().map(str::to_owned).collect();
+        let table = Table::read(file);
         let expected = [
             "angle_deg",
             "eccentricity_ratio",
             "normal_n_s_per_m",
             "tangential_n_s_per_m",
         ];
-        assert_eq!(header, expected);
-        let rows: Vec<[f64; 4]> = table.deserialize().map(Result::unwrap).collect();
-        assert!(rows.is_sorted_by(|a, b| a[0] < b[0]));
+        assert_eq!(*table.header, expected);
+        assert!(table.numbers("angle_deg").is_sorted_by(|a, b| a < b));
         for (angle_deg, eccentricity) in hinges {
-            let near = |row: &&[f64; 4]| (row[0] - angle_deg).abs() < 1e-5;
-            let row = rows.iter().find(near).unwrap();
-            assert!((row[1] - eccentricity).abs() < 1e-10, "{row:?}");
+            let near = |row: &&Row| (row.number("angle_deg") - angle_deg).abs() < 1e-5;
+            let row = table.rows.iter().find(near).unwrap();
+            let found = row.number("eccentricity_ratio");
+            assert!((found - eccentricity).abs() < 1e-10, "{row:?}");
         }
         let piped = text(&["impact", &path, "--line", "-", "--link", link]);
         assert_eq!(piped, std::fs::read_to_string(file).unwrap());
@@ -439,16 +439,11 @@ fn impulses_of_a_run_are_in_newton_seconds() {
     );
     let out = folder.path().join("out");
     text(&["run", &path, "--quiet", "--out", out.to_str().unwrap()]);
-    let mut table = csv::Reader::from_path(out.join("impacts.csv")).unwrap();
-    let header = table.headers().unwrap().clone();
-    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let rows = Table::read(out.join("impacts.csv")).rows;
     assert!(rows.len() > 3);
     let ring = Ring::new(0.15, PI).unwrap();
     for row in &rows {
-        let value = |name: &str| -> f64 {
-            let column = header.iter().position(|column| column == name).unwrap();
-            row[column].parse().unwrap()
-        };
+        let value = |name: &str| row.number(name);
         // The right body turns about hinge D with the rate after. The angular momentum theorem about
         // hinge C for it (Eq. (9) or (10) of the paper) with the impulse at D, all in SI. What it had
         // before is the momentum of the bodies of the closing mechanism inside it; only the first
@@ -463,7 +458,7 @@ fn impulses_of_a_run_are_in_newton_seconds() {
         assert!([a, b, c, d].into_iter().all(|impulse| impulse.norm() > 0.0));
         // Thrusts: the ground and the neighbours press the arch together.
         assert!(b.x > 0.0 && c.x < 0.0);
-        if &row[0] != "1" {
+        if row["impact"] != "1" {
             continue;
         }
         let radius = 3.0;

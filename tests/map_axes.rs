@@ -1,35 +1,27 @@
 //! Maps as papers draw them: any number of the scenario along an axis, records, colours and dimensionless axes.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
 
-use crate::program::{archrock, scenarios, stderr};
+use crate::program::{archrock, scenarios};
+use crate::program::{refusal, stdout};
+use crate::results::{Row, Table, named, number};
 use roxmltree::Document;
 use serde_json::Value;
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30\n";
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
-fn done(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
 fn refused(folder: &Path, text: &str, arguments: &[&str]) -> String {
     fs::write(folder.join("s.toml"), text).unwrap();
-    let output = archrock(folder, &[&["map", "s.toml"], arguments].concat());
-    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-    stderr(&output)
+    refusal(&archrock(folder, &[&["map", "s.toml"], arguments].concat()))
 }
 
 /// The rows of a map, by the names of their columns.
-fn rows(folder: &Path, text: &str, arguments: &[&str]) -> Vec<BTreeMap<String, String>> {
+fn rows(folder: &Path, text: &str, arguments: &[&str]) -> Vec<Row> {
     fs::write(folder.join("s.toml"), text).unwrap();
-    done(&archrock(folder, &[&["map", "s.toml"], arguments].concat()));
-    let mut table = csv::Reader::from_path(folder.join("results/s/map.csv")).unwrap();
-    table.deserialize().map(Result::unwrap).collect()
+    stdout(&archrock(folder, &[&["map", "s.toml"], arguments].concat()));
+    Table::read(folder.join("results/s/map.csv")).rows
 }
 
 /// The summary of a run with values replaced.
@@ -38,7 +30,7 @@ fn run(folder: &Path, set: &[String]) -> Value {
     for one in set {
         arguments.extend(["--set", one]);
     }
-    serde_json::from_str(&done(&archrock(folder, &arguments))).unwrap()
+    serde_json::from_str(&stdout(&archrock(folder, &arguments))).unwrap()
 }
 
 #[test]
@@ -63,10 +55,10 @@ fn a_cell_under_a_record_is_the_run_with_its_values() {
             format!("ground.record.scale={}", cell["scale"]),
         ];
         let summary = run(path, &set);
-        assert_eq!(summary["outcome"], cell["outcome"].as_str());
-        let time_s: f64 = cell["outcome_time_s"].parse().unwrap();
+        assert_eq!(summary["outcome"], cell["outcome"]);
+        let time_s = cell.number("outcome_time_s");
         assert_eq!(summary["outcome_time_s"].as_f64().unwrap(), time_s);
-        outcomes.push(cell["outcome"].clone());
+        outcomes.push(cell["outcome"].to_owned());
     }
     outcomes.sort();
     outcomes.dedup();
@@ -81,10 +73,10 @@ fn a_cell_under_a_record_is_the_run_with_its_values() {
     // In parts as well.
     let whole = fs::read(path.join("results/s/map.csv")).unwrap();
     for part in ["1/2", "2/2"] {
-        done(&archrock(path, &["map", "s.toml", "--shard", part]));
+        stdout(&archrock(path, &["map", "s.toml", "--shard", part]));
     }
     let parts = ["results/s/map-1-of-2.part", "results/s/map-2-of-2.part"];
-    done(&archrock(
+    stdout(&archrock(
         path,
         &[&["merge", "--out", "m"], &parts[..]].concat(),
     ));
@@ -108,7 +100,7 @@ fn any_number_of_the_scenario_can_be_an_axis() {
             format!("ground.half_sine.amplitude_g={}", cell["amplitude_g"]),
         ];
         let summary = run(path, &set);
-        assert_eq!(summary["outcome"], cell["outcome"].as_str());
+        assert_eq!(summary["outcome"], cell["outcome"]);
         let impacts = summary["impacts"].as_u64().unwrap();
         assert_eq!(impacts.to_string(), cell["impacts"]);
     }
@@ -126,9 +118,9 @@ fn any_number_of_the_scenario_can_be_an_axis() {
     let summary = fs::read_to_string(path.join("results/s/map.json")).unwrap();
     assert!(summary.contains("cannot carry its own weight"));
     // The resolved scenario is the same.
-    let resolved = done(&archrock(path, &["check", "s.toml"]));
+    let resolved = stdout(&archrock(path, &["check", "s.toml"]));
     fs::write(path.join("t.toml"), &resolved).unwrap();
-    assert_eq!(done(&archrock(path, &["check", "t.toml"])), resolved);
+    assert_eq!(stdout(&archrock(path, &["check", "t.toml"])), resolved);
 }
 
 #[test]
@@ -179,10 +171,11 @@ fn axes_that_do_not_suit_are_refused() {
 
 /// The values of `d` of the marks of that name.
 fn paths<'a>(document: &'a Document<'a>, name: &str) -> Vec<&'a str> {
-    let named = document
-        .descendants()
-        .filter(|node| node.attribute("data-name") == Some(name));
-    named.filter_map(|node| node.attribute("d")).collect()
+    let marks = named(document, name);
+    marks
+        .iter()
+        .filter_map(|mark| mark.attribute("d"))
+        .collect()
 }
 
 fn text_place(document: &Document<'_>, text: &str) -> (f64, f64) {
@@ -190,8 +183,7 @@ fn text_place(document: &Document<'_>, text: &str) -> (f64, f64) {
     let node = nodes
         .find(|node| node.has_tag_name("text") && node.text() == Some(text))
         .unwrap();
-    let number = |name: &str| node.attribute(name).unwrap().parse::<f64>().unwrap();
-    (number("x"), number("y"))
+    (number(&node, "x"), number(&node, "y"))
 }
 
 const MAP: &str = "[ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.8\n[simulation]\nduration_s = 30\n\
@@ -202,7 +194,7 @@ fn dimensionless_axes_are_in_units_of_p_and_of_the_onset() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     fs::write(path.join("s.toml"), format!("{ARCH}{MAP}")).unwrap();
-    done(&archrock(path, &["map", "s.toml", "--dimensionless"]));
+    stdout(&archrock(path, &["map", "s.toml", "--dimensionless"]));
     let picture = fs::read_to_string(path.join("results/s/map.svg")).unwrap();
     let picture = Document::parse(&picture).unwrap();
     text_place(&picture, "p t_p");

@@ -1,6 +1,7 @@
 //! `map.html`: every cell that it shows against the table, in a real browser, and the commands against a run.
 
 use crate::browser;
+use crate::results::{Row, Table, data_of};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +13,7 @@ const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_m = 0.75\nembrace
                         [ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.8\n";
 
 /// A map in a folder: its page, and the rows of its table.
-fn map(folder: &Path, axes: &str, more: &[&str]) -> (String, Vec<Vec<String>>) {
+fn map(folder: &Path, axes: &str, more: &[&str]) -> (String, Vec<Row>) {
     fs::write(
         folder.join("my arch.toml"),
         format!("{SCENARIO}[map]\n{axes}"),
@@ -23,25 +24,16 @@ fn map(folder: &Path, axes: &str, more: &[&str]) -> (String, Vec<Vec<String>>) {
         &[&["map", "my arch.toml", "--out", "."], more].concat(),
     );
     assert!(output.status.success(), "{}", stderr(&output));
-    let mut reader = csv::Reader::from_path(folder.join("map.csv")).unwrap();
-    let rows = reader
-        .records()
-        .map(|row| row.unwrap().iter().map(str::to_owned).collect());
     (
         fs::read_to_string(folder.join("map.html")).unwrap(),
-        rows.collect(),
+        Table::read(folder.join("map.csv")).rows,
     )
 }
 
-fn data(page: &str) -> Value {
-    let (_, after) = page.split_once("id=\"data\">").unwrap();
-    serde_json::from_str(after.split_once("</script>").unwrap().0).unwrap()
-}
-
 /// The command of the page with the values of a row, run by a shell: the outcome in its summary.
-fn run(folder: &Path, page: &str, row: &[String]) -> String {
-    let [x, y] = [0, 1].map(|column| row[column].parse::<f64>().unwrap());
-    let command = data(page)["command"].as_str().unwrap().to_owned();
+fn run(folder: &Path, page: &str, row: &Row) -> String {
+    let [x, y] = [0, 1].map(|column| row.number(column));
+    let command = data_of(page)["command"].as_str().unwrap().to_owned();
     let filled = command
         .replace("{cell.x}", &x.to_string())
         .replace("{cell.y}", &y.to_string())
@@ -136,10 +128,12 @@ map.dispatchEvent(new PointerEvent('pointermove', at));
 verify(archrock.chosen().join() === '0,2', 'stays');
 ";
     let page = folder.path().join("map.html");
+    let cells = rows.iter().map(|row| row.cells().map(|(_, cell)| cell));
+    let cells: Vec<Vec<&str>> = cells.map(Iterator::collect).collect();
     browser::assert_checked(
         &page,
         script,
-        &json!({ "rows": rows }).to_string(),
+        &json!({ "rows": cells }).to_string(),
         &[],
         150,
     );

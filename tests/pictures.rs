@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::program::{done, printed};
+use crate::results::{Table, named, number, points, strokes, texts};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
@@ -39,42 +40,8 @@ fn impact(arch: &FourLinkArch, index: usize) -> LinkImpact<'_> {
     }
 }
 
-fn named<'a>(document: &'a Document<'a>, name: &str) -> Vec<Node<'a, 'a>> {
-    document
-        .descendants()
-        .filter(|node| node.attribute("data-name") == Some(name))
-        .collect()
-}
-
-fn number(node: &Node<'_, '_>, attribute: &str) -> f64 {
-    node.attribute(attribute).unwrap().parse().unwrap()
-}
-
 fn center(node: &Node<'_, '_>) -> Vector2<f64> {
     Vector2::new(number(node, "cx"), number(node, "cy"))
-}
-
-/// The points of a curve, which is one polyline.
-fn points(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
-    let path = node.attribute("d").unwrap();
-    assert_eq!(path.matches('M').count(), 1, "one stroke");
-    let numbers: Vec<f64> = path
-        .trim_start_matches('M')
-        .split_whitespace()
-        .map(|text| text.parse().unwrap())
-        .collect();
-    numbers
-        .chunks_exact(2)
-        .map(|pair| Vector2::new(pair[0], pair[1]))
-        .collect()
-}
-
-fn texts(document: &Document<'_>) -> Vec<String> {
-    document
-        .descendants()
-        .filter_map(|node| node.text().filter(|_| node.has_tag_name("text")))
-        .map(str::to_owned)
-        .collect()
 }
 
 /// Place and scale of a ring on the sheet, from its first and last hinge: centre and pixels per radius.
@@ -316,19 +283,6 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     assert!((worst - 0.50199).abs() < 5e-4, "{worst}");
 }
 
-/// The closed polygons of a path.
-fn polygons(node: &Node<'_, '_>) -> Vec<Vec<Vector2<f64>>> {
-    let path = node.attribute("d").unwrap();
-    let point = |text: &str| {
-        let (x, y) = text.split_once(' ').unwrap();
-        Vector2::new(x.parse().unwrap(), y.parse().unwrap())
-    };
-    let polygons = path.split_terminator('Z');
-    polygons
-        .map(|polygon| polygon[1..].split('L').map(point).collect())
-        .collect()
-}
-
 /// An uneven arch on piers, whose blocks, onset and hinges are known from the row and the static programme.
 #[test]
 fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
@@ -370,7 +324,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
             let whole = named(document, "ring");
             assert!(!whole.is_empty());
             for node in &whole {
-                let drawn = polygons(node);
+                let drawn = strokes(node);
                 assert_eq!(drawn.len(), outlines_m.len());
                 let sheet = Sheet::new([corner(&drawn, 0), corner(&drawn, last)], exact);
                 for (drawn, outline_m) in drawn.iter().zip(outlines_m) {
@@ -403,7 +357,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         }
         // Rigid bodies that share their hinges: left and middle the second, middle and right the third.
         for (name, hinges) in [("left", [0, 1]), ("middle", [1, 2]), ("right", [2, 3])] {
-            let body = polygons(&named(&limit, name)[0]);
+            let body = strokes(&named(&limit, name)[0]);
             for hinge in hinges {
                 let corners = body.iter().flatten();
                 let distances = corners.map(|corner| (corner - moved[hinge]).norm());
@@ -416,7 +370,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         let drawn: usize = ["still", "left", "middle", "right"]
             .iter()
             .flat_map(|name| named(&limit, name))
-            .map(|node| polygons(&node).len())
+            .map(|node| strokes(&node).len())
             .sum();
         assert_eq!(drawn, outlines_m.len());
         // To that side: the hinge between left and middle goes there.
@@ -612,11 +566,8 @@ fn bands_have_the_sway_of_the_events() {
     let picture = read("history.svg");
     let document = Document::parse(&picture).unwrap();
     let mut events: Vec<(f64, String)> = vec![(0.0, String::new())];
-    let mut table =
-        csv::Reader::from_reader(fs::File::open(folder.path().join("out/events.csv")).unwrap());
-    for row in table.records() {
-        let row = row.unwrap();
-        events.push((row[0].parse().unwrap(), row[3].to_owned()));
+    for row in Table::read(folder.path().join("out/events.csv")).rows {
+        events.push((row.number("time_s"), row["sway"].to_owned()));
     }
     let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
     let end_s = summary["outcome_time_s"].as_f64().unwrap();

@@ -57,10 +57,7 @@ fn what_it_quotes_is_what_run_says() {
 }
 
 #[test]
-fn it_is_short_and_its_links_lead_somewhere() {
-    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
-    let words = readme.split_whitespace().count();
-    assert!(words <= 1500, "{words} words");
+fn links_lead_somewhere() {
     let docs = fs::read_dir(repository().join("docs")).unwrap();
     let pages = docs.map(|entry| entry.unwrap().path());
     let mut pages: Vec<PathBuf> = pages

@@ -2,36 +2,11 @@
 
 use crate::browser;
 use crate::program;
+use crate::results::{Table, data_of};
 use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-
-/// A table by columns.
-struct Table {
-    header: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Table {
-    fn read(path: &Path) -> Self {
-        let mut reader = csv::Reader::from_path(path).unwrap();
-        let words = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
-        Self {
-            header: words(reader.headers().unwrap()),
-            rows: reader.records().map(|row| words(&row.unwrap())).collect(),
-        }
-    }
-
-    fn column(&self, name: &str) -> usize {
-        let found = self.header.iter().position(|known| known == name);
-        found.unwrap_or_else(|| panic!("no {name} in {:?}", self.header))
-    }
-
-    fn number(&self, row: usize, name: &str) -> f64 {
-        self.rows[row][self.column(name)].parse().unwrap()
-    }
-}
 
 /// A run with its page and poses, in a folder.
 fn run(folder: &Path, scenario: &str) -> String {
@@ -40,11 +15,6 @@ fn run(folder: &Path, scenario: &str) -> String {
     let output = program::archrock(folder, &arguments);
     assert!(output.status.success(), "{}", program::stderr(&output));
     fs::read_to_string(folder.join("report.html")).unwrap()
-}
-
-fn data(page: &str) -> Value {
-    let (_, after) = page.split_once("id=\"data\">").unwrap();
-    serde_json::from_str(after.split_once("</script>").unwrap().0).unwrap()
 }
 
 /// The page of a scenario in a browser: every frame that is compared is one of its frames, so that nothing is blended.
@@ -56,37 +26,34 @@ fn check(scenario: &str, names: &[&str], least_hinges: usize, settings: &[&str])
         assert!(!page.contains(foreign), "{foreign}");
     }
     let (rotations, poses) = (
-        Table::read(&folder.path().join("rotations.csv")),
-        Table::read(&folder.path().join("poses.csv")),
+        Table::read(folder.path().join("rotations.csv")),
+        Table::read(folder.path().join("poses.csv")),
     );
     assert_eq!(rotations.rows.len(), poses.rows.len());
     let last = rotations.rows.len() - 1;
     let peak = (0..=last)
         .step_by(16)
         .max_by(|a, b| {
-            let of = |row: usize| {
-                rotations
-                    .number(row, &key("rotation", names[0], "rad"))
-                    .abs()
-            };
+            let column = key("rotation", names[0], "rad");
+            let of = |row: usize| rotations.rows[row].number(&column).abs();
             of(*a).total_cmp(&of(*b))
         })
         .unwrap();
     let row = |row: usize| {
-        let time_s = rotations.number(row, "time_s");
-        assert_eq!(time_s, poses.number(row, "time_s"));
+        let time_s = rotations.rows[row].number("time_s");
+        assert_eq!(time_s, poses.rows[row].number("time_s"));
         let bodies = names.iter().map(|name| {
-            let rotation_rad = rotations.number(row, &key("rotation", name, "rad"));
-            let [x, y] = ["x", "y"].map(|axis| poses.number(row, &key(axis, name, "m")));
+            let rotation_rad = rotations.rows[row].number(&key("rotation", name, "rad"));
+            let [x, y] = ["x", "y"].map(|axis| poses.rows[row].number(&key(axis, name, "m")));
             assert_eq!(
                 rotation_rad,
-                poses.number(row, &key("rotation", name, "rad"))
+                poses.rows[row].number(&key("rotation", name, "rad"))
             );
             [rotation_rad, x, y]
         });
         json!({
             "time_s": time_s,
-            "state": rotations.rows[row][rotations.column("state")],
+            "state": &rotations.rows[row]["state"],
             "bodies": bodies.collect::<Vec<_>>(),
         })
     };
@@ -94,8 +61,8 @@ fn check(scenario: &str, names: &[&str], least_hinges: usize, settings: &[&str])
     let rows: Vec<Value> = (0..last).step_by(16).chain([last]).map(row).collect();
     let facts = json!({
         "rows": rows,
-        "peak_s": rotations.number(peak, "time_s"),
-        "end_s": rotations.number(last, "time_s"),
+        "peak_s": rotations.rows[peak].number("time_s"),
+        "end_s": rotations.rows[last].number("time_s"),
         "least_hinges": least_hinges,
     });
     let script = include_str!("browser/report.js");
@@ -138,7 +105,7 @@ fn ten_seconds_of_thirty_six_blocks_are_small() {
     let arguments = ["run", "long.toml", "--out", ".", "--no-spread"];
     let output = program::archrock(folder.path(), &arguments);
     assert!(output.status.success(), "{}", program::stderr(&output));
-    let table = Table::read(&folder.path().join("rotations.csv"));
+    let table = Table::read(folder.path().join("rotations.csv"));
     assert_eq!(table.rows.len(), 2001);
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(page.len() < 500_000, "{} bytes", page.len());
@@ -155,7 +122,7 @@ fn what_the_scenario_says_cannot_break_the_page() {
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(!page.contains("<script>alert"), "a title stays text");
     assert!(page.contains("&lt;script&gt;alert(1)&lt;/script&gt; %DATA% &amp; more"));
-    assert_eq!(data(&page)["bodies"], json!([""]));
+    assert_eq!(data_of(&page)["bodies"], json!([""]));
 }
 
 #[test]

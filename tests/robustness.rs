@@ -2,13 +2,12 @@
 #![cfg(target_os = "linux")]
 #![expect(clippy::print_stderr, reason = "tests")]
 
+use crate::results::{Row, Table, summary};
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-
-use serde_json::Value;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_archrock");
 
@@ -37,22 +36,20 @@ fn names(path: &Path) -> Vec<String> {
     names
 }
 
-/// Rows of a table without its header, split at the commas; the file ends with a whole line.
-fn rows(path: &Path) -> Vec<Vec<String>> {
+/// Rows of a table; the file ends with a whole line.
+fn rows(path: &Path) -> Vec<Row> {
     let text = fs::read_to_string(path).unwrap();
     assert!(text.ends_with('\n'), "{} is cut off", path.display());
-    let split = |line: &str| line.split(',').map(str::to_owned).collect();
-    text.lines().skip(1).map(split).collect()
+    Table::parse(text).rows
 }
 
 /// Checks that what is in the folder under the names of results is complete, and, with the summary, that
 /// it is all of one run. Returns whether the summary is there.
 fn check_results(folder: &Path, duration_s: f64) -> bool {
-    let number = |text: &str| text.parse::<f64>().unwrap();
     let found = |name: &str| folder.join(name).exists();
     if found("rotations.csv") {
         let rotations = rows(&folder.join("rotations.csv"));
-        assert!(number(&rotations.last().unwrap()[0]) == duration_s);
+        assert!(rotations.last().unwrap().number("time_s") == duration_s);
     }
     for name in ["events.csv", "impacts.csv"] {
         if found(name) {
@@ -63,21 +60,26 @@ fn check_results(folder: &Path, duration_s: f64) -> bool {
     if !found("summary.json") {
         return false;
     }
-    let summary: Value =
-        serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap();
+    let summary = summary(folder);
     let released = summary["scenario"]["initial"]["rotation_rad"]
         .as_f64()
         .unwrap();
     let rotations = rows(&folder.join("rotations.csv"));
-    assert!(number(&rotations[0][4]) == -released);
+    assert!(rotations[0].number(4) == -released);
     let (impacts, events) = (
         rows(&folder.join("impacts.csv")),
         rows(&folder.join("events.csv")),
     );
     assert_eq!(summary["impacts"], impacts.len());
     assert_eq!(events.len(), impacts.len());
-    assert_eq!(events.last().unwrap()[0], impacts.last().unwrap()[1]);
-    assert_eq!(rotations.last().unwrap()[2], events.last().unwrap()[1]);
+    assert_eq!(
+        events.last().unwrap()["time_s"],
+        impacts.last().unwrap()["time_s"]
+    );
+    assert_eq!(
+        rotations.last().unwrap()["phase"],
+        events.last().unwrap()["phase"]
+    );
     true
 }
 

@@ -7,21 +7,11 @@ use std::path::Path;
 use std::process::{Output, Stdio};
 
 use crate::program::{archrock, command, stderr};
+use crate::program::{refusal, stdout};
 use serde_json::Value;
 
 const TEXT: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
                     [ground.rectangular]\namplitude_g = -0.3\nduration_s = 0.2\n";
-
-fn stdout(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn refused(output: &Output) -> String {
-    assert_eq!(output.status.code(), Some(2));
-    assert!(output.stdout.is_empty());
-    stderr(output)
-}
 
 /// The program with a scenario on standard input.
 fn piped(folder: &Path, arguments: &[&str], text: &str) -> Output {
@@ -90,7 +80,7 @@ fn a_scenario_may_come_by_standard_input() {
     assert_eq!(stdout(&piped_in), stdout(&of_file));
 
     let wrong = piped(folder.path(), &["run", "-"], &TEXT.replace("0.15", "15"));
-    assert!(refused(&wrong).contains("<stdin>:3:19: `thickness_ratio = 15`"));
+    assert!(refusal(&wrong).contains("<stdin>:3:19: `thickness_ratio = 15`"));
 
     // Records are relative to the current folder.
     fs::write(folder.path().join("r.csv"), "0,0\n0.5,0.4\n1,0\n").unwrap();
@@ -137,7 +127,7 @@ fn several_scenarios_run_one_after_another() {
     // All that is wrong is said before anything runs.
     fs::remove_dir_all(path.join("results")).unwrap();
     fs::write(path.join("c.toml"), "[arch]\n").unwrap();
-    let said = refused(&archrock(
+    let said = refusal(&archrock(
         path,
         &["run", "a.toml", "c.toml", "d.toml", "other/a.toml"],
     ));
@@ -145,7 +135,7 @@ fn several_scenarios_run_one_after_another() {
     assert!(said.contains("d.toml: cannot be read"));
     assert!(said.contains("a.toml and other/a.toml would both have their results in results/a"));
     assert!(!path.join("results").exists());
-    let said = refused(&archrock(
+    let said = refusal(&archrock(
         path,
         &["run", "a.toml", "b.toml", "--rotations", "-"],
     ));
@@ -185,7 +175,7 @@ fn results_of_another_scenario_of_the_same_name_are_not_replaced() {
             format!("{TEXT}{map}").replace("5.0", "6.0"),
         )
         .unwrap();
-        let said = refused(&run("other/s.toml", &[]));
+        let said = refusal(&run("other/s.toml", &[]));
         assert!(
             said.contains(
                 "results/s holds the results of s.toml: choose another folder with --out"

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use crate::common::pairs;
 use crate::program::{done, refused, scenarios};
+use crate::results::{Row, Table, json, named};
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
@@ -58,23 +59,12 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-fn rows(folder: &Path) -> Vec<csv::StringRecord> {
-    let mut table = csv::Reader::from_path(folder.join("suite.csv")).unwrap();
+fn rows(folder: &Path) -> Vec<Row> {
+    let table = Table::read(folder.join("suite.csv"));
     let columns = "record,sign,scale,peak_g,outcome,overturning_sway,impacts,impacts_before_overturning,\
                    outcome_time_s,peak_rotation_over_critical,energy_defect_ratio";
-    assert_eq!(
-        table.headers().unwrap(),
-        &columns.split(',').collect::<csv::StringRecord>()
-    );
-    table.records().map(Result::unwrap).collect()
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&read(path)).unwrap()
-}
-
-fn number(text: &str) -> f64 {
-    text.parse().unwrap()
+    assert_eq!(table.header.join(","), columns);
+    table.rows
 }
 
 /// Two records and a table, either scaled or brought to peaks.
@@ -94,11 +84,10 @@ fn rows_are_what_runs_of_the_same_scenario_give() {
         done(folder, &["suite", "s.toml", "--out", "o", "--quiet"]);
         let rows = rows(&folder.join("o"));
         assert_eq!(rows.len(), 3 * 2 * 3);
-        let outcome = |row: &csv::StringRecord| row[4].to_owned();
-        assert!(rows.iter().any(|row| outcome(row) == "overturned"));
-        assert!(rows.iter().any(|row| outcome(row) == "rest"));
+        assert!(rows.iter().any(|row| row["outcome"] == "overturned"));
+        assert!(rows.iter().any(|row| row["outcome"] == "rest"));
         for row in rows.iter().step_by(5).chain(rows.last()) {
-            let signed = number(&row[1]) * number(&row[2]);
+            let signed = row.number(1) * row.number(2);
             let table = if row[0].ends_with(".csv") {
                 "acceleration_column = 'a'\nunit = 'g'\nstart_s = 1.0\n"
             } else {
@@ -118,18 +107,18 @@ fn rows_are_what_runs_of_the_same_scenario_give() {
             assert_eq!(run["impacts"].to_string(), row[6]);
             // A peak in g is scaled to by another order of multiplications.
             let time_s = run["outcome_time_s"].as_f64().unwrap();
-            assert!((time_s - number(&row[8])).abs() < 1e-6, "{row:?} {time_s}");
+            assert!((time_s - row.number(8)).abs() < 1e-6, "{row:?} {time_s}");
             let peak_g = samples_of(folder, file)
                 .iter()
                 .map(|s| s.1.abs())
                 .fold(0.0, f64::max);
             let peak_g = peak_g * signed.abs();
-            assert!((peak_g / number(&row[3]) - 1.0).abs() < 1e-14, "{row:?}");
+            assert!((peak_g / row.number(3) - 1.0).abs() < 1e-14, "{row:?}");
             // Slenderness 0.8 / 4: the critical rotation is its angle.
             let rotation = run["peak_rotation_rad"].as_f64().unwrap() / 0.2_f64.atan();
-            if &row[4] != "overturned" {
+            if row[4] != "overturned" {
                 assert!(
-                    (rotation - number(&row[9])).abs() < 1e-6,
+                    (rotation - row.number(9)).abs() < 1e-6,
                     "{row:?} {rotation}"
                 );
             }
@@ -143,7 +132,8 @@ fn samples_of(folder: &Path, file: &str) -> Vec<(f64, f64)> {
         return samples(&folder.join(file));
     }
     let text = read(&folder.join(file));
-    let numbers = |line: &str| -> Vec<f64> { line.split(';').map(number).collect() };
+    let numbers =
+        |line: &str| -> Vec<f64> { line.split(';').map(|cell| cell.parse().unwrap()).collect() };
     let lines = text.lines().skip(1).map(numbers);
     lines.map(|cells| (cells[0], cells[2])).collect()
 }
@@ -162,12 +152,12 @@ fn a_mirrored_record_does_the_same_to_the_other_side() {
         let mut overturned = 0;
         for record in both.chunks(8) {
             for (row, mirrored) in record[..4].iter().zip(&record[4..]) {
-                assert_eq!((&row[1], &mirrored[1]), ("1", "-1"));
+                assert_eq!([&row["sign"], &mirrored["sign"]], ["1", "-1"]);
                 // To the last bit: no step knows left from right.
                 for column in [0, 2, 3, 4, 6, 7, 8, 9, 10] {
                     assert_eq!(row[column], mirrored[column]);
                 }
-                if &row[4] == "overturned" {
+                if row[4] == "overturned" {
                     overturned += 1;
                     assert_ne!(row[5], mirrored[5]);
                 }
@@ -177,7 +167,7 @@ fn a_mirrored_record_does_the_same_to_the_other_side() {
 
         write(folder, "s.toml", &format!("{text}both_signs = false\n"));
         done(folder, &["suite", "s.toml", "--out", "one", "--quiet"]);
-        let one: Vec<_> = both.iter().filter(|row| &row[1] == "1").cloned().collect();
+        let one: Vec<_> = both.iter().filter(|row| row[1] == "1").cloned().collect();
         assert_eq!(rows(&folder.join("one")), one);
         // Mirror images are no further evidence.
         let levels = |out: &str| read(&folder.join(out).join("fragility.csv"));
@@ -199,26 +189,26 @@ fn the_curve_is_that_of_the_rows() {
     let results = folder.path().join("results/column-suite");
     let rows = rows(&results);
     let fragility = json(&results.join("fragility.json"));
-    let mut levels = csv::Reader::from_path(results.join("fragility.csv")).unwrap();
-    assert_eq!(&levels.headers().unwrap()[0], "peak_g");
-    let levels: Vec<_> = levels.records().map(Result::unwrap).collect();
+    let levels = Table::read(results.join("fragility.csv"));
+    assert_eq!(levels.header[0], "peak_g");
+    let levels = levels.rows;
     assert_eq!((rows.len(), levels.len()), (320, 20));
     let median = fragility["median"].as_f64().unwrap();
     let mut log_likelihood = 0.0;
     for level in &levels {
         let at = rows
             .iter()
-            .filter(|row| &row[1] == "1" && row[3] == level[0]);
+            .filter(|row| row[1] == "1" && row[3] == level[0]);
         let at: Vec<_> = at.collect();
-        let overturned = at.iter().filter(|row| &row[4] == "overturned").count();
+        let overturned = at.iter().filter(|row| row[4] == "overturned").count();
         assert_eq!(level[1], at.len().to_string());
         assert_eq!(level[2], overturned.to_string());
-        assert_eq!((&level[3], &level[4]), ("0", "0"));
+        assert_eq!([&level[3], &level[4]], ["0", "0"]);
         let (overturned, all) = (overturned as f64, at.len() as f64);
-        assert_eq!(number(&level[5]), overturned / all);
-        let [p, low, high] = [6, 7, 8].map(|column| number(&level[column]));
+        assert_eq!(level.number(5), overturned / all);
+        let [p, low, high] = [6, 7, 8].map(|column| level.number(column));
         assert!(0.0 < low && low < p && p < high && high < 1.0);
-        assert_eq!(number(&level[0]) < median, p < 0.5);
+        assert_eq!(level.number(0) < median, p < 0.5);
         log_likelihood += overturned * p.ln() + (all - overturned) * (1.0 - p).ln();
     }
     let expected = fragility["log_likelihood"].as_f64().unwrap();
@@ -244,12 +234,7 @@ fn the_curve_is_that_of_the_rows() {
     );
     let picture = read(&results.join("suite.svg"));
     let picture = roxmltree::Document::parse(&picture).unwrap();
-    let named = |name| {
-        let marks = picture.descendants();
-        marks
-            .filter(|node| node.attribute("data-name") == Some(name))
-            .count()
-    };
+    let named = |name| named(&picture, name).len();
     assert_eq!((named("fraction"), named("fit"), named("band")), (20, 1, 1));
 }
 
@@ -611,22 +596,20 @@ fn uncertain_cases_are_taken_both_ways() {
     assert_eq!(survivals[0].survival.uncertain, [[3.0, 3.0]]);
 
     let told = told(&free_heading(), &doubtful);
-    let mut table = csv::Reader::from_reader(told["fragility.csv"].as_bytes());
-    let header: Vec<_> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    let Table { header, rows } = Table::parse(&told["fragility.csv"]);
     assert_eq!(header[9..11], ["uncertain", "fraction_with_uncertain"]);
-    let rows: Vec<_> = table.records().map(Result::unwrap).collect();
-    let counts: Vec<_> = rows.iter().map(|row| (&row[2], &row[9])).collect();
+    let counts: Vec<_> = rows.iter().map(|row| [&row[2], &row[9]]).collect();
     assert_eq!(
         counts,
-        [("0", "0"), ("1", "1"), ("2", "1"), ("3", "0"), ("3", "1")]
+        [["0", "0"], ["1", "1"], ["2", "1"], ["3", "0"], ["3", "1"]]
     );
     for row in &rows {
-        let probability = |column: usize| number(&row[column]);
+        let probability = |column: usize| row.number(column);
         assert!(
-            probability(6) < probability(11) || &row[0] == "5.0",
+            probability(6) < probability(11) || row[0] == "5.0",
             "{row:?}"
         );
-        assert!(number(&row[5]) <= number(&row[10]));
+        assert!(row.number(5) <= row.number(10));
     }
     let json: Value = told["fragility.json"].parse().unwrap();
     assert_eq!(

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use crate::program::{archrock, printed, refused, stderr};
+use crate::results::{Row, Table};
 use archrock::dynamics::hybrid::engine::EngineError;
 use archrock::dynamics::hybrid::integrator::Cost;
 use archrock::dynamics::model::Repetition;
@@ -513,8 +514,7 @@ fn files_agree_and_threads_change_nothing() {
     );
     assert_eq!((bands.len(), gaps.len()), (2, 1));
     assert_eq!(model["lowest_factor"], bands[0]["from"]);
-    let mut csv = csv::Reader::from_path(folder.join("r/threshold.csv")).unwrap();
-    let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
+    let rows = Table::read(folder.join("r/threshold.csv")).rows;
     let samples = model["samples"].as_array().unwrap();
     assert_eq!((rows.len(), samples.len()), (234, 234));
     for (row, sample) in pairs(&rows, samples) {
@@ -545,7 +545,7 @@ fn files_agree_and_threads_change_nothing() {
     };
     assert_eq!(named("four_links peak"), 1);
     let runs = rows.chunk_by(|a, b| {
-        let kind = |row: &csv::StringRecord| {
+        let kind = |row: &Row| {
             (
                 row[2].to_owned(),
                 row[2] == *"overturned",
@@ -578,12 +578,8 @@ fn strides_and_ends_can_be_chosen() {
         "{said}"
     );
     assert!(said.contains("survives from there on"), "{said}");
-    let mut csv = csv::Reader::from_path(folder.join("r/threshold.csv")).unwrap();
-    let factors: Vec<String> = csv
-        .records()
-        .map(|row| row.unwrap()[1].to_owned())
-        .collect();
-    assert_eq!(factors, ["1.0", "1.25", "1.5625", "1.953125", "2.0"]);
+    let factors = Table::read(folder.join("r/threshold.csv")).numbers("factor");
+    assert_eq!(factors, [1.0, 1.25, 1.5625, 1.953125, 2.0]);
     let said = printed(
         folder,
         &["threshold", "s.toml", "--to", "0.4", "--out", "r"],

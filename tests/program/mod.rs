@@ -25,12 +25,17 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
+/// What the program printed; it is to have succeeded.
+#[track_caller]
+pub fn stdout(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
 /// What the program prints; it is to succeed.
 #[track_caller]
 pub fn printed(folder: &Path, arguments: &[&str]) -> String {
-    let output = archrock(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    String::from_utf8(output.stdout).unwrap()
+    stdout(&archrock(folder, arguments))
 }
 
 /// What the program says while it works; it is to succeed, and no study prints anything.
@@ -43,13 +48,19 @@ pub fn done(folder: &Path, arguments: &[&str]) -> String {
     stderr(&output)
 }
 
+/// What the program said of wrong input; it is to have printed nothing.
+#[track_caller]
+pub fn refusal(output: &Output) -> String {
+    let said = stderr(output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(output.stdout.is_empty(), "{said}");
+    said
+}
+
 /// What the program says of wrong input, these words among it; it is to print nothing.
 #[track_caller]
 pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
-    let output = archrock(folder, arguments);
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(output.stdout.is_empty(), "{arguments:?} prints");
+    let said = refusal(&archrock(folder, arguments));
     for words in words {
         assert!(said.contains(words), "{words:?} is not in: {said}");
     }
