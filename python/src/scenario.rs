@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::stability::onset;
-use archrock::output::{impact, mechanisms};
+use archrock::studies::{impact, limit};
 use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
 use numpy::{PyArray1, PyArrayMethods as _};
@@ -222,10 +222,10 @@ impl Scenario {
             let [right, left] =
                 py.detach(|| [Sway::Right, Sway::Left].map(|sway| onset(&row, sway)));
             let onsets = [right.map_err(refused)?, left.map_err(refused)?];
-            return Ok(mechanisms::row_limit(&row, &onsets, gravity_m_s2).to_string());
+            return Ok(limit::row_json(&row, &onsets, gravity_m_s2).to_string());
         }
         let model = self.mechanisms(py)?;
-        Ok(mechanisms::limit(&*model, gravity_m_s2).to_string())
+        Ok(limit::mechanism_json(&*model, gravity_m_s2).to_string())
     }
 
     /// The mechanisms that impacts lead through after a first sway to a side, as `archrock impact --format json`.

@@ -1,33 +1,18 @@
 //! The command `impact`.
 
-use std::fmt::Write as _;
-use std::io;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use archrock::dynamics::model::{FourLinkModel, MechanismModel};
-use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::four_link::certificate::{
-    DEFAULT_JOINTS, Projection, joints_rad, project,
-};
-use archrock::mechanics::four_link::impact::{
-    Impact, ImpactModel, closing_field, impact as impact_by,
-};
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::four_link::resultant::{Extremes, Extremum};
-use archrock::mechanics::geometry::profile::Profile;
-use archrock::mechanics::geometry::ring::Edge;
-use archrock::mechanics::sway::Sway;
-use archrock::output::impact::LinkImpact;
-use archrock::output::pretty;
-use archrock::output::{Folder, impact as output, pictures};
-use archrock::scenario::{Scenario, Structure};
-use serde_json::json;
+use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::output::Folder;
+use archrock::scenario::Structure;
+use archrock::studies::impact::{LinkImpact, Question, chain_answer, four_links_answer};
+use archrock::studies::pictures;
 
-use super::commands::{self, degrees};
 use super::figure::FigureOption;
 use super::first::FirstOption;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, print};
+use super::{Failure, Format, commands, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -75,12 +60,8 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
     if matches!(scenario.structure, Structure::Column(_)) && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;
-        return match arguments.format {
-            Format::Json => print(&pretty(
-                &json!({ "impacts": output::chain(&*model, first, count) }),
-            )),
-            Format::Text => print(&chain_text(&scenario, &*model, first, count)),
-        };
+        let answer = chain_answer(&scenario, &*model, first, count);
+        return commands::answer(&answer, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
     let model = commands::four_links(&scenario, options)?;
@@ -90,7 +71,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         first,
         index: arguments.link.into(),
     };
-    let chosen = || choose(asked);
+    let chosen = || choose(&asked);
     if let Some(path) = &arguments.line {
         let others = arguments.models || arguments.certificate || arguments.plot.is_some();
         if path == Path::new("-") && others {
@@ -100,7 +81,8 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
                     .to_owned(),
             ));
         }
-        write_line(path, &chosen()?)?;
+        chosen()?;
+        write_line(path, &asked)?;
         if path == Path::new("-") {
             return Ok(());
         }
@@ -116,88 +98,53 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         })?;
         commands::write_picture(plot, &picture)?;
     }
-    let models = arguments
-        .models
-        .then(|| Ok::<_, Failure>(models(&scenario, &chosen()?)))
-        .transpose()?;
-    let certificate = arguments
-        .certificate
-        .then(|| certify(&chosen()?, arguments.joints))
-        .transpose()?;
-    // An arch of equal voussoirs, or of none, is its own mirror image, and so is its chain.
-    let sides = match scenario.structure {
-        Structure::Masonry(_) => vec![Sway::Right, Sway::Left],
-        _ => vec![first],
-    };
-    match arguments.format {
-        Format::Json => {
-            let keys = ["impacts", "impacts_after_left"].into_iter();
-            let mut result: serde_json::Value = keys
-                .zip(sides)
-                .map(|(key, side)| (key.to_owned(), output::impacts(model, side, count)))
-                .collect();
-            if let Some(models) = &models {
-                result["models"] = output::models(&asked, models);
-            }
-            if let Some(projection) = &certificate {
-                result["certificate"] = output::certificate(&asked, projection);
-            }
-            print(&pretty(&result))
-        }
-        Format::Text => {
-            let chains = sides.into_iter().map(|side| {
-                chain_text(&scenario, model, side, count) + &impulses_text(model, side, count)
-            });
-            let mut text = chains.collect::<Vec<_>>().join("\n");
-            if let Some(models) = &models {
-                text += &models_text(&asked, models);
-            }
-            if let Some(projection) = &certificate {
-                text += &certificate_text(&scenario, &asked, projection);
-            }
-            print(&text)
-        }
+    if arguments.models || arguments.certificate {
+        chosen()?;
     }
+    let sites = asked.chain().sites();
+    if let (HingeSites::Voussoirs(count), Some(_)) = (sites, arguments.joints) {
+        return Err(Failure::Input(format!(
+            "--joints: the arch has {count} voussoirs, whose joints are used; leave it out"
+        )));
+    }
+    let question = Question {
+        count,
+        models: arguments.models,
+        certificate: arguments.certificate,
+        joints: arguments.joints.map(usize::from),
+    };
+    let answer = four_links_answer(&scenario, &asked, &question);
+    let answer = answer.map_err(|error| Failure::Work(error.to_string()))?;
+    commands::answer(&answer, arguments.format)
 }
 
-/// An impact with the mechanism that closes.
-struct Chosen<'a> {
-    impact: LinkImpact<'a>,
-    before: &'a FourLink,
+/// Refuses an impact that an earlier one forestalls.
+fn choose(impact: &LinkImpact<'_>) -> Result<(), Failure> {
+    if impact.before().is_some() {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "--link {}: an earlier impact stops the arch; give a smaller number",
+        impact.index
+    )))
 }
 
-fn choose(impact: LinkImpact<'_>) -> Result<Chosen<'_>, Failure> {
-    let before = impact.before().ok_or_else(|| {
-        Failure::Input(format!(
-            "--link {}: an earlier impact stops the arch; give a smaller number",
-            impact.index
-        ))
-    })?;
-    Ok(Chosen {
-        impact,
-        before: &before.mechanism,
-    })
-}
-
-fn write_line(path: &Path, chosen: &Chosen<'_>) -> Result<(), Failure> {
-    let impact = &chosen.impact;
-    let after = impact.after().ok_or_else(|| {
-        Failure::Input(format!(
+fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {
+    if impact.after().is_none() {
+        return Err(Failure::Input(format!(
             "--line: no mechanism can follow impact {}, so it has no impulse line",
             impact.index
-        ))
-    })?;
-    let line = impact.line().ok_or_else(|| {
+        )));
+    }
+    let table = impact.line_table().ok_or_else(|| {
         Failure::Input(
             "--line: a prescribed restitution coefficient has no impulse line; \
              choose another impact model in the scenario"
                 .to_owned(),
         )
-    })?;
-    let write =
-        |writer: &mut dyn io::Write| output::write_line(writer, impact, &after.mechanism, line);
+    })??;
     if path == Path::new("-") {
-        return Ok(write(&mut io::stdout().lock())?);
+        return print(&String::from_utf8_lossy(&table));
     }
     let name = path.file_name().and_then(|name| name.to_str());
     let (Some(name), false) = (name, path.exists() && !path.is_file()) else {
@@ -212,399 +159,9 @@ fn write_line(path: &Path, chosen: &Chosen<'_>) -> Result<(), Failure> {
     };
     let mut folder = Folder::open(parent, &[name])
         .map_err(|error| Failure::Input(format!("{error}; choose another file with --line")))?;
-    write(&mut folder.file(name))?;
+    folder
+        .file(name)
+        .write_all(&table)
+        .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
     Ok(folder.complete()?)
-}
-
-/// The models that the momentum theorems govern, and a prescribed one if the scenario has it.
-fn models(scenario: &Scenario, chosen: &Chosen<'_>) -> Vec<(ImpactModel, Option<Impact>)> {
-    let mut models = vec![
-        ImpactModel::MaxRestitution,
-        ImpactModel::SameSections,
-        ImpactModel::Mirrored,
-    ];
-    if !models.contains(&scenario.impact.model) {
-        models.push(scenario.impact.model);
-    }
-    let (profile, sites) = (chosen.impact.profile(), chosen.impact.chain().sites());
-    models
-        .into_iter()
-        .map(|model| (model, impact_by(chosen.before, profile, sites, model)))
-        .collect()
-}
-
-fn certify(chosen: &Chosen<'_>, joints: Option<u16>) -> Result<Projection, Failure> {
-    let (profile, sites) = (chosen.impact.profile(), chosen.impact.chain().sites());
-    if let (HingeSites::Voussoirs(count), Some(_)) = (sites, joints) {
-        return Err(Failure::Input(format!(
-            "--joints: the arch has {count} voussoirs, whose joints are used; leave it out"
-        )));
-    }
-    let joints = joints.map_or(DEFAULT_JOINTS, usize::from);
-    let mechanism = chosen.impact.after().map(|link| &link.mechanism);
-    let joints_rad = joints_rad(profile, sites, joints, mechanism);
-    let closing = closing_field(chosen.before, profile);
-    project(&closing, profile, &joints_rad).map_err(|error| Failure::Work(error.to_string()))
-}
-
-/// The chain of mechanisms of any structure.
-fn chain_text(
-    scenario: &Scenario,
-    model: &dyn MechanismModel,
-    first: Sway,
-    count: usize,
-) -> String {
-    let mut text = format!(
-        "impacts after a first sway to the {}, model {}{} (r = kinetic energy after / before",
-        first.name(),
-        scenario.impact.model.name(),
-        match scenario.impact.restitution_factor {
-            1.0 => String::new(),
-            factor => format!(" times {factor:?}"),
-        },
-    );
-    let hinges = model.hinges_after(0, first);
-    let of_arch = hinges.len() == 4;
-    text += match hinges.first() {
-        Some(Hinge::Section { .. }) => {
-            ";\nangles in degrees from the left springing; I intrados, E extrados"
-        }
-        Some(Hinge::Joint { .. }) => {
-            ";\njoints from the left, 0 at the left base or springing; I intrados, E extrados"
-        }
-        _ => "",
-    };
-    text += ")\n\nimpact         r  sway   ";
-    let names: &[&str] = if of_arch {
-        &commands::HINGES
-    } else {
-        &["turns about"]
-    };
-    for name in names {
-        let _ = write!(text, "{name:>12}");
-    }
-    text.push('\n');
-    for index in 0..=count {
-        let Some(restitution) = model.restitution_from(first, index) else {
-            let _ = writeln!(
-                text,
-                "{index:>6}  no mechanism can follow: the structure stops"
-            );
-            break;
-        };
-        let restitution = match index {
-            0 => String::new(),
-            _ => format!("{restitution:.6}"),
-        };
-        let sway = first.before(index);
-        let _ = write!(text, "{index:>6}  {restitution:>8}  {:5}  ", sway.name());
-        for hinge in model.hinges_after(index, sway) {
-            text += &hinge_text(hinge);
-        }
-        text.push('\n');
-    }
-    text
-}
-
-/// A hinge in a column of a table.
-fn hinge_text(hinge: Hinge) -> String {
-    match hinge {
-        Hinge::Section { angle_rad, edge } => {
-            format!("{:>10.5} {}", degrees(angle_rad), initial(edge))
-        }
-        Hinge::Toe(side) => format!("{:>12}", format!("{} toe", side.name())),
-        Hinge::Joint { joint, edge } => {
-            let edge = edge.map_or("", initial);
-            format!("{:>12}", format!("joint {joint} {edge}"))
-        }
-    }
-}
-
-/// How the sections of a structure are spoken of.
-struct Words {
-    /// What it is.
-    whole: &'static str,
-    /// What a section is called in the head of a column.
-    section: &'static str,
-    /// How the place of an extreme is told.
-    place: &'static str,
-}
-
-impl Words {
-    fn of(profile: &dyn Profile) -> Self {
-        match profile.joint(0.0) {
-            Some(_) => Self {
-                whole: "row",
-                section: "joint",
-                place: "its joint",
-            },
-            None => Self {
-                whole: "ring",
-                section: "section",
-                place: "its section in degrees",
-            },
-        }
-    }
-}
-
-/// A section as in tables: degrees or the number of a joint.
-fn section_text(profile: &dyn Profile, section: f64) -> String {
-    match profile.joint(section) {
-        Some(joint) => joint.to_string(),
-        None => format!("{:.3}", degrees(section)),
-    }
-}
-
-/// Where a section is, in a sentence.
-fn place_text(near: &str, profile: &dyn Profile, section: f64) -> String {
-    match profile.joint(section) {
-        Some(joint) => format!("at joint {joint}"),
-        None => format!("{near} {:.2} deg", degrees(section)),
-    }
-}
-
-fn initial(edge: Edge) -> &'static str {
-    match edge {
-        Edge::Intrados => "I",
-        Edge::Extrados => "E",
-    }
-}
-
-fn impulses_text(model: &dyn FourLinkModel, first: Sway, count: usize) -> String {
-    let unit = model.impulse_unit_n_s_per_m();
-    let lines = || {
-        (1..=count).map_while(|index| {
-            let impact = LinkImpact {
-                model,
-                first,
-                index,
-            };
-            Some((impact, impact.line()?))
-        })
-    };
-    if lines().next().is_none() {
-        return String::new();
-    }
-    let mut text =
-        "\nimpulses at these hinges on the part towards the crown, x to the right and y up,\n\
-                    in N s per metre of depth for a closing rate of 1 rad/s\n\nimpact"
-            .to_owned();
-    for hinge in ["A", "B", "C", "D"] {
-        for component in ["x", "y"] {
-            let _ = write!(text, "{:>11}", format!("{hinge} {component}"));
-        }
-    }
-    text.push('\n');
-    for (impact, line) in lines() {
-        let _ = write!(text, "{:>6}", impact.index);
-        for impulse in line.hinge_impulses_from_left(impact.sway()) {
-            let _ = write!(
-                text,
-                "{:>11.5e}{:>11.5e}",
-                impulse.x * unit,
-                impulse.y * unit
-            );
-        }
-        text.push('\n');
-    }
-    let profile = model.chain_from(first).profile(0);
-    let Words { section, place, .. } = Words::of(profile);
-    let _ = writeln!(
-        text,
-        "\nimpulse line: eccentricity e (0.5 t is the edge), smallest normal impulse N in the same unit,\n\
-         largest ratio of tangential impulse T to N, each with {place}\n\n\
-         impact      |e|/t   {section:>7}        min N   {section:>7}      |T|/N   {section:>7}"
-    );
-    let at = |extremum: Extremum| section_text(profile, extremum.angle_rad);
-    for (impact, line) in lines() {
-        let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
-        // Both are infinite where there is tension.
-        let ratio = |extremum: Extremum| match extremum.value {
-            value if value.is_finite() => format!("{value:>9.5}"),
-            _ => format!("{:>9}", "-"),
-        };
-        let _ = writeln!(
-            text,
-            "{:>6}  {}  {:>8}  {:>11.5e}  {:>8}  {}  {:>8}  {}",
-            impact.index,
-            ratio(extremes.eccentricity_ratio),
-            at(extremes.eccentricity_ratio),
-            extremes.normal.value * unit,
-            at(extremes.normal),
-            ratio(extremes.friction_ratio),
-            at(extremes.friction_ratio),
-            verdict(&extremes, profile),
-        );
-    }
-    text
-}
-
-fn verdict(extremes: &Extremes, profile: &dyn Profile) -> String {
-    if extremes.is_admissible() {
-        "admissible".to_owned()
-    } else if extremes.normal.value <= 0.0 {
-        "in tension".to_owned()
-    } else {
-        format!("leaves the {}", Words::of(profile).whole)
-    }
-}
-
-fn models_text(asked: &LinkImpact<'_>, models: &[(ImpactModel, Option<Impact>)]) -> String {
-    let mut text = format!(
-        "\nimpact models compared, impact {}{}\n\n\
-         model                    r   {:>12}{:>12}{:>12}{:>12}   impulse line\n",
-        asked.index,
-        asked.after_first(),
-        "A",
-        "B",
-        "C",
-        "D"
-    );
-    let (profile, sway) = (asked.profile(), asked.sway());
-    for (model, impact) in models {
-        let _ = write!(text, "{:<16}", model.name());
-        let Some(impact) = impact else {
-            text += "  no mechanism can follow\n";
-            continue;
-        };
-        let sites = asked.chain().sites();
-        let line = impact.impulse_line.as_ref();
-        let line = line.map_or_else(
-            || "none".to_owned(),
-            |line| verdict(&line.extremes_from_left(sites, sway), profile),
-        );
-        let hinges = impact.mechanism.named_hinges_from_left(profile, sway);
-        let _ = writeln!(
-            text,
-            "{:>10.6}   {}   {line}",
-            impact.restitution,
-            hinges.map(hinge_text).concat()
-        );
-    }
-    text
-}
-
-fn certificate_text(
-    scenario: &Scenario,
-    asked: &LinkImpact<'_>,
-    projection: &Projection,
-) -> String {
-    let four_link = asked.after().map_or(0.0, |link| link.link.restitution);
-    let gap = projection.restitution - four_link;
-    let (profile, sway) = (asked.profile(), asked.sway());
-    let whole = Words::of(profile).whole;
-    let mut text = format!(
-        "\ncertificate of impact {}{}: largest restitution of any motion that opens joints and closes none\n\
-         (any number of hinges; {} joints)\n\n\
-         r, four hinges, model {:<16} {four_link:>12.8}\n\
-         r, any number of hinges                {:>12.8}\n\
-         gap                                    {gap:>12.8}\n\n",
-        asked.index,
-        asked.after_first(),
-        projection.joints.len(),
-        scenario.impact.model.name(),
-        projection.restitution,
-    );
-    if let Some(line) = asked.line() {
-        let extremes = line.extremes_from_left(asked.chain().sites(), sway);
-        let eccentricity = extremes.eccentricity_ratio;
-        let _ = if extremes.is_admissible() {
-            writeln!(
-                text,
-                "The impulse line of the four hinges is compressive and inside the {whole}: no admissible motion\n\
-                 keeps more energy, so the four hinges are certified."
-            )
-        } else if extremes.normal.value <= 0.0 {
-            writeln!(
-                text,
-                "The impulse line of the four hinges is in tension {}: more hinges keep more energy.",
-                place_text("near", profile, extremes.normal.angle_rad)
-            )
-        } else {
-            writeln!(
-                text,
-                "The impulse line of the four hinges leaves the {whole} by {:.2} % of the thickness {}: \
-                 other\nhinges keep more energy, {}.",
-                100.0 * (eccentricity.value - 0.5),
-                place_text("at", profile, eccentricity.angle_rad),
-                if gap > 1e-6 {
-                    "by the gap above"
-                } else {
-                    "but these joints are too few to show it"
-                }
-            )
-        };
-    }
-    if gap < -1e-6 {
-        let _ = writeln!(
-            text,
-            "Model {} keeps more energy than any admissible motion can.",
-            scenario.impact.model.name()
-        );
-    }
-    if projection.opened().next().is_none() {
-        text += "No motion keeps any energy: the impact stops the arch.\n";
-        return text;
-    }
-    text += match profile.joint(0.0) {
-        Some(_) => "The motion that keeps the most energy opens at joints, counted from the left\n",
-        None => {
-            "The motion that keeps the most energy opens at, in degrees from the left springing\n"
-        }
-    };
-    for zone in zones(asked, projection) {
-        let mut place = section_text(profile, zone.from);
-        if zone.from != zone.to {
-            place += &format!(" to {}", section_text(profile, zone.to));
-        }
-        let _ = writeln!(
-            text,
-            "  {place:>20}  {}  by {:.5} rad per rad of closing",
-            initial(zone.edge),
-            zone.rate
-        );
-    }
-    text
-}
-
-/// Neighbouring joints of a continuous ring that open about the same edge, or one joint.
-struct Zone {
-    edge: Edge,
-    from: f64,
-    to: f64,
-    /// Sum of their rotation rates.
-    rate: f64,
-    /// The last of them.
-    joint: usize,
-}
-
-/// The zones that open, from the left springing.
-fn zones(asked: &LinkImpact<'_>, projection: &Projection) -> Vec<Zone> {
-    let mut zones: Vec<Zone> = Vec::new();
-    for (joint, edge, rate) in projection.opened() {
-        let section = projection.joints[joint].angle_rad;
-        let section = asked.sway().from_left(asked.profile(), section);
-        let continues = |zone: &&mut Zone| {
-            asked.chain().sites() == HingeSites::Anywhere
-                && zone.edge == edge
-                && zone.joint + 1 == joint
-        };
-        match zones.iter_mut().find(continues) {
-            Some(zone) => {
-                zone.from = zone.from.min(section);
-                zone.to = zone.to.max(section);
-                zone.rate += rate;
-                zone.joint = joint;
-            }
-            None => zones.push(Zone {
-                edge,
-                from: section,
-                to: section,
-                rate,
-                joint,
-            }),
-        }
-    }
-    zones.sort_by(|a, b| a.from.total_cmp(&b.from));
-    zones
 }

@@ -14,6 +14,7 @@ use archrock::dynamics::history::{Event, Outcome, Sample, Summary};
 use archrock::dynamics::model::{MechanismModel, Model, Recorder};
 use archrock::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use archrock::mechanics::sway::Sway;
+use archrock::output::mechanisms;
 use archrock::output::overlay::{self, Curves};
 use archrock::output::pretty;
 use archrock::output::results::{self, EventsWriter};
@@ -583,7 +584,7 @@ fn human_summary(
         let _ = writeln!(
             text,
             "  peak rotation in rad: {}",
-            commands::by_body(&model.bodies(), &history.peak_rotations_rad),
+            mechanisms::by_body(&model.bodies(), &history.peak_rotations_rad),
         );
         let unstable = "the unstable rotation of the mechanism that moved";
         let _ = match (history.outcome, history.peak_over_critical) {

@@ -2,20 +2,16 @@
 //!
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
-pub mod capacity;
 pub mod caption;
-pub mod chart;
 mod envelope;
 mod film;
 mod folder;
 pub mod free_hinges;
 mod ground;
-pub mod impact;
 pub mod mechanisms;
 pub mod overlay;
 pub(crate) mod page;
 mod panels;
-pub mod pictures;
 pub mod poses;
 pub mod record;
 pub mod report;

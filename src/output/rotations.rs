@@ -18,7 +18,7 @@ fn column(quantity: &str, body: &str, unit: &str) -> String {
 }
 
 /// Names of the columns for each body.
-pub(super) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<String> {
+pub(crate) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<String> {
     bodies
         .iter()
         .map(|body| column(quantity, body, unit))

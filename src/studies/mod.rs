@@ -13,21 +13,24 @@
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
 //! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, which tells itself: numbers, words and page;
-//! - [`survey`]: arches of many shapes compared, without a history.
+//! - [`chart`]: arches of many shapes compared, without a history.
 
 pub mod capacity;
 pub mod catalogue;
+pub mod chart;
 pub mod ending;
+pub mod impact;
 mod impact_free;
 mod kind;
+pub mod limit;
 pub mod map;
 pub mod part;
+pub mod pictures;
 mod remarks;
 pub mod results;
 pub mod runner;
 pub mod spectrum;
 pub mod suite;
-pub mod survey;
 pub mod survival;
 pub mod threshold;
 pub mod verify;

@@ -2,6 +2,8 @@
 
 use std::io::Write as _;
 
+use serde_json::Value;
+
 use crate::output::{Figure, Folder, OutputError};
 
 /// What a study tells.
@@ -39,6 +41,15 @@ impl Results {
         }
         folder.complete()
     }
+}
+
+/// What is answered at once, for programs and for people.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// All numbers.
+    pub json: Value,
+    /// The same in words.
+    pub text: String,
 }
 
 /// How results look.

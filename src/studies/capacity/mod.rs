@@ -1,8 +1,11 @@
 //! The capacity curves of a scenario: see [`crate::mechanics::capacity`].
 
+mod told;
+
 use nalgebra::Vector2;
 use thiserror::Error;
 
+pub use self::told::{FILES, tell};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};

@@ -1,80 +1,20 @@
-//! Results of `impact`: the chain, its impulses and their certificate as JSON, the impulse line as CSV.
+//! What impacts tell, for programs: the chain, its impulses and their certificate as JSON, the impulse line as CSV.
 //!
 //! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before.
 
-use std::io::Write;
-
 use serde_json::{Value, json};
 
-use super::OutputError;
-use super::mechanisms::hinges;
-use super::table::table;
+use super::LinkImpact;
 use crate::dynamics::model::{FourLinkModel, MechanismModel};
 use crate::mechanics::four_link::certificate::Projection;
-use crate::mechanics::four_link::chain::{ArchLink, Chain};
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
-
-/// The impact that leads to a link of the chain of four links after a first sway to one side.
-#[derive(Clone, Copy, Debug)]
-pub struct LinkImpact<'a> {
-    /// What rocks.
-    pub model: &'a dyn FourLinkModel,
-    /// The first sway.
-    pub first: Sway,
-    /// Number of the impact, from 1, and of the link that it leads to.
-    pub index: usize,
-}
-
-impl<'a> LinkImpact<'a> {
-    /// The chain.
-    #[must_use]
-    pub fn chain(&self) -> &'a Chain {
-        self.model.chain_from(self.first)
-    }
-
-    /// The mechanism that closes; `None` when an impact before this one stops the structure.
-    #[must_use]
-    pub fn before(&self) -> Option<&'a ArchLink> {
-        self.chain().link(self.index.checked_sub(1)?)
-    }
-
-    /// The mechanism that follows; `None` when none can.
-    #[must_use]
-    pub fn after(&self) -> Option<&'a ArchLink> {
-        self.chain().link(self.index)
-    }
-
-    /// The impulses; `None` also where the restitution coefficient is prescribed.
-    #[must_use]
-    pub fn line(&self) -> Option<&'a ImpulseLine> {
-        self.after()?.impulse_line.as_ref()
-    }
-
-    /// Words that follow its number: nothing after a first sway to the right, which goes without saying.
-    #[must_use]
-    pub const fn after_first(&self) -> &'static str {
-        match self.first {
-            Sway::Right => "",
-            Sway::Left => " after a first sway to the left",
-        }
-    }
-
-    /// The side to which the mechanism after it sways.
-    #[must_use]
-    pub const fn sway(&self) -> Sway {
-        self.first.before(self.index)
-    }
-
-    /// The profile in the frame in which that sway goes right.
-    #[must_use]
-    pub fn profile(&self) -> &'a dyn Profile {
-        self.chain().profile(self.index)
-    }
-}
+use crate::output::OutputError;
+use crate::output::mechanisms::hinges;
+use crate::output::table::{Cell, column, csv};
 
 /// Result of `impact` for any structure: the first `count` links of the chain that begins with a sway to
 /// this side; fewer when an impact stops the structure.
@@ -98,8 +38,7 @@ pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Value
 }
 
 /// The same for four links, with the impulses and the extremes of the impulse line.
-#[must_use]
-pub fn impacts(model: &dyn FourLinkModel, first: Sway, count: usize) -> Value {
+pub(super) fn impacts(model: &dyn FourLinkModel, first: Sway, count: usize) -> Value {
     let mut impacts = chain(model, first, count);
     for (index, told) in (1..).zip(&mut impacts) {
         let impact = LinkImpact {
@@ -136,6 +75,14 @@ fn section(profile: &dyn Profile, section: f64) -> (&'static str, Value) {
     }
 }
 
+/// The same as a cell of a table.
+fn section_cell(profile: &dyn Profile, section: f64) -> Cell {
+    match profile.joint(section) {
+        Some(joint) => joint.into(),
+        None => section.to_degrees().into(),
+    }
+}
+
 /// Extremes of the line; values that are infinite, because there is tension, become null.
 fn extremes(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
     let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
@@ -169,8 +116,7 @@ fn extremes(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
 }
 
 /// Comparison of the impact models; null where by a model no mechanism can follow.
-#[must_use]
-pub fn models(impact: &LinkImpact<'_>, models: &[(ImpactModel, Option<Impact>)]) -> Value {
+pub(super) fn models(impact: &LinkImpact<'_>, models: &[(ImpactModel, Option<Impact>)]) -> Value {
     let sway = impact.sway();
     let after = |by_model: &Impact| {
         let mechanism = &by_model.mechanism;
@@ -192,8 +138,7 @@ pub fn models(impact: &LinkImpact<'_>, models: &[(ImpactModel, Option<Impact>)])
 }
 
 /// The projection onto all admissible fields beside the link that the chain takes, if any mechanism can follow.
-#[must_use]
-pub fn certificate(impact: &LinkImpact<'_>, projection: &Projection) -> Value {
+pub(super) fn certificate(impact: &LinkImpact<'_>, projection: &Projection) -> Value {
     let (sway, profile) = (impact.sway(), impact.profile());
     let mut opened: Vec<Value> = projection
         .opened()
@@ -229,33 +174,15 @@ pub fn certificate(impact: &LinkImpact<'_>, projection: &Projection) -> Value {
 /// Smallest number of parts of a ring between the rows of an impulse line.
 const LINE_PARTS: usize = 720;
 
-/// Writes the impulse line of an impact as CSV, from the left springing: of a ring a row at each section of a fine
-/// division, every joint of voussoirs and every hinge; of a row of blocks one at every joint.
-///
-/// The eccentricity is left empty where no impulse crosses a section.
-///
-/// # Errors
-/// When the system refuses.
-pub fn write_line(
-    writer: impl Write,
+/// The impulse line of an impact as CSV, from the left springing: of a ring a row at each section of a fine division, every joint of
+/// voussoirs and every hinge; of a row of blocks one at every joint. The eccentricity is left empty where no impulse crosses a section.
+pub(super) fn line_table(
     impact: &LinkImpact<'_>,
     mechanism: &FourLink,
     line: &ImpulseLine,
-) -> Result<(), OutputError> {
-    const WHAT: &str = "cannot write the impulse line";
-    let (unit, profile, sway) = (
-        impact.model.impulse_unit_n_s_per_m(),
-        impact.profile(),
-        impact.sway(),
-    );
-    let mut csv = table(writer);
-    csv.write_record([
-        section(profile, 0.0).0,
-        "eccentricity_ratio",
-        "normal_n_s_per_m",
-        "tangential_n_s_per_m",
-    ])
-    .map_err(OutputError::csv(WHAT))?;
+) -> Result<Vec<u8>, OutputError> {
+    let unit = impact.model.impulse_unit_n_s_per_m();
+    let (profile, sway) = (impact.profile(), impact.sway());
     let mut sections = profile.sections(match impact.chain().sites() {
         HingeSites::Anywhere => LINE_PARTS,
         HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
@@ -264,16 +191,16 @@ pub fn write_line(
     sections.extend(hinges.map(|(section, _)| section));
     sections.sort_by(f64::total_cmp);
     sections.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-    for at in sections {
-        let resultant = line.section_from_left(at, sway);
-        let eccentricity_ratio = resultant.eccentricity_ratio;
-        csv.serialize((
-            section(profile, at).1,
-            eccentricity_ratio.is_finite().then_some(eccentricity_ratio),
-            resultant.normal * unit,
-            resultant.tangential * unit,
-        ))
-        .map_err(OutputError::csv(WHAT))?;
-    }
-    csv.flush().map_err(OutputError::io(WHAT))
+    let at = |section: &f64| line.section_from_left(*section, sway);
+    let columns = [
+        column(section(profile, 0.0).0, |place: &f64| {
+            section_cell(profile, *place)
+        }),
+        column("eccentricity_ratio", |place| {
+            Some(at(place).eccentricity_ratio).filter(|ratio| ratio.is_finite())
+        }),
+        column("normal_n_s_per_m", |place| at(place).normal * unit),
+        column("tangential_n_s_per_m", |place| at(place).tangential * unit),
+    ];
+    csv(&columns, &sections)
 }

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use super::impact::LinkImpact;
-use super::svg::{Anchor, Drawing, Figure, Stroke, color};
 use crate::mechanics::chain::Mechanism as _;
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
 use crate::mechanics::four_link::impact::closing_field;
@@ -15,6 +14,7 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
+use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
 /// Part of the way to its limit position at which a mechanism is drawn, so that one sees it open.
 const DRAWN_PART: f64 = 0.25;

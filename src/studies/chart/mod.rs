@@ -1,10 +1,14 @@
 //! Arches of many shapes compared: onset, first impact, and what impacts tend to.
 
+mod told;
+
+pub use self::told::FILES;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::impact::ImpactLaw;
+use crate::mechanics::four_link::limit::least_thickness_ratio;
 use crate::mechanics::four_link::mechanism::HingeSites;
 
 /// Incipient acceleration and restitution of a shape.
@@ -66,10 +70,62 @@ pub fn shape_result(
     })
 }
 
+/// Shapes beside the arch of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// Embrace by embrace, thicknesses ascending.
+    shapes: Vec<ShapeResult>,
+    /// The arch itself.
+    own: Option<ShapeResult>,
+}
+
+/// Embrace angles charted beside that of the scenario, in degrees.
+const EMBRACES_DEG: [f64; 5] = [180.0, 170.0, 157.5, 140.0, 120.0];
+
+/// Thickness ratios of a curve, from the thinnest arch that stands to the thickest charted.
+const THICKNESSES: u32 = 24;
+
+/// Largest thickness ratio charted, unless the scenario's is larger.
+const MAX_THICKNESS_RATIO: f64 = 0.3;
+
+impl Chart {
+    /// Computes the shapes beside an arch, on all processors.
+    #[must_use]
+    pub fn of(arch: &Arch, law: ImpactLaw) -> Self {
+        let mut embraces_deg = EMBRACES_DEG.to_vec();
+        if !embraces_deg.contains(&arch.embrace_deg()) {
+            embraces_deg.push(arch.embrace_deg());
+            embraces_deg.sort_by(|a, b| b.total_cmp(a));
+        }
+        let sites = arch.sites();
+        let largest = MAX_THICKNESS_RATIO.max(arch.thickness_ratio());
+        let shapes: Vec<(f64, f64)> = embraces_deg
+            .into_iter()
+            .flat_map(|embrace_deg| {
+                let least = least_thickness_ratio(embrace_deg.to_radians(), sites, 1e-6).expect(
+                    "the embrace angle of an arch is checked, and the others are constants",
+                );
+                thicknesses(least, largest)
+                    .map(move |thickness_ratio| (embrace_deg, thickness_ratio))
+            })
+            .collect();
+        Self {
+            shapes: shape_results(&shapes, sites, law),
+            own: shape_result(arch.embrace_deg(), arch.thickness_ratio(), sites, law),
+        }
+    }
+}
+
+/// From just above the least thickness ratio at which an arch stands to the largest charted.
+fn thicknesses(least: f64, largest: f64) -> impl Iterator<Item = f64> {
+    let least = 1.001 * least;
+    let step = (largest - least) / f64::from(THICKNESSES - 1);
+    (0..THICKNESSES).map(move |i| least + f64::from(i) * step)
+}
+
 /// The results of shapes, given by embrace angle in degrees and thickness over mean radius, in their order and
 /// on all processors; those of which no four-link mechanism starts are left out.
-#[must_use]
-pub fn shape_results(shapes: &[(f64, f64)], sites: HingeSites, law: ImpactLaw) -> Vec<ShapeResult> {
+fn shape_results(shapes: &[(f64, f64)], sites: HingeSites, law: ImpactLaw) -> Vec<ShapeResult> {
     shapes
         .par_iter()
         .filter_map(|(embrace_deg, thickness_ratio)| {

@@ -1,38 +1,48 @@
-//! The chart of shapes: incipient acceleration and restitution over the thickness ratio.
+//! What a chart of shapes tells: its table and its picture, incipient acceleration and restitution over the thickness ratio.
 
-use std::io::Write;
+use super::{Chart, ShapeResult};
+use crate::output::OutputError;
+use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use crate::output::table::{column, csv};
+use crate::studies::results::Results;
 
-use super::OutputError;
-use super::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
-use super::table::table;
-use crate::studies::survey::ShapeResult;
+/// Names of the files, the seal last.
+pub const FILES: [&str; 2] = ["chart.svg", "chart.csv"];
 
-/// Writes a row per shape. Where an impact stops the arch the restitution coefficient is left empty.
-///
-/// # Errors
-/// When the system refuses, or a value is not finite.
-pub fn write_table(writer: impl Write, results: &[ShapeResult]) -> Result<(), OutputError> {
-    const WHAT: &str = "cannot write the chart";
-    let mut csv = table(writer);
-    csv.write_record([
-        "embrace_deg",
-        "thickness_ratio",
-        "incipient_acceleration_g",
-        "first_restitution",
-        "last_restitution",
-    ])
-    .map_err(OutputError::csv(WHAT))?;
-    for result in results {
-        let restitutions = [result.first_restitution, result.last_restitution];
-        csv.serialize((
-            result.embrace_deg,
-            result.thickness_ratio,
-            result.incipient_g,
-            restitutions,
-        ))
-        .map_err(OutputError::csv(WHAT))?;
+impl Chart {
+    /// Its files and words.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn tell(&self, figure: Figure) -> Result<Results, OutputError> {
+        let picture = draw(figure, &self.shapes, self.own.as_ref());
+        let contents = [picture.into_bytes(), table(&self.shapes)?];
+        Ok(Results {
+            files: FILES.into_iter().zip(contents).collect(),
+            obsolete: None,
+            words: format!("{} arches", self.shapes.len()),
+        })
     }
-    csv.flush().map_err(OutputError::io(WHAT))
+}
+
+/// A row per shape. Where an impact stops the arch the restitution coefficient is left empty.
+fn table(results: &[ShapeResult]) -> Result<Vec<u8>, OutputError> {
+    let columns = [
+        column("embrace_deg", |shape: &ShapeResult| shape.embrace_deg),
+        column("thickness_ratio", |shape: &ShapeResult| {
+            shape.thickness_ratio
+        }),
+        column("incipient_acceleration_g", |shape: &ShapeResult| {
+            shape.incipient_g
+        }),
+        column("first_restitution", |shape: &ShapeResult| {
+            shape.first_restitution
+        }),
+        column("last_restitution", |shape: &ShapeResult| {
+            shape.last_restitution
+        }),
+    ];
+    csv(&columns, results)
 }
 
 /// A quantity of a shape, if it has it.
@@ -40,8 +50,7 @@ type Quantity = fn(&ShapeResult) -> Option<f64>;
 
 /// Draws three panels, a curve for each embrace angle, and marks the results of the scenario's own arch. Results come
 /// embrace by embrace, thicknesses ascending.
-#[must_use]
-pub fn draw(figure: Figure, results: &[ShapeResult], own: Option<&ShapeResult>) -> String {
+fn draw(figure: Figure, results: &[ShapeResult], own: Option<&ShapeResult>) -> String {
     let mut drawing = Drawing::new(figure);
     let top = drawing.title("Circular arches of several embrace angles");
     let groups: Vec<&[ShapeResult]> = results

@@ -1,0 +1,187 @@
+//! Impacts of the structure of a scenario: the chain of mechanisms that they lead through, and one of them in detail.
+
+mod told;
+mod words;
+
+use serde_json::{Value, json};
+
+pub use self::told::chain;
+use super::results::Answer;
+use crate::dynamics::model::{FourLinkModel, MechanismModel};
+use crate::mechanics::four_link::certificate::{
+    DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
+};
+use crate::mechanics::four_link::chain::{ArchLink, Chain};
+use crate::mechanics::four_link::impact::{
+    Impact, ImpactModel, closing_field, impact as impact_by,
+};
+use crate::mechanics::four_link::impulse_line::ImpulseLine;
+use crate::mechanics::four_link::mechanism::FourLink;
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::sway::Sway;
+use crate::output::OutputError;
+use crate::scenario::{Scenario, Structure};
+
+/// The impact that leads to a link of the chain of four links after a first sway to one side.
+#[derive(Clone, Copy, Debug)]
+pub struct LinkImpact<'a> {
+    /// What rocks.
+    pub model: &'a dyn FourLinkModel,
+    /// The first sway.
+    pub first: Sway,
+    /// Number of the impact, from 1, and of the link that it leads to.
+    pub index: usize,
+}
+
+impl<'a> LinkImpact<'a> {
+    /// The chain.
+    #[must_use]
+    pub fn chain(&self) -> &'a Chain {
+        self.model.chain_from(self.first)
+    }
+
+    /// The mechanism that closes; `None` when an impact before this one stops the structure.
+    #[must_use]
+    pub fn before(&self) -> Option<&'a ArchLink> {
+        self.chain().link(self.index.checked_sub(1)?)
+    }
+
+    /// The mechanism that follows; `None` when none can.
+    #[must_use]
+    pub fn after(&self) -> Option<&'a ArchLink> {
+        self.chain().link(self.index)
+    }
+
+    /// The impulses; `None` also where the restitution coefficient is prescribed.
+    #[must_use]
+    pub fn line(&self) -> Option<&'a ImpulseLine> {
+        self.after()?.impulse_line.as_ref()
+    }
+
+    /// Words that follow its number: nothing after a first sway to the right, which goes without saying.
+    #[must_use]
+    pub const fn after_first(&self) -> &'static str {
+        match self.first {
+            Sway::Right => "",
+            Sway::Left => " after a first sway to the left",
+        }
+    }
+
+    /// The side to which the mechanism after it sways.
+    #[must_use]
+    pub const fn sway(&self) -> Sway {
+        self.first.before(self.index)
+    }
+
+    /// The profile in the frame in which that sway goes right.
+    #[must_use]
+    pub fn profile(&self) -> &'a dyn Profile {
+        self.chain().profile(self.index)
+    }
+
+    /// The impulse line as a table; `None` where there is none.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn line_table(&self) -> Option<Result<Vec<u8>, OutputError>> {
+        let line = self.line()?;
+        Some(told::line_table(self, &self.after()?.mechanism, line))
+    }
+
+    /// The same impact by the models that the momentum theorems govern, and by that of the scenario.
+    fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<(ImpactModel, Option<Impact>)> {
+        let mut models = vec![
+            ImpactModel::MaxRestitution,
+            ImpactModel::SameSections,
+            ImpactModel::Mirrored,
+        ];
+        if !models.contains(&own) {
+            models.push(own);
+        }
+        let (profile, sites) = (self.profile(), self.chain().sites());
+        models
+            .into_iter()
+            .map(|model| (model, impact_by(before, profile, sites, model)))
+            .collect()
+    }
+
+    /// The largest restitution of any admissible motion.
+    fn certified(
+        &self,
+        before: &FourLink,
+        joints: Option<usize>,
+    ) -> Result<Projection, ProjectionError> {
+        let (profile, sites) = (self.profile(), self.chain().sites());
+        let mechanism = self.after().map(|link| &link.mechanism);
+        let joints = joints.unwrap_or(DEFAULT_JOINTS);
+        let joints_rad = joints_rad(profile, sites, joints, mechanism);
+        project(&closing_field(before, profile), profile, &joints_rad)
+    }
+}
+
+/// What is asked of the impacts of four links.
+#[derive(Clone, Copy, Debug)]
+pub struct Question {
+    /// How many impacts.
+    pub count: usize,
+    /// Whether the impact models are compared.
+    pub models: bool,
+    /// Whether the restitution is certified.
+    pub certificate: bool,
+    /// Number of parts into which a ring without joints is cut for the certificate; `None`: as many as usual.
+    pub joints: Option<usize>,
+}
+
+/// The chain of mechanisms of any structure after a first sway to this side.
+#[must_use]
+pub fn chain_answer(
+    scenario: &Scenario,
+    model: &dyn MechanismModel,
+    first: Sway,
+    count: usize,
+) -> Answer {
+    Answer {
+        json: json!({ "impacts": chain(model, first, count) }),
+        text: words::chain_text(scenario, model, first, count),
+    }
+}
+
+/// The chain of four links with its impulses, and what else is asked of one impact.
+///
+/// # Errors
+/// When the certificate is not found.
+pub fn four_links_answer(
+    scenario: &Scenario,
+    impact: &LinkImpact<'_>,
+    question: &Question,
+) -> Result<Answer, ProjectionError> {
+    let (model, count) = (impact.model, question.count);
+    // An arch of equal voussoirs, or of none, is its own mirror image, and so is its chain.
+    let sides = match scenario.structure {
+        Structure::Masonry(_) => vec![Sway::Right, Sway::Left],
+        _ => vec![impact.first],
+    };
+    let keys = ["impacts", "impacts_after_left"].into_iter();
+    let mut json: Value = keys
+        .zip(&sides)
+        .map(|(key, side)| (key.to_owned(), told::impacts(model, *side, count)))
+        .collect();
+    let chains = sides.iter().map(|side| {
+        words::chain_text(scenario, model, *side, count)
+            + &words::impulses_text(model, *side, count)
+    });
+    let mut text = chains.collect::<Vec<_>>().join("\n");
+    if let Some(before) = impact.before().map(|link| &link.mechanism) {
+        if question.models {
+            let models = impact.by_models(before, scenario.impact.model);
+            json["models"] = told::models(impact, &models);
+            text += &words::models_text(impact, &models);
+        }
+        if question.certificate {
+            let projection = impact.certified(before, question.joints)?;
+            json["certificate"] = told::certificate(impact, &projection);
+            text += &words::certificate_text(scenario, impact, &projection);
+        }
+    }
+    Ok(Answer { json, text })
+}
