@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::stability::onset;
-use archrock::studies::{impact, limit};
 use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source};
+use archrock::studies::{impact, limit};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
 use numpy::{PyArray1, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;

@@ -5,14 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use archrock::output::{Figure, Folder, pretty};
-use archrock::scenario::Structure;
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
 use archrock::studies::part::Shard;
 use archrock::studies::results::Look;
 use archrock::studies::runner::{Runner, Task};
-use archrock::studies::threshold::{Factors, ThresholdError, tell, thresholds};
+use archrock::studies::threshold::{Factors, ThresholdError, check, tell, thresholds};
 use archrock::studies::verify::{Check, page, to_json, today};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -155,24 +154,12 @@ pub fn threshold<'py>(
     let (from, to, stride) = factors;
     let factors = Factors::new(from, to, stride).map_err(refused)?;
     let runner = runner(threads);
-    if scenario.inner.initial.is_some() {
-        return Err(refused(
-            "the histories of a threshold start from rest: leave [initial] out",
-        ));
-    }
-    if scenario.inner.ground.is_none() {
-        return Err(refused("a threshold needs a ground motion"));
-    }
+    check(&scenario.inner).map_err(refused)?;
     let standing = scenario.standing(py)?.clone();
     let scenario = Arc::clone(&scenario.inner);
     let files = watched(py, progress, move |watch| {
-        let name = match (&scenario.free_hinges, &scenario.structure) {
-            (Some(_), _) => "free_hinges",
-            (None, Structure::Arch(_) | Structure::Masonry(_)) => "four_links",
-            (None, Structure::Column(_)) => "column",
-        };
         let ground = scenario.ground_motion();
-        let models = [(name, standing.model())];
+        let models = [(scenario.model_name(), standing.model())];
         let request = scenario.request();
         let found = thresholds(&models, ground, &request, &factors, &runner, watch);
         let found = found.map_err(|error| match error {

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 use archrock::dynamics::model::Model;
 use archrock::output::pretty;
-use archrock::scenario::{Scenario, Structure};
+use archrock::scenario::Scenario;
 use archrock::studies::threshold::{
-    FILES, Factors, NoHistory, Threshold, ThresholdError, tell, thresholds,
+    FILES, Factors, NoHistory, Threshold, ThresholdError, check, tell, thresholds,
 };
 use serde_json::Value;
 
@@ -57,7 +57,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let place = input.results(arguments.out.as_deref())?;
     let (mut names, mut tasks) = (Vec::new(), Vec::new());
     for (record, (scenario, other)) in arguments.suite.choose(both).map_err(about)? {
-        check(&scenario).map_err(|message| about(Failure::Input(message.to_owned())))?;
+        check(&scenario).map_err(|message| about(Failure::Input(message)))?;
         let place = match &record {
             Some(record) => place.of_record(record)?,
             None => place.clone(),
@@ -110,11 +110,13 @@ fn find(
     quiet: bool,
 ) -> Result<(String, Value), Failure> {
     let scenario = &scenarios[0];
-    let models = scenarios.iter().map(model).collect::<Result<Vec<_>, _>>()?;
-    let models: Vec<(&str, &dyn Model)> = models
+    let models: Vec<Box<dyn Model>> = scenarios
         .iter()
-        .map(|(name, model)| (*name, &**model))
-        .collect();
+        .map(Scenario::model)
+        .collect::<Result<_, _>>()
+        .map_err(|error| Failure::Input(error.to_string()))?;
+    let names = scenarios.iter().map(Scenario::model_name);
+    let models: Vec<(&str, &dyn Model)> = names.zip(models.iter().map(|model| &**model)).collect();
     let ground = scenario.ground_motion();
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let folder = place.open(&FILES)?;
@@ -146,39 +148,6 @@ fn find(
         ));
     }
     Ok((results.words, json))
-}
-
-/// A model of motion, and its name in the results.
-type NamedModel = (&'static str, Box<dyn Model>);
-
-/// The model that a scenario was read for.
-fn model(scenario: &Scenario) -> Result<NamedModel, Failure> {
-    let name = match (&scenario.free_hinges, &scenario.structure) {
-        (Some(_), _) => "free_hinges",
-        (None, Structure::Arch(_) | Structure::Masonry(_)) => "four_links",
-        (None, Structure::Column(_)) => "column",
-    };
-    let model = scenario.model();
-    Ok((
-        name,
-        model.map_err(|error| Failure::Input(error.to_string()))?,
-    ))
-}
-
-/// Checks that the scenario has a ground motion to scale, and starts from rest.
-fn check(scenario: &Scenario) -> Result<(), &'static str> {
-    if scenario.initial.is_some() {
-        return Err("the histories of a threshold start from rest: leave [initial] out");
-    }
-    if scenario.ground.is_none() {
-        return Err(
-            "a threshold needs a ground motion: give a table such as\n\n\
-             [ground.one_cosine]\n\
-             amplitude_g = 0.3\n\
-             duration_s = 0.5",
-        );
-    }
-    Ok(())
 }
 
 impl From<ThresholdError> for Failure {

@@ -297,6 +297,29 @@ impl Scenario {
         })
     }
 
+    /// The name in results of the model of motion that the scenario chooses.
+    #[must_use]
+    pub const fn model_name(&self) -> &'static str {
+        match (&self.free_hinges, &self.structure) {
+            (Some(_), _) => "free_hinges",
+            (None, Structure::Arch(_) | Structure::Masonry(_)) => "four_links",
+            (None, Structure::Column(_)) => "column",
+        }
+    }
+
+    /// Refuses a scenario that does not start from rest, as the histories of what is asked for do.
+    ///
+    /// # Errors
+    /// In words, what to change.
+    pub(crate) fn check_from_rest(&self, what: &str) -> Result<(), String> {
+        match self.initial {
+            None => Ok(()),
+            Some(_) => Err(format!(
+                "the histories of a {what} start from rest: leave [initial] out"
+            )),
+        }
+    }
+
     /// The blocks of which limit analysis tells what starts them: of masonry, and of a column that is not the one block
     /// of Housner. `None` of what starts as one mechanism.
     ///

@@ -145,9 +145,7 @@ impl<'a> OverturningMap<'a> {
     /// # Errors
     /// In words, what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
-        if scenario.initial.is_some() {
-            return Err("the histories of a map start from rest: leave [initial] out".to_owned());
-        }
+        scenario.check_from_rest("map")?;
         let map = Self::new(scenario).ok_or_else(|| {
             "the scenario has no [map]: give it a table with two axes, such as\n\n\
              [map]\n\

@@ -79,9 +79,7 @@ impl<'a> RecordSuite<'a> {
     /// # Errors
     /// In words, what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
-        if scenario.initial.is_some() {
-            return Err("the histories of a suite start from rest: leave [initial] out".to_owned());
-        }
+        scenario.check_from_rest("suite")?;
         let suite = scenario.suite.as_ref().ok_or_else(|| {
             "the scenario has no [suite]: give it a table with records and levels, such as\n\n\
              [suite]\n\

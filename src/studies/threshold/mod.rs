@@ -9,7 +9,7 @@ pub mod picture;
 mod told;
 
 pub(super) use told::rounded;
-pub use told::{FILES, outcome, tell};
+pub use told::{FILES, check, outcome, tell};
 
 use std::ops::ControlFlow;
 

@@ -20,6 +20,24 @@ use crate::studies::survival::{self, Survival};
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
 
+/// Checks that a scenario has a ground motion to scale, and starts from rest.
+///
+/// # Errors
+/// In words, what to change.
+pub fn check(scenario: &Scenario) -> Result<(), String> {
+    scenario.check_from_rest("threshold")?;
+    if scenario.ground.is_some() {
+        return Ok(());
+    }
+    Err(
+        "a threshold needs a ground motion: give a table such as\n\n\
+         [ground.one_cosine]\n\
+         amplitude_g = 0.3\n\
+         duration_s = 0.5"
+            .to_owned(),
+    )
+}
+
 /// Files and words of the thresholds of scenarios that differ in their models only; and the JSON among the files.
 ///
 /// # Errors
