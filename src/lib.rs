@@ -5,15 +5,21 @@
 //! an **impact**, after which the arch sways on to the other side along another mechanism, with less
 //! energy. This crate follows the arch through all its impacts until it rests or overturns.
 //!
+//! Four links are one model of motion ([`FourLinkArch`], [`FourLinkRow`], and for a column [`RockingColumn`]). Nothing forces an arch
+//! to keep to them: with **free hinges** ([`FreeHinges`]) it is a row of rigid blocks ([`mechanics::blocks`]) any of whose joints may
+//! open, shut, and slip, at any time. That costs more, is computed in steps, and says how far its answer depends on them
+//! ([`Model::repetitions`]). Both are a [`Model`]: a history, a [threshold](studies::threshold) or a [map](studies::map) takes either.
+//!
 //! From the bottom up:
 //!
 //! - [`mechanics`]: pure functions. Shapes and rigid motions of their parts ([`mechanics::geometry`]); the arch
-//!   ([`mechanics::arch`]) and the column ([`mechanics::column`]); the arch as four-link mechanisms
+//!   ([`mechanics::arch`]) and the column ([`mechanics::column`]); arches of other shapes, on piers, with fill and loads
+//!   ([`mechanics::masonry`]), as rows of blocks ([`mechanics::blocks`]); four-link mechanisms
 //!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms that impacts lead
-//!   through, and what certifies it.
+//!   through, and what certifies it; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
 //! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
 //!   their histories ([`dynamics::history`]); mechanisms with one degree of freedom at a time
-//!   ([`dynamics::hybrid`]).
+//!   ([`dynamics::hybrid`]), and rows of blocks ([`dynamics::free_hinges`]).
 //! - [`scenario`]: what to simulate, as a TOML file. [`studies`]: many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
@@ -33,6 +39,19 @@
 //! assert_eq!(history.summary.outcome, Outcome::Rest);
 //! let (time_s, impact) = history.impacts().next().expect("an impact");
 //! assert!((time_s - 1.0279).abs() < 1e-4 && (impact.restitution - 0.681186).abs() < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The same arch of 36 voussoirs with free hinges:
+//!
+//! ```
+//! use archrock::{Arch, FreeHinges, GroundMotion, Model, Outcome, Pulse, Request, Sway};
+//!
+//! let model = FreeHinges::of_arch(&Arch::new(5.0, 0.15, 180.0)?.with_voussoirs(36)?)?;
+//! assert!((model.incipient_acceleration_g(Sway::Right).expect("a push moves it") - 0.144800).abs() < 1e-6);
+//! let ground = GroundMotion::pulse(Pulse::Rectangular, -0.14 * 9.81, 0.20, 0.0)?;
+//! let summary = model.simulate(&ground, &Request::default(), None)?;
+//! assert_eq!(summary.outcome, Outcome::NeverMoved);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -60,6 +79,7 @@ pub mod scenario;
 pub mod studies;
 
 pub use argument::ArgumentError;
+pub use dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 pub use dynamics::ground::{GroundError, GroundMotion, Pulse, WaveTrain};
 pub use dynamics::history::{
     Event, EventKind, History, Impact, MEMORY_BYTES, MemoryError, OpenHinge, Outcome, Sample,
@@ -67,11 +87,16 @@ pub use dynamics::history::{
 };
 pub use dynamics::model::{Initial, MechanismModel, Model, Recorder, Request, SimulationError};
 pub use mechanics::arch::Arch;
+pub use mechanics::blocks::Row;
 pub use mechanics::chain::Hinge;
 pub use mechanics::column::{Column, RockingColumn};
 pub use mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 pub use mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 pub use mechanics::four_link::row::FourLinkRow;
 pub use mechanics::geometry::pose::Pose;
+pub use mechanics::masonry::Masonry;
 pub use mechanics::sway::Sway;
-pub use scenario::Scenario;
+pub use scenario::{Scenario, Structure};
+pub use studies::map::OverturningMap;
+pub use studies::runner::Runner;
+pub use studies::threshold::{Factors, Threshold};

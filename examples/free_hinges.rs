@@ -1,0 +1,29 @@
+//! The same arch with free hinges: any joint opens and shuts. Run with `cargo run --release --example free_hinges`.
+
+#![allow(clippy::print_stdout, reason = "an example prints its results")]
+
+use archrock::{Arch, FreeHinges, GroundMotion, Model, Pulse, Request};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arch = Arch::new(5.0, 0.15, 180.0)?.with_voussoirs(36)?;
+    let model = FreeHinges::of_arch(&arch)?;
+    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.25 * 9.81, 0.20, 0.0)?;
+    let own = model.simulate(&ground, &Request::default(), None)?;
+    println!(
+        "{:?} at {:.3} s, peak {:.4} rad",
+        own.outcome,
+        own.outcome_time_s,
+        own.largest_rotation_rad()
+    );
+    // What other ways to compute it do not agree in is not known.
+    for other in model.repetitions() {
+        let summary = other.model.simulate(&ground, &Request::default(), None)?;
+        println!(
+            "{}: {:?}, peak {:.4} rad",
+            other.name,
+            summary.outcome,
+            summary.largest_rotation_rad()
+        );
+    }
+    Ok(())
+}
