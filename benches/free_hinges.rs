@@ -90,11 +90,11 @@ fn steps_over_a_record(bencher: Bencher, voussoirs: usize, friction_coefficient:
         friction_coefficient,
         ..Settings::to_landings(&row, GRAVITY_M_S2, 25.0)
     };
-    let steps = simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ())
+    let steps = simulate(&row, &ground, GRAVITY_M_S2, &settings, None, None)
         .map_or(1, |run| run.cost.steps);
     bencher
         .counter(ItemsCount::new(steps))
-        .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ()).map(|r| r.end_s));
+        .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, None).map(|r| r.end_s));
 }
 
 /// A pulse, and all that follows until rest.
@@ -104,8 +104,7 @@ fn history_of_the_semicircle(bencher: Bencher) {
     let ground =
         GroundMotion::pulse(Pulse::Rectangular, -0.25 * GRAVITY_M_S2, 0.2, 0.0).expect("a pulse");
     let settings = Settings::to_landings(&row, GRAVITY_M_S2, 60.0);
-    bencher
-        .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, &mut ()).map(|r| r.end_s));
+    bencher.bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, None).map(|r| r.end_s));
 }
 
 /// A map of 6 x 6 pulses as the study computes it, with its repetitions: cells a second on one core.

@@ -1,11 +1,11 @@
 //! What a run calls certain holds with other steps, and it still calls most things certain.
 
 use crate::common::{GRAVITY, Random, noise, random_row};
-use archrock::dynamics::free_hinges::spread::Spread;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
+use archrock::dynamics::spread::Spread;
 use archrock::{Request, Sway};
 
 /// Steps, over those of a run, with which what it calls certain must hold.
@@ -73,7 +73,7 @@ fn campaign(cases: usize) -> Counts {
             })
             .collect();
         let spread = Spread::new(&own, &repeated);
-        let cycles = &own.free_hinges.as_ref().unwrap().half_cycles;
+        let cycles = own.half_cycles();
         let certain = spread.same_outcome();
         let same = spread.same_until_half_cycle;
         counts.outcomes += usize::from(certain);
@@ -91,7 +91,7 @@ fn campaign(cases: usize) -> Counts {
             let other = other.simulate(&ground, &request, None).unwrap();
             let overturns = |outcome| matches!(outcome, Outcome::Overturned(_));
             failed[0] |= certain && overturns(own.outcome) != overturns(other.outcome);
-            let others = &other.free_hinges.as_ref().unwrap().half_cycles;
+            let others = other.half_cycles();
             for (cycle, own) in cycles.iter().take(same).enumerate() {
                 let off = others
                     .get(cycle)

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use crate::program::{archrock, stderr};
 use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::free_hinges::spread::Spread;
+use archrock::dynamics::spread::Spread;
 use archrock::{Column, GroundMotion, Model as _, Pulse, Request};
 use serde_json::Value;
 use tempfile::TempDir;

@@ -5,8 +5,10 @@ use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random};
 use archrock::Sway;
-use archrock::dynamics::free_hinges::{Impact, Recorder, Run, Settings, simulate};
+use archrock::dynamics::free_hinges::{Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{Event, Summary};
+use archrock::dynamics::model::Recorder;
 use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::four_link::certificate;
@@ -14,8 +16,11 @@ use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::stability::{falls, onset};
 
-fn peaks_rad(run: &Run) -> Vec<f64> {
-    run.half_cycles.iter().map(|cycle| cycle.peak_rad).collect()
+fn peaks_rad(run: &Summary) -> Vec<f64> {
+    run.half_cycles()
+        .iter()
+        .map(|cycle| cycle.peak_rad)
+        .collect()
 }
 
 fn rectangular(amplitude_g: f64, duration_s: f64) -> GroundMotion {
@@ -27,8 +32,8 @@ fn rectangular(amplitude_g: f64, duration_s: f64) -> GroundMotion {
 struct FirstImpact(Option<f64>);
 
 impl Recorder for FirstImpact {
-    fn impact(&mut self, impact: &Impact) -> ControlFlow<()> {
-        self.0 = Some(1.0 - impact.energy_taken_j / impact.energy_before_j);
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.0 = event.impact.as_ref().map(|impact| impact.restitution);
         ControlFlow::Break(())
     }
 }
@@ -54,7 +59,15 @@ fn a_block_released_anywhere_keeps_what_housner_says() {
             let mut first = FirstImpact::default();
             let still = GroundMotion::still();
             let initial = [-rotation_rad];
-            simulate(&row, &still, GRAVITY, &settings, Some(&initial), &mut first).unwrap();
+            simulate(
+                &row,
+                &still,
+                GRAVITY,
+                &settings,
+                Some(&initial),
+                Some(&mut first),
+            )
+            .unwrap();
             *worst = worst.max((first.0.unwrap() / housner - 1.0).abs());
         }
     }
@@ -95,24 +108,26 @@ struct Closures {
 }
 
 impl Recorder for Closures {
-    fn wants_samples(&self) -> bool {
-        false
-    }
-
-    fn impact(&mut self, impact: &Impact) -> ControlFlow<()> {
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        let Some(impact) = &event.impact else {
+            return ControlFlow::Continue(());
+        };
         let landed: Vec<(usize, Edge)> = impact
-            .shut
+            .closed
             .iter()
             .filter_map(|hinge| match *hinge {
                 Hinge::Joint { joint, edge } => Some((joint, edge?)),
                 Hinge::Section { .. } | Hinge::Toe(_) => None,
             })
             .collect();
-        let shut = impact.gaps_m.iter().all(|gaps| *gaps == [0.0; 2]);
+        // Where four corners land and all joints are shut, what is open after the impact opens at once.
+        let shut = event
+            .hinges
+            .iter()
+            .all(|hinge| impact.opened.contains(hinge));
         let moves = impact.energy_before_j > self.least_j;
-        if moves && shut && landed.len() == 4 && impact.shut.len() == 4 {
-            let kept = 1.0 - impact.energy_taken_j / impact.energy_before_j;
-            self.found.push((landed, kept));
+        if moves && shut && landed.len() == 4 && impact.closed.len() == 4 {
+            self.found.push((landed, impact.restitution));
         }
         ControlFlow::Continue(())
     }
@@ -160,7 +175,7 @@ fn four_corners_that_land_together_are_one_impact() {
                 GRAVITY,
                 &settings,
                 None,
-                &mut closures_of_run,
+                Some(&mut closures_of_run),
             )
             .unwrap();
             for (landed, kept) in closures_of_run.found {
@@ -194,7 +209,7 @@ fn a_closure_is_not_split() {
         for factor in [1.0, 0.37, 2.9] {
             let settings = Settings::to_landings(&row, GRAVITY, 60.0).times(factor);
             let ground = rectangular(amplitude_g, duration_s);
-            let run = simulate(&row, &ground, GRAVITY, &settings, None, &mut ()).unwrap();
+            let run = simulate(&row, &ground, GRAVITY, &settings, None, None).unwrap();
             let second = peaks_rad(&run)[1];
             assert!((second - second_rad).abs() < 1e-6, "{factor}: {second}");
         }
@@ -220,7 +235,7 @@ fn second_peaks_converge() {
         let (_, _, row, ground) = shaken_arch(&mut random, 5, most);
         let end_s = 3.0 * (row.size_m() / 10.0).sqrt();
         let second = |settings: Settings| {
-            let run = simulate(&row, &ground, GRAVITY, &settings, None, &mut ()).unwrap();
+            let run = simulate(&row, &ground, GRAVITY, &settings, None, None).unwrap();
             peaks_rad(&run).get(1).copied()
         };
         let fine = |longest_step_s: f64| Settings {

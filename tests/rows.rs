@@ -57,7 +57,7 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
             prop_assert!(numbers.iter().all(|x| x.is_finite()), "{summary:?}");
             prop_assert!(summary.peak_rotations_rad.iter().all(|x| x.is_finite()));
         }
-        Err(SimulationError::FreeHinges(error)) => prop_assert!(!fine, "{error}"),
+        Err(SimulationError::Computation(error)) => prop_assert!(!fine, "{error}"),
         Err(SimulationError::Argument(error)) => prop_assert!(!sized, "{error}"),
         Err(error) => return Err(TestCaseError::fail(error.to_string())),
     }

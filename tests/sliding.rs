@@ -4,11 +4,12 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random, random_history};
-use archrock::dynamics::free_hinges::{
-    FreeHinges, Outcome, Recorder, Run, Sample, Settings, Sliding, simulate,
-};
+use archrock::dynamics::free_hinges::{FreeHinges, Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
+use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
+use archrock::dynamics::model::Recorder;
 use archrock::mechanics::blocks::{Joint, Row, Supports};
+use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::column::Column;
 use archrock::mechanics::complementarity;
 use archrock::mechanics::coulomb::{Along, Program};
@@ -115,12 +116,12 @@ fn equal(step_s: f64, end_s: f64, coefficient: f64) -> Settings {
     }
 }
 
-fn run(row: &Row, ground: &GroundMotion, settings: &Settings) -> Run {
-    simulate(row, ground, GRAVITY, settings, None, &mut ()).unwrap()
+fn run(row: &Row, ground: &GroundMotion, settings: &Settings) -> Summary {
+    simulate(row, ground, GRAVITY, settings, None, None).unwrap()
 }
 
-fn slid(run: &Run) -> &Sliding {
-    run.sliding.as_ref().unwrap()
+fn slid(run: &Summary) -> &Sliding {
+    run.row.as_ref().unwrap().sliding.as_ref().unwrap()
 }
 
 /// Newmark's block: under a rectangular pulse `a` of duration `t` it slips by `a t^2/2 (a/(mu g) - 1)` relative to the ground, and
@@ -144,12 +145,8 @@ fn a_flat_block_is_that_of_newmark() {
             assert!((ours_m / slip_m - 1.0).abs() < 1e-6, "{ours_m} {slip_m}");
             let friction_j = coefficient * row.mass_kg() * GRAVITY * slip_m.abs();
             assert!((slid(&run).friction_j / friction_j - 1.0).abs() < 1e-6);
-            assert!(
-                matches!(run.outcome, Outcome::Rest { .. }),
-                "{:?}",
-                run.outcome
-            );
-            assert!(run.peaks_rad[0] < 1e-12);
+            assert!(matches!(run.outcome, Outcome::Rest), "{:?}", run.outcome);
+            assert!(run.peak_rotations_rad[0] < 1e-12);
         }
     }
 }
@@ -224,11 +221,7 @@ fn a_block_that_slips_down_a_slope_comes_to_rest() {
     let [_, slip_m] = path[path.len() - 1];
     assert!((slip_m + 0.6409).abs() < 5e-5, "{slip_m}");
     let run = run(&row, &ground, &equal(1e-4, 5.0, 0.4));
-    assert!(
-        matches!(run.outcome, Outcome::Rest { .. }),
-        "{:?}",
-        run.outcome
-    );
+    assert!(matches!(run.outcome, Outcome::Rest), "{:?}", run.outcome);
     let ours_m = slid(&run).offsets_m[0];
     assert!((ours_m / slip_m - 1.0).abs() < 1e-5, "{ours_m} {slip_m}");
     // What it slid along its base does not count as moved.
@@ -241,10 +234,8 @@ fn a_block_that_slips_off_its_base_overturns_there() {
     let (row, slope_rad) = block_on_a_slope();
     let (ground, acceleration) = half_sine(1.6, 0.4);
     let run = run(&row, &ground, &equal(1e-4, 5.0, 0.4));
-    let Outcome::Overturned { sway, time_s } = run.outcome else {
-        panic!("{:?}", run.outcome);
-    };
-    assert_eq!(sway, Sway::Left);
+    assert_eq!(run.outcome, Outcome::Overturned(Sway::Left));
+    let time_s = run.outcome_time_s;
     let path = newmark(slope_rad, 0.4, acceleration, time_s);
     let [_, slip_m] = path[path.len() - 1];
     // Friction moves the pressure by as much as it leans over half the height.
@@ -271,18 +262,13 @@ fn nothing_slips_off_ground_that_goes_on() {
         assert!((slip_m.abs() - 1.360).abs() < 5e-4, "{slip_m}");
         let [free, pedestal] = [false, true]
             .map(|pedestal| run(&column(0.3, 0.5, pedestal), &ground, &equal(5e-5, 5.0, 0.2)));
-        assert!(
-            matches!(free.outcome, Outcome::Rest { .. }),
-            "{:?}",
-            free.outcome
-        );
+        assert!(matches!(free.outcome, Outcome::Rest), "{:?}", free.outcome);
         let ours_m = slid(&free).offsets_m[0];
         assert!((ours_m / slip_m - 1.0).abs() < 1e-5, "{ours_m} {slip_m}");
-        assert!(free.peaks_rad[0] < 1e-9 && free.half_cycles.is_empty());
-        let Outcome::Overturned { sway, time_s } = pedestal.outcome else {
-            panic!("{:?}", pedestal.outcome);
-        };
-        assert_eq!(sway, Sway::pushed_by(amplitude_g));
+        assert!(free.peak_rotations_rad[0] < 1e-9 && free.half_cycles().is_empty());
+        let overturned = Outcome::Overturned(Sway::pushed_by(amplitude_g));
+        assert_eq!(pedestal.outcome, overturned);
+        let time_s = pedestal.outcome_time_s;
         let edge = path.iter().find(|[_, slip_m]| slip_m.abs() > 0.22).unwrap();
         assert!(time_s > edge[0], "{time_s} {edge:?}");
     }
@@ -356,18 +342,25 @@ fn rocking_on_a_plane(
 /// What the samples say of a block, and that its hinge is at its own corner.
 struct Block {
     samples: Vec<[f64; 3]>,
+    hinges: usize,
     half_width_m: f64,
 }
 
 impl Recorder for Block {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        let (pose, frame) = (&sample.poses[0], &sample.frames[0]);
-        for (end, edge) in [Edge::Intrados, Edge::Extrados].into_iter().enumerate() {
-            if sample.gaps_m[0][end] == 0.0 {
-                let own = pose.of(Vector2::new([-1.0, 1.0][end] * self.half_width_m, 0.0));
-                let miss_m = (frame.corner_m(edge) - own).norm();
-                assert!(miss_m < 1e-9, "{} {edge:?} {miss_m}", sample.time_s);
-            }
+        let pose = &sample.poses[0];
+        for open in &sample.hinges {
+            let Hinge::Joint {
+                edge: Some(edge), ..
+            } = open.hinge
+            else {
+                continue;
+            };
+            let side = if edge == Edge::Intrados { -1.0 } else { 1.0 };
+            let own = pose.of(Vector2::new(side * self.half_width_m, 0.0));
+            let miss_m = (open.position_m - own).norm();
+            assert!(miss_m < 1e-9, "{} {edge:?} {miss_m}", sample.time_s);
+            self.hinges += 1;
         }
         self.samples
             .push([sample.time_s, -sample.rotations_rad[0], sample.offsets_m[0]]);
@@ -404,12 +397,13 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
     };
     let mut block = Block {
         samples: Vec::new(),
+        hinges: 0,
         half_width_m: 0.5,
     };
     let row = column(2.0, 1.0, false);
-    let free = simulate(&row, &ground, GRAVITY, &settings, None, &mut block).unwrap();
-    assert!(matches!(free.outcome, Outcome::Rest { .. }));
-    let peak_rad = free.half_cycles[0].peak_rad;
+    let free = simulate(&row, &ground, GRAVITY, &settings, None, Some(&mut block)).unwrap();
+    assert!(matches!(free.outcome, Outcome::Rest));
+    let peak_rad = free.half_cycles()[0].peak_rad;
     assert!(
         (peak_rad / most_rad - 1.0).abs() < 1e-3,
         "{peak_rad} {most_rad}"
@@ -423,8 +417,8 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
         assert!((offset_m - at[2]).abs() < 1e-3 * slip_m, "{time_s}");
         compared += 1;
     }
-    assert!(compared > 9, "{compared}");
-    assert!(free.half_cycles.len() > 2);
+    assert!(compared > 9 && block.hinges > 9, "{compared}");
+    assert!(free.half_cycles().len() > 2);
 
     let pedestal = run(
         &column(2.0, 1.0, true),
@@ -432,9 +426,9 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
         &equal(1e-4, 5.0, coefficient),
     );
     assert!(
-        (pedestal.peaks_rad[0] - 0.1205).abs() < 5e-5,
+        (pedestal.peak_rotations_rad[0] - 0.1205).abs() < 5e-5,
         "{:?}",
-        pedestal.peaks_rad
+        pedestal.peak_rotations_rad
     );
 }
 
@@ -450,8 +444,8 @@ fn a_block_on_the_ground_moves_to_either_side_alike() {
         slips_m[0] > 0.05 && (slips_m[0] + slips_m[1]).abs() < 1e-9,
         "{slips_m:?}"
     );
-    assert!((right.peaks_rad[0] - left.peaks_rad[0]).abs() < 1e-9);
-    let sides = [&right, &left].map(|run| run.half_cycles[0].sway);
+    assert!((right.peak_rotations_rad[0] - left.peak_rotations_rad[0]).abs() < 1e-9);
+    let sides = [&right, &left].map(|run| run.half_cycles()[0].sway);
     assert_eq!(sides, [Sway::Right, Sway::Left]);
 }
 
@@ -482,9 +476,8 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
         assert_eq!(masonry.row().supports_go_on(), [!pedestal; 2]);
         let ground = GroundMotion::pulse(Pulse::OneSine, 0.5 * GRAVITY, 0.5, 0.0).unwrap();
         let run = run(masonry.row(), &ground, &equal(8e-5, 6.0, 0.3));
-        let Outcome::Rest { time_s } = run.outcome else {
-            panic!("{:?}", run.outcome);
-        };
+        assert_eq!(run.outcome, Outcome::Rest);
+        let time_s = run.outcome_time_s;
         assert!((time_s - 2.53).abs() < 0.1, "{time_s}");
         // It stands lower than what once counted as overturned.
         let slips_m = &slid(&run).offsets_m;
@@ -503,20 +496,17 @@ fn the_time_of_overturning_is_that_of_the_unstable_equilibrium() {
     let ground = push(0.5, 0.5);
     let without = run(&row, &ground, &Settings::to_landings(&row, GRAVITY, 10.0));
     let with = run(&row, &ground, &equal(5e-5, 10.0, 5.0));
-    let times_s = [&without, &with].map(|run| match run.outcome {
-        Outcome::Overturned { sway, time_s } => {
-            assert_eq!(sway, Sway::Right);
-            time_s
-        }
-        other => panic!("{other:?}"),
+    let times_s = [&without, &with].map(|run| {
+        assert_eq!(run.outcome, Outcome::Overturned(Sway::Right));
+        run.outcome_time_s
     });
     assert!((times_s[0] - times_s[1]).abs() < 2e-3, "{times_s:?}");
-    assert!(without.peaks_rad[0] < 0.5);
+    assert!(without.peak_rotations_rad[0] < 0.5);
     let far_rad = 2.0 * 0.3_f64.asin();
     assert!(
-        (with.peaks_rad[0] - far_rad).abs() < 1e-3,
+        (with.peak_rotations_rad[0] - far_rad).abs() < 1e-3,
         "{:?}",
-        with.peaks_rad
+        with.peak_rotations_rad
     );
     assert!(with.end_s > times_s[1] + 0.1);
 }
@@ -581,7 +571,7 @@ fn motion_starts_at_the_associated_bound() {
         for (factor, moves) in [(1.0 - 1e-4, false), (1.0 + 1e-4, true)] {
             let ground = push(factor * bound.acceleration_g, 0.5);
             let run = run(&row, &ground, &equal(1e-3, 0.4, coefficient));
-            let peak_rad = run.peaks_rad.iter().copied().fold(0.0, f64::max);
+            let peak_rad = run.peak_rotations_rad.iter().copied().fold(0.0, f64::max);
             let slip_m = slid(&run)
                 .largest_offsets_m
                 .iter()
@@ -614,7 +604,7 @@ fn the_least_pulse_that_overturns_is_the_published_one() {
         for (factor, falls) in [(1.002, true), (0.998, false)] {
             let ground = push(factor * threshold_g, 0.2);
             let run = run(row, &ground, &equal(2e-4, 4.0, coefficient));
-            let overturned = matches!(run.outcome, Outcome::Overturned { .. });
+            let overturned = matches!(run.outcome, Outcome::Overturned(_));
             assert_eq!(overturned, falls, "{coefficient} {threshold_g} {factor}");
         }
     }
@@ -639,7 +629,7 @@ fn the_least_step_pair_that_fells_a_column_of_drums_is_the_published_one() {
             let amplitude = -factor * threshold_g * GRAVITY;
             let ground = GroundMotion::pulse(Pulse::StepPair, amplitude, duration_s, 0.0).unwrap();
             let run = run(&row, &ground, &equal(1e-4, 8.0, coefficient));
-            let overturned = matches!(run.outcome, Outcome::Overturned { .. });
+            let overturned = matches!(run.outcome, Outcome::Overturned(_));
             assert_eq!(overturned, falls, "{duration_s} {coefficient} {factor}");
         }
     }
@@ -652,8 +642,8 @@ fn the_motion_with_much_friction_is_that_without_sliding() {
     for amplitude_g in [0.45, 0.5336, 0.8] {
         let ground = push(amplitude_g, 0.2);
         let settings = Settings::to_landings(&row, GRAVITY, 6.0);
-        let without = run(&row, &ground, &settings).half_cycles[0].peak_rad;
-        let with = run(&row, &ground, &equal(5e-5, 6.0, 20.0)).half_cycles[0].peak_rad;
+        let without = run(&row, &ground, &settings).half_cycles()[0].peak_rad;
+        let with = run(&row, &ground, &equal(5e-5, 6.0, 20.0)).half_cycles()[0].peak_rad;
         assert!(
             (with / without - 1.0).abs() < 1e-4,
             "{amplitude_g} {with} {without}"
@@ -760,7 +750,7 @@ fn a_block_that_slides_and_rocks_follows_its_equations() {
         };
         let mut course = Course(Vec::new());
         let ground = push(amplitude_g, duration_s);
-        simulate(&row, &ground, GRAVITY, &settings, None, &mut course).unwrap();
+        simulate(&row, &ground, GRAVITY, &settings, None, Some(&mut course)).unwrap();
         let times_s: Vec<f64> = (0..11).map(|i| f64::from(i) * output_step_s).collect();
         let pulse = |time: f64| {
             if time < duration_s {
@@ -800,8 +790,12 @@ fn mirror_images_move_alike() {
     let settings = equal(2e-4, 0.5, 0.4);
     let [right, left] =
         [0.6, -0.6].map(|amplitude_g| run(&row, &push(amplitude_g, 0.2), &settings));
-    let largest_rad = right.peaks_rad.iter().copied().fold(0.0, f64::max);
-    for (a, b) in right.peaks_rad.iter().zip(left.peaks_rad.iter().rev()) {
+    let largest_rad = right.peak_rotations_rad.iter().copied().fold(0.0, f64::max);
+    for (a, b) in right
+        .peak_rotations_rad
+        .iter()
+        .zip(left.peak_rotations_rad.iter().rev())
+    {
         assert!(*a > 1e-6 && (a - b).abs() < 1e-7 * largest_rad, "{a} {b}");
     }
     let slips = slid(&right)
@@ -856,7 +850,7 @@ fn random_histories_create_no_energy() {
             continue;
         }
         let settings = equal(1e-4, length_s, coefficient);
-        match simulate(&row, &ground, GRAVITY, &settings, None, &mut ()) {
+        match simulate(&row, &ground, GRAVITY, &settings, None, None) {
             Ok(run) => {
                 let unit_j = row.mass_kg() * GRAVITY * row.size_m();
                 let barrier = barrier_j(&row).map_or(USUAL_BARRIER, |barrier_j| barrier_j / unit_j);

@@ -229,7 +229,7 @@ impl Model for Rule {
             energy_defect_ratio: 0.0,
             thrust: None,
             cost: Cost::default(),
-            free_hinges: None,
+            row: None,
         })
     }
 }

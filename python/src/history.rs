@@ -6,9 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use archrock::dynamics::free_hinges::spread::Spread;
+use archrock::dynamics::spread::Repetitions;
 use archrock::dynamics::history::{Recording, Samples, Summary};
-use archrock::dynamics::model::{Model as _, Repetition};
+use archrock::dynamics::model::Model as _;
 use archrock::mechanics::chain::Demand;
 use archrock::output::report::Report;
 use archrock::output::scene::Scene;
@@ -403,18 +403,14 @@ impl History {
                 results::summary(&scenario, &**model, motion, &self.summary)
             }
             Standing::Row(row) => {
-                let spread = if spread {
-                    let request = scenario.request();
-                    let simulated = |Repetition { name, model }| {
-                        Ok::<_, SimulationError>((name, model.simulate(motion, &request, None)?))
-                    };
-                    let repeat = || row.repetitions().into_iter().map(simulated).collect();
-                    let repeated: Result<Vec<_>, _> = py.detach(repeat);
-                    Some(Spread::new(&self.summary, &repeated.map_err(refused)?))
-                } else {
-                    None
+                let repeat = || {
+                    Repetitions::start(&**row, motion, &scenario.request()).spread(&self.summary)
                 };
-                let spread = spread.as_ref().map(Ok);
+                let spread = spread.then(|| py.detach(repeat));
+                if let Some(Err(error)) = &spread {
+                    return Err(refused(error));
+                }
+                let spread = spread.as_ref();
                 free_hinges::summary(&scenario, row, &self.summary, spread)
             }
         };

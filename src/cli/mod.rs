@@ -124,9 +124,7 @@ impl From<SimulationError> for Failure {
             SimulationError::Argument(_)
             | SimulationError::FreeFall { .. }
             | SimulationError::Memory(_) => Self::Input(error.to_string()),
-            SimulationError::Engine(_) | SimulationError::FreeHinges(_) => {
-                Self::Work(error.to_string())
-            }
+            SimulationError::Computation(_) => Self::Work(error.to_string()),
         }
     }
 }

@@ -7,30 +7,26 @@ mod course;
 mod engine;
 mod model;
 mod sliding;
-pub mod spread;
-
-use std::ops::ControlFlow;
-use std::time::Duration;
 
 use thiserror::Error;
 
 pub use model::{DOUBTFUL_ENERGY_ERROR, FreeHinges, FreeHingesError, RowOptions};
 
+use self::course::Task;
 use self::engine::Engine;
 use super::ground::GroundMotion;
+use super::history::Summary;
+use super::model::{Recorder, SimulationError};
 use crate::mechanics::blocks::Row;
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::contact::ContactError;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::joints::{Frame, Placement};
-use crate::mechanics::sway::Sway;
+use crate::mechanics::joints::Placement;
 
 /// The shortest step over the longest one, where it is not given.
 const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
 /// Impacts within the shortest step after which the next landings are merged: without end they would stop time.
 const CROWDED_IMPACTS: usize = 50;
-/// A row whose joints do not slip has overturned when it is lower than at rest by this part of weight times size.
-const FALLEN_ENERGY_RATIO: f64 = 1e-3;
+/// The time after an impact in which a repetition merges landings, over the shortest step.
+const MERGED_RATIO: f64 = 4.0;
 
 /// How a motion is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +78,42 @@ impl Settings {
         Self {
             longest_step_s: self.longest_step_s * factor,
             shortest_step_s: self.shortest_step_s * factor,
+            ..*self
+        }
+    }
+
+    /// The same with the steps that it takes multiplied. They end at output times as well: where these limit them, they vary too.
+    fn with_steps_times(&self, factor: f64) -> Self {
+        let limits = |step_s: f64| step_s < 2.0 * self.longest_step_s;
+        let times = |step_s| {
+            if limits(step_s) {
+                factor * step_s
+            } else {
+                step_s
+            }
+        };
+        Self {
+            output_step_s: self.output_step_s.map(times),
+            ..self.times(factor)
+        }
+    }
+
+    /// The same with steps half as long.
+    fn with_half_steps(&self) -> Self {
+        self.with_steps_times(0.5)
+    }
+
+    /// The same with steps twice as long.
+    fn with_double_steps(&self) -> Self {
+        self.with_steps_times(2.0)
+    }
+
+    /// The same with the landings that follow an impact within four shortest steps merged with each other. Real impacts last: in which
+    /// order landings follow within that time nobody knows.
+    fn with_landings_merged(&self) -> Self {
+        Self {
+            shortest_step_s: (MERGED_RATIO * self.shortest_step_s).min(self.longest_step_s),
+            merged_after: 0,
             ..*self
         }
     }
@@ -162,275 +194,57 @@ pub enum FreeHingeError {
     },
 }
 
-/// The state at an output time.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample<'a> {
-    /// Time in seconds.
-    pub time_s: f64,
-    /// Rotations of the blocks in radians.
-    pub rotations_rad: &'a [f64],
-    /// Their rates in rad/s.
-    pub rates_rad_s: &'a [f64],
-    /// Gaps of the joints at intrados and extrados in metres; the larger one is an arc.
-    pub gaps_m: &'a [[f64; 2]],
-    /// Placements of the blocks.
-    pub poses: &'a [Pose],
-    /// Where the joints are.
-    pub frames: &'a [Frame],
-    /// Number of joints that are open.
-    pub open_joints: usize,
-    /// Offset of the right face of every joint towards the extrados, in metres; none where joints do not slip.
-    pub offsets_m: &'a [f64],
-    /// Number of joints that slip.
-    pub slipping_joints: usize,
-    /// Largest ratio of tangential to normal force at a joint that is pressed, in the step before.
-    pub friction_demand: f64,
-    /// Least normal force at a joint in the step before, in newtons.
-    pub least_normal_n: f64,
-    /// Impulses that press the joints now, at intrados and extrados, all over the same short time.
-    pub corner_impulses_n_s: &'a [[f64; 2]],
-    /// Kinetic energy in joules.
-    pub kinetic_j: f64,
-    /// Potential energy above the undeformed row in joules.
-    pub potential_j: f64,
-    /// To which side the row sways, without what it slid along the ground: the side of its centre of gravity or, where that is at its
-    /// undeformed place, the one to which it goes.
-    pub sway: Sway,
-    /// Whether it has overturned.
-    pub overturned: bool,
-}
-
-/// Joints open where all were shut.
-#[derive(Clone, Copy, Debug)]
-pub struct Uplift<'a> {
-    /// Time in seconds, to within a step: when they were shut last.
-    pub time_s: f64,
-    /// Joints that open, with the edge about which they turn; none where they part.
-    pub opened: &'a [Hinge],
-    /// To which side the centre of gravity goes.
-    pub sway: Sway,
-    /// Rotations of the blocks in radians; not zero only where joints have slipped.
-    pub rotations_rad: &'a [f64],
-    /// Their rates in rad/s, as the rotations.
-    pub rates_rad_s: &'a [f64],
-    /// Kinetic energy, and potential energy above the undeformed row, in joules.
-    pub energy_j: f64,
-}
-
-/// One or more corners land.
-#[derive(Clone, Copy, Debug)]
-pub struct Impact<'a> {
-    /// Time in seconds.
-    pub time_s: f64,
-    /// To which side the row sways after the impact: the side of its centre of gravity or, where that is at its undeformed
-    /// place, the one to which it goes; `None` at rest.
-    pub sway: Option<Sway>,
-    /// Joints that shut, also where they open again at once, with the edge that landed; both, where none is named.
-    pub shut: &'a [Hinge],
-    /// Joints that open at once; those among them that shut go on about their other edge.
-    /// The edge is that about which they turn; none where they part.
-    pub opened: &'a [Hinge],
-    /// Kinetic energy before, in joules.
-    pub energy_before_j: f64,
-    /// Kinetic energy taken, also by friction, in joules.
-    pub energy_taken_j: f64,
-    /// The part of it that friction takes in the step of the impact, in joules, where joints slip.
-    pub friction_j: Option<f64>,
-    /// Rotations of the blocks in radians.
-    pub rotations_rad: &'a [f64],
-    /// Rotation rates of the blocks after the impact, in rad/s.
-    pub rates_after_rad_s: &'a [f64],
-    /// Gaps of the joints at intrados and extrados in metres.
-    pub gaps_m: &'a [[f64; 2]],
-    /// Potential energy above the undeformed row in joules.
-    pub potential_j: f64,
-    /// Whether the row has overturned.
-    pub overturned: bool,
-}
-
-/// Who listens to a motion.
-pub trait Recorder {
-    /// Whether it listens to samples.
-    fn wants_samples(&self) -> bool {
-        true
+impl From<FreeHingeError> for SimulationError {
+    fn from(error: FreeHingeError) -> Self {
+        Self::computation(error)
     }
-    /// At every output time, and at the end. To break ends the motion.
-    fn sample(&mut self, _: &Sample) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-    /// Whenever it starts to move from rest. To break ends the motion.
-    fn uplift(&mut self, _: &Uplift) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-    /// At every impact. To break ends the motion.
-    fn impact(&mut self, _: &Impact) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
-
-/// Nobody does.
-impl Recorder for () {
-    fn wants_samples(&self) -> bool {
-        false
-    }
-}
-
-/// How a motion ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
-    /// No joint opened.
-    NeverMoved,
-    /// At rest from this time on, in seconds: ground quiet for good, both energies negligible.
-    Rest {
-        /// When.
-        time_s: f64,
-    },
-    /// Overturned: lower than at rest, whose potential energy is a minimum. Where joints slip: a joint has no overlap left, a block has
-    /// turned by 0.8 rad, or it has moved by 0.6 of the size, besides what the row slid along a support.
-    Overturned {
-        /// To which side.
-        sway: Sway,
-        /// When the potential energy was last highest, in seconds; where joints slip, that and what friction took of it: from then on
-        /// gravity gave more than friction took.
-        time_s: f64,
-    },
-    /// Still rocking at the end.
-    Rocking,
-}
-
-/// From one passage of the centre of gravity through its undeformed place to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfCycle {
-    /// To which side.
-    pub sway: Sway,
-    /// When it began, in seconds.
-    pub start_s: f64,
-    /// How long it took, in seconds; of the last one, until the motion ended.
-    pub duration_s: f64,
-    /// Largest rotation of a block, in radians.
-    pub peak_rad: f64,
-    /// Energy at its end over that at its beginning; of the first and the last one unknown.
-    pub energy_ratio: Option<f64>,
-}
-
-/// What a motion has cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cost {
-    /// Steps.
-    pub steps: usize,
-    /// Programs solved.
-    pub programs: usize,
-    /// Systems of pin forces solved.
-    pub iterations: usize,
-    /// How often the tolerance of a program had to be relaxed.
-    pub relaxed: usize,
-    /// Impacts that steps ended at.
-    pub impacts: usize,
-    /// Steps with more than one landing, or with landings too close to end at.
-    pub merged: usize,
-    /// Most iterations in one step.
-    pub most_iterations: usize,
-    /// Time that the longest step took to compute, where samples are made.
-    pub longest_step: Elapsed,
-}
-
-/// Time that a computation took; `None` where it was not measured. It belongs to no result: any two are equal.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Elapsed(pub Option<Duration>);
-
-impl PartialEq for Elapsed {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-/// What slipped in a motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sliding {
-    /// Energy that friction took, in joules.
-    pub friction_j: f64,
-    /// Offsets at the end: of the right face of every joint towards the extrados, in metres.
-    pub offsets_m: Vec<f64>,
-    /// Largest magnitudes of the offsets, in metres.
-    pub largest_offsets_m: Vec<f64>,
-    /// Steps whose bounds of friction did not converge.
-    pub unconverged: usize,
-    /// The largest error of such a bound, as part of the largest bound.
-    pub bound_error: f64,
-}
-
-/// A motion as a whole.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Run {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// When, in seconds.
-    pub end_s: f64,
-    /// The longest step that it might take, in seconds.
-    pub longest_step_s: f64,
-    /// The time within which landings crowd, in seconds.
-    pub shortest_step_s: f64,
-    /// Largest rotation of every block, in radians.
-    pub peaks_rad: Vec<f64>,
-    /// Largest potential energy above the undeformed row, in joules.
-    pub peak_potential_j: f64,
-    /// Largest kinetic energy at the end of a step, in joules.
-    pub largest_kinetic_j: f64,
-    /// Half cycles.
-    pub half_cycles: Vec<HalfCycle>,
-    /// Least normal force at a joint outside impacts, in newtons.
-    pub least_normal_n: f64,
-    /// Largest ratio of tangential to normal force outside impacts.
-    pub friction_demand: f64,
-    /// Energy taken by impacts, in joules, without what friction takes.
-    pub energy_taken_j: f64,
-    /// Largest error of the energy balance at impacts and samples, or, where joints slip, the largest growth of energy less the
-    /// work of the ground; over weight times size.
-    pub energy_defect_ratio: f64,
-    /// Largest error of closure in metres.
-    pub closure_error_m: f64,
-    /// What slipped; `None` where joints do not slip.
-    pub sliding: Option<Sliding>,
-    /// What it has cost.
-    pub cost: Cost,
 }
 
 /// Computes the motion of a row on moving ground, from rest or released from given rotations of its blocks
 /// (radians; hinges only).
 ///
 /// # Errors
-/// When a setting is out of range, the initial rotations do not fit, or a step fails.
+/// When a setting is out of range, the initial rotations do not fit, a step fails, or the balance of energy does.
 pub fn simulate(
     row: &Row,
     ground: &GroundMotion,
     gravity_m_s2: f64,
     settings: &Settings,
     initial_rad: Option<&[f64]>,
-    recorder: &mut impl Recorder,
-) -> Result<Run, FreeHingeError> {
-    check(gravity_m_s2, settings)?;
-    let released = || -> Result<Engine, FreeHingeError> {
-        let mut engine = Engine::new(row, ground, gravity_m_s2, settings);
-        if let Some(rotations_rad) = initial_rad {
-            engine.release(rotations_rad)?;
-        }
-        Ok(engine)
+    recorder: Option<&mut dyn Recorder>,
+) -> Result<Summary, FreeHingeError> {
+    let task = Task {
+        row,
+        ground,
+        gravity_m_s2,
+        settings,
+        barrier_j: None,
     };
-    let Some(coefficient) = settings.friction_coefficient else {
-        return course::run(released()?, ground, settings, recorder);
-    };
-    let placement = if initial_rad.is_some() {
-        released()?.into_placement()
-    } else {
-        Placement::new(row)
-    };
-    let engine = sliding::Engine::new(&placement, row, ground, gravity_m_s2, settings, coefficient);
-    course::run(engine, ground, settings, recorder)
+    motion(task, initial_rad, recorder)
 }
 
-/// Potential energy below which a row whose joints do not slip has overturned, in joules.
-fn fallen_energy_j(row: &Row, gravity_m_s2: f64) -> f64 {
-    -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m()
+/// The same of any task.
+fn motion(
+    task: Task<'_>,
+    initial_rad: Option<&[f64]>,
+    recorder: Option<&mut dyn Recorder>,
+) -> Result<Summary, FreeHingeError> {
+    // One of any lifetime serves for as long as the task.
+    let recorder = recorder.map(|recorder| recorder as _);
+    check(task.gravity_m_s2, task.settings)?;
+    let Some(coefficient) = task.settings.friction_coefficient else {
+        return course::run(Engine::released(task, initial_rad, recorder)?);
+    };
+    let placement = match initial_rad {
+        Some(_) => Engine::released(task, initial_rad, None)?.into_placement(),
+        None => Placement::new(task.row),
+    };
+    course::run(sliding::Engine::new(
+        &placement,
+        task,
+        coefficient,
+        recorder,
+    ))
 }
 
 fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {

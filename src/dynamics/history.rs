@@ -1,11 +1,11 @@
 //! The history of a motion: samples, events and a summary, the same for every model.
 
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::free_hinges::Run;
 pub use super::hybrid::integrator::Cost;
 use super::model::Recorder;
 use super::thrust::ThrustRecord;
@@ -271,8 +271,8 @@ pub struct Summary {
     pub thrust: Option<ThrustRecord>,
     /// Work done by the integrator: of a row of blocks, its systems of equations, and its steps.
     pub cost: Cost,
-    /// Quantities of a row of blocks only.
-    pub free_hinges: Option<Box<Run>>,
+    /// What only rows of blocks tell.
+    pub row: Option<Box<RowSummary>>,
 }
 
 impl Summary {
@@ -280,6 +280,85 @@ impl Summary {
     #[must_use]
     pub fn largest_rotation_rad(&self) -> f64 {
         self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Half cycles of a row of blocks; of others, none.
+    #[must_use]
+    pub fn half_cycles(&self) -> &[HalfCycle] {
+        self.row.as_ref().map_or(&[], |row| &row.half_cycles)
+    }
+}
+
+/// What the summary of a row of blocks tells besides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowSummary {
+    /// Half cycles.
+    pub half_cycles: Vec<HalfCycle>,
+    /// What slipped; `None` where joints do not slip.
+    pub sliding: Option<Sliding>,
+    /// Largest kinetic energy at the end of a step, in J.
+    pub largest_kinetic_j: f64,
+    /// Energy taken by impacts, in J, without what friction takes.
+    pub energy_taken_j: f64,
+    /// By how much the energy balance is wrong, over the larger of the largest kinetic energy and the barrier, where that is known.
+    pub energy_error: f64,
+    /// Least normal force at a joint outside impacts, in N; infinite without any step.
+    pub least_normal_n: f64,
+    /// Largest error of closure of an arch, in m.
+    pub closure_error_m: f64,
+    /// The longest step that it might take, in seconds.
+    pub longest_step_s: f64,
+    /// The time within which landings crowd, in seconds.
+    pub shortest_step_s: f64,
+    /// Programs solved.
+    pub programs: u64,
+    /// Most systems of equations in one step.
+    pub most_iterations: u64,
+    /// How often the tolerance of a program had to be relaxed.
+    pub relaxed: u64,
+    /// Steps with more than one landing, or with landings too close to end at.
+    pub merged: u64,
+    /// Time that the longest step took to compute, where samples are made.
+    pub longest_step: Elapsed,
+}
+
+/// From one passage of the centre of gravity through its undeformed place to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfCycle {
+    /// To which side.
+    pub sway: Sway,
+    /// When it began, in seconds.
+    pub start_s: f64,
+    /// How long it took, in seconds; of the last one, until the motion ended.
+    pub duration_s: f64,
+    /// Largest rotation of a block, in radians.
+    pub peak_rad: f64,
+    /// Energy at its end over that at its beginning; of the first and the last one unknown.
+    pub energy_ratio: Option<f64>,
+}
+
+/// What slipped in a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sliding {
+    /// Energy that friction took, in J.
+    pub friction_j: f64,
+    /// Offsets at the end: of the right face of every joint towards the extrados, in metres.
+    pub offsets_m: Vec<f64>,
+    /// Largest magnitudes of the offsets, in metres.
+    pub largest_offsets_m: Vec<f64>,
+    /// Steps whose bounds of friction did not converge.
+    pub unconverged: u64,
+    /// The largest error of such a bound, as part of the largest bound.
+    pub bound_error: f64,
+}
+
+/// Time that a computation took; `None` where it was not measured. It belongs to no result: any two are equal.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Elapsed(pub Option<Duration>);
+
+impl PartialEq for Elapsed {
+    fn eq(&self, _: &Self) -> bool {
+        true
     }
 }
 

@@ -7,4 +7,5 @@ pub mod history;
 #[doc(hidden)]
 pub mod hybrid;
 pub mod model;
+pub mod spread;
 pub mod thrust;

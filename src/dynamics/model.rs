@@ -1,17 +1,16 @@
 //! The trait of every model of motion: the seam between models and everything that uses them.
 
+use std::error::Error;
 use std::fmt::Debug;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use serde::Serialize;
-use thiserror::Error;
 
-use super::free_hinges::FreeHingeError;
 use super::ground::GroundMotion;
 use super::history::{
     Event, History, MEMORY_BYTES, MemoryError, Recording, Sample, Shape, Summary,
 };
-pub use super::hybrid::engine::EngineError;
 use crate::argument::{ArgumentError, above, within};
 use crate::mechanics::capacity::Displaced;
 use crate::mechanics::chain::Hinge;
@@ -268,7 +267,7 @@ impl Request {
 }
 
 /// Why a motion could not be computed.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum SimulationError {
     /// A number of the request is out of range.
     #[error(transparent)]
@@ -285,12 +284,16 @@ pub enum SimulationError {
     /// The history takes too much memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// The integration failed.
+    /// The motion could not be computed, for a reason of its model.
     #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// The motion of a row of blocks could not be computed.
-    #[error(transparent)]
-    FreeHinges(#[from] FreeHingeError),
+    Computation(Arc<dyn Error + Send + Sync>),
+}
+
+impl SimulationError {
+    /// For a reason of the model.
+    pub(super) fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
+        Self::Computation(Arc::new(reason))
+    }
 }
 
 /// Receives the samples and events of a history. Breaking ends the history there.

@@ -16,6 +16,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use super::blocks::{Joint, Row};
 use super::geometry::field::turned;
 use super::geometry::pose::{Pose, product, unit};
+use super::geometry::ring::Edge;
 
 /// The position of a block, as joints that slip need it: by its centre, whose velocity the motion steps, and by half its rotation,
 /// which adds up to the mean angle of two faces. It is no [`Pose`]: turning by the half twice is not, to the last bit, turning once.
@@ -172,6 +173,16 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// Where the overlap ends on the given edge.
+    #[must_use]
+    pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
+        let intrados_m = self.middle_m + self.along * self.ends_m[0];
+        match edge {
+            Edge::Intrados => intrados_m,
+            Edge::Extrados => intrados_m + self.along * (self.ends_m[1] - self.ends_m[0]),
+        }
+    }
+
     /// By how much the forces at the ends of the overlap lean along the joint: they are normal to the face that they press.
     fn lean(&self, faces: &Faces) -> f64 {
         let offset_m = self.coordinates_m.z;

@@ -8,9 +8,9 @@ use super::results::{beginning, edges, joints};
 use super::table::{Table, table};
 use super::{OutputError, finite};
 use crate::dynamics::free_hinges::FreeHinges;
-use crate::dynamics::free_hinges::spread::{PeakSpread, Spread};
 use crate::dynamics::history::{Impact, Sample, Summary};
 use crate::dynamics::model::Model as _;
+use crate::dynamics::spread::{PeakSpread, Spread, SpreadError};
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
@@ -145,7 +145,7 @@ pub fn summary(
     scenario: &Scenario,
     model: &FreeHinges,
     history: &Summary,
-    spread: Option<Result<&Spread, &str>>,
+    spread: Option<&Result<Spread, SpreadError>>,
 ) -> Result<Value, OutputError> {
     let mut summary = beginning(scenario, history, &model.bodies())?;
     let more = summary.as_object_mut().expect("the summary is an object");
@@ -160,9 +160,9 @@ pub fn summary(
         "incipient_acceleration_g",
         json!({ "right": incipient_g(Sway::Right), "left": incipient_g(Sway::Left) }),
     );
-    if let Some(run) = history.free_hinges.as_deref() {
+    if let Some(row) = &history.row {
         let mut half_cycles = Vec::new();
-        for cycle in &run.half_cycles {
+        for cycle in &row.half_cycles {
             finite(
                 "of a half cycle",
                 &[cycle.start_s, cycle.duration_s, cycle.peak_rad],
@@ -178,8 +178,8 @@ pub fn summary(
         }
         put("half_cycles", json!(half_cycles));
         // None where it was released beyond where it overturns.
-        if run.cost.steps > 0 {
-            let least_normal_n = run.least_normal_n;
+        if history.cost.steps > 0 {
+            let least_normal_n = row.least_normal_n;
             put("least_normal_n", number("least_normal_n", least_normal_n)?);
         }
         if let Some(thrust) = &history.thrust {
@@ -191,17 +191,14 @@ pub fn summary(
             );
         }
         for (name, value) in [
-            ("energy_taken_j", run.energy_taken_j),
-            ("energy_defect_ratio", run.energy_defect_ratio),
-            (
-                "energy_defect_over_largest",
-                model.energy_error(run, scenario.simulation.gravity_m_s2),
-            ),
-            ("closure_error_m", run.closure_error_m),
+            ("energy_taken_j", row.energy_taken_j),
+            ("energy_defect_ratio", history.energy_defect_ratio),
+            ("energy_defect_over_largest", row.energy_error),
+            ("closure_error_m", row.closure_error_m),
         ] {
             put(name, number(name, value)?);
         }
-        if let Some(sliding) = &run.sliding {
+        if let Some(sliding) = &row.sliding {
             put("friction_coefficient", json!(model.friction_coefficient()));
             finite("of a slip", &sliding.offsets_m)?;
             finite("of a slip", &sliding.largest_offsets_m)?;
@@ -216,19 +213,19 @@ pub fn summary(
             put("unconverged_steps", json!(sliding.unconverged));
         }
         for (name, count) in [
-            ("steps", run.cost.steps),
-            ("programs", run.cost.programs),
-            ("iterations", run.cost.iterations),
-            ("most_iterations", run.cost.most_iterations),
-            ("relaxed", run.cost.relaxed),
-            ("merged", run.cost.merged),
+            ("steps", history.cost.steps),
+            ("programs", row.programs),
+            ("iterations", history.cost.evaluations),
+            ("most_iterations", row.most_iterations),
+            ("relaxed", row.relaxed),
+            ("merged", row.merged),
         ] {
             put(name, json!(count));
         }
     }
     match spread {
         Some(Ok(spread)) => put("spread", of_spread(spread)?),
-        Some(Err(reason)) => put("spread", json!({ "failed": reason })),
+        Some(Err(reason)) => put("spread", json!({ "failed": reason.to_string() })),
         None => None,
     };
     Ok(summary)

@@ -8,7 +8,6 @@ use super::panels::{
 };
 use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 use super::timeline::FAR;
-use crate::dynamics::free_hinges::HalfCycle;
 use crate::dynamics::history::{Outcome, Sample, State, Summary};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
@@ -179,14 +178,12 @@ impl RowTimeline {
 
 /// The half cycles, and the end.
 fn doing(summary: &Summary) -> Doing {
-    let run = summary.free_hinges.as_deref();
-    let half_cycles: &[HalfCycle] = run.map_or(&[], |run| &run.half_cycles);
     let end = match summary.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
         Outcome::NeverMoved | Outcome::StillRocking => None,
     };
-    let cycles = half_cycles.iter();
+    let cycles = summary.half_cycles().iter();
     let changes = cycles
         .map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)))
         .chain(end.map(|state| (summary.outcome_time_s, state)));

@@ -3,13 +3,12 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::ops::ControlFlow;
-use std::thread::{self, JoinHandle};
 
-use archrock::dynamics::free_hinges::spread::{SAME_PEAK_RATIO, Spread};
-use archrock::dynamics::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, HalfCycle, Sliding};
+use archrock::dynamics::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges};
 use archrock::dynamics::ground::GroundMotion;
-use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
-use archrock::dynamics::model::{Model as _, Recorder, Repetition, Request, SimulationError};
+use archrock::dynamics::history::{Event, HalfCycle, Impact, Outcome, Sample, Sliding, Summary};
+use archrock::dynamics::model::{Model as _, Recorder};
+use archrock::dynamics::spread::{Repetitions, SAME_PEAK_RATIO, Spread, SpreadError};
 use archrock::mechanics::chain::Hinge;
 use archrock::output::free_hinges::{JointsWriter, LandingsWriter, summary};
 use archrock::output::overlay::Curves;
@@ -68,7 +67,7 @@ pub fn run(
     let mut impacts = Notable::default();
     let repetitions = options
         .spread
-        .then(|| Repetitions::start(&model, ground, scenario.request()));
+        .then(|| Repetitions::start(&model, ground, &scenario.request()));
     let progress = RunProgress::new(scenario.simulation.duration_s, options.quiet);
     let (summary, rows) = {
         let mut results = Results {
@@ -87,14 +86,11 @@ pub fn run(
     progress.repeating();
     let spread = repetitions.map(|repetitions| repetitions.spread(&summary));
     drop(progress);
-    let spread = spread.as_ref().map(|spread| match spread {
-        Ok(spread) => Ok(spread),
-        Err(reason) => Err(reason.as_str()),
-    });
+    let spread = spread.as_ref();
     let mut text = words(scenario, &model, &summary, spread, &impacts);
     let mut json = self::summary(scenario, &model, &summary, spread)?;
-    let run = summary.free_hinges.as_deref();
-    if let Some(longest_step) = run.and_then(|run| run.cost.longest_step.0) {
+    let row = summary.row.as_ref();
+    if let Some(longest_step) = row.and_then(|row| row.longest_step.0) {
         // What a computation takes is told here, and belongs to no result.
         json["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
     }
@@ -120,35 +116,6 @@ pub fn run(
         text,
         summary: json,
     })
-}
-
-/// The repetitions, on threads of their own while the history is computed. Where that fails or cannot be written nobody waits for
-/// them: they end with the program.
-struct Repetitions(Vec<(&'static str, JoinHandle<Result<Summary, SimulationError>>)>);
-
-impl Repetitions {
-    fn start(model: &FreeHinges, ground: &GroundMotion, request: Request) -> Self {
-        let start = |Repetition { name, model }| {
-            let ground = ground.clone();
-            let repeated = move || model.simulate(&ground, &request, None);
-            (name, thread::spawn(repeated))
-        };
-        Self(model.repetitions().into_iter().map(start).collect())
-    }
-
-    /// How they differ from the history, or why that is not known.
-    fn spread(self, own: &Summary) -> Result<Spread, String> {
-        let mut repeated = Vec::new();
-        for (name, repetition) in self.0 {
-            let ended = match repetition.join() {
-                Ok(ended) => ended.map_err(|error| format!("failed: {error}")),
-                Err(_) => Err("crashed".to_owned()),
-            };
-            let failed = |how| format!("the repetition with {name} {how}");
-            repeated.push((name, ended.map_err(failed)?));
-        }
-        Ok(Spread::new(own, &repeated))
-    }
 }
 
 /// The tables that are written while the motion is computed.
@@ -309,7 +276,7 @@ fn words(
     scenario: &Scenario,
     model: &FreeHinges,
     history: &Summary,
-    spread: Option<Result<&Spread, &str>>,
+    spread: Option<&Result<Spread, SpreadError>>,
     impacts: &Notable,
 ) -> String {
     let ground = scenario.ground_motion();
@@ -326,10 +293,10 @@ fn words(
             landing(impact)
         );
     }
-    if let Some(run) = history.free_hinges.as_deref()
+    if let Some(row) = &history.row
         && history.outcome != Outcome::NeverMoved
     {
-        let rocking = run
+        let rocking = row
             .half_cycles
             .iter()
             .filter(|cycle| cycle.peak_rad > STRAIGHT_RAD);
@@ -368,24 +335,19 @@ fn words(
         let _ = writeln!(
             text,
             "  energy defect {:.1e} of weight times size, {} steps, {} iterations",
-            run.energy_defect_ratio, run.cost.steps, run.cost.iterations
+            history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
         );
-        let error = model.energy_error(run, scenario.simulation.gravity_m_s2);
-        if error > DOUBTFUL_ENERGY_ERROR {
+        if row.energy_error > DOUBTFUL_ENERGY_ERROR {
             let _ = writeln!(
                 text,
                 "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [free_hinges] makes it less",
-                1e2 * error
+                1e2 * row.energy_error
             );
         }
     }
     text += &incipient(scenario, model, ground, history);
     text += &cut_short(scenario, ground, history);
-    if let Some(sliding) = history
-        .free_hinges
-        .as_deref()
-        .and_then(|run| run.sliding.as_ref())
-    {
+    if let Some(sliding) = history.row.as_ref().and_then(|row| row.sliding.as_ref()) {
         text += &slips(model, sliding, history.outcome);
     } else if let Some(thrust) = &history.thrust {
         let friction = thrust.largest_friction;

@@ -1,45 +1,100 @@
-//! The course of a motion, whichever engine steps it: its clock and driver, peaks, half cycles and outcome.
+//! The course of a motion, whichever stepper moves the row: its clock, what it tells, peaks, half cycles, energy and outcome.
 
+use std::mem;
 use std::time::{Duration, Instant};
 
-use crate::dynamics::ground::GroundMotion;
-use crate::mechanics::blocks::Row;
-use crate::mechanics::sway::Sway;
+use nalgebra::Vector2;
 
-use super::{Cost, Elapsed, FreeHingeError, HalfCycle, Outcome, Recorder, Run, Settings};
+use super::{FreeHingeError, Settings};
+use crate::dynamics::ground::{GroundMotion, Piece};
+use crate::dynamics::history::{
+    Cost, Elapsed, Event, EventKind, HalfCycle, Impact, OpenHinge, Outcome, RowSummary, Sample,
+    State, Summary,
+};
+use crate::dynamics::model::Recorder;
+use crate::dynamics::thrust::ThrustRecord;
+use crate::mechanics::blocks::Row;
+use crate::mechanics::chain::{Demand, Hinge};
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
 
 /// Sways below this part of the size do not count as a change of side.
 pub(super) const SWAY_RATIO: f64 = 1e-9;
+/// An energy balance that is wrong by more than this part of the largest energy of the motion is an error.
+const LARGEST_ENERGY_ERROR: f64 = 1e-2;
+/// Motions whose energies are below this part of weight times size are none: their balance is rounding.
+const LEAST_ENERGY_RATIO: f64 = 1e-6;
+/// A row has slipped when friction took more than this part of the barrier of its first mechanism. It then stands lower than it did,
+/// and its potential energy tells nothing about that barrier.
+const SLIPPED_RATIO: f64 = 0.01;
+
+/// What is to be computed.
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub row: &'a Row,
+    pub ground: &'a GroundMotion,
+    pub gravity_m_s2: f64,
+    pub settings: &'a Settings,
+    /// Energy that the first mechanism has to gain to overturn, where that is known.
+    pub barrier_j: Option<f64>,
+}
 
 /// What has happened so far.
-pub(super) struct Course {
+pub(super) struct Course<'a> {
     pub time: f64,
     /// Potential energy above the undeformed row.
     pub potential: f64,
+    /// Horizontal displacement of the centre of gravity times the mass, without what the row slid along the ground.
+    pub sway: f64,
     /// Whether a joint has opened or slipped.
     pub moved: bool,
-    /// Whether the recorder broke.
-    pub stopped: bool,
     /// Weight times size.
     pub energy_unit: f64,
-    pub run: Run,
-    gravity: f64,
+    /// Joints that shut in a step, also where they open again at once, with the edge that landed; both, where none is named.
+    pub shut: Vec<Hinge>,
+    /// Joints that open at once, with the edge about which they turn; none where they part.
+    pub opened: Vec<Hinge>,
+    pub summary: Summary,
+    pub of_row: RowSummary,
+    task: Task<'a>,
     /// Potential energy below which the row has overturned, where that tells.
     fallen: f64,
+    peak_potential: f64,
     cycle: Option<HalfCycle>,
     cycle_energy: Option<f64>,
     rising: bool,
     highest_s: f64,
+    recorder: Option<&'a mut dyn Recorder>,
+    /// Whether the recorder broke.
+    stopped: bool,
+    /// The sample that is made, again and again.
+    sample: Sample,
+    /// The motion of the ground from the last sample on.
+    pieces: &'a [Piece],
+    phase: usize,
+    thrust: ThrustRecord,
 }
 
-/// An engine that steps a row.
-pub(super) trait Stepper {
-    fn course(&self) -> &Course;
-    fn course_mut(&mut self) -> &mut Course;
+/// What moves a row, step by step.
+pub(super) trait Stepper<'a>: Sized {
+    fn course(&self) -> &Course<'a>;
+    fn course_mut(&mut self) -> &mut Course<'a>;
     /// One step, at most to the given time.
-    fn step(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError>;
-    /// Hands the present state to the recorder.
-    fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError>;
+    fn step(&mut self, until: f64) -> Result<(), FreeHingeError>;
+    /// Writes into a blank sample where the blocks are, their rates at that instant, offsets, friction and, if it is wanted, the line
+    /// of thrust. Returns the kinetic energy at that instant.
+    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, FreeHingeError>;
+    /// Rotations of the blocks, and their rates after the last step.
+    fn turns(&self) -> impl Iterator<Item = (f64, f64)>;
+    /// Gaps of a joint at intrados and extrados.
+    fn gaps(&self, joint: usize) -> [f64; 2];
+    /// Where a joint is pressed, or pressed last, on the given edge.
+    fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64>;
+    fn momentum(&self) -> Vector2<f64>;
+    /// Whether a joint slips.
+    fn slips(&self) -> bool {
+        false
+    }
     /// Since when it stands still for good, once the ground does.
     fn rests_since(&self) -> Option<f64>;
     /// When the row passed its last way back, once it has overturned.
@@ -47,87 +102,184 @@ pub(super) trait Stepper {
         let course = self.course();
         (course.potential < course.fallen).then_some(course.highest_s)
     }
-    /// Horizontal displacement of the centre of gravity times the mass, without what the row slid along the ground.
-    fn sway(&self) -> f64;
-    /// Completes the run with what belongs to the engine.
-    fn finish(self) -> Run;
+    /// What has happened, at the end.
+    fn into_course(self) -> Course<'a>;
+
+    /// The side to which the row sways, that of its centre of gravity; where that is at its undeformed place the one to which it goes.
+    fn heading(&self) -> Sway {
+        let sway = self.course().sway;
+        towards(if sway == 0.0 { self.momentum().x } else { sway })
+    }
+
+    /// What a row that moves does.
+    fn moving(&self) -> State {
+        match self.overturned_s() {
+            Some(_) => State::Overturned(self.heading()),
+            None => State::Rocking(self.heading()),
+        }
+    }
+
+    /// Tells that all joints were shut before this time, with this energy, rotations and rates, and that some have opened since.
+    fn tell_uplift(
+        &mut self,
+        time_s: f64,
+        energy_j: f64,
+        turns: impl FnOnce(&Self) -> (Vec<f64>, Vec<f64>),
+    ) {
+        if !self.course().is_followed() {
+            return;
+        }
+        let (rotations_rad, rates_rad_s) = turns(self);
+        let event = Event {
+            time_s,
+            kind: EventKind::Uplift,
+            state: State::Rocking(self.heading()),
+            mechanism: None,
+            rotations_rad,
+            rates_rad_s,
+            energy_j,
+            hinges: self.course().opened.clone(),
+            impact: None,
+        };
+        self.course_mut().tell(&event);
+    }
+
+    /// Tells that corners have landed: whether the row moves on, the kinetic energies before and taken, and what friction took of it.
+    fn tell_impact(
+        &mut self,
+        moves: bool,
+        [energy_before_j, taken_j]: [f64; 2],
+        friction_j: Option<f64>,
+    ) {
+        let course = self.course();
+        if !course.is_followed() {
+            return;
+        }
+        let opens_at_once = |joint: usize| {
+            let mut opened = course.opened.iter().copied();
+            opened
+                .find(|hinge| matches!(hinge, Hinge::Joint { joint: opens, .. } if *opens == joint))
+        };
+        let hinge =
+            |joint: usize| opens_at_once(joint).or_else(|| open_hinge(joint, self.gaps(joint)));
+        let energy_after_j = (energy_before_j - taken_j).max(0.0);
+        let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
+        // What lands undeformed came from the other side.
+        let undeformed = rotations_rad.iter().all(|angle| *angle == 0.0);
+        let sway = if moves { self.heading() } else { Sway::Right };
+        let event = Event {
+            time_s: course.time,
+            kind: EventKind::Impact,
+            state: if moves { self.moving() } else { State::Rest },
+            mechanism: None,
+            energy_j: energy_after_j + course.potential,
+            hinges: (0..course.task.row.joints().len())
+                .filter_map(hinge)
+                .collect(),
+            impact: Some(Impact {
+                sway_before: if undeformed { sway.opposite() } else { sway },
+                restitution: if energy_before_j > 0.0 {
+                    energy_after_j / energy_before_j
+                } else {
+                    0.0
+                },
+                energy_before_j,
+                energy_after_j,
+                friction_j,
+                rates_before_rad_s: Vec::new(),
+                rates_after_rad_s: rates_rad_s.clone(),
+                closed: course.shut.clone(),
+                opened: course.opened.clone(),
+                impulses_n_s: Vec::new(),
+            }),
+            rotations_rad,
+            rates_rad_s,
+        };
+        self.course_mut().tell(&event);
+    }
+
+    /// Makes a sample.
+    fn sample(&mut self) -> Result<(), FreeHingeError> {
+        let (mut sample, thrust_line) = self.course_mut().blank_sample();
+        let kinetic = self.write(&mut sample, thrust_line)?;
+        sample
+            .rotations_rad
+            .extend(self.turns().map(|(rotation, _)| rotation));
+        for joint in 0..self.course().task.row.joints().len() {
+            let gaps = self.gaps(joint);
+            sample.gaps_m.push(gaps);
+            if let Some(hinge) = open_hinge(joint, gaps) {
+                let position_m = self.corner(joint, turning(gaps).unwrap_or(Edge::Intrados));
+                sample.hinges.push(OpenHinge { hinge, position_m });
+            }
+        }
+        let shut = sample.hinges.is_empty() && !self.slips();
+        if !shut && sample.rotations_rad.iter().any(|angle| *angle != 0.0) {
+            sample.state = self.moving();
+        }
+        self.course_mut().record(sample, kinetic);
+        Ok(())
+    }
 }
 
 /// Steps a row until it rests, has overturned, or the time is over.
-pub(super) fn run(
-    mut engine: impl Stepper,
-    ground: &GroundMotion,
-    settings: &Settings,
-    recorder: &mut impl Recorder,
-) -> Result<Run, FreeHingeError> {
+pub(super) fn run<'a>(mut stepper: impl Stepper<'a>) -> Result<Summary, FreeHingeError> {
+    let Task {
+        ground, settings, ..
+    } = stepper.course().task;
     let mut samples = 0_u32;
     let mut sampled_s = None;
     let quiet_s = ground.end_s();
-    let samples_are_made = settings.output_step_s.is_some() && recorder.wants_samples();
+    let samples_are_made = settings.output_step_s.is_some() && stepper.course().is_followed();
     let mut longest_step = samples_are_made.then_some(Duration::ZERO);
-    loop {
+    let (outcome, outcome_time_s) = loop {
         let mark = settings
             .output_step_s
             .map_or(f64::INFINITY, |step| f64::from(samples) * step);
-        let course = engine.course();
+        let course = stepper.course();
         let time = course.time;
         if time >= mark - 1e-9 * settings.shortest_step_s {
             samples += 1;
             if samples_are_made {
-                engine.sample(recorder)?;
+                stepper.sample()?;
                 sampled_s = Some(time);
             }
             continue;
         }
-        let outcome = if course.stopped {
-            Some(Outcome::Rocking)
-        } else if let Some(time_s) = engine.overturned_s() {
-            let sway = towards(engine.sway());
-            Some(Outcome::Overturned { sway, time_s })
-        } else if time >= quiet_s
-            && let Some(time_s) = engine.rests_since()
+        if course.stopped {
+            break (Outcome::StillRocking, time);
+        }
+        if let Some(time_s) = stepper.overturned_s() {
+            break (Outcome::Overturned(towards(course.sway)), time_s);
+        }
+        if time >= quiet_s
+            && let Some(time_s) = stepper.rests_since()
         {
-            Some(if course.moved {
-                Outcome::Rest { time_s }
+            break if course.moved {
+                (Outcome::Rest, time_s)
             } else {
-                Outcome::NeverMoved
-            })
-        } else if time >= settings.end_s {
-            Some(Outcome::Rocking)
-        } else {
-            None
-        };
-        if let Some(outcome) = outcome {
-            engine.course_mut().run.outcome = outcome;
-            break;
+                (Outcome::NeverMoved, time)
+            };
+        }
+        if time >= settings.end_s {
+            break (Outcome::StillRocking, time);
         }
         let begun = longest_step.map(|_| Instant::now());
-        engine.step(mark.min(settings.end_s), recorder)?;
+        stepper.step(mark.min(settings.end_s))?;
         longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
+    };
+    let course = stepper.course();
+    if samples_are_made && sampled_s != Some(course.time) && !course.stopped {
+        stepper.sample()?;
     }
-    let course = engine.course();
-    let unsampled = samples_are_made && sampled_s != Some(course.time);
-    if unsampled && !course.stopped {
-        engine.sample(recorder)?;
-    }
-    let course = engine.course_mut();
-    course.end_cycle(None);
-    course.run.end_s = course.time;
-    course.run.longest_step_s = settings.longest_step_s;
-    course.run.shortest_step_s = settings.shortest_step_s;
-    course.run.cost.longest_step = Elapsed(longest_step);
-    Ok(engine.finish())
+    let mut course = stepper.into_course();
+    course.of_row.longest_step = Elapsed(longest_step);
+    course.end(outcome, outcome_time_s)
 }
 
 /// The side of what is positive to the right.
 fn towards(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
-}
-
-/// The side to which a row that moves sways, by the displacement of its centre of gravity; where that is none the one to which
-/// it goes, by its momentum to the right.
-pub(super) fn heading(sway: f64, momentum: f64) -> Sway {
-    towards(if sway == 0.0 { momentum } else { sway })
 }
 
 /// Length of the next step of a leapfrog: equal steps up to the given time.
@@ -136,51 +288,114 @@ pub(super) fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
     left / (left / longest - 1e-9).ceil().max(1.0)
 }
 
-impl Course {
-    /// Below the potential energy `fallen` the row has overturned; `None` where the engine tells by other signs.
-    pub(super) fn new(row: &Row, gravity: f64, fallen: Option<f64>) -> Self {
+/// The edge of the only one of two corners of a joint, intrados and extrados.
+pub(super) fn only(corners: [bool; 2]) -> Option<Edge> {
+    match corners {
+        [true, false] => Some(Edge::Intrados),
+        [false, true] => Some(Edge::Extrados),
+        _ => None,
+    }
+}
+
+/// The edge about which a joint with these gaps turns; `None` where it parts, or is shut.
+fn turning(gaps: [f64; 2]) -> Option<Edge> {
+    only(gaps.map(|gap| gap == 0.0))
+}
+
+/// A joint with these gaps as a hinge, if it is open.
+pub(super) fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
+    let edge = turning(gaps);
+    (gaps != [0.0; 2]).then_some(Hinge::Joint { joint, edge })
+}
+
+/// How far the thrust lies towards the extrados from the middle of a joint, by the impulses at its corners, over the thickness; `None`
+/// where none presses. The solver takes a pull below its tolerance for none.
+pub(super) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
+    let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));
+    let normal = intrados + extrados;
+    (normal > 0.0).then(|| 0.5 * (extrados - intrados) / normal)
+}
+
+impl<'a> Course<'a> {
+    /// Below the potential energy `fallen` the row has overturned; `None` where the stepper tells by other signs.
+    pub(super) fn new(
+        task: Task<'a>,
+        fallen: Option<f64>,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Self {
+        let Task { row, settings, .. } = task;
+        let joints = row.joints().len();
         Self {
             time: 0.0,
             potential: 0.0,
+            sway: 0.0,
             moved: false,
-            stopped: false,
-            energy_unit: row.mass_kg() * gravity * row.size_m(),
-            gravity,
+            energy_unit: row.mass_kg() * task.gravity_m_s2 * row.size_m(),
+            shut: Vec::with_capacity(joints),
+            opened: Vec::with_capacity(joints),
+            task,
             fallen: fallen.unwrap_or(f64::NEG_INFINITY),
+            peak_potential: 0.0,
             cycle: None,
             cycle_energy: None,
             rising: false,
             highest_s: 0.0,
-            run: Run {
-                outcome: Outcome::Rocking,
+            recorder,
+            stopped: false,
+            sample: Sample::at_rest(0.0),
+            pieces: task.ground.pieces(),
+            phase: 0,
+            thrust: ThrustRecord::default(),
+            summary: Summary {
+                outcome: Outcome::StillRocking,
+                outcome_time_s: 0.0,
                 end_s: 0.0,
-                longest_step_s: 0.0,
-                shortest_step_s: 0.0,
-                peaks_rad: vec![0.0; row.blocks().len()],
-                peak_potential_j: 0.0,
-                largest_kinetic_j: 0.0,
-                half_cycles: Vec::new(),
-                least_normal_n: f64::INFINITY,
-                friction_demand: 0.0,
-                energy_taken_j: 0.0,
+                impacts: 0,
+                peak_rotations_rad: vec![0.0; row.blocks().len()],
+                peak_over_critical: None,
+                peak_potential_over_barrier: None,
                 energy_defect_ratio: 0.0,
-                closure_error_m: 0.0,
-                sliding: None,
+                thrust: None,
                 cost: Cost::default(),
+                row: None,
+            },
+            of_row: RowSummary {
+                half_cycles: Vec::new(),
+                sliding: None,
+                largest_kinetic_j: 0.0,
+                energy_taken_j: 0.0,
+                energy_error: 0.0,
+                least_normal_n: f64::INFINITY,
+                closure_error_m: 0.0,
+                longest_step_s: settings.longest_step_s,
+                shortest_step_s: settings.shortest_step_s,
+                programs: 0,
+                most_iterations: 0,
+                relaxed: 0,
+                merged: 0,
+                longest_step: Elapsed(None),
             },
         }
     }
 
-    /// The row is released at rest, with these rotations and this potential energy.
+    /// Whether anybody is told of samples and events.
+    pub(super) const fn is_followed(&self) -> bool {
+        self.recorder.is_some()
+    }
+
+    /// The row is released at rest, with these rotations, this potential energy and this displacement of its centre of gravity times
+    /// the mass.
     pub(super) fn released(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
         potential: f64,
+        sway: f64,
         moved: bool,
     ) {
         self.note_peaks(rotations_rad);
         self.potential = potential;
-        self.run.peak_potential_j = potential.max(0.0);
+        self.sway = sway;
+        self.peak_potential = potential.max(0.0);
         self.moved = moved;
         self.rising = true;
     }
@@ -202,9 +417,10 @@ impl Course {
             self.highest_s = self.time;
         }
         self.potential = potential;
-        self.run.peak_potential_j = self.run.peak_potential_j.max(potential);
-        self.run.largest_kinetic_j = self.run.largest_kinetic_j.max(kinetic);
-        let least = SWAY_RATIO * self.energy_unit / self.gravity;
+        self.sway = sway;
+        self.peak_potential = self.peak_potential.max(potential);
+        self.of_row.largest_kinetic_j = self.of_row.largest_kinetic_j.max(kinetic);
+        let least = SWAY_RATIO * self.energy_unit / self.task.gravity_m_s2;
         if sway.abs() > least {
             let side = towards(sway);
             if self.cycle.is_none_or(|cycle| cycle.sway != side) {
@@ -226,7 +442,8 @@ impl Course {
     /// Raises the peaks to the rotations of the blocks now; returns the largest of these.
     fn note_peaks(&mut self, rotations_rad: impl Iterator<Item = f64>) -> f64 {
         let mut largest = 0.0_f64;
-        for (peak, rotation_rad) in self.run.peaks_rad.iter_mut().zip(rotations_rad) {
+        let peaks = self.summary.peak_rotations_rad.iter_mut();
+        for (peak, rotation_rad) in peaks.zip(rotations_rad) {
             let rotation = rotation_rad.abs();
             *peak = peak.max(rotation);
             largest = largest.max(rotation);
@@ -242,8 +459,114 @@ impl Course {
                 .zip(self.cycle_energy)
                 .map(|(after, before)| after / before);
             cycle.energy_ratio = ratio.filter(|ratio| ratio.is_finite());
-            self.run.half_cycles.push(cycle);
+            self.of_row.half_cycles.push(cycle);
             self.cycle_energy = energy;
         }
+    }
+
+    /// Notes a difference of the energy from what it should be.
+    pub(super) fn note_defect(&mut self, energy: f64) {
+        let worst = &mut self.summary.energy_defect_ratio;
+        *worst = worst.max(energy / self.energy_unit);
+    }
+
+    /// The sample to write to, of which all is known but blocks and joints; whether it is to come with the line of thrust.
+    fn blank_sample(&mut self) -> (Sample, bool) {
+        let mut sample = mem::replace(&mut self.sample, Sample::at_rest(0.0));
+        while let [_, rest @ ..] = self.pieces
+            && rest.first().is_some_and(|next| next.start_s <= self.time)
+        {
+            self.pieces = rest;
+        }
+        let (ground_m_s2, _) = self.pieces[0].at(self.time);
+        sample.time_s = self.time;
+        // Adding zero makes a negative zero positive.
+        sample.ground_acceleration_m_s2 = ground_m_s2.x + 0.0;
+        sample.vertical_acceleration_m_s2 = ground_m_s2.y + 0.0;
+        sample.phase = self.phase;
+        sample.state = State::Rest;
+        sample.rotations_rad.clear();
+        sample.rates_rad_s.clear();
+        sample.poses.clear();
+        sample.hinges.clear();
+        sample.demand = Demand::NONE;
+        sample.gaps_m.clear();
+        sample.eccentricity_ratios.clear();
+        sample.offsets_m.clear();
+        let recorder = self.recorder.as_ref();
+        (
+            sample,
+            recorder.is_some_and(|recorder| recorder.wants_thrust_line()),
+        )
+    }
+
+    /// Hands on a sample that is written.
+    fn record(&mut self, sample: Sample, kinetic: f64) {
+        self.sample = sample;
+        let sample = &mut self.sample;
+        sample.energy_j = kinetic + self.potential;
+        let ratio = |barrier_j| sample.energy_j / barrier_j;
+        sample.energy_ratio = self.task.barrier_j.map(ratio);
+        let moves = sample.state != State::Rest;
+        self.thrust.note(sample.time_s, moves, &sample.demand);
+        if let Some(recorder) = &mut self.recorder {
+            self.stopped |= recorder.sample(sample).is_break();
+        }
+    }
+
+    /// Hands on an event that begins a phase.
+    fn tell(&mut self, event: &Event) {
+        self.phase += 1;
+        if let Some(recorder) = &mut self.recorder {
+            self.stopped |= recorder.event(event).is_break();
+        }
+    }
+
+    /// Judges the balance of energy, and tells of the end, if it is one.
+    fn end(mut self, outcome: Outcome, outcome_time_s: f64) -> Result<Summary, FreeHingeError> {
+        self.end_cycle(None);
+        let Task { barrier_j, .. } = self.task;
+        let (mut summary, mut of_row) = (self.summary, self.of_row);
+        let largest_j = of_row
+            .largest_kinetic_j
+            .max(barrier_j.unwrap_or(0.0))
+            .max(LEAST_ENERGY_RATIO * self.energy_unit);
+        of_row.energy_error = summary.energy_defect_ratio * self.energy_unit / largest_j;
+        if of_row.energy_error > LARGEST_ENERGY_ERROR {
+            return Err(FreeHingeError::Energy {
+                error: of_row.energy_error,
+                longest_step_s: of_row.longest_step_s,
+            });
+        }
+        let sliding = of_row.sliding.as_ref();
+        let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
+        summary.outcome = outcome;
+        summary.outcome_time_s = outcome_time_s;
+        summary.end_s = self.time;
+        summary.peak_potential_over_barrier = barrier_j
+            .filter(|barrier_j| rubbed_j <= SLIPPED_RATIO * barrier_j)
+            .map(|barrier_j| self.peak_potential / barrier_j);
+        summary.thrust = self.recorder.is_some().then_some(self.thrust);
+        summary.row = Some(Box::new(of_row));
+        let ending = match outcome {
+            Outcome::Rest => Some((EventKind::Rest, State::Rest)),
+            Outcome::Overturned(sway) => Some((EventKind::Overturned, State::Overturned(sway))),
+            Outcome::NeverMoved | Outcome::StillRocking => None,
+        };
+        if let (Some((kind, state)), Some(recorder)) = (ending, self.recorder) {
+            // It ends here anyway.
+            let _ = recorder.event(&Event {
+                time_s: self.time,
+                kind,
+                state,
+                mechanism: None,
+                rotations_rad: self.sample.rotations_rad,
+                rates_rad_s: self.sample.rates_rad_s,
+                energy_j: self.sample.energy_j,
+                hinges: self.sample.hinges.iter().map(|open| open.hinge).collect(),
+                impact: None,
+            });
+        }
+        Ok(summary)
     }
 }

@@ -19,12 +19,12 @@ mod observation;
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
-pub(super) use self::observation::{only, rise, sway};
-use super::course::{Course, Stepper, equal_step};
-use super::{FreeHingeError, Recorder, Run, Settings, fallen_energy_j};
-use crate::dynamics::ground::{GroundMotion, GroundVelocity};
+pub(super) use self::observation::{rise, sway};
+use super::course::{Course, Stepper as _, Task};
+use super::{FreeHingeError, Settings};
+use crate::dynamics::ground::GroundVelocity;
+use crate::dynamics::model::Recorder;
 use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::contact::{Corners, Load, Program};
 use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::pose::Pose;
@@ -48,6 +48,8 @@ const BRACKET_RATIO: f64 = 1e-12;
 const LANDING_ROUNDS: usize = 8;
 /// A landing by this part of a step earlier or later than expected needs no other pass.
 const LANDING_TOLERANCE: f64 = 1e-6;
+/// A row has overturned when it is lower than at rest by this part of weight times size.
+const FALLEN_ENERGY_RATIO: f64 = 1e-3;
 /// Joints with less than this part of the largest normal force are not pressed.
 const LOADED: f64 = 1e-6;
 
@@ -129,7 +131,7 @@ pub(super) struct Engine<'a> {
     gravity: f64,
     settings: &'a Settings,
     thinnest: f64,
-    course: Course,
+    course: Course<'a>,
     /// The time up to which gravity and ground have acted on the velocities.
     kicked_s: f64,
     placement: Placement,
@@ -152,42 +154,41 @@ pub(super) struct Engine<'a> {
     landed: Vec<(usize, usize)>,
     change: Vec<[f64; 2]>,
     shares: Vec<[f64; 2]>,
-    shut: Vec<Hinge>,
-    opened: Vec<Hinge>,
     /// Corners that touched at the beginning of the step.
     closed: Vec<Corners>,
     /// Whether all joints are shut and stay so.
     stands: bool,
     /// Where the joints were pressed in the step that ended at an impact.
     pressed: Vec<Corners>,
-    rotations: Vec<f64>,
-    rates: Vec<f64>,
     start_energy: f64,
     ground_work: f64,
     friction_demand: f64,
     least_normal: f64,
-    step_iterations: usize,
+    step_iterations: u64,
     crowd: Crowd,
 }
 
 impl<'a> Engine<'a> {
-    pub(super) fn new(
-        row: &'a Row,
-        ground: &'a GroundMotion,
-        gravity: f64,
-        settings: &'a Settings,
-    ) -> Self {
+    fn new(task: Task<'a>, recorder: Option<&'a mut dyn Recorder>) -> Self {
+        let Task {
+            row,
+            ground,
+            gravity_m_s2: gravity,
+            settings,
+            ..
+        } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
         let placement = Placement::new(row);
         let program = Program::new(row);
         let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
+        let fallen = -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity * row.size_m();
         let mut engine = Self {
             row,
             velocity: GroundVelocity::new(ground),
             gravity,
             settings,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
-            course: Course::new(row, gravity, Some(fallen_energy_j(row, gravity))),
+            course: Course::new(task, Some(fallen), recorder),
             kicked_s: 0.0,
             backup: placement.clone(),
             placement,
@@ -204,13 +205,9 @@ impl<'a> Engine<'a> {
             landed: Vec::with_capacity(2 * joints),
             change: vec![[0.0; 2]; joints],
             shares: vec![[0.0; 2]; joints],
-            shut: Vec::with_capacity(joints),
-            opened: Vec::with_capacity(joints),
             closed: vec![[true; 2]; joints],
             stands: true,
             pressed: vec![[true; 2]; joints],
-            rotations: vec![0.0; blocks],
-            rates: vec![0.0; blocks],
             start_energy: 0.0,
             ground_work: 0.0,
             friction_demand: 0.0,
@@ -236,13 +233,26 @@ impl<'a> Engine<'a> {
         self.weigh_pieces();
     }
 
+    /// The same, from rest or at rest with the initial rotations.
+    pub(super) fn released(
+        task: Task<'a>,
+        initial_rad: Option<&[f64]>,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Result<Self, FreeHingeError> {
+        let mut engine = Self::new(task, recorder);
+        if let Some(rotations_rad) = initial_rad {
+            engine.release(rotations_rad)?;
+        }
+        Ok(engine)
+    }
+
     /// Where the blocks are.
     pub(super) fn into_placement(self) -> Placement {
         self.placement
     }
 
     /// Takes up the initial rotations, at rest.
-    pub(super) fn release(&mut self, rotations_rad: &[f64]) -> Result<(), FreeHingeError> {
+    fn release(&mut self, rotations_rad: &[f64]) -> Result<(), FreeHingeError> {
         let finite = rotations_rad
             .iter()
             .filter(|angle| angle.is_finite())
@@ -275,36 +285,9 @@ impl<'a> Engine<'a> {
         self.start_energy = self.height_energy();
         self.stands = open == 0;
         let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
-        self.course.released(rotations, self.start_energy, open > 0);
-        Ok(())
-    }
-
-    /// One step, at most to the given time, at its landing if there is one.
-    fn advance(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
-        self.step_iterations = 0;
-        let longest = equal_step(self.course.time, until, self.settings.longest_step_s);
-        self.touch_shut();
-        self.closed.copy_from_slice(&self.touching);
-        let from_s = self.course.time;
-        let taken_before = self.course.run.energy_taken_j;
-        self.landing.fill([0.0; 2]);
-        if self.has_just_landed() {
-            self.press_again();
-        }
-        let step = self.solve_to_landing(longest)?;
-        self.account(&step);
-        self.drift(&step)?;
-        if self.has_landed() {
-            self.impact()?;
-            self.report(taken_before, recorder);
-        } else if self.stands {
-            self.report_uplift(from_s, recorder);
-        }
-        let cost = &mut self.course.run.cost;
-        cost.steps += 1;
-        cost.merged += usize::from(step.merged);
-        cost.most_iterations = cost.most_iterations.max(self.step_iterations);
-        self.observe();
+        let sway = sway(self.row, self.placement.centres_m());
+        self.course
+            .released(rotations, self.start_energy, sway, open > 0);
         Ok(())
     }
 
@@ -376,7 +359,7 @@ impl<'a> Engine<'a> {
 
     /// Whether the step before ended at an impact.
     fn has_just_landed(&self) -> bool {
-        self.kicked_s == self.course.time && self.course.run.cost.impacts > 0
+        self.kicked_s == self.course.time && self.course.summary.impacts > 0
     }
 
     /// Length of the step at whose end this corner lands, as its rate changes evenly with the length: from that of the step last
@@ -455,11 +438,11 @@ impl<'a> Engine<'a> {
             time_s: self.course.time,
             reason,
         })?;
-        let cost = &mut self.course.run.cost;
-        cost.programs += 1;
-        cost.iterations += effort.iterations;
-        cost.relaxed += effort.relaxed;
-        self.step_iterations += effort.iterations;
+        let iterations = effort.iterations as u64;
+        self.course.summary.cost.evaluations += iterations;
+        self.course.of_row.programs += 1;
+        self.course.of_row.relaxed += effort.relaxed as u64;
+        self.step_iterations += iterations;
         Ok(())
     }
 
@@ -575,7 +558,7 @@ impl<'a> Engine<'a> {
             }
             self.solve_step(step)?;
         }
-        self.course.run.energy_taken_j += without - self.kinetic_of_solution();
+        self.course.of_row.energy_taken_j += without - self.kinetic_of_solution();
         Ok(())
     }
 
@@ -659,8 +642,8 @@ impl<'a> Engine<'a> {
         }
         self.least_normal = least / (to_s - from_s);
         self.friction_demand = demand;
-        self.course.run.least_normal_n = self.course.run.least_normal_n.min(self.least_normal);
-        self.course.run.friction_demand = self.course.run.friction_demand.max(demand);
+        let of_row = &mut self.course.of_row;
+        of_row.least_normal_n = of_row.least_normal_n.min(self.least_normal);
     }
 
     /// Moves the row over a step that was solved.
@@ -681,7 +664,8 @@ impl<'a> Engine<'a> {
         self.close();
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
-        self.course.run.closure_error_m = self.course.run.closure_error_m.max(error_m);
+        let of_row = &mut self.course.of_row;
+        of_row.closure_error_m = of_row.closure_error_m.max(error_m);
         // Also when it is not a number.
         if error_m <= LARGEST_CLOSURE_RATIO * self.thinnest {
             self.weigh_pieces();
@@ -799,10 +783,10 @@ impl<'a> Engine<'a> {
         self.press_landed();
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
-        self.course.run.energy_taken_j += kinetic_before - kinetic_after;
+        self.course.of_row.energy_taken_j += kinetic_before - kinetic_after;
         self.take_pieces();
         self.kicked_s = self.course.time;
-        self.course.run.cost.impacts += 1;
+        self.course.summary.impacts += 1;
         self.crowd
             .count(self.course.time, self.settings.shortest_step_s);
         Ok(())
@@ -842,36 +826,6 @@ impl<'a> Engine<'a> {
     }
 }
 
-impl Stepper for Engine<'_> {
-    fn course(&self) -> &Course {
-        &self.course
-    }
-
-    fn course_mut(&mut self) -> &mut Course {
-        &mut self.course
-    }
-
-    fn step(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
-        self.advance(until, recorder)
-    }
-
-    fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
-        self.record(recorder)
-    }
-
-    fn rests_since(&self) -> Option<f64> {
-        self.is_at_rest().then_some(self.course.time)
-    }
-
-    fn sway(&self) -> f64 {
-        sway(self.row, self.placement.centres_m())
-    }
-
-    fn finish(self) -> Run {
-        self.course.run
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use clarabel::algebra::CscMatrix;
@@ -880,7 +834,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::dynamics::ground::Pulse;
+    use crate::dynamics::ground::{GroundMotion, Pulse};
     use crate::mechanics::geometry::ring::Ring;
 
     /// The program of a step as three rows per joint in the velocities of the blocks, for an interior-point solver. The unknowns
@@ -975,7 +929,14 @@ mod tests {
             let ground =
                 GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
             let settings = Settings::to_landings(&row, 9.81, 60.0).times(1.1 / 0.34);
-            let mut engine = Engine::new(&row, &ground, 9.81, &settings);
+            let task = Task {
+                row: &row,
+                ground: &ground,
+                gravity_m_s2: 9.81,
+                settings: &settings,
+                barrier_j: None,
+            };
+            let mut engine = Engine::new(task, None);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;
@@ -994,10 +955,10 @@ mod tests {
                     fastest = fastest.max(ours.at(centre).norm());
                     worst = worst.max((ours.at(centre) - judge.at(centre)).norm());
                 }
-                engine.step(60.0, &mut ()).unwrap();
+                engine.step(60.0).unwrap();
             }
             assert!(
-                fastest > 0.05 && engine.course.run.cost.impacts > 3,
+                fastest > 0.05 && engine.course.summary.impacts > 3,
                 "{fastest}"
             );
             // The judge stops where its objective is known to 1e-14, which leaves velocities of a metre a second some 1e-7.

@@ -1,24 +1,15 @@
 //! A row of blocks with free hinges as a model of motion.
 
-use std::ops::ControlFlow;
-
 use serde::Serialize;
 
-use super::{
-    FreeHingeError, Impact as Landing, Outcome as RowOutcome, Recorder as RowRecorder, Run,
-    Sample as RowSample, Settings, Uplift, spread::Repeated,
-};
+use super::{Settings, Task, motion};
 use crate::argument::{ArgumentError, above};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{
-    Event, EventKind, Impact, OpenHinge, Outcome, Sample, Shape, State, Summary,
-};
-use crate::dynamics::hybrid::integrator::Cost;
+use crate::dynamics::history::{Shape, Summary};
 use crate::dynamics::model::{Initial, Model, Recorder, Repetition, Request, SimulationError};
-use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::{Row, RowError, Supports};
-use crate::mechanics::chain::{Demand, Hinge, Mechanism, MechanismChain};
+use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
 use crate::mechanics::column::Column;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::row::FourLinkRow;
@@ -41,8 +32,8 @@ pub struct FreeHinges {
     /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
     first: Option<FirstMechanism>,
     options: RowOptions,
-    /// In which other way its motion is computed, if in another.
-    repeated: Option<Repeated>,
+    /// The other settings with which a repetition is computed.
+    repeated: Option<fn(&Settings) -> Settings>,
 }
 
 /// What was asked of the model.
@@ -94,16 +85,8 @@ impl RowOptions {
     }
 }
 
-/// A row has slipped when friction took more than this part of the barrier of its first mechanism. It then stands lower than it did,
-/// and its potential energy tells nothing about that barrier.
-const SLIPPED_RATIO: f64 = 0.01;
-
-/// An energy balance that is wrong by more than this part of the largest energy of the motion is worth a word ...
+/// An energy balance that is wrong by more than this part of the largest energy of the motion is worth a word.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
-/// ... and by more than this, an error.
-const LARGEST_ENERGY_ERROR: f64 = 1e-2;
-/// Motions whose energies are below this part of weight times size are none: their balance is rounding.
-const LEAST_ENERGY_RATIO: f64 = 1e-6;
 
 /// What the motion of the first mechanism is known by.
 #[derive(Clone, Debug)]
@@ -264,16 +247,6 @@ impl FreeHinges {
         }
     }
 
-    /// By how much the energy balance of a motion is wrong, over the larger of its largest kinetic energy and the barrier, where that is
-    /// known.
-    #[must_use]
-    pub fn energy_error(&self, run: &Run, gravity_m_s2: f64) -> f64 {
-        let unit_j = self.row.mass_kg() * gravity_m_s2 * self.row.size_m();
-        let barrier_j = self.barrier_j(gravity_m_s2).unwrap_or(0.0);
-        let least_j = LEAST_ENERGY_RATIO * unit_j;
-        run.energy_defect_ratio * unit_j / run.largest_kinetic_j.max(barrier_j).max(least_j)
-    }
-
     /// The longest step that a history takes, in seconds.
     pub(crate) fn longest_step_s(&self, request: &Request) -> f64 {
         self.settings(request).longest_step_s
@@ -295,7 +268,7 @@ impl FreeHinges {
         }
         settings.output_step_s = Some(request.output_step_s);
         settings.friction_coefficient = self.options.friction_coefficient;
-        self.repeated.map_or(settings, |way| way.of(&settings))
+        self.repeated.map_or(settings, |other| other(&settings))
     }
 
     /// Rotations of the blocks when the first mechanism is open so far.
@@ -350,20 +323,24 @@ impl FreeHinges {
     }
 }
 
+/// Other settings of a motion, with their name.
+type Other = (&'static str, fn(&Settings) -> Settings);
+
 impl Model for FreeHinges {
     fn repetitions(&self) -> Vec<Repetition> {
-        let ways = match self.options.friction_coefficient {
-            None => [Repeated::DoubleSteps, Repeated::MergedLandings],
-            Some(_) => [Repeated::HalfSteps, Repeated::DoubleSteps],
+        let double: Other = ("double steps", Settings::with_double_steps);
+        let others: [Other; 2] = match self.options.friction_coefficient {
+            None => [double, ("landings merged", Settings::with_landings_merged)],
+            Some(_) => [("half steps", Settings::with_half_steps), double],
         };
-        let repetition = |way: Repeated| Repetition {
-            name: way.name(),
+        let repetition = |(name, settings): Other| Repetition {
+            name,
             model: Box::new(Self {
-                repeated: Some(way),
+                repeated: Some(settings),
                 ..self.clone()
             }),
         };
-        ways.map(repetition).into()
+        others.map(repetition).into()
     }
 
     fn bodies(&self) -> Vec<String> {
@@ -401,259 +378,13 @@ impl Model for FreeHinges {
             .initial
             .map(|initial| self.released(initial))
             .transpose()?;
-        let barrier_j = self.barrier_j(request.gravity_m_s2);
-        let mut relay = Relay {
+        let task = Task {
+            row: &self.row,
             ground,
-            barrier_j,
-            phase: 0,
-            thrust: ThrustRecord::default(),
-            sample: Sample::at_rest(0.0),
-            recorder,
+            gravity_m_s2: request.gravity_m_s2,
+            settings: &settings,
+            barrier_j: self.barrier_j(request.gravity_m_s2),
         };
-        let run = super::simulate(
-            &self.row,
-            ground,
-            request.gravity_m_s2,
-            &settings,
-            initial_rad.as_deref(),
-            &mut relay,
-        )?;
-        let error = self.energy_error(&run, request.gravity_m_s2);
-        if error > LARGEST_ENERGY_ERROR {
-            let longest_step_s = settings.longest_step_s;
-            return Err(FreeHingeError::Energy {
-                error,
-                longest_step_s,
-            }
-            .into());
-        }
-        let (outcome, outcome_time_s) = match run.outcome {
-            RowOutcome::NeverMoved => (Outcome::NeverMoved, run.end_s),
-            RowOutcome::Rest { time_s } => (Outcome::Rest, time_s),
-            RowOutcome::Overturned { sway, time_s } => (Outcome::Overturned(sway), time_s),
-            RowOutcome::Rocking => (Outcome::StillRocking, run.end_s),
-        };
-        relay.end(outcome, run.end_s);
-        let rubbed_j = run
-            .sliding
-            .as_ref()
-            .map_or(0.0, |sliding| sliding.friction_j);
-        Ok(Summary {
-            outcome,
-            outcome_time_s,
-            end_s: run.end_s,
-            impacts: run.cost.impacts,
-            peak_rotations_rad: run.peaks_rad.clone(),
-            peak_over_critical: None,
-            peak_potential_over_barrier: barrier_j
-                .filter(|barrier_j| rubbed_j <= SLIPPED_RATIO * barrier_j)
-                .map(|barrier_j| run.peak_potential_j / barrier_j),
-            energy_defect_ratio: run.energy_defect_ratio,
-            thrust: relay.recorder.is_some().then_some(relay.thrust),
-            cost: Cost {
-                evaluations: run.cost.iterations as u64,
-                steps: run.cost.steps as u64,
-            },
-            free_hinges: Some(Box::new(run)),
-        })
-    }
-}
-
-/// Hands on what happens to a row in the words of any model.
-struct Relay<'r, 'k> {
-    ground: &'r GroundMotion,
-    barrier_j: Option<f64>,
-    phase: usize,
-    thrust: ThrustRecord,
-    /// The sample that is made, again and again.
-    sample: Sample,
-    recorder: Option<&'k mut dyn Recorder>,
-}
-
-/// What a row does that moves, swayed to a side.
-const fn swaying(sway: Sway, overturned: bool) -> State {
-    if overturned {
-        State::Overturned(sway)
-    } else {
-        State::Rocking(sway)
-    }
-}
-
-impl Relay<'_, '_> {
-    /// Tells of the end, if it is one.
-    fn end(&mut self, outcome: Outcome, end_s: f64) {
-        let (kind, state) = match outcome {
-            Outcome::Rest => (EventKind::Rest, State::Rest),
-            Outcome::Overturned(sway) => (EventKind::Overturned, State::Overturned(sway)),
-            Outcome::NeverMoved | Outcome::StillRocking => return,
-        };
-        if let Some(recorder) = &mut self.recorder {
-            // It ends here anyway.
-            let _ = recorder.event(&Event {
-                time_s: end_s,
-                kind,
-                state,
-                mechanism: None,
-                rotations_rad: self.sample.rotations_rad.clone(),
-                rates_rad_s: self.sample.rates_rad_s.clone(),
-                energy_j: self.sample.energy_j,
-                hinges: self.sample.hinges.iter().map(|open| open.hinge).collect(),
-                impact: None,
-            });
-        }
-    }
-}
-
-/// How a joint with these gaps is open: the edge about which it turns, `None` where both are open; nothing where it is shut.
-fn opening(gaps_m: &[f64; 2]) -> Option<Option<Edge>> {
-    match gaps_m {
-        [0.0, 0.0] => None,
-        [0.0, _] => Some(Some(Edge::Intrados)),
-        [_, 0.0] => Some(Some(Edge::Extrados)),
-        _ => Some(None),
-    }
-}
-
-impl RowRecorder for Relay<'_, '_> {
-    fn wants_samples(&self) -> bool {
-        self.recorder.is_some()
-    }
-
-    fn sample(&mut self, sample: &RowSample<'_>) -> ControlFlow<()> {
-        let shut = sample.open_joints == 0 && sample.slipping_joints == 0;
-        let still = shut || sample.rotations_rad.iter().all(|angle| *angle == 0.0);
-        let state = if still {
-            State::Rest
-        } else {
-            swaying(sample.sway, sample.overturned)
-        };
-        let pieces = self.ground.pieces();
-        let piece = pieces.partition_point(|piece| piece.start_s <= sample.time_s) - 1;
-        let (ground_m_s2, _) = pieces[piece].at(sample.time_s);
-        let demand = Demand {
-            excess_ratio: 0.0,
-            friction: sample.friction_demand,
-        };
-        let next = &mut self.sample;
-        next.time_s = sample.time_s;
-        // Adding zero makes a negative zero positive.
-        next.ground_acceleration_m_s2 = ground_m_s2.x + 0.0;
-        next.vertical_acceleration_m_s2 = ground_m_s2.y + 0.0;
-        next.phase = self.phase;
-        next.state = state;
-        next.rotations_rad.clear();
-        next.rotations_rad.extend(sample.rotations_rad);
-        next.rates_rad_s.clear();
-        next.rates_rad_s.extend(sample.rates_rad_s);
-        next.poses.clear();
-        next.poses.extend(sample.poses);
-        next.hinges.clear();
-        for (joint, (gaps, frame)) in sample.gaps_m.iter().zip(sample.frames).enumerate() {
-            let Some(edge) = opening(gaps) else {
-                continue;
-            };
-            next.hinges.push(OpenHinge {
-                hinge: Hinge::Joint { joint, edge },
-                position_m: frame.corner_m(edge.unwrap_or(Edge::Intrados)),
-            });
-        }
-        next.demand = demand;
-        next.energy_j = sample.kinetic_j + sample.potential_j;
-        next.energy_ratio = self.barrier_j.map(|barrier_j| next.energy_j / barrier_j);
-        next.gaps_m.clear();
-        next.gaps_m.extend(sample.gaps_m);
-        next.eccentricity_ratios.clear();
-        if self
-            .recorder
-            .as_ref()
-            .is_some_and(|recorder| recorder.wants_thrust_line())
-        {
-            let corners = sample.corner_impulses_n_s.iter();
-            next.eccentricity_ratios
-                .extend(corners.map(|corner_impulses| {
-                    // The solver takes a pull below its tolerance for none.
-                    let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));
-                    let normal = intrados + extrados;
-                    (normal > 0.0).then(|| 0.5 * (extrados - intrados) / normal)
-                }));
-        }
-        next.offsets_m.clear();
-        next.offsets_m.extend(sample.offsets_m);
-        self.thrust
-            .note(sample.time_s, state != State::Rest, &demand);
-        match &mut self.recorder {
-            Some(recorder) => recorder.sample(&self.sample),
-            None => ControlFlow::Continue(()),
-        }
-    }
-
-    fn uplift(&mut self, uplift: &Uplift<'_>) -> ControlFlow<()> {
-        self.phase += 1;
-        let Some(recorder) = &mut self.recorder else {
-            return ControlFlow::Continue(());
-        };
-        recorder.event(&Event {
-            time_s: uplift.time_s,
-            kind: EventKind::Uplift,
-            state: State::Rocking(uplift.sway),
-            mechanism: None,
-            rotations_rad: uplift.rotations_rad.to_vec(),
-            rates_rad_s: uplift.rates_rad_s.to_vec(),
-            energy_j: uplift.energy_j,
-            hinges: uplift.opened.to_vec(),
-            impact: None,
-        })
-    }
-
-    fn impact(&mut self, landing: &Landing<'_>) -> ControlFlow<()> {
-        self.phase += 1;
-        let state = landing
-            .sway
-            .map_or(State::Rest, |sway| swaying(sway, landing.overturned));
-        let Some(recorder) = &mut self.recorder else {
-            return ControlFlow::Continue(());
-        };
-        let opens_at_once = |joint: usize| {
-            let mut opened = landing.opened.iter().copied();
-            opened
-                .find(|hinge| matches!(hinge, Hinge::Joint { joint: opens, .. } if *opens == joint))
-        };
-        let hinge = |(joint, gaps_m)| {
-            let open = || opening(gaps_m).map(|edge| Hinge::Joint { joint, edge });
-            opens_at_once(joint).or_else(open)
-        };
-        let hinges = landing.gaps_m.iter().enumerate().filter_map(hinge);
-        let energy_after_j = (landing.energy_before_j - landing.energy_taken_j).max(0.0);
-        let restitution = if landing.energy_before_j > 0.0 {
-            energy_after_j / landing.energy_before_j
-        } else {
-            0.0
-        };
-        // What lands undeformed came from the other side.
-        let undeformed = landing.rotations_rad.iter().all(|angle| *angle == 0.0);
-        let sway = landing.sway.unwrap_or(Sway::Right);
-        let sway_before = if undeformed { sway.opposite() } else { sway };
-        recorder.event(&Event {
-            time_s: landing.time_s,
-            kind: EventKind::Impact,
-            state,
-            mechanism: None,
-            rotations_rad: landing.rotations_rad.to_vec(),
-            rates_rad_s: landing.rates_after_rad_s.to_vec(),
-            energy_j: energy_after_j + landing.potential_j,
-            hinges: hinges.collect(),
-            impact: Some(Impact {
-                sway_before,
-                restitution,
-                energy_before_j: landing.energy_before_j,
-                energy_after_j,
-                friction_j: landing.friction_j,
-                rates_before_rad_s: Vec::new(),
-                rates_after_rad_s: landing.rates_after_rad_s.to_vec(),
-                closed: landing.shut.to_vec(),
-                opened: landing.opened.to_vec(),
-                impulses_n_s: Vec::new(),
-            }),
-        })
+        Ok(motion(task, initial_rad.as_deref(), recorder)?)
     }
 }

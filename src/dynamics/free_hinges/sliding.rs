@@ -7,17 +7,21 @@
 //!
 //! Steps do not end at landings: an impact happens within a step, and its time is known to within one.
 
+use std::mem;
+
 use nalgebra::{Vector2, Vector3};
 
-use super::course::{Course, SWAY_RATIO, Stepper, equal_step, heading};
-use super::engine::{only, rise, sway};
-use super::{FreeHingeError, Impact, Recorder, Run, Sample, Settings, Sliding, Uplift};
-use crate::dynamics::ground::{GroundMotion, GroundVelocity};
+use super::course::{Course, SWAY_RATIO, Stepper, Task, eccentricity_ratio, equal_step, only};
+use super::engine::{rise, sway};
+use super::{FreeHingeError, Settings};
+use crate::dynamics::ground::GroundVelocity;
+use crate::dynamics::history::{Sample, Sliding};
+use crate::dynamics::model::Recorder;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode, Program};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::joints::{Frame, Placement};
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::Placement;
 use crate::mechanics::slip::{Contact, Faces, Position};
 
 /// Rates are found to within this part of the fastest motion, and of what gravity does in a step.
@@ -48,7 +52,7 @@ pub(super) struct Engine<'a> {
     velocity: GroundVelocity<'a>,
     gravity: f64,
     settings: &'a Settings,
-    course: Course,
+    course: Course<'a>,
     faces: Vec<Faces>,
     positions: Vec<Position>,
     velocities: Vec<Vector3<f64>>,
@@ -81,26 +85,24 @@ pub(super) struct Engine<'a> {
     friction_demand: f64,
     least_normal: f64,
     centres: Vec<Vector2<f64>>,
-    poses: Vec<Pose>,
-    frames: Vec<Frame>,
-    gaps: Vec<[f64; 2]>,
-    offsets: Vec<f64>,
-    corners: Vec<[f64; 2]>,
-    rotations: Vec<f64>,
-    rates: Vec<f64>,
-    shut: Vec<Hinge>,
-    opened: Vec<Hinge>,
+    /// Rotations and rates of the blocks before a step in which no joint was open at first.
+    before: Vec<(f64, f64)>,
 }
 
 impl<'a> Engine<'a> {
     pub(super) fn new(
         placement: &Placement,
-        row: &'a Row,
-        ground: &'a GroundMotion,
-        gravity: f64,
-        settings: &'a Settings,
+        task: Task<'a>,
         coefficient: f64,
+        recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
+        let Task {
+            row,
+            ground,
+            gravity_m_s2: gravity,
+            settings,
+            ..
+        } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
         let faces = Faces::of_row(row);
         let at = placement.centres_m().iter().zip(placement.poses());
@@ -118,18 +120,13 @@ impl<'a> Engine<'a> {
             unconverged: 0,
             bound_error: 0.0,
         };
-        let nowhere = Frame {
-            intrados_m: Vector2::zeros(),
-            along: Vector2::zeros(),
-            normal: Vector2::zeros(),
-            thickness_m: 0.0,
-        };
-        let mut course = Course::new(row, gravity, None);
+        let mut course = Course::new(task, None, recorder);
         let start_energy = gravity * rise(row, placement.centres_m());
         let stands = placement.open_corners() == 0;
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
-            course.released(rotations, start_energy, true);
+            let sway = sway(row, placement.centres_m());
+            course.released(rotations, start_energy, sway, true);
         }
         Self {
             row,
@@ -157,15 +154,7 @@ impl<'a> Engine<'a> {
             friction_demand: 0.0,
             least_normal: f64::INFINITY,
             centres: placement.centres_m().to_vec(),
-            poses: placement.poses().to_vec(),
-            frames: vec![nowhere; joints],
-            gaps: placement.gaps_m().to_vec(),
-            offsets: vec![0.0; joints],
-            corners: vec![[0.0; 2]; joints],
-            rotations: vec![0.0; blocks],
-            rates: vec![0.0; blocks],
-            shut: Vec::with_capacity(joints),
-            opened: Vec::with_capacity(joints),
+            before: Vec::with_capacity(blocks),
             faces,
             positions,
             contacts,
@@ -181,11 +170,6 @@ impl<'a> Engine<'a> {
 
     fn load(program: &mut Program, velocities: &[Vector3<f64>], kick: Vector2<f64>) {
         program.load(|block| velocities[block] + Vector3::new(kick.x, kick.y, 0.0));
-    }
-
-    fn momentum(&self) -> Vector2<f64> {
-        let blocks = self.row.blocks().iter().zip(&self.velocities);
-        blocks.map(|(block, v)| v.xy() * block.mass_kg).sum()
     }
 
     fn kinetic(&self) -> f64 {
@@ -219,84 +203,6 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// One step, at most to the given time.
-    fn advance(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
-        let step = equal_step(self.course.time, until, self.settings.longest_step_s);
-        let to_s = self.course.time + 0.5 * step;
-        let (kick, ground) = self.kick(to_s);
-        let momentum = self.momentum();
-        let stood = self.stands.then(|| {
-            self.note_motion();
-            (self.course.time, self.kinetic() + self.course.potential)
-        });
-        self.program
-            .place(&self.faces, &self.contacts, &self.positions);
-        self.modes_before.copy_from_slice(self.program.modes());
-        for joint in 0..self.faces.len() {
-            self.rates_before[joint] = self.program.joint_rate(joint);
-        }
-        self.lag(step);
-        Self::load(&mut self.program, &self.velocities, kick);
-        let fastest = self
-            .velocities
-            .iter()
-            .map(|v| v.x.abs() + v.y.abs())
-            .fold(0.0, f64::max);
-        let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
-        let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
-        let mut passes = solution.passes;
-        let again = solution.changed;
-        if again {
-            self.lag(step);
-        }
-        if again || solution.drawn_m_s > DRAWN * (self.gravity * step + fastest) {
-            solution = self.program.solve(|joint| self.lags[joint], tolerance);
-            passes += solution.passes;
-        }
-        let cost = &mut self.course.run.cost;
-        cost.steps += 1;
-        cost.programs += 1;
-        cost.iterations += passes;
-        cost.most_iterations = cost.most_iterations.max(passes);
-        self.judge(solution.bound_error)?;
-
-        let (mut taken, mut rubbed) = (0.0, 0.0);
-        for (joint, impulse) in self.program.impulses().iter().enumerate() {
-            let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
-            taken -= impulse.dot(&mean);
-            // Friction of joints that stick does no work but that of an impact.
-            if let Along::Slip(_) = self.program.modes()[joint].along {
-                let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
-                // Below the tolerance of the rates its sign is rounding.
-                rubbed += (-impulse.z * rate).max(0.0);
-            }
-        }
-        taken -= rubbed;
-        self.course.run.energy_taken_j += taken;
-        self.sliding.friction_j += rubbed;
-        for (block, velocity) in self.velocities.iter_mut().enumerate() {
-            *velocity = self.program.velocity(block);
-        }
-        self.ground_work -= ground.dot(&((momentum + self.momentum()) * 0.5));
-        self.note_forces(to_s - self.kicked_s);
-        self.kicked_s = to_s;
-        self.last_step = step;
-        let landed = self.find_landings();
-        // What friction takes at a blow holds nothing back.
-        self.held_back += if landed { 0.0 } else { rubbed };
-        self.drift(step);
-        if landed {
-            self.report(taken, rubbed, recorder);
-        }
-        if let Some((from_s, energy_j)) = stood {
-            self.report_uplift(from_s, energy_j, recorder);
-        } else {
-            let mut modes = self.program.modes().iter();
-            self.stands = modes.all(|mode| mode.pressed == [true; 2]);
-        }
-        Ok(())
-    }
-
     /// Counts a step whose bounds of friction did not converge.
     fn judge(&mut self, error: f64) -> Result<(), FreeHingeError> {
         if error <= CONVERGED {
@@ -322,15 +228,15 @@ impl<'a> Engine<'a> {
             .map(|impulse| impulse.z.abs() / (impulse.x + impulse.y))
             .fold(0.0, f64::max);
         self.least_normal = least / time_s;
-        let run = &mut self.course.run;
-        run.least_normal_n = run.least_normal_n.min(self.least_normal);
-        run.friction_demand = run.friction_demand.max(self.friction_demand);
+        let of_row = &mut self.course.of_row;
+        of_row.least_normal_n = of_row.least_normal_n.min(self.least_normal);
     }
 
     /// Whether a corner lands in the step that was solved; notes the joints that shut and that open.
     fn find_landings(&mut self) -> bool {
-        self.shut.clear();
-        self.opened.clear();
+        let (shut, opened) = (&mut self.course.shut, &mut self.course.opened);
+        shut.clear();
+        opened.clear();
         let mut landed = false;
         for (joint, mode) in self.program.modes().iter().enumerate() {
             let before = &self.modes_before[joint];
@@ -343,11 +249,11 @@ impl<'a> Engine<'a> {
             let shuts = lands && (mode.pressed == [true; 2] || before.pressed != [false; 2]);
             if shuts {
                 let edge = only(before.pressed.map(|pressed| !pressed));
-                self.shut.push(Hinge::Joint { joint, edge });
+                shut.push(Hinge::Joint { joint, edge });
             }
             if (shuts || before.pressed == [true; 2]) && mode.pressed != [true; 2] {
                 let edge = only(mode.pressed);
-                self.opened.push(Hinge::Joint { joint, edge });
+                opened.push(Hinge::Joint { joint, edge });
             }
         }
         landed
@@ -381,7 +287,7 @@ impl<'a> Engine<'a> {
         let kinetic = self.kinetic();
         let potential = self.gravity * rise(self.row, &self.centres);
         self.audit(kinetic + 0.5 * (self.course.potential + potential));
-        let sway = self.sway();
+        let sway = self.displacement();
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
         self.course.observe(rotations, potential, kinetic, sway);
         self.overturned |= self.has_fallen();
@@ -424,10 +330,8 @@ impl<'a> Engine<'a> {
     /// created. There the leapfrog knows velocities and heights, and in equal steps without impulses at the joints the sum stays.
     fn audit(&mut self, energy: f64) {
         let left = energy - self.ground_work;
-        let created = (left - self.least_energy) / self.course.energy_unit;
+        self.course.note_defect(left - self.least_energy);
         self.least_energy = self.least_energy.min(left);
-        let worst = &mut self.course.run.energy_defect_ratio;
-        *worst = worst.max(created);
     }
 
     /// Velocities at the instant of the positions, from those half a step before, in the auxiliary program; the kinetic energy there.
@@ -453,116 +357,45 @@ impl<'a> Engine<'a> {
         0.5 * self.auxiliary.twice_kinetic_j()
     }
 
-    fn note_poses(&mut self) {
-        let blocks = self.row.blocks().iter().zip(&self.positions).enumerate();
-        for (index, (block, position)) in blocks {
-            self.poses[index] = position.pose(block.centre_m);
-            self.rotations[index] = position.rotation_rad;
-        }
-        for (joint, contact) in self.contacts.iter().enumerate() {
-            let pressed = self.program.modes()[joint].pressed;
-            let pressed = pressed.iter().zip(&contact.coordinates_m);
-            for (gap, (pressed, gap_m)) in self.gaps[joint].iter_mut().zip(pressed) {
-                *gap = if *pressed { 0.0 } else { gap_m.max(0.0) };
-            }
-            self.offsets[joint] = self.stuck[joint];
-            self.frames[joint] = Frame {
-                intrados_m: contact.middle_m + contact.along * contact.ends_m[0],
-                along: contact.along,
-                normal: contact.normal,
-                thickness_m: contact.ends_m[1] - contact.ends_m[0],
-            };
-        }
-    }
-
-    /// Notes rotations and rates.
-    fn note_motion(&mut self) {
-        let moving = self.positions.iter().zip(&self.velocities);
-        let noted = self.rotations.iter_mut().zip(&mut self.rates);
-        for ((rotation, rate), (position, velocity)) in noted.zip(moving) {
-            *rotation = position.rotation_rad;
-            *rate = velocity.z;
-        }
-    }
-
     /// Tells of joints that opened in a step from this time on, with this energy, before which none was open.
-    fn report_uplift(&mut self, from_s: f64, energy_j: f64, recorder: &mut impl Recorder) {
-        self.opened.clear();
+    fn report_uplift(&mut self, from_s: f64, energy_j: f64) {
+        let opened = &mut self.course.opened;
+        opened.clear();
         for (joint, mode) in self.program.modes().iter().enumerate() {
             if mode.pressed != [true; 2] {
                 let edge = only(mode.pressed);
-                self.opened.push(Hinge::Joint { joint, edge });
+                opened.push(Hinge::Joint { joint, edge });
             }
             let gaps = &self.contacts[joint].coordinates_m;
             let least = APART_RATIO * self.faces[joint].thickness_m;
             let is_open = (0..2).any(|end| !mode.pressed[end] && gaps[end] > least);
             self.stands &= !is_open;
         }
-        if self.stands {
-            return;
+        if !self.stands {
+            self.tell_uplift(from_s, energy_j, |stepper| {
+                stepper.before.iter().copied().unzip()
+            });
         }
-        let flow = recorder.uplift(&Uplift {
-            time_s: from_s,
-            opened: &self.opened,
-            sway: heading(self.sway(), self.momentum().x),
-            rotations_rad: &self.rotations,
-            rates_rad_s: &self.rates,
-            energy_j,
-        });
-        self.course.stopped |= flow.is_break();
     }
 
-    fn report(&mut self, taken: f64, rubbed: f64, recorder: &mut impl Recorder) {
-        self.note_poses();
-        self.note_motion();
-        self.course.run.cost.impacts += 1;
-        let moves = self.program.modes().iter().any(|mode| *mode != Mode::WHOLE);
-        let flow = recorder.impact(&Impact {
-            time_s: self.course.time,
-            sway: moves.then(|| heading(self.sway(), self.momentum().x)),
-            shut: &self.shut,
-            opened: &self.opened,
-            energy_before_j: self.kinetic() + taken + rubbed,
-            energy_taken_j: taken + rubbed,
-            friction_j: Some(rubbed),
-            rotations_rad: &self.rotations,
-            rates_after_rad_s: &self.rates,
-            gaps_m: &self.gaps,
-            potential_j: self.course.potential,
-            overturned: self.overturned,
-        });
-        self.course.stopped |= flow.is_break();
-    }
-
-    fn record(&mut self, recorder: &mut impl Recorder) {
-        let kinetic_j = self.synchronise();
-        for (block, rate) in self.rates.iter_mut().enumerate() {
-            *rate = self.auxiliary.velocity(block).z;
+    /// Horizontal displacement of the centre of gravity times the mass, without what the row slid along the ground.
+    fn displacement(&self) -> f64 {
+        let on_ground = match (self.row.supports(), self.row.supports_go_on()) {
+            (Supports::Left, [base, _]) => [base; 2],
+            (Supports::Both, both) => both,
+        };
+        // What slips along a face that ends leaves it.
+        let slides = self.slides().into_iter().zip(on_ground);
+        let slid: f64 = slides
+            .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
+            .sum();
+        let mass = self.row.mass_kg();
+        let sway = sway(self.row, &self.centres) - mass * slid;
+        if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
+            sway
+        } else {
+            0.0
         }
-        self.note_poses();
-        for (corner, impulse) in self.corners.iter_mut().zip(self.auxiliary.impulses()) {
-            *corner = [impulse.x, impulse.y];
-        }
-        let slips = |mode: &&Mode| matches!(mode.along, Along::Slip(_));
-        let flow = recorder.sample(&Sample {
-            time_s: self.course.time,
-            rotations_rad: &self.rotations,
-            rates_rad_s: &self.rates,
-            gaps_m: &self.gaps,
-            poses: &self.poses,
-            frames: &self.frames,
-            open_joints: self.gaps.iter().filter(|gaps| **gaps != [0.0; 2]).count(),
-            offsets_m: &self.offsets,
-            slipping_joints: self.program.modes().iter().filter(slips).count(),
-            friction_demand: self.friction_demand,
-            least_normal_n: self.least_normal,
-            corner_impulses_n_s: &self.corners,
-            kinetic_j,
-            potential_j: self.course.potential,
-            sway: heading(self.sway(), self.momentum().x),
-            overturned: self.overturned,
-        });
-        self.course.stopped |= flow.is_break();
     }
 }
 
@@ -606,22 +439,155 @@ fn contact(faces: &[Faces], positions: &[Position], joint: usize) -> Contact {
     )
 }
 
-impl Stepper for Engine<'_> {
-    fn course(&self) -> &Course {
+impl<'a> Stepper<'a> for Engine<'a> {
+    fn course(&self) -> &Course<'a> {
         &self.course
     }
 
-    fn course_mut(&mut self) -> &mut Course {
+    fn course_mut(&mut self) -> &mut Course<'a> {
         &mut self.course
     }
 
-    fn step(&mut self, until: f64, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
-        self.advance(until, recorder)
+    fn into_course(mut self) -> Course<'a> {
+        self.sliding.offsets_m.copy_from_slice(&self.stuck);
+        self.course.of_row.sliding = Some(self.sliding);
+        self.course
     }
 
-    fn sample(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
-        self.record(recorder);
+    fn step(&mut self, until: f64) -> Result<(), FreeHingeError> {
+        let step = equal_step(self.course.time, until, self.settings.longest_step_s);
+        let to_s = self.course.time + 0.5 * step;
+        let (kick, ground) = self.kick(to_s);
+        let momentum = self.momentum();
+        let stood = self
+            .stands
+            .then(|| (self.course.time, self.kinetic() + self.course.potential));
+        if self.stands {
+            let mut before = mem::take(&mut self.before);
+            before.clear();
+            before.extend(self.turns());
+            self.before = before;
+        }
+        self.program
+            .place(&self.faces, &self.contacts, &self.positions);
+        self.modes_before.copy_from_slice(self.program.modes());
+        for joint in 0..self.faces.len() {
+            self.rates_before[joint] = self.program.joint_rate(joint);
+        }
+        self.lag(step);
+        Self::load(&mut self.program, &self.velocities, kick);
+        let fastest = self
+            .velocities
+            .iter()
+            .map(|v| v.x.abs() + v.y.abs())
+            .fold(0.0, f64::max);
+        let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
+        let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
+        let mut passes = solution.passes;
+        let again = solution.changed;
+        if again {
+            self.lag(step);
+        }
+        if again || solution.drawn_m_s > DRAWN * (self.gravity * step + fastest) {
+            solution = self.program.solve(|joint| self.lags[joint], tolerance);
+            passes += solution.passes;
+        }
+        let passes = passes as u64;
+        let (cost, of_row) = (&mut self.course.summary.cost, &mut self.course.of_row);
+        cost.steps += 1;
+        cost.evaluations += passes;
+        of_row.programs += 1;
+        of_row.most_iterations = of_row.most_iterations.max(passes);
+        self.judge(solution.bound_error)?;
+
+        let (mut taken, mut rubbed) = (0.0, 0.0);
+        for (joint, impulse) in self.program.impulses().iter().enumerate() {
+            let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
+            taken -= impulse.dot(&mean);
+            // Friction of joints that stick does no work but that of an impact.
+            if let Along::Slip(_) = self.program.modes()[joint].along {
+                let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
+                // Below the tolerance of the rates its sign is rounding.
+                rubbed += (-impulse.z * rate).max(0.0);
+            }
+        }
+        taken -= rubbed;
+        self.course.of_row.energy_taken_j += taken;
+        self.sliding.friction_j += rubbed;
+        for (block, velocity) in self.velocities.iter_mut().enumerate() {
+            *velocity = self.program.velocity(block);
+        }
+        self.ground_work -= ground.dot(&((momentum + self.momentum()) * 0.5));
+        self.note_forces(to_s - self.kicked_s);
+        self.kicked_s = to_s;
+        self.last_step = step;
+        let landed = self.find_landings();
+        // What friction takes at a blow holds nothing back.
+        self.held_back += if landed { 0.0 } else { rubbed };
+        self.drift(step);
+        if landed {
+            self.course.summary.impacts += 1;
+            let moves = self.program.modes().iter().any(|mode| *mode != Mode::WHOLE);
+            let before_j = self.kinetic() + taken + rubbed;
+            self.tell_impact(moves, [before_j, taken + rubbed], Some(rubbed));
+        }
+        if let Some((from_s, energy_j)) = stood {
+            self.report_uplift(from_s, energy_j);
+        } else {
+            let mut modes = self.program.modes().iter();
+            self.stands = modes.all(|mode| mode.pressed == [true; 2]);
+        }
         Ok(())
+    }
+
+    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, FreeHingeError> {
+        let kinetic_j = self.synchronise();
+        let blocks = self.row.blocks().iter().zip(&self.positions);
+        for (index, (block, position)) in blocks.enumerate() {
+            sample.rates_rad_s.push(self.auxiliary.velocity(index).z);
+            sample.poses.push(position.pose(block.centre_m));
+        }
+        sample.offsets_m.extend(&self.stuck);
+        sample.demand.friction = self.friction_demand;
+        if thrust_line {
+            let impulses = self.auxiliary.impulses().iter();
+            let corners = impulses.map(|impulse| [impulse.x, impulse.y]);
+            sample
+                .eccentricity_ratios
+                .extend(corners.map(eccentricity_ratio));
+        }
+        Ok(kinetic_j)
+    }
+
+    fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
+        let moving = self.positions.iter().zip(&self.velocities);
+        moving.map(|(position, velocity)| (position.rotation_rad, velocity.z))
+    }
+
+    fn gaps(&self, joint: usize) -> [f64; 2] {
+        let pressed = self.program.modes()[joint].pressed;
+        let gaps = &self.contacts[joint].coordinates_m;
+        [0, 1].map(|end| {
+            if pressed[end] {
+                0.0
+            } else {
+                gaps[end].max(0.0)
+            }
+        })
+    }
+
+    fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
+        self.contacts[joint].corner_m(edge)
+    }
+
+    fn momentum(&self) -> Vector2<f64> {
+        let blocks = self.row.blocks().iter().zip(&self.velocities);
+        blocks.map(|(block, v)| v.xy() * block.mass_kg).sum()
+    }
+
+    fn slips(&self) -> bool {
+        let mut modes = self.program.modes().iter();
+        modes.any(|mode| matches!(mode.along, Along::Slip(_)))
     }
 
     fn rests_since(&self) -> Option<f64> {
@@ -633,30 +599,5 @@ impl Stepper for Engine<'_> {
 
     fn overturned_s(&self) -> Option<f64> {
         self.overturned.then_some(self.summit.time)
-    }
-
-    fn sway(&self) -> f64 {
-        let on_ground = match (self.row.supports(), self.row.supports_go_on()) {
-            (Supports::Left, [base, _]) => [base; 2],
-            (Supports::Both, both) => both,
-        };
-        // What slips along a face that ends leaves it.
-        let slides = self.slides().into_iter().zip(on_ground);
-        let slid: f64 = slides
-            .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
-            .sum();
-        let mass = self.row.mass_kg();
-        let sway = sway(self.row, &self.centres) - mass * slid;
-        if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
-            sway
-        } else {
-            0.0
-        }
-    }
-
-    fn finish(mut self) -> Run {
-        self.sliding.offsets_m.copy_from_slice(&self.stuck);
-        self.course.run.sliding = Some(self.sliding);
-        self.course.run
     }
 }

@@ -106,7 +106,7 @@ impl<C: MechanismChain> Model for C {
                 _ => sampler.thrust,
             }),
             cost: finish.cost,
-            free_hinges: None,
+            row: None,
         })
     }
 }

@@ -1,50 +1,14 @@
-//! How a history ended, as studies keep it, and whether that is certain.
-//!
-//! Where a model can be computed in [other ways that are as good](Model::repetitions), a case is computed in these as well,
-//! and where they do not agree on whether it overturns that is **uncertain**: neither overturned nor survived. To which side
-//! it overturns, and whether what survives has come to rest, does not count.
-//!
-//! Most repetitions can be spared, because nothing that follows an impact decides: of what `is_plain`.
+//! How a history ended, as studies keep it, and whether that is [certain](crate::dynamics::spread).
 
 pub(crate) mod columns;
-
-use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Outcome, Sample, Summary};
-use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
-
-/// Whether a history overturns, as far as that is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
-    /// It does not, to the end of the simulation.
-    Survives,
-    /// That depends on how it is computed.
-    Uncertain,
-    /// It does.
-    Overturns,
-}
-
-impl From<Outcome> for Verdict {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Overturned(_) => Self::Overturns,
-            Outcome::NeverMoved | Outcome::Rest | Outcome::StillRocking => Self::Survives,
-        }
-    }
-}
-
-impl Verdict {
-    const fn words(self) -> &'static str {
-        match self {
-            Self::Survives => "survives",
-            Self::Uncertain => "is uncertain",
-            Self::Overturns => "overturns",
-        }
-    }
-}
+use crate::dynamics::history::{Outcome, Summary};
+use crate::dynamics::model::{Model, Request};
+pub use crate::dynamics::spread::Verdict;
+use crate::dynamics::spread::doubt;
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,7 +54,7 @@ pub enum PeakRotation {
 
 impl PeakRotation {
     fn of(summary: &Summary) -> Self {
-        match summary.free_hinges {
+        match summary.row {
             Some(_) => Self::Rad(summary.largest_rotation_rad()),
             None => Self::OverCritical(summary.peak_over_critical),
         }
@@ -172,9 +136,9 @@ impl Ending {
             impacts: summary.impacts,
             energy_defect_ratio: summary.energy_defect_ratio,
             peak: PeakRotation::of(summary),
-            steps: summary.free_hinges.as_ref().map(|run| Steps {
-                longest_s: run.longest_step_s,
-                shortest_s: run.shortest_step_s,
+            steps: summary.row.as_ref().map(|row| Steps {
+                longest_s: row.longest_step_s,
+                shortest_s: row.shortest_step_s,
             }),
             uncertain,
         };
@@ -182,82 +146,6 @@ impl Ending {
         check_finite(ending.peak.over_critical().as_slice())?;
         check_finite(ending.peak.rad().as_slice())?;
         Ok(ending)
-    }
-}
-
-/// What a repetition says against a history that ended like this; `None` where it agrees.
-pub(super) fn objection(
-    own: Outcome,
-    name: &str,
-    repeated: &Result<Summary, SimulationError>,
-) -> Option<String> {
-    let own = Verdict::from(own);
-    match repeated {
-        Ok(summary) => {
-            let other = Verdict::from(summary.outcome);
-            (other != own).then(|| format!("{}; {} with {name}", own.words(), other.words()))
-        }
-        Err(error) => Some(format!("{}; failed with {name}: {error}", own.words())),
-    }
-}
-
-/// Why it is uncertain whether a history overturns, which is repeated where that may matter.
-pub(super) fn doubt(
-    model: &dyn Model,
-    ground: &GroundMotion,
-    request: &Request,
-    own: &Summary,
-) -> Option<String> {
-    if is_plain(own) {
-        return None;
-    }
-    let repetitions = model.repetitions();
-    repetitions.iter().find_map(|Repetition { name, model }| {
-        let mut until_safe = UntilSafe {
-            quiet_s: ground.end_s(),
-        };
-        let repeated = model.simulate(ground, request, Some(&mut until_safe));
-        objection(own.outcome, name, &repeated)
-    })
-}
-
-/// What survives without ever reaching this part of the energy barrier of its first mechanism is not repeated.
-const FAR_FROM_OVERTURNING: f64 = 0.5;
-
-/// Whether repetitions can be spared: it never moved, it overturned before it changed side, up to which all ways agree, or it
-/// survived far from overturning.
-fn is_plain(own: &Summary) -> bool {
-    match own.outcome {
-        Outcome::NeverMoved => true,
-        Outcome::Overturned(_) => own
-            .free_hinges
-            .as_ref()
-            .is_some_and(|run| run.half_cycles.len() <= 1),
-        Outcome::Rest | Outcome::StillRocking => own
-            .peak_potential_over_barrier
-            .is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING),
-    }
-}
-
-/// On ground that is quiet for good, what has less than this part of the energy barrier of its first mechanism cannot
-/// overturn any more.
-const SAFE: f64 = 0.1;
-
-/// Ends a history that cannot overturn any more.
-struct UntilSafe {
-    /// From when on the ground is quiet.
-    quiet_s: f64,
-}
-
-impl Recorder for UntilSafe {
-    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        // What has slipped stands lower, and its energy says nothing.
-        let slips = !sample.offsets_m.is_empty();
-        let safe = sample.energy_ratio.is_some_and(|ratio| ratio < SAFE);
-        if sample.time_s >= self.quiet_s && safe && !slips {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
     }
 }
 

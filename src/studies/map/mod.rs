@@ -11,13 +11,14 @@ use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
-use super::ending::{Ending, objection};
+use super::ending::Ending;
 use super::impact_free::ScalablePulse;
 use super::runner::Study;
 use crate::argument::ArgumentError;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{MechanismModel, Model, Repetition, Request};
+use crate::dynamics::spread::objection;
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};

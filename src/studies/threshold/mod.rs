@@ -15,12 +15,13 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use super::ending::{Ending, Verdict, doubt};
+use super::ending::{Ending, Verdict};
 use super::runner::{Progress, Runner, RunnerError};
 use crate::argument::{ArgumentError, above, within};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Model, Request, SimulationError};
+use crate::dynamics::spread::doubt;
 
 /// How closely an edge is enclosed, as a part of its factor: far closer than any motion of the ground is known,
 /// and wide enough that the errors of the integration do not decide.

@@ -1,10 +1,13 @@
-//! What is noted on the way: energies and their balance, peaks, half cycles, impacts and samples.
+//! What is noted and told on the way: energies and their balance, impacts and samples.
 
 use nalgebra::Vector2;
 
 use super::{Engine, Piece};
-use crate::dynamics::free_hinges::course::{Stepper as _, heading};
-use crate::dynamics::free_hinges::{FreeHingeError, Impact, Recorder, Sample, Uplift};
+use crate::dynamics::free_hinges::FreeHingeError;
+use crate::dynamics::free_hinges::course::{
+    Course, Stepper, eccentricity_ratio, equal_step, only, open_hinge,
+};
+use crate::dynamics::history::Sample;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
@@ -26,15 +29,6 @@ pub(super) fn momentum(pieces: &[Piece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
 }
 
-/// The edge of the only one of two corners of a joint, intrados and extrados.
-pub(in crate::dynamics::free_hinges) fn only(corners: [bool; 2]) -> Option<Edge> {
-    match corners {
-        [true, false] => Some(Edge::Intrados),
-        [false, true] => Some(Edge::Extrados),
-        _ => None,
-    }
-}
-
 /// Rise of the blocks with their centres at the given places, times their masses.
 pub(in crate::dynamics::free_hinges) fn rise(row: &Row, centres_m: &[Vector2<f64>]) -> f64 {
     let rises = row.blocks().iter().zip(centres_m);
@@ -52,29 +46,19 @@ pub(in crate::dynamics::free_hinges) fn sway(row: &Row, centres_m: &[Vector2<f64
 }
 
 impl Engine<'_> {
-    pub(super) fn momentum(&self) -> Vector2<f64> {
-        momentum(&self.pieces)
-    }
-
     pub(super) fn height_energy(&self) -> f64 {
         self.gravity * rise(self.row, self.placement.centres_m())
     }
 
-    pub(super) fn is_at_rest(&self) -> bool {
-        let least = REST_ENERGY_RATIO * self.course.energy_unit;
-        kinetic(&self.pieces) < least && self.course.potential.abs() < least
-    }
-
     /// Compares the energy at an instant with its balance.
     pub(super) fn audit(&mut self, kinetic: f64) {
-        let due = self.start_energy + self.ground_work - self.course.run.energy_taken_j;
-        let defect = (kinetic + self.course.potential - due) / self.course.energy_unit;
-        let worst = &mut self.course.run.energy_defect_ratio;
-        *worst = worst.max(defect.abs());
+        let due = self.start_energy + self.ground_work - self.course.of_row.energy_taken_j;
+        let defect = kinetic + self.course.potential - due;
+        self.course.note_defect(defect.abs());
     }
 
     /// Tells the course of the motion about the state after a step.
-    pub(super) fn observe(&mut self) {
+    fn observe(&mut self) {
         self.course.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
         let potential = self.height_energy();
         let sway = sway(self.row, self.placement.centres_m());
@@ -83,13 +67,14 @@ impl Engine<'_> {
         self.course.observe(rotations, potential, kinetic, sway);
     }
 
-    pub(super) fn report(&mut self, taken_before: f64, recorder: &mut impl Recorder) {
-        self.shut.clear();
-        self.opened.clear();
+    fn report_impact(&mut self, taken_before: f64) {
+        let (shut, opened) = (&mut self.course.shut, &mut self.course.opened);
+        shut.clear();
+        opened.clear();
         for joint in 0..self.touching.len() {
             if self.closed[joint] != [true; 2] && self.placement.is_shut(joint) {
                 let edge = only(self.closed[joint].map(|closed| !closed));
-                self.shut.push(Hinge::Joint { joint, edge });
+                shut.push(Hinge::Joint { joint, edge });
             }
         }
         let fastest = self
@@ -102,67 +87,77 @@ impl Engine<'_> {
             let was_shut = self.closed[joint] == [true; 2] || self.placement.is_shut(joint);
             if was_shut && opens {
                 let edge = only(self.program.active()[joint]);
-                self.opened.push(Hinge::Joint { joint, edge });
+                opened.push(Hinge::Joint { joint, edge });
             }
         }
-        self.note_rotations();
-        for (rate, twist) in self.rates.iter_mut().zip(self.program.velocities()) {
-            *rate = twist.rate;
-        }
-        let energy_taken_j = self.course.run.energy_taken_j - taken_before;
+        let taken_j = self.course.of_row.energy_taken_j - taken_before;
         let gaps_m = self.placement.gaps_m();
-        self.stands = self.opened.is_empty() && gaps_m.iter().all(|gaps| *gaps == [0.0; 2]);
-        let flow = recorder.impact(&Impact {
-            time_s: self.course.time,
-            sway: (!self.stands).then(|| heading(self.sway(), self.momentum().x)),
-            shut: &self.shut,
-            opened: &self.opened,
-            energy_before_j: kinetic(&self.pieces) + energy_taken_j,
-            energy_taken_j,
-            friction_j: None,
-            rotations_rad: &self.rotations,
-            rates_after_rad_s: &self.rates,
-            gaps_m,
-            potential_j: self.course.potential,
-            overturned: self.overturned_s().is_some(),
-        });
-        self.course.stopped |= flow.is_break();
+        self.stands = self.course.opened.is_empty() && gaps_m.iter().all(|gaps| *gaps == [0.0; 2]);
+        let before_j = kinetic(&self.pieces) + taken_j;
+        self.tell_impact(!self.stands, [before_j, taken_j], None);
     }
 
     /// Tells of joints that opened in a step from this time on, before which all were shut.
-    pub(super) fn report_uplift(&mut self, from_s: f64, recorder: &mut impl Recorder) {
-        self.opened.clear();
-        for (joint, gaps) in self.placement.gaps_m().iter().enumerate() {
-            if *gaps != [0.0; 2] {
-                let edge = only(gaps.map(|gap| gap == 0.0));
-                self.opened.push(Hinge::Joint { joint, edge });
-            }
-        }
-        self.stands = self.opened.is_empty();
-        if self.stands {
-            return;
-        }
-        // With all joints shut the row stood undeformed, and still.
-        self.rotations.fill(0.0);
-        self.rates.fill(0.0);
-        let flow = recorder.uplift(&Uplift {
-            time_s: from_s,
-            opened: &self.opened,
-            sway: heading(self.sway(), self.momentum().x),
-            rotations_rad: &self.rotations,
-            rates_rad_s: &self.rates,
-            energy_j: 0.0,
-        });
-        self.course.stopped |= flow.is_break();
-    }
-
-    pub(super) fn note_rotations(&mut self) {
-        for (rotation, pose) in self.rotations.iter_mut().zip(self.placement.poses()) {
-            *rotation = pose.rotation_rad();
+    fn report_uplift(&mut self, from_s: f64) {
+        let opened = &mut self.course.opened;
+        opened.clear();
+        let gaps = self.placement.gaps_m().iter().enumerate();
+        opened.extend(gaps.filter_map(|(joint, gaps)| open_hinge(joint, *gaps)));
+        self.stands = opened.is_empty();
+        if !self.stands {
+            // With all joints shut the row stood undeformed, and still.
+            let blocks = self.row.blocks().len();
+            self.tell_uplift(from_s, 0.0, |_| (vec![0.0; blocks], vec![0.0; blocks]));
         }
     }
+}
 
-    pub(super) fn record(&mut self, recorder: &mut impl Recorder) -> Result<(), FreeHingeError> {
+impl<'a> Stepper<'a> for Engine<'a> {
+    fn course(&self) -> &Course<'a> {
+        &self.course
+    }
+
+    fn course_mut(&mut self) -> &mut Course<'a> {
+        &mut self.course
+    }
+
+    fn into_course(self) -> Course<'a> {
+        self.course
+    }
+
+    /// It ends at its landing, if there is one.
+    fn step(&mut self, until: f64) -> Result<(), FreeHingeError> {
+        self.step_iterations = 0;
+        let longest = equal_step(self.course.time, until, self.settings.longest_step_s);
+        self.touch_shut();
+        self.closed.copy_from_slice(&self.touching);
+        let from_s = self.course.time;
+        let taken_before = self.course.of_row.energy_taken_j;
+        self.landing.fill([0.0; 2]);
+        if self.has_just_landed() {
+            self.press_again();
+        }
+        let step = self.solve_to_landing(longest)?;
+        self.account(&step);
+        self.drift(&step)?;
+        let landed = self.has_landed();
+        if landed {
+            self.impact()?;
+        }
+        self.observe();
+        if landed {
+            self.report_impact(taken_before);
+        } else if self.stands {
+            self.report_uplift(from_s);
+        }
+        self.course.summary.cost.steps += 1;
+        let of_row = &mut self.course.of_row;
+        of_row.merged += u64::from(step.merged);
+        of_row.most_iterations = of_row.most_iterations.max(self.step_iterations);
+        Ok(())
+    }
+
+    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, FreeHingeError> {
         let before = self.momentum();
         let ground = self.half_kick();
         std::mem::swap(&mut self.program, &mut self.auxiliary);
@@ -170,8 +165,13 @@ impl Engine<'_> {
         self.program.start_from(self.auxiliary.active());
         let solved = self.solve();
         let kinetic_j = self.kinetic_of_solution();
-        for (rate, twist) in self.rates.iter_mut().zip(self.program.velocities()) {
-            *rate = twist.rate;
+        let rates = self.program.velocities().iter().map(|twist| twist.rate);
+        sample.rates_rad_s.extend(rates);
+        if thrust_line {
+            let impulses = self.program.corner_impulses().iter().copied();
+            sample
+                .eccentricity_ratios
+                .extend(impulses.map(eccentricity_ratio));
         }
         std::mem::swap(&mut self.program, &mut self.auxiliary);
         solved?;
@@ -179,28 +179,32 @@ impl Engine<'_> {
         self.ground_work -= work;
         self.audit(kinetic_j);
         self.ground_work += work;
-        self.note_rotations();
-        let gaps_m = self.placement.gaps_m();
-        let flow = recorder.sample(&Sample {
-            time_s: self.course.time,
-            rotations_rad: &self.rotations,
-            rates_rad_s: &self.rates,
-            gaps_m,
-            poses: self.placement.poses(),
-            frames: self.placement.frames(),
-            open_joints: gaps_m.iter().filter(|gaps| **gaps != [0.0; 2]).count(),
-            friction_demand: self.friction_demand,
-            least_normal_n: self.least_normal,
-            // The programs were exchanged: this is the solution of the sample.
-            corner_impulses_n_s: self.auxiliary.corner_impulses(),
-            offsets_m: &[],
-            slipping_joints: 0,
-            sway: heading(self.sway(), self.momentum().x),
-            overturned: self.overturned_s().is_some(),
-            kinetic_j,
-            potential_j: self.course.potential,
-        });
-        self.course.stopped |= flow.is_break();
-        Ok(())
+        sample.poses.extend(self.placement.poses());
+        sample.demand.friction = self.friction_demand;
+        Ok(kinetic_j)
+    }
+
+    fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
+        let rates = self.program.velocities().iter().map(|twist| twist.rate);
+        let poses = self.placement.poses().iter();
+        poses.map(Pose::rotation_rad).zip(rates)
+    }
+
+    fn gaps(&self, joint: usize) -> [f64; 2] {
+        self.placement.gaps_m()[joint]
+    }
+
+    fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
+        self.placement.frames()[joint].corner_m(edge)
+    }
+
+    fn momentum(&self) -> Vector2<f64> {
+        momentum(&self.pieces)
+    }
+
+    fn rests_since(&self) -> Option<f64> {
+        let least = REST_ENERGY_RATIO * self.course.energy_unit;
+        let rests = kinetic(&self.pieces) < least && self.course.potential.abs() < least;
+        rests.then_some(self.course.time)
     }
 }

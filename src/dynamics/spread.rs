@@ -1,0 +1,287 @@
+//! How sure a motion is: what it has in common with repetitions of it, [other ways to compute it](Model::repetitions) that are as good.
+//!
+//! Where these do not agree on whether it overturns that is **uncertain**: neither overturned nor survived. To which side it overturns,
+//! and whether what survives has come to rest, does not count. For that most repetitions can be spared, because nothing that follows
+//! an impact decides: of what `is_plain`.
+
+use std::ops::ControlFlow;
+use std::thread::{self, JoinHandle};
+
+use thiserror::Error;
+
+use super::ground::GroundMotion;
+use super::history::{HalfCycle, Outcome, Sample, Summary};
+use super::model::{Model, Recorder, Repetition, Request, SimulationError};
+
+/// To this part of them peaks are called certain.
+pub const SAME_PEAK_RATIO: f64 = 0.01;
+
+/// The repetitions must agree to this part of that, because still other ways to compute the motion may differ by more.
+const AGREEMENT: f64 = 0.5;
+
+/// After the last half cycle that peaks above this part of the largest peak nothing is compared.
+const LEAST_PEAK_RATIO: f64 = 1e-2;
+
+/// A motion beside its repetitions: what they agree in can be relied on, and nothing else.
+///
+/// After the first change of side the order of impacts that almost coincide decides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spread {
+    /// How the repetitions were computed.
+    pub repeated: Vec<&'static str>,
+    /// How it ended: itself, then the repetitions.
+    pub outcomes: Vec<Outcome>,
+    /// The half cycles that all have, up to the last that peaks above a hundredth of the largest peak of the motion itself.
+    pub half_cycles: Vec<PeakSpread>,
+    /// Half cycles from the first on that are the same: to one side, with peaks that are the same.
+    pub same_until_half_cycle: usize,
+    /// When the first half cycle begins that is not, in seconds; `None` where all are the same.
+    pub parts_at_s: Option<f64>,
+    /// The largest rotation of a block; `None` where it overturns in one of them.
+    pub largest: Option<PeakSpread>,
+}
+
+/// A largest rotation of a block, in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PeakSpread {
+    /// That of the motion itself.
+    pub own_rad: f64,
+    /// The least of all.
+    pub min_rad: f64,
+    /// The largest of all.
+    pub max_rad: f64,
+}
+
+impl PeakSpread {
+    /// Of the motion itself, then its repetitions.
+    fn of(peaks_rad: &[f64]) -> Self {
+        Self {
+            own_rad: peaks_rad[0],
+            min_rad: peaks_rad.iter().copied().fold(f64::INFINITY, f64::min),
+            max_rad: peaks_rad.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    /// Whether all agree so well that they are certain to [`SAME_PEAK_RATIO`].
+    #[must_use]
+    pub fn is_same(&self) -> bool {
+        self.max_rad - self.min_rad <= AGREEMENT * SAME_PEAK_RATIO * self.max_rad
+    }
+}
+
+impl Spread {
+    /// Compares a motion of a row with its repetitions, given with their names.
+    #[must_use]
+    pub fn new(own: &Summary, repetitions: &[(&'static str, Summary)]) -> Self {
+        let runs: Vec<&Summary> = std::iter::once(own)
+            .chain(repetitions.iter().map(|(_, summary)| summary))
+            .collect();
+        let cycles: Vec<_> = runs.iter().map(|summary| summary.half_cycles()).collect();
+        let largest_rad = cycles[0]
+            .iter()
+            .map(|cycle| cycle.peak_rad)
+            .fold(0.0, f64::max);
+        let counts = |cycle: &HalfCycle| cycle.peak_rad > LEAST_PEAK_RATIO * largest_rad;
+        let last = cycles[0].iter().rposition(counts);
+        let compared = last.map_or(0, |last| last + 1);
+        let in_all = cycles
+            .iter()
+            .map(|cycles| cycles.len())
+            .min()
+            .unwrap_or(0)
+            .min(compared);
+        let mut half_cycles = Vec::new();
+        let mut same = 0;
+        for index in 0..in_all {
+            let peaks_rad: Vec<f64> = cycles.iter().map(|cycles| cycles[index].peak_rad).collect();
+            let peak = PeakSpread::of(&peaks_rad);
+            let side = cycles[0][index].sway;
+            let to_one_side = cycles.iter().all(|cycles| cycles[index].sway == side);
+            if same == index && to_one_side && peak.is_same() {
+                same += 1;
+            }
+            half_cycles.push(peak);
+        }
+        let starts_s = cycles
+            .iter()
+            .filter(|_| same < compared)
+            .filter_map(|cycles| Some(cycles.get(same)?.start_s))
+            .reduce(f64::min);
+        let stands = |summary: &&Summary| !matches!(summary.outcome, Outcome::Overturned(_));
+        let largest_rad: Vec<f64> = runs
+            .iter()
+            .map(|summary| summary.largest_rotation_rad())
+            .collect();
+        Self {
+            repeated: repetitions.iter().map(|(name, _)| *name).collect(),
+            outcomes: runs.iter().map(|summary| summary.outcome).collect(),
+            half_cycles,
+            same_until_half_cycle: same,
+            parts_at_s: starts_s,
+            largest: runs
+                .iter()
+                .all(stands)
+                .then(|| PeakSpread::of(&largest_rad)),
+        }
+    }
+
+    /// Whether all ended alike, to the same side if they overturned.
+    #[must_use]
+    pub fn same_outcome(&self) -> bool {
+        self.outcomes.iter().all(|other| *other == self.outcomes[0])
+    }
+}
+
+/// The repetitions of a motion, computed on threads of their own beside it. Where the motion itself fails nobody waits for them: they
+/// end with the program.
+#[derive(Debug)]
+pub struct Repetitions(Vec<(&'static str, JoinHandle<Result<Summary, SimulationError>>)>);
+
+/// Why it is not known how far a motion depends on its computation.
+#[derive(Clone, Debug, Error)]
+pub enum SpreadError {
+    /// A repetition failed.
+    #[error("the repetition with {name} failed: {error}")]
+    Failed {
+        /// Which one.
+        name: &'static str,
+        /// Why.
+        error: SimulationError,
+    },
+    /// A repetition came to no end, which is a defect of the program.
+    #[error("the repetition with {0} crashed")]
+    Crashed(&'static str),
+}
+
+impl Repetitions {
+    /// Starts them.
+    #[must_use]
+    pub fn start(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Self {
+        let start = |Repetition { name, model }| {
+            let (ground, request) = (ground.clone(), *request);
+            let repeated = move || model.simulate(&ground, &request, None);
+            (name, thread::spawn(repeated))
+        };
+        Self(model.repetitions().into_iter().map(start).collect())
+    }
+
+    /// Waits for them, and compares the motion with them.
+    ///
+    /// # Errors
+    /// When one of them failed.
+    pub fn spread(self, own: &Summary) -> Result<Spread, SpreadError> {
+        let ended = |(name, repetition): (_, JoinHandle<Result<_, _>>)| {
+            let ended = repetition.join().map_err(|_| SpreadError::Crashed(name))?;
+            let summary = ended.map_err(|error| SpreadError::Failed { name, error })?;
+            Ok((name, summary))
+        };
+        let repeated: Result<Vec<_>, _> = self.0.into_iter().map(ended).collect();
+        Ok(Spread::new(own, &repeated?))
+    }
+}
+
+/// Whether a history overturns, as far as that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// It does not, to the end of the simulation.
+    Survives,
+    /// That depends on how it is computed.
+    Uncertain,
+    /// It does.
+    Overturns,
+}
+
+impl From<Outcome> for Verdict {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Overturned(_) => Self::Overturns,
+            Outcome::NeverMoved | Outcome::Rest | Outcome::StillRocking => Self::Survives,
+        }
+    }
+}
+
+impl Verdict {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Survives => "survives",
+            Self::Uncertain => "is uncertain",
+            Self::Overturns => "overturns",
+        }
+    }
+}
+
+/// What a repetition says against a history that ended like this; `None` where it agrees.
+pub(crate) fn objection(
+    own: Outcome,
+    name: &str,
+    repeated: &Result<Summary, SimulationError>,
+) -> Option<String> {
+    let own = Verdict::from(own);
+    match repeated {
+        Ok(summary) => {
+            let other = Verdict::from(summary.outcome);
+            (other != own).then(|| format!("{}; {} with {name}", own.words(), other.words()))
+        }
+        Err(error) => Some(format!("{}; failed with {name}: {error}", own.words())),
+    }
+}
+
+/// Why it is uncertain whether a history overturns, which is repeated where that may matter.
+pub(crate) fn doubt(
+    model: &dyn Model,
+    ground: &GroundMotion,
+    request: &Request,
+    own: &Summary,
+) -> Option<String> {
+    if is_plain(own) {
+        return None;
+    }
+    let repetitions = model.repetitions();
+    repetitions.iter().find_map(|Repetition { name, model }| {
+        let mut until_safe = UntilSafe {
+            quiet_s: ground.end_s(),
+        };
+        let repeated = model.simulate(ground, request, Some(&mut until_safe));
+        objection(own.outcome, name, &repeated)
+    })
+}
+
+/// What survives without ever reaching this part of the energy barrier of its first mechanism is not repeated.
+const FAR_FROM_OVERTURNING: f64 = 0.5;
+
+/// Whether repetitions can be spared: it never moved, it overturned before it changed side, up to which all ways agree, or it
+/// survived far from overturning.
+fn is_plain(own: &Summary) -> bool {
+    match own.outcome {
+        Outcome::NeverMoved => true,
+        Outcome::Overturned(_) => own
+            .row
+            .as_ref()
+            .is_some_and(|row| row.half_cycles.len() <= 1),
+        Outcome::Rest | Outcome::StillRocking => own
+            .peak_potential_over_barrier
+            .is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING),
+    }
+}
+
+/// On ground that is quiet for good, what has less than this part of the energy barrier of its first mechanism cannot
+/// overturn any more.
+const SAFE: f64 = 0.1;
+
+/// Ends a history that cannot overturn any more.
+struct UntilSafe {
+    /// From when on the ground is quiet.
+    quiet_s: f64,
+}
+
+impl Recorder for UntilSafe {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        // What has slipped stands lower, and its energy says nothing.
+        let slips = !sample.offsets_m.is_empty();
+        let safe = sample.energy_ratio.is_some_and(|ratio| ratio < SAFE);
+        if sample.time_s >= self.quiet_s && safe && !slips {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}
