@@ -7,7 +7,7 @@ use archrock::dynamics::free_hinges::{FreeHingeError, Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::mechanics::blocks::{Block, Drum, Joint, Row, Supports};
+use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::chain::Mechanism as _;
 use archrock::mechanics::contact::{Load, Program};
 use archrock::mechanics::four_link::certificate;
@@ -696,6 +696,14 @@ fn bad_arguments_are_refused() {
     assert!(Row::between_faces(&turned, Supports::Both, 1.0, 1.0, 2000.0).is_err());
 
     let row = column(2);
+    // Steps follow the size.
+    let tiny = Row::new(
+        row.blocks().to_vec(),
+        row.joints().to_vec(),
+        Supports::Left,
+        2.2e-16,
+    );
+    assert!(matches!(tiny, Err(RowError::Size { .. })), "{tiny:?}");
     let good = Settings::to_landings(&row, GRAVITY, 1.0);
     let ground = GroundMotion::still();
     for settings in [
@@ -717,6 +725,15 @@ fn bad_arguments_are_refused() {
         },
         Settings {
             output_step_s: Some(-1.0),
+            ..good
+        },
+        Settings {
+            output_step_s: Some(5e-324),
+            ..good
+        },
+        Settings {
+            longest_step_s: 1e-13,
+            shortest_step_s: 1e-13,
             ..good
         },
     ] {

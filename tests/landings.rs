@@ -120,11 +120,7 @@ impl Recorder for Closures {
                 Hinge::Section { .. } | Hinge::Toe(_) => None,
             })
             .collect();
-        // Where four corners land and all joints are shut, what is open after the impact opens at once.
-        let shut = event
-            .hinges
-            .iter()
-            .all(|hinge| impact.opened.contains(hinge));
+        let shut = event.rotations_rad.iter().all(|angle| *angle == 0.0);
         let moves = impact.energy_before_j > self.least_j;
         if moves && shut && landed.len() == 4 && impact.closed.len() == 4 {
             self.found.push((landed, impact.restitution));

@@ -184,7 +184,12 @@ proptest! {
             Err(RowError::Count(count)) => prop_assert!(*count == 0 && faces.len() < 2),
             Err(RowError::Dimension { .. }) => prop_assert!(!(size_m > 0.0 && size_m < f64::INFINITY)),
             Err(RowError::Joints { .. }) => return Err(TestCaseError::fail("the joints are counted by the row")),
+            Err(RowError::Size { size_m, extent_m }) => prop_assert!(*size_m < 1e-6 * extent_m),
             Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) | Ok(_) => {}
+        }
+        // Steps follow the size: one that is nothing beside the row would leave a history no end.
+        if let Ok(row) = &row {
+            prop_assert!(row.joints().iter().all(|joint| row.size_m() >= 1e-6 * joint.thickness_m()));
         }
         check(row, false)?;
     }
@@ -208,6 +213,7 @@ proptest! {
                 prop_assert!((*blocks, *joints) == counts && counts.1 != expected);
             }
             Err(RowError::Dimension { .. }) => return Err(TestCaseError::fail("the size is fine")),
+            Err(RowError::Size { extent_m, .. }) => prop_assert!(*extent_m > 5e6),
             _ => prop_assert!(counts.0 > 0 && counts.1 == expected),
         }
         check(row, false)?;
@@ -264,7 +270,7 @@ proptest! {
     fn steps(longest_s in number(1e-5..1e-3), shortest_s in number(1e-6..1e-4)) {
         let column = Column::new(4.0, 0.8).unwrap();
         let options = RowOptions { longest_step_s: Some(longest_s), shortest_step_s: Some(shortest_s), ..RowOptions::default() };
-        let allowed = |step_s: f64| step_s > 0.0 && step_s <= 1e9;
+        let allowed = |step_s: f64| (1e-9..=1.0).contains(&step_s);
         match FreeHinges::of_column(&column).unwrap().with_options(options) {
             Ok(_) => prop_assert!(longest_s >= shortest_s && allowed(shortest_s) && allowed(longest_s)),
             Err(FreeHingesError::Argument(error)) => match error.argument {

@@ -6,6 +6,7 @@ use archrock::scenario::{
 };
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
+use serde_json::json;
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
@@ -251,19 +252,24 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
         .and_then(|arch| arch.with_voussoirs(7))
         .unwrap();
     assert_eq!(scenario.structure, Structure::Arch(arch));
-    let Some(Ground::Pulse(pulse)) = &scenario.ground else {
-        panic!("a pulse")
-    };
-    assert_eq!(pulse.kind, Pulse::MavroeidisPapageorgiou);
-    let numbers = [
-        pulse.amplitude_g,
-        pulse.vertical_amplitude_g,
-        pulse.duration_s,
-        pulse.start_s,
-        pulse.cycles,
-        pulse.phase_deg,
-    ];
-    assert_eq!(numbers, [-1000.0, 0.0, 0.5, 1.0, 3.0, 90.0]);
+    let pulse = json!({
+        "amplitude_g": -1000.0,
+        "vertical_amplitude_g": 0.0,
+        "duration_s": 0.5,
+        "start_s": 1.0,
+        "gamma": 3.0,
+        "phase_deg": 90.0,
+    });
+    let ground = scenario.ground.as_ref().unwrap();
+    let kind = Pulse::MavroeidisPapageorgiou.name();
+    assert_eq!(
+        serde_json::to_value(ground).unwrap(),
+        json!({ kind: pulse })
+    );
+    for gravity_m_s2 in [f64::NAN, 0.0, 1e300] {
+        let error = ground.motion(gravity_m_s2).unwrap_err();
+        assert_eq!(error.argument, "gravity_m_s2");
+    }
     let simulation = Simulation {
         duration_s: 20.0,
         output_step_s: 20.0,
@@ -506,7 +512,7 @@ fn grounds() {
         let Ground::Pulse(ground) = ground else {
             panic!("{name} is a pulse")
         };
-        assert_eq!(ground.kind, *kind);
+        assert_eq!(ground.kind(), *kind);
     }
     assert_error_after_arch(
         "[ground]",

@@ -158,7 +158,8 @@ impl History {
         memory_bytes: u64,
     ) -> PyResult<Self> {
         let inner = &scenario.inner;
-        let other = ground.map(|ground| ground.motion(inner.simulation.gravity_m_s2));
+        let motion = |ground: &Ground| ground.motion(inner.simulation.gravity_m_s2);
+        let other = ground.map(motion).transpose()?;
         let motion = match &other {
             Some(motion) => motion,
             None => {

@@ -257,14 +257,14 @@ pub struct Ground {
 
 impl Ground {
     /// The motion under the given gravity.
-    pub fn motion(&self, gravity_m_s2: f64) -> Arc<GroundMotion> {
+    pub fn motion(&self, gravity_m_s2: f64) -> PyResult<Arc<GroundMotion>> {
         let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
         match &*latest {
-            Some((of, motion)) if *of == gravity_m_s2 => Arc::clone(motion),
+            Some((of, motion)) if *of == gravity_m_s2 => Ok(Arc::clone(motion)),
             _ => {
-                let motion = Arc::new(self.inner.motion(gravity_m_s2));
+                let motion = Arc::new(self.inner.motion(gravity_m_s2).map_err(refused)?);
                 *latest = Some((gravity_m_s2, Arc::clone(&motion)));
-                motion
+                Ok(motion)
             }
         }
     }

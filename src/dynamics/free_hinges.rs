@@ -27,6 +27,8 @@ const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
 const CROWDED_IMPACTS: usize = 50;
 /// The time after an impact in which a repetition merges landings, over the shortest step.
 const MERGED_RATIO: f64 = 4.0;
+/// Steps that a motion may have: a month of computing. Much shorter ones are lost in the rounding of the time.
+const MOST_STEPS: f64 = 1e12;
 
 /// How a motion is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -204,7 +206,7 @@ impl From<FreeHingeError> for SimulationError {
 /// (radians; hinges only).
 ///
 /// # Errors
-/// When a setting is out of range, the initial rotations do not fit, a step fails, or the balance of energy does.
+/// When a setting is out of range, the initial rotations do not fit, or a step fails.
 pub fn simulate(
     row: &Row,
     ground: &GroundMotion,
@@ -269,12 +271,25 @@ fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {
             });
         }
     }
+    let refused = |name, value, allowed| {
+        Err(FreeHingeError::Setting {
+            name,
+            value,
+            allowed,
+        })
+    };
     if settings.shortest_step_s > settings.longest_step_s {
-        return Err(FreeHingeError::Setting {
-            name: "shortest step in s",
-            value: settings.shortest_step_s,
-            allowed: "it must not exceed the longest step",
-        });
+        let allowed = "it must not exceed the longest step";
+        return refused("shortest step in s", settings.shortest_step_s, allowed);
+    }
+    for (name, step_s) in [
+        ("longest step in s", settings.longest_step_s),
+        ("output step in s", output_step_s),
+    ] {
+        if settings.end_s / step_s > MOST_STEPS {
+            let allowed = "a motion of more than 1e12 such steps comes to no end";
+            return refused(name, step_s, allowed);
+        }
     }
     Ok(())
 }

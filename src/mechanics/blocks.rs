@@ -19,6 +19,9 @@ use crate::mechanics::geometry::ring::{Edge, MassMoments, Ring};
 /// impacts, while thresholds hardly change beyond a few dozen voussoirs.
 pub const MAX_BLOCKS: usize = 500;
 
+/// The size of a row is at least this part of its extent.
+const LEAST_SIZE_RATIO: f64 = 1e-6;
+
 /// Why blocks and joints do not make a row.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RowError {
@@ -43,6 +46,16 @@ pub enum RowError {
         name: &'static str,
         /// Its value.
         value: f64,
+    },
+    /// The size has nothing to do with the row.
+    #[error(
+        "size in m is {size_m}: it must be at least a millionth of the extent of the row, {extent_m:.3e}, since steps follow it"
+    )]
+    Size {
+        /// The size.
+        size_m: f64,
+        /// How far a corner of a joint is from the first one.
+        extent_m: f64,
     },
     /// No block, or too many.
     #[error(
@@ -250,7 +263,7 @@ impl Row {
     /// radius of an arch, the half diagonal of a stack.
     ///
     /// # Errors
-    /// When a number is not finite or not positive where it must be, when joints cross, or when a block is not
+    /// When a number is not finite or not positive where it must be, when the size is nothing beside the row, when joints cross, or when a block is not
     /// between its joints.
     pub fn new(
         blocks: Vec<Block>,
@@ -284,6 +297,15 @@ impl Row {
                     allowed: "it must be finite, and positive beside the size of the row",
                 });
             }
+        }
+        let corners = joints
+            .iter()
+            .flat_map(|joint| [joint.intrados_m, joint.extrados_m]);
+        let extent_m = corners
+            .map(|corner| (corner - joints[0].intrados_m).norm())
+            .fold(0.0, f64::max);
+        if size_m < LEAST_SIZE_RATIO * extent_m {
+            return Err(RowError::Size { size_m, extent_m });
         }
         if let Some(first) = joints.windows(2).position(|pair| pair[0].meets(&pair[1])) {
             return Err(RowError::Crossing(first));

@@ -1,17 +1,13 @@
 //! Joints that open and shut anywhere, and may slip: `[free_hinges]`.
 
-use std::ops::Bound::Included;
-
 use super::structure::Structure;
 use super::table::{Number, Reading, Table};
 use crate::argument::{plain, rounded_up};
 use crate::dynamics::free_hinges::RowOptions;
 use crate::mechanics::friction;
 
-/// With shorter steps a run takes forever; longer ones miss the motion.
-const STEP_S: Number = Number(Included(1e-9), Included(1.0));
-/// Joints of stone have 0.5 to 0.8. Beyond the upper end nothing slips, and below the lower one nothing stands.
-const COEFFICIENT: Number = Number(Included(1e-3), Included(1e3));
+const STEP_S: Number = Number::within(&RowOptions::STEP_S);
+const COEFFICIENT: Number = Number::within(&RowOptions::FRICTION_COEFFICIENT);
 
 /// Reads `[free_hinges]`, which may be empty.
 pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {

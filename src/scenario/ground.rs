@@ -9,8 +9,9 @@ use serde::ser::{Serialize, SerializeMap as _, Serializer};
 use super::source::Source;
 use super::table::{self, Number, Reading, Table};
 use super::{Record, ScenarioErrors};
-use crate::argument::plain;
+use crate::argument::{ArgumentError, plain, within};
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
+use crate::dynamics::model::Request;
 
 /// Largest acceleration of the ground: beyond it the unit must be wrong.
 pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
@@ -59,9 +60,17 @@ impl Ground {
         .map_err(|faults| ScenarioErrors::placed(source, &[], faults))
     }
 
-    /// The motion under the given gravity.
-    #[must_use]
-    pub fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+    /// The motion under the given gravity, in 0.001 to 1000.
+    ///
+    /// # Errors
+    /// When gravity is out of that range.
+    pub fn motion(&self, gravity_m_s2: f64) -> Result<GroundMotion, ArgumentError> {
+        within("gravity_m_s2", gravity_m_s2, Request::GRAVITY_M_S2)?;
+        Ok(self.motion_under(gravity_m_s2))
+    }
+
+    /// The same, under the gravity of a scenario.
+    pub(super) fn motion_under(&self, gravity_m_s2: f64) -> GroundMotion {
         match self {
             Self::Pulse(pulse) => pulse.motion(gravity_m_s2),
             Self::Record(record) => record.motion(gravity_m_s2),
@@ -116,24 +125,24 @@ impl Serialize for Ground {
     }
 }
 
-/// A pulse of ground acceleration; before and after it the ground moves uniformly.
+/// A pulse of ground acceleration, as it was read; before and after it the ground moves uniformly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PulseGround {
     /// Shape of the pulse.
-    pub kind: Pulse,
+    pub(crate) kind: Pulse,
     /// Peak acceleration, positive to the right, in -1000 to 1000.
-    pub amplitude_g: f64,
+    pub(crate) amplitude_g: f64,
     /// Peak of the vertical acceleration, positive upwards, with the same shape at the same time, in -1000
     /// to 1000; the ground must not fall as fast as a free body.
-    pub vertical_amplitude_g: f64,
+    pub(crate) vertical_amplitude_g: f64,
     /// Length of the part of the pulse that its kind names, in 1e-6 to 1e6.
-    pub duration_s: f64,
+    pub(crate) duration_s: f64,
     /// When the pulse starts, in 0 to 1e6.
-    pub start_s: f64,
+    pub(crate) start_s: f64,
     /// Length of a wave train in periods, from `gamma` (above 1 and at most 100) or `cycles` (1 to 100).
-    pub cycles: f64,
+    pub(crate) cycles: f64,
     /// Phase of a wave train, in -360 to 360.
-    pub phase_deg: f64,
+    pub(crate) phase_deg: f64,
 }
 
 /// The key for the length of a wave train, as its source calls it, and its range.
@@ -145,6 +154,12 @@ const fn cycles_key(kind: Pulse) -> (&'static str, &'static Number) {
 }
 
 impl PulseGround {
+    /// Shape of the pulse.
+    #[must_use]
+    pub const fn kind(&self) -> Pulse {
+        self.kind
+    }
+
     /// The pulse without its amplitudes.
     #[must_use]
     pub fn shape(&self) -> PulseShape {

@@ -6,10 +6,10 @@ use std::ops::Bound::{Excluded, Included};
 use super::Structure;
 use super::table::{Number, OneOf, Reading, Table};
 use crate::argument::{rounded_down, short};
-use crate::dynamics::model::{Initial, MIN_RELEASE_RAD};
+use crate::dynamics::model::Initial;
 use crate::mechanics::sway::Sway;
 
-const ROTATION_RAD: Number = Number(Included(MIN_RELEASE_RAD), Excluded(PI));
+const ROTATION_RAD: Number = Number(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
 
 impl Initial {
     pub(super) fn read(table: &mut Table<'_>, structure: Option<&Structure>) -> Reading<Self> {

@@ -268,7 +268,7 @@ impl Scenario {
     #[must_use]
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
         let motion = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
-            ground.motion(self.simulation.gravity_m_s2)
+            ground.motion_under(self.simulation.gravity_m_s2)
         });
         Self {
             ground,

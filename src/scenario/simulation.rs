@@ -1,18 +1,15 @@
 //! How the motion is computed: `[simulation]`.
 
-use std::ops::Bound::Included;
-
 use serde::Serialize;
 
-use super::ground::DURATION_S;
 use super::table::{Number, Reading, Table};
 use crate::argument::plain;
+use crate::dynamics::model::Request;
 
-const GRAVITY_M_S2: Number = Number(Included(1e-3), Included(1e3));
-const RELATIVE_TOLERANCE: Number = Number(Included(1e-13), Included(1e-3));
-const REST_ENERGY_RATIO: Number = Number(Included(1e-16), Included(0.1));
-/// Most rows of output of a run: about a gigabyte.
-const MAX_ROWS: f64 = 1e7;
+const GRAVITY_M_S2: Number = Number::within(&Request::GRAVITY_M_S2);
+const TIME_S: Number = Number::within(&Request::TIME_S);
+const RELATIVE_TOLERANCE: Number = Number::within(&Request::RELATIVE_TOLERANCE);
+const REST_ENERGY_RATIO: Number = Number::within(&Request::REST_ENERGY_RATIO);
 
 /// How the motion is computed.
 ///
@@ -33,12 +30,21 @@ pub struct Simulation {
 
 impl Simulation {
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let duration_s = table.or("duration_s", &DURATION_S, 10.0);
-        let output_step_s = table.or("output_step_s", &DURATION_S, 0.005);
+        let default = Request::default();
+        let duration_s = table.or("duration_s", &TIME_S, default.end_s);
+        let output_step_s = table.or("output_step_s", &TIME_S, default.output_step_s);
         let rows = Self::check_rows(table, duration_s, output_step_s);
-        let relative_tolerance = table.or("relative_tolerance", &RELATIVE_TOLERANCE, 1e-9);
-        let rest_energy_ratio = table.or("rest_energy_ratio", &REST_ENERGY_RATIO, 1e-8);
-        let gravity_m_s2 = table.or("gravity_m_s2", &GRAVITY_M_S2, 9.81);
+        let relative_tolerance = table.or(
+            "relative_tolerance",
+            &RELATIVE_TOLERANCE,
+            default.relative_tolerance,
+        );
+        let rest_energy_ratio = table.or(
+            "rest_energy_ratio",
+            &REST_ENERGY_RATIO,
+            default.rest_energy_ratio,
+        );
+        let gravity_m_s2 = table.or("gravity_m_s2", &GRAVITY_M_S2, default.gravity_m_s2);
         rows?;
         Ok(Self {
             duration_s: duration_s?,
@@ -63,11 +69,12 @@ impl Simulation {
                 plain(step_s),
                 plain(duration_s)
             )
-        } else if rows > MAX_ROWS {
+        } else if rows > Request::MOST_SAMPLES {
             format!(
-                "makes {rows:.0} rows of output, every {} s for {} s; at most {MAX_ROWS:.0} are allowed",
+                "makes {rows:.0} rows of output, every {} s for {} s; at most {:.0} are allowed",
                 plain(step_s),
-                plain(duration_s)
+                plain(duration_s),
+                Request::MOST_SAMPLES
             )
         } else {
             return Ok(());

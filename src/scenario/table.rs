@@ -477,6 +477,14 @@ pub(super) trait Rule {
 pub(super) struct Number(pub(super) Bound<f64>, pub(super) Bound<f64>);
 
 impl Number {
+    /// Of a range, its ends included.
+    pub(super) const fn within(range: &RangeInclusive<f64>) -> Self {
+        Self(
+            Bound::Included(*range.start()),
+            Bound::Included(*range.end()),
+        )
+    }
+
     pub(super) fn contains(&self, x: f64) -> bool {
         (self.0, self.1).contains(&x)
     }

@@ -1,9 +1,11 @@
 //! A row of blocks with free hinges as a model of motion.
 
+use std::ops::RangeInclusive;
+
 use serde::Serialize;
 
-use super::{Settings, Task, motion};
-use crate::argument::{ArgumentError, above};
+use super::{FreeHingeError, Settings, Task, motion};
+use crate::argument::{ArgumentError, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
 use crate::dynamics::model::{Initial, Model, Recorder, Repetition, Request, SimulationError};
@@ -39,27 +41,36 @@ pub struct FreeHinges {
 /// What was asked of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RowOptions {
-    /// The longest step, in seconds; without it, it follows the size of the row.
+    /// The longest step, in seconds (1e-9 to 1); without it, it follows the size of the row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
     /// Where landings crowd within this time, in seconds, they are taken as one; without it, a thirtieth of the longest step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortest_step_s: Option<f64>,
-    /// Coulomb's coefficient of friction at every joint; without it joints do not slip.
+    /// Coulomb's coefficient of friction at every joint, in 0.001 to 1000; without it joints do not slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
 }
 
 impl RowOptions {
+    /// With shorter steps a run takes forever; longer ones miss the motion.
+    pub(crate) const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
+    /// Joints of stone have 0.5 to 0.8. Beyond the upper end nothing slips, and below the lower one nothing stands.
+    pub(crate) const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
+
     /// Refuses steps and coefficients that are none.
     pub(crate) fn checked(self) -> Result<Self, ArgumentError> {
-        for (argument, value) in [
-            ("longest_step_s", self.longest_step_s),
-            ("shortest_step_s", self.shortest_step_s),
-            ("friction_coefficient", self.friction_coefficient),
+        for (argument, value, range) in [
+            ("longest_step_s", self.longest_step_s, Self::STEP_S),
+            ("shortest_step_s", self.shortest_step_s, Self::STEP_S),
+            (
+                "friction_coefficient",
+                self.friction_coefficient,
+                Self::FRICTION_COEFFICIENT,
+            ),
         ] {
             if let Some(value) = value {
-                above(argument, value, 0.0, 1e9)?;
+                within(argument, value, range)?;
             }
         }
         let wrong = |argument, value, allowed| {
@@ -87,6 +98,8 @@ impl RowOptions {
 
 /// An energy balance that is wrong by more than this part of the largest energy of the motion is worth a word.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
+/// One that is wrong by more than this is an error.
+const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 
 /// What the motion of the first mechanism is known by.
 #[derive(Clone, Debug)]
@@ -178,7 +191,7 @@ impl FreeHinges {
     /// The same with other options.
     ///
     /// # Errors
-    /// When a step or the coefficient is not positive and finite, the longest step is shorter than the shortest, a
+    /// When a step or the coefficient is out of range, the longest step is shorter than the shortest, a
     /// shortest step is given for joints that slip, or the row slides apart under its own weight.
     pub fn with_options(self, options: RowOptions) -> Result<Self, FreeHingesError> {
         let options = options.checked()?;
@@ -385,6 +398,14 @@ impl Model for FreeHinges {
             settings: &settings,
             barrier_j: self.barrier_j(request.gravity_m_s2),
         };
-        Ok(motion(task, initial_rad.as_deref(), recorder)?)
+        let summary = motion(task, initial_rad.as_deref(), recorder)?;
+        match summary.row.as_ref().map_or(0.0, |row| row.energy_error) {
+            error if error > LARGEST_ENERGY_ERROR => Err(FreeHingeError::Energy {
+                error,
+                longest_step_s: settings.longest_step_s,
+            }
+            .into()),
+            _ => Ok(summary),
+        }
     }
 }

@@ -48,9 +48,6 @@ impl<C: MechanismChain> Model for C {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
         let rocking = checked(self, ground, request)?;
-        if recorder.is_some() {
-            request.check_samples()?;
-        }
         let (mode, state) = match request.initial {
             Some(initial) => (
                 rocking.released(initial.sway),
