@@ -6,7 +6,6 @@ use std::time::Duration;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-pub use super::hybrid::integrator::Cost;
 use super::model::Recorder;
 use super::thrust::ThrustRecord;
 use crate::mechanics::chain::{Demand, Hinge};
@@ -269,7 +268,7 @@ pub struct Summary {
     /// The demands over all samples, if any were made; of a structure that overturns, over those before
     /// it passes the unstable equilibrium for the last time.
     pub thrust: Option<ThrustRecord>,
-    /// Work done by the integrator: of a row of blocks, its systems of equations, and its steps.
+    /// Work done.
     pub cost: Cost,
     /// What only rows of blocks tell.
     pub row: Option<Box<RowSummary>>,
@@ -287,6 +286,15 @@ impl Summary {
     pub fn half_cycles(&self) -> &[HalfCycle] {
         self.row.as_ref().map_or(&[], |row| &row.half_cycles)
     }
+}
+
+/// Work done for a history.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Evaluations of the right-hand side; of a row of blocks, systems of equations that were solved.
+    pub evaluations: u64,
+    /// Accepted steps.
+    pub steps: u64,
 }
 
 /// What the summary of a row of blocks tells besides.

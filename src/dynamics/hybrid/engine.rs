@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use super::integrator::{Cost, IntegratorError, State, Step, Task, integrate};
+use super::integrator::{IntegratorError, State, Step, Task, integrate};
+use crate::dynamics::history::Cost;
 use crate::dynamics::model::SimulationError;
 
 /// Value of a guard, positive until the event, and its rate of change.

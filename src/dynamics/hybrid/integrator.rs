@@ -14,6 +14,8 @@ use ode_solvers::dop_shared::{IntegrationError, OutputType};
 use ode_solvers::{Dopri5, System};
 use thiserror::Error;
 
+use crate::dynamics::history::Cost;
+
 /// Continuous state of a system: a vector of `N` numbers.
 pub type State<const N: usize> = SVector<f64, N>;
 
@@ -53,15 +55,6 @@ pub struct Task<const N: usize> {
     pub first_step_s: f64,
     /// Longest step, in seconds.
     pub longest_step_s: f64,
-}
-
-/// Work done by an integration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cost {
-    /// Evaluations of the right-hand side.
-    pub evaluations: u64,
-    /// Accepted steps.
-    pub steps: u64,
 }
 
 /// Why an integration broke down.
