@@ -1,20 +1,17 @@
 //! Capacity curves against closed forms, the onset, the potential of the simulation and mirror images.
 
+use crate::common::parsed;
 use crate::program;
 use archrock::mechanics::capacity::Capacity;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::scenario::Structure;
 use archrock::studies::capacity::{NoCapacity, capacity};
 use archrock::{
-    Column, FourLinkRow, GroundMotion, ImpactModel, Initial, Model as _, Request, Scenario, Sway,
+    Column, FourLinkRow, GroundMotion, ImpactModel, Initial, Model as _, Request, Sway,
 };
 use nalgebra::Vector2;
 
 const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
-
-fn scenario(text: &str) -> Scenario {
-    Scenario::parse(text, "a.toml").unwrap_or_else(|errors| panic!("{errors}"))
-}
 
 const POINTED: &str = "[pointed_arch]\nspan_m = 6\nrise_m = 4\nthickness_m = 0.6\nvoussoirs = 14\n[piers]\nheight_m = 2\n\
                        width_m = 1.6\n[[load]]\nmass_kg = 1500\nx_m = 1\n";
@@ -23,7 +20,7 @@ const POINTED: &str = "[pointed_arch]\nspan_m = 6\nrise_m = 4\nthickness_m = 0.6
 #[test]
 fn a_column_has_the_capacity_of_a_block() {
     let (height_m, width_m) = (4.0, 0.8);
-    let scenario = scenario("[column]\nheight_m = 4\nwidth_m = 0.8\n");
+    let scenario = parsed("[column]\nheight_m = 4\nwidth_m = 0.8\n");
     let alpha = Column::new(height_m, width_m).unwrap().slenderness_rad();
     for side in &capacity(&scenario, None).unwrap() {
         assert!((side.mass_fraction - 1.0).abs() < 1e-12);
@@ -72,7 +69,7 @@ fn curves_begin_at_the_onset_and_end_at_the_unstable_equilibrium() {
         "[arch]\nmean_radius_m = 10\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n",
         POINTED,
     ] {
-        let scenario = scenario(text);
+        let scenario = parsed(text);
         let model = scenario.structure.model(scenario.impact).unwrap();
         for side in &capacity(&scenario, None).unwrap() {
             check_side(side, model.incipient_acceleration_g(side.sway).unwrap());
@@ -84,7 +81,7 @@ fn curves_begin_at_the_onset_and_end_at_the_unstable_equilibrium() {
 /// mass times displacement of the centre of gravity; and that is the energy of a history released there.
 #[test]
 fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
-    let scenario = scenario(POINTED);
+    let scenario = parsed(POINTED);
     let Structure::Masonry(masonry) = &scenario.structure else {
         panic!("{:?}", scenario.structure);
     };
@@ -122,8 +119,8 @@ fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
 fn mirror_images_exchange_their_sides() {
     let mirrored = POINTED.replace("x_m = 1", "x_m = -1");
     let (own, image) = (
-        capacity(&scenario(POINTED), Some(Vector2::new(0.5, 4.0))).unwrap(),
-        capacity(&scenario(&mirrored), Some(Vector2::new(-0.5, 4.0))).unwrap(),
+        capacity(&parsed(POINTED), Some(Vector2::new(0.5, 4.0))).unwrap(),
+        capacity(&parsed(&mirrored), Some(Vector2::new(-0.5, 4.0))).unwrap(),
     );
     for (side, seen) in own.iter().zip(image.iter().rev()) {
         assert!((side.mass_fraction / seen.mass_fraction - 1.0).abs() < 1e-9);
@@ -144,7 +141,7 @@ fn the_command_writes_table_picture_and_summary() {
     assert!(output.status.success(), "{}", program::stderr(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(json["masses"], "16 blocks");
-    let own = capacity(&scenario(POINTED), None).unwrap();
+    let own = capacity(&parsed(POINTED), None).unwrap();
     let results = folder.path().join("results/a");
     let table = std::fs::read_to_string(results.join("capacity.csv")).unwrap();
     let rows: Vec<Vec<&str>> = table
@@ -205,7 +202,7 @@ fn curves_begin_at_no_displacement_and_no_period() {
 
 #[test]
 fn control_points_must_be_on_the_structure_and_move() {
-    let scenario = scenario(POINTED);
+    let scenario = parsed(POINTED);
     let outside = capacity(&scenario, Some(Vector2::new(0.0, 0.0))).unwrap_err();
     assert_eq!(outside, NoCapacity::Outside(Vector2::zeros()));
     // A left pier stands still while the arch sways right: its hinges are in the arch and at the right springing.
@@ -215,7 +212,7 @@ fn control_points_must_be_on_the_structure_and_move() {
         "{still}"
     );
     let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
-    let refused = capacity(&self::scenario(lintel), None);
+    let refused = capacity(&parsed(lintel), None);
     assert!(
         matches!(refused, Err(NoCapacity::FourLinks(_))),
         "{refused:?}"

@@ -27,8 +27,8 @@ fn case(random: &mut Random) -> (FreeHinges, GroundMotion, f64) {
             continue;
         }
         let scale_s = (model.row().size_m() / GRAVITY).sqrt();
-        if random.next() < 0.5 {
-            let kind = Pulse::ALL[(random.next() * 5.0) as usize];
+        if random.chance(0.5) {
+            let kind = Pulse::ALL[random.pick(5)];
             let amplitude = GRAVITY * onset_g * (1.1 + 1.4 * random.next());
             let duration_s = scale_s * (0.15 + random.next());
             let ground = GroundMotion::pulse(kind, amplitude, duration_s, 0.0).unwrap();

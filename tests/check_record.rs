@@ -5,11 +5,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use crate::common::ARCH;
 use crate::program::{archrock, stderr};
 use crate::program::{refusal, stdout};
 use crate::results::named;
-
-const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
 /// A full sine of 0.4 g and 1 s from 0.5 s on, 200 samples a second, in g.
 fn sine() -> Vec<f64> {

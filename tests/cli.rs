@@ -4,11 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use crate::common::ARCH;
 use crate::program::{archrock, command, printed, refused, scenarios, stderr};
 use crate::results::{Row, Table, summary};
 use serde_json::Value;
-
-const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
 fn scenario(folder: &Path, text: &str) {
     fs::write(folder.join("s.toml"), text).unwrap();
@@ -410,23 +409,6 @@ fn rotations_go_to_standard_output_and_nothing_else_is_written() {
     let text = String::from_utf8(piped.stdout).unwrap();
     let fields: Vec<_> = text.lines().nth(1).unwrap().split(',').collect();
     assert_eq!((fields[3], fields[6]), ("left", "0.001"));
-}
-
-#[test]
-fn a_closed_pipe_is_no_failure() {
-    let folder = tempfile::tempdir().unwrap();
-    let many_rows = "[simulation]\noutput_step_s = 1e-5\n";
-    let pulse = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.2\n";
-    scenario(folder.path(), &format!("{ARCH}{many_rows}{pulse}"));
-    let mut child = command(folder.path(), &["run", "s.toml", "--rotations", "-"])
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(
-        (output.status.code(), stderr(&output)),
-        (Some(0), String::new())
-    );
 }
 
 /// The repetitions of a run that nobody reads would take minutes.

@@ -1,5 +1,6 @@
 //! Housner's free-standing column against closed forms and quadratures of its own.
 
+use crate::common::pulse;
 use std::f64::consts::PI;
 
 use archrock::dynamics::hybrid::engine::{EngineError, Observer, Settings, simulate};
@@ -47,10 +48,6 @@ fn released(sway: Sway, rotation_rad: f64) -> Request {
 
 fn run(column: &RockingColumn, ground: &GroundMotion, request: &Request) -> History {
     column.history(ground, request).unwrap()
-}
-
-fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(kind, amplitude_g * GRAVITY_M_S2, duration_s, 0.0).unwrap()
 }
 
 /// Integral over `0..1` by Simpson's rule, for smooth integrands: error about `1e-13`.

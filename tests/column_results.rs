@@ -3,11 +3,10 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::COLUMN;
 use crate::program::{printed, refused};
 use crate::results::{Row, Table, summary};
 use serde_json::{Value, json};
-
-const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
 
 fn archrock(arguments: &[&str], scenario: &Path) -> String {
     let arguments = [arguments, &[scenario.to_str().unwrap()]].concat();

@@ -1,5 +1,6 @@
 //! Four links on rows of blocks: circular voussoirs against the ring, static against kinematic theorem, mirror images.
 
+use crate::common::{Random, random_masonry};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::blocks::{Block, Row, Supports};
 use archrock::mechanics::chain::{Hinge, Mechanism as _, MechanismChain as _};
@@ -7,8 +8,7 @@ use archrock::mechanics::four_link::certificate::project;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{
-    BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, Masonry, Material, Pier,
-    Piers, PlacedLoad, PointedArch, Shape,
+    Dimensions, Masonry, Material, Piers, PlacedLoad, PointedArch, Shape,
 };
 use archrock::mechanics::stability::{falls, onset};
 use archrock::{
@@ -141,109 +141,14 @@ fn many_sided_voussoirs_converge_to_sectors() {
     }
 }
 
-/// Random numbers that are the same everywhere (splitmix64).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        f64::from(u32::try_from((z ^ (z >> 31)) >> 32).unwrap()) / f64::from(u32::MAX)
-    }
-
-    fn within(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.next()
-    }
-
-    fn chance(&mut self) -> bool {
-        self.next() < 0.5
-    }
-
-    fn pick(&mut self, count: u32) -> u32 {
-        (0..count)
-            .find(|i| self.0 % u64::from(count) == u64::from(*i))
-            .unwrap()
-    }
-}
-
-fn random(numbers: &mut Numbers) -> Option<Masonry> {
-    let voussoirs = [5, 8, 11, 16][numbers.pick(4) as usize];
-    let thickness_m = numbers.within(0.5, 1.4);
-    let dimensions = |rise_m| Dimensions {
-        span_m: 10.0,
-        rise_m,
-        thickness_m,
-        voussoirs,
-        material: Material::default(),
-    };
-    numbers.next();
-    let shape = match numbers.pick(4) {
-        0 => Shape::PointedArch(PointedArch {
-            dimensions: dimensions(numbers.within(5.0, 9.0)),
-        }),
-        1 => Shape::EllipticArch(EllipticArch {
-            dimensions: dimensions(numbers.within(3.0, 7.0)),
-        }),
-        2 => Shape::BasketArch(BasketArch {
-            dimensions: dimensions(numbers.within(3.2, 5.0)),
-            crown_deg: numbers.within(40.0, 75.0),
-        }),
-        _ => {
-            let embrace_deg = numbers.within(130.0, 180.0);
-            let arch = Arch::new(5.0, thickness_m / 5.0, embrace_deg).ok()?;
-            let mut inner: Vec<f64> = (1..voussoirs)
-                .map(|_| numbers.within(0.0, embrace_deg))
-                .collect();
-            inner.sort_by(f64::total_cmp);
-            let mut joints_deg = vec![0.0];
-            joints_deg.extend(inner);
-            joints_deg.push(embrace_deg);
-            Shape::Circular(CircularArch::new(arch, Some(joints_deg)).ok()?)
-        }
-    };
-    let pier = |numbers: &mut Numbers| {
-        numbers.chance().then(|| Pier {
-            height_m: numbers.within(1.0, 4.0),
-            width_m: numbers.within(1.5, 4.0),
-            blocks: 1 + numbers.pick(3) as usize,
-            density_kg_m3: None,
-            pedestal: false,
-        })
-    };
-    let piers = Piers {
-        left: pier(numbers),
-        right: pier(numbers),
-    };
-    let fill = numbers.chance().then(|| Fill {
-        level: if numbers.chance() {
-            FillLevel::AboveCrown(numbers.within(0.0, 1.0))
-        } else {
-            FillLevel::AboveSpringing(numbers.within(0.5, 3.0))
-        },
-        density_kg_m3: 1600.0,
-    });
-    let loads = if numbers.chance() {
-        vec![PlacedLoad {
-            mass_kg: numbers.within(100.0, 4000.0),
-            x_m: numbers.within(-3.0, 3.0),
-            width_m: 0.5,
-        }]
-    } else {
-        Vec::new()
-    };
-    Masonry::new(shape, piers, fill, loads).ok()
-}
-
 /// Where four links start (kinematic theorem, confirmed by its thrust line) they start at the push of the static
 /// programme with any number of hinges; where they are refused, that push is lower, or more joints open.
 #[test]
 fn static_and_kinematic_theorem_agree_on_random_shapes() {
-    let mut numbers = Numbers(12);
+    let mut random = Random(12);
     let (mut compared, mut refused, mut standing) = (0, 0, 0);
     while standing < 200 {
-        let Some(masonry) = random(&mut numbers) else {
+        let Some(masonry) = random_masonry(&mut random) else {
             continue;
         };
         let row = masonry.row();
@@ -286,10 +191,10 @@ fn static_and_kinematic_theorem_agree_on_random_shapes() {
 /// What sways right in a row sways left in its mirror image, and nothing else changes.
 #[test]
 fn mirror_images_of_uneven_rows() {
-    let mut numbers = Numbers(3);
+    let mut random = Random(3);
     let mut compared = 0;
     while compared < 10 {
-        let Some(masonry) = random(&mut numbers) else {
+        let Some(masonry) = random_masonry(&mut random) else {
             continue;
         };
         let mirrored = masonry.row().mirrored().unwrap();
@@ -423,10 +328,10 @@ fn the_thrust_line_in_motion_passes_through_the_hinges() {
 /// linkage, and fall back as it does until a fifth hinge opens or hinges close. The leapfrog's steps leave an error of their square.
 #[test]
 fn a_row_with_free_hinges_is_released_as_its_four_links() {
-    let mut numbers = Numbers(29);
+    let mut random = Random(29);
     let (mut compared, mut samples) = (0, 0);
     while compared < 12 {
-        let Some(masonry) = random(&mut numbers) else {
+        let Some(masonry) = random_masonry(&mut random) else {
             continue;
         };
         let Ok(four) = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution) else {

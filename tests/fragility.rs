@@ -365,7 +365,7 @@ fn order_and_names_of_records_do_not_matter() {
     let mut sample = suite(&mut random, 400, 0.5, 0.3);
     let original = fit(&sample).unwrap();
     for i in (1..sample.len()).rev() {
-        sample.swap(i, (random.next() * (i + 1) as f64) as usize);
+        sample.swap(i, random.pick(i + 1));
     }
     assert_eq!(fit(&sample).unwrap(), original);
     for case in &mut sample {

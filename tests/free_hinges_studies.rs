@@ -5,6 +5,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use crate::common::parsed;
 use crate::program::{done, files, refused, scenarios};
 use crate::results::Table;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
@@ -33,10 +34,6 @@ fn map_text() -> String {
     format!("{ARCH}[free_hinges]\n{PULSE}[simulation]\nduration_s = 4.0\n{AXES}")
 }
 
-fn parse(text: &str) -> Scenario {
-    Scenario::parse(text, "s.toml").unwrap()
-}
-
 fn arch(mean_radius_m: f64, thickness_ratio: f64, embrace_deg: f64) -> Arch {
     Arch::new(mean_radius_m, thickness_ratio, embrace_deg)
         .unwrap()
@@ -60,7 +57,7 @@ fn ended(map: &OverturningMap<'_>, index: usize) -> Ending {
 
 #[test]
 fn a_cell_is_the_history_of_its_row_under_its_pulse() {
-    let scenario = parse(&map_text());
+    let scenario = parsed(&map_text());
     let map = OverturningMap::new(&scenario).unwrap();
     let row = FreeHinges::of_arch(&arch(10.0, 0.15, 157.5)).unwrap();
     let mut outcomes = Vec::new();
@@ -81,7 +78,7 @@ fn a_cell_is_the_history_of_its_row_under_its_pulse() {
 
 #[test]
 fn sizes_and_shapes_make_other_rows() {
-    let scenario = parse(&map_text().replace(
+    let scenario = parsed(&map_text().replace(
         AXES,
         "[map]\nmean_radius_m = [5.0, 10.0]\namplitude_g = [0.6]",
     ));
@@ -93,7 +90,7 @@ fn sizes_and_shapes_make_other_rows() {
     assert_ne!(ended(&map, 0), ended(&map, 1));
 
     let shapes = "[map]\nthickness_ratio = [0.05, 0.15, 0.4]\nembrace_deg = [120.0, 179.0]";
-    let scenario = parse(&map_text().replace(AXES, shapes));
+    let scenario = parsed(&map_text().replace(AXES, shapes));
     let map = OverturningMap::new(&scenario).unwrap();
     for index in 0..map.count() {
         let [thickness_ratio, embrace_deg] = map.coordinates(index);
@@ -109,7 +106,7 @@ fn sizes_and_shapes_make_other_rows() {
 
 #[test]
 fn a_cell_of_drums_is_the_history_of_their_column() {
-    let scenario = parse(&format!(
+    let scenario = parsed(&format!(
         "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 3\n[free_hinges]\nlongest_step_s = 2e-3\n{PULSE}\
          [simulation]\nduration_s = 3.0\n{AXES}"
     ));
@@ -153,7 +150,7 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
              amplitude_g = {{ from = 0.3, to = 0.9, count = 100 }}\n{spread}"
         )
     };
-    let scenario = parse(&text("spread = true"));
+    let scenario = parsed(&text("spread = true"));
     let map = OverturningMap::new(&scenario).unwrap();
     let request = scenario.request_from_rest();
     let row = scenario
@@ -195,7 +192,7 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
     assert_eq!(hatch.unwrap().matches('L').count(), doubtful);
 
     // Without it less is repeated: steps this long blur also the edge of what overturns at once, which is spared.
-    let plain = parse(&text(""));
+    let plain = parsed(&text(""));
     let map = OverturningMap::new(&plain).unwrap();
     for (index, with) in rows.iter().enumerate() {
         let without = map.row(index);
@@ -212,7 +209,7 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
 /// A study takes the steps of `run`, samples or not: outcome, impacts, energy and peak are its to the last bit.
 #[test]
 fn cells_and_cases_are_the_runs_of_the_same_scenario_to_the_last_bit() {
-    let scenario = parse(&map_text());
+    let scenario = parsed(&map_text());
     let map = OverturningMap::new(&scenario).unwrap();
     let mut moved = 0;
     for index in [0, 2, 4, 5] {
@@ -336,7 +333,7 @@ fn a_cell_that_fails_keeps_its_reason_to_the_end() {
              [simulation]\nduration_s = 4.0\noutput_step_s = 1.0\n\
              [map]\nduration_s = [0.2, 0.3]\namplitude_g = [0.1, 0.5, 0.6, 0.8]\n"
         );
-        let scenario = parse(&text);
+        let scenario = parsed(&text);
         let map = OverturningMap::new(&scenario).unwrap();
         let cells = (0..map.count()).map(|index| map.row(index).result);
         let reasons: Vec<_> = cells
@@ -472,7 +469,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
     let four = read_with(&file, Hinges::Four).unwrap();
     assert_eq!(four.free_hinges, None);
     for scenario in [free, four] {
-        assert_eq!(parse(&scenario.to_toml()), scenario);
+        assert_eq!(parsed(&scenario.to_toml()), scenario);
     }
     // Free hinges open at joints.
     fs::write(

@@ -1,5 +1,6 @@
 //! Whole histories: published numbers, exact invariances, and the ways in and out of rest.
 
+use crate::common::pulse;
 use crate::common::{
     GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, released, request, run, run_sampled,
     sampled, semicircle, seven_voussoirs, three,
@@ -11,10 +12,6 @@ use archrock::{
     FourLinkArch, GroundMotion, History, ImpactModel, Model as _, Outcome, Pulse, Request, Sample,
     State, Sway,
 };
-
-fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
-}
 
 /// Everything a history tells, for comparisons to the last bit.
 fn fingerprint(history: &History) -> Vec<u64> {

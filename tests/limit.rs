@@ -132,7 +132,7 @@ fn static_limit_g(ring: &Ring, sections: &[f64]) -> Option<f64> {
     // A fixed shuffle: the algorithm is fast for constraints in random order.
     let mut random = Random(7);
     for i in (1..constraints.len()).rev() {
-        let j = (random.next() * (i + 1) as f64) as usize;
+        let j = random.pick(i + 1);
         constraints.swap(i, j);
     }
     maximise(&[0.0, 0.0, 0.0, 1.0], &constraints, BOX).map(|x| x[3])

@@ -1,26 +1,20 @@
 //! The overturning map: its cells, its boundaries, and the work on it in pieces.
 
 use crate::common;
+use crate::common::parsed;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::common::{GRAVITY, request, seven_voussoirs};
+use crate::common::{ARCH, GRAVITY, request, seven_voussoirs};
 use crate::program::{command, done, files, refused};
 use archrock::studies::ending::Ending;
 use archrock::studies::map::boundary::{Boundary, ImpactFreeBoundary};
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::Study as _;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
-
-const SEMICIRCLE: &str =
-    "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
-
-fn parse(text: &str) -> Scenario {
-    Scenario::parse(text, "s.toml").unwrap()
-}
 
 fn ending(map: &OverturningMap<'_>, index: usize) -> Ending {
     match map.row(index).result {
@@ -40,7 +34,7 @@ fn boundaries(map: &OverturningMap<'_>) -> Vec<(f64, Boundary)> {
 
 #[test]
 fn a_cell_is_the_history_of_its_scenario() {
-    let scenario = parse(
+    let scenario = parsed(
         "[arch]\nmean_radius_m = 1.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n\
          [ground.one_cosine]\namplitude_g = 0.3\nduration_s = 0.4\n\
          [map]\nmean_radius_m = [2.0, 10.0]\namplitude_g = [-0.8, 0.2, 1.5]",
@@ -60,10 +54,10 @@ fn a_cell_is_the_history_of_its_scenario() {
 #[test]
 fn the_frequency_is_the_inverse_of_the_duration() {
     let text = |map: &str| {
-        format!("{SEMICIRCLE}[ground.half_sine]\namplitude_g = 0.4\nduration_s = 0.5\n[map]\n{map}")
+        format!("{ARCH}[ground.half_sine]\namplitude_g = 0.4\nduration_s = 0.5\n[map]\n{map}")
     };
-    let by_duration = parse(&text("duration_s = [0.25, 0.5]\namplitude_g = [0.4, 0.9]"));
-    let by_frequency = parse(&text("frequency_hz = [2.0, 4.0]\namplitude_g = [0.4, 0.9]"));
+    let by_duration = parsed(&text("duration_s = [0.25, 0.5]\namplitude_g = [0.4, 0.9]"));
+    let by_frequency = parsed(&text("frequency_hz = [2.0, 4.0]\namplitude_g = [0.4, 0.9]"));
     let (by_duration, by_frequency) = (
         OverturningMap::new(&by_duration).unwrap(),
         OverturningMap::new(&by_frequency).unwrap(),
@@ -79,11 +73,11 @@ fn the_frequency_is_the_inverse_of_the_duration() {
 fn maps_have_the_symmetries_of_the_mechanics() {
     let text = |map: &str| {
         format!(
-            "{SEMICIRCLE}[ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.8\n\
+            "{ARCH}[ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.8\n\
              [simulation]\nduration_s = 60.0\n[map]\n{map}"
         )
     };
-    let mirrored = parse(&text(
+    let mirrored = parsed(&text(
         "duration_s = [0.6, 0.8, 1.2]\namplitude_g = [-2.0, -0.5, -0.2, 0.2, 0.5, 2.0]",
     ));
     let cells = OverturningMap::new(&mirrored).unwrap();
@@ -96,7 +90,7 @@ fn maps_have_the_symmetries_of_the_mechanics() {
         };
         assert_eq!(Ending { outcome, ..left }, right);
     }
-    let scaled = parse(&text("mean_radius_m = [2.0, 8.0]\nduration_s = [0.4, 0.8]"));
+    let scaled = parsed(&text("mean_radius_m = [2.0, 8.0]\nduration_s = [0.4, 0.8]"));
     let cells = OverturningMap::new(&scaled).unwrap();
     assert_eq!(
         cells.axes().map(|axis| axis.quantity.name()),
@@ -116,8 +110,8 @@ fn maps_have_the_symmetries_of_the_mechanics() {
 
 #[test]
 fn shapes_that_are_no_four_link_arches_have_no_history() {
-    let scenario = parse(&format!(
-        "{SEMICIRCLE}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.2\n\
+    let scenario = parsed(&format!(
+        "{ARCH}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.2\n\
          [map]\nthickness_ratio = [0.1, 0.15, 0.4]\nembrace_deg = [90.0, 180.0]"
     ));
     let cells = OverturningMap::new(&scenario).unwrap();
@@ -141,7 +135,7 @@ fn shapes_that_are_no_four_link_arches_have_no_history() {
 #[test]
 fn the_impact_free_boundary_of_a_slender_column_is_the_closed_form() {
     let (height_m, width_m) = (10.0_f64, 0.1_f64);
-    let scenario = parse(&format!(
+    let scenario = parsed(&format!(
         "[column]\nheight_m = {height_m}\nwidth_m = {width_m}\n\
          [ground.rectangular]\namplitude_g = 0.1\nduration_s = 1.0\n\
          [simulation]\nduration_s = 100\n\
@@ -178,7 +172,7 @@ fn the_impact_free_boundary_of_a_slender_column_is_the_closed_form() {
 /// Published values of an independent computation (relative tolerance 1e-10), given to three or four digits.
 #[test]
 fn the_impact_free_boundary_of_seven_voussoirs_under_a_step_pair() {
-    let scenario = parse(
+    let scenario = parsed(
         "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n\
          [ground.step_pair]\namplitude_g = 1.0\nduration_s = 0.5\n\
          [map]\nduration_s = [0.2, 0.5, 1.0]\namplitude_g = [0.4, 4.0]",
@@ -215,7 +209,7 @@ fn the_impact_free_boundary_sees_narrow_windows() {
             0.7165,
         ),
     ] {
-        let scenario = parse(&format!(
+        let scenario = parsed(&format!(
             "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.{pulse}]\namplitude_g = 1\nduration_s = 1\n\
              [simulation]\nduration_s = 60\n[map]\nduration_s = [{duration_s}]\namplitude_g = [20]"
         ));
@@ -229,7 +223,7 @@ fn the_impact_free_boundary_sees_narrow_windows() {
 fn a_map_does_not_cut_pulses_off() {
     let text = |axis: &str| {
         format!(
-            "{SEMICIRCLE}[ground.ricker]\namplitude_g = 1\nduration_s = 1\nstart_s = 1.0\n\
+            "{ARCH}[ground.ricker]\namplitude_g = 1\nduration_s = 1\nstart_s = 1.0\n\
              [map]\n{axis}\namplitude_g = [1, 2]"
         )
     };
@@ -252,8 +246,8 @@ fn a_map_does_not_cut_pulses_off() {
 #[test]
 fn safe_islands_above_the_first_overturning_amplitude_survive() {
     let outcomes = |tolerance: f64| {
-        let scenario = parse(&format!(
-            "{SEMICIRCLE}[ground.one_cosine]\namplitude_g = 1.0\nduration_s = 0.8\n\
+        let scenario = parsed(&format!(
+            "{ARCH}[ground.one_cosine]\namplitude_g = 1.0\nduration_s = 0.8\n\
              [simulation]\nduration_s = 30.0\nrelative_tolerance = {tolerance:e}\n\
              [map]\nduration_s = [0.8]\n\
              amplitude_g = {{ from = 0.2, to = 2.0, count = 37 }}"
@@ -298,7 +292,7 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
 fn folder_with_map(count: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = format!(
-        "title = \"a, \\\"b\\\"\"\n{SEMICIRCLE}[ground.one_sine]\namplitude_g = 0.4\nduration_s = 0.5\n\
+        "title = \"a, \\\"b\\\"\"\n{ARCH}[ground.one_sine]\namplitude_g = 0.4\nduration_s = 0.5\n\
          [map]\nduration_s = {{ from = 0.1, to = 1.5, count = {count} }}\n\
          amplitude_g = {{ from = 0.1, to = 2.0, count = {count}, spacing = \"logarithmic\" }}\n"
     );
@@ -659,8 +653,7 @@ fn an_interrupt_ends_the_work_within_a_second_and_says_how_to_go_on() {
 
 #[track_caller]
 fn assert_error(map: &str, place: &str, words: &[&str]) {
-    let text =
-        format!("{SEMICIRCLE}[ground.ricker]\namplitude_g = 1\nduration_s = 1\n[map]\n{map}");
+    let text = format!("{ARCH}[ground.ricker]\namplitude_g = 1\nduration_s = 1\n[map]\n{map}");
     let errors = Scenario::parse(&text, "s.toml").unwrap_err().to_string();
     assert_eq!(errors.lines().count(), 1, "{errors}");
     assert!(errors.starts_with(&format!("s.toml:{place}: ")), "{errors}");
@@ -755,7 +748,7 @@ fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
         errors.to_string().contains("applies to a circular [arch]"),
         "{errors}"
     );
-    let errors = Scenario::parse(&format!("{SEMICIRCLE}{map}"), "s.toml").unwrap_err();
+    let errors = Scenario::parse(&format!("{ARCH}{map}"), "s.toml").unwrap_err();
     assert!(
         errors.to_string().contains("[map] needs a ground motion"),
         "{errors}"
@@ -763,19 +756,15 @@ fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    fs::write(path.join("s.toml"), SEMICIRCLE).unwrap();
+    fs::write(path.join("s.toml"), ARCH).unwrap();
     refused(path, &["map", "s.toml"], &["no [map]", "amplitude_g = {"]);
     refused(path, &["map", "s.toml", "--shard", "3/2"], &["1 <= I <= N"]);
     let shapes = "[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
                   [map]\nthickness_ratio = [0.15]\nembrace_deg = [180]\n";
-    fs::write(path.join("s.toml"), format!("{SEMICIRCLE}{shapes}")).unwrap();
+    fs::write(path.join("s.toml"), format!("{ARCH}{shapes}")).unwrap();
     refused(path, &["map", "s.toml", "--no-impact"], &["amplitude_g"]);
     let initial = "[initial]\nsway = \"left\"\nrotation_rad = 0.01\n";
-    fs::write(
-        path.join("s.toml"),
-        format!("{SEMICIRCLE}{initial}{shapes}"),
-    )
-    .unwrap();
+    fs::write(path.join("s.toml"), format!("{ARCH}{initial}{shapes}")).unwrap();
     refused(path, &["map", "s.toml"], &["leave [initial] out"]);
 }
 
@@ -786,11 +775,11 @@ fn a_map_reads_back_as_it_is_written() {
         "thickness_ratio = { from = 0.12, to = 0.2, count = 4 }\nembrace_deg = [160, 180]",
         "frequency_hz = [0.5]\nmean_radius_m = { from = 1, to = 100, count = 3, spacing = 'logarithmic' }",
     ] {
-        let scenario = parse(&format!(
-            "{SEMICIRCLE}[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
+        let scenario = parsed(&format!(
+            "{ARCH}[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
              [impact]\nmodel = 'prescribed'\nrestitution = 0.5\n[map]\n{map}"
         ));
-        assert_eq!(parse(&scenario.to_toml()), scenario);
+        assert_eq!(parsed(&scenario.to_toml()), scenario);
         for axis in OverturningMap::new(&scenario).unwrap().values() {
             assert!(axis.is_sorted_by(|earlier, later| earlier < later));
         }

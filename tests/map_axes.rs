@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::ARCH;
 use crate::program::{archrock, scenarios};
 use crate::program::{refusal, stdout};
 use crate::results::{Row, Table, named, number};
@@ -10,7 +11,6 @@ use roxmltree::Document;
 use serde_json::Value;
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30\n";
-const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 
 fn refused(folder: &Path, text: &str, arguments: &[&str]) -> String {
     fs::write(folder.join("s.toml"), text).unwrap();

@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 use std::ops::ControlFlow;
 
+use crate::common::pulse;
 use crate::common::{
     GRAVITY, four_links, number, run, run_sampled, sampled, semicircle, seven_voussoirs,
 };
@@ -26,10 +27,6 @@ fn column() -> RockingColumn {
 /// The same as a row of one block.
 fn block() -> FreeHinges {
     FreeHinges::of_column(&Column::new(4.0, 0.8).unwrap()).unwrap()
-}
-
-fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
 }
 
 /// To rest after impacts to both sides, and lost on either side, where rotations are largest.

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::ARCH;
 use crate::program::{archrock, files, printed, refused, stderr};
 
-const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 const RECORD: &str = "A\nUNITS OF G\nNPTS= 5, DT= .1\n0 .3 .4 -.3 0\n";
 /// Letters, a mark that turns what follows around, and more letters: looks like `wave-2ta.gvs`.

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::common::parsed;
 use crate::common::{GRAVITY, pairs, request};
 use crate::program::{archrock, stderr};
 use archrock::studies::map::boundary::{ImpactFreeBoundary, MapRow, MapWithBoundary};
@@ -15,8 +16,7 @@ use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::part::{self, Header, PartError, PartFile, Shard};
 use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
 use archrock::{
-    Column, GroundMotion, ImpactModel, MechanismModel as _, Model as _, Pulse, RockingColumn,
-    Scenario, Sway,
+    Column, GroundMotion, ImpactModel, MechanismModel as _, Model as _, Pulse, RockingColumn, Sway,
 };
 
 /// Cases of a few milliseconds whose rows are hard to write down, some of which fail.
@@ -189,16 +189,12 @@ fn a_folder_that_cannot_be_made_is_said() {
     assert!(matches!(refused, Err(RunnerError::Folder { .. })));
 }
 
-fn scenario(text: &str) -> Scenario {
-    Scenario::parse(text, "s.toml").unwrap()
-}
-
 /// The reason of a failure goes from the row through the part to what the program says, with the others as they
 /// are.
 #[test]
 fn failed_cells_keep_their_reason() {
     let folder = tempfile::tempdir().unwrap();
-    let scenario = scenario(
+    let scenario = parsed(
         "[column]\nheight_m = 4\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 1\nduration_s = 1\n\
          [simulation]\nduration_s = 60\n[map]\nduration_s = [0.3, 0.6]\namplitude_g = [0.1, 0.4, 1.6]",
     );
@@ -290,7 +286,7 @@ fn the_boundary_is_that_of_the_plain_search() {
         let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
         for pulse in Pulse::ALL {
             let durations_s = [0.2, 0.9, 2.0, 5.5];
-            let scenario = scenario(&format!(
+            let scenario = parsed(&format!(
                 "[column]\nheight_m = 4.0\nwidth_m = {width_m}\n\
                  [ground.{}]\namplitude_g = 1\nduration_s = 1\n[simulation]\nduration_s = 60\n\
                  [map]\nduration_s = {durations_s:?}\namplitude_g = [0.0001]",

@@ -1,5 +1,6 @@
 //! Scenario files: what is read, what is refused and where, and how it is written back.
 
+use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::{
     Ground, Place, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
@@ -7,10 +8,6 @@ use archrock::scenario::{
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
 use serde_json::json;
-
-const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
-
-const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
 
 fn parse(text: &str) -> Result<Scenario, ScenarioErrors> {
     Scenario::parse(text, "s.toml")

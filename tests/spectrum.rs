@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
+use crate::common::ARCH;
+use crate::common::parsed;
 use crate::program::{done, printed, refused};
 use archrock::output::Figure;
 use archrock::studies::runner::Study as _;
@@ -11,19 +13,13 @@ use archrock::studies::spectrum::picture::draw;
 use archrock::studies::spectrum::{NoSpectrum, OverturningSpectrum, PointRow, StructureKind};
 use archrock::{GroundMotion, MechanismModel, Outcome, Pulse, Request, Scenario, Sway};
 
-const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
-
 fn pulse(kind: &str) -> String {
     format!("[ground.{kind}]\namplitude_g = -1.0\nduration_s = 1.0\n")
 }
 
-fn scenario(text: &str) -> Scenario {
-    Scenario::parse(text, "s.toml").unwrap()
-}
-
 /// All points of a scenario.
 fn spectrum(text: &str) -> Vec<PointRow> {
-    let scenario = scenario(text);
+    let scenario = parsed(text);
     let points = OverturningSpectrum::new(&scenario).unwrap();
     (0..points.count()).map(|index| points.row(index)).collect()
 }
@@ -158,7 +154,7 @@ fn the_equivalent_column_has_the_a_l_and_the_p_of_the_arch() {
                 Some(0.7),
             ),
         ] {
-            let scenario = scenario(&format!("{arch}{}{impact}", pulse("ricker")));
+            let scenario = parsed(&format!("{arch}{}{impact}", pulse("ricker")));
             let points = OverturningSpectrum::new(&scenario).unwrap();
             // The defaults.
             assert_eq!(points.count(), 100);
@@ -210,7 +206,7 @@ fn outcome(
 fn the_least_is_the_least_of_what_overturns() {
     let (mut after_impacts, mut islands, mut still_rocking) = (0, 0, 0);
     for (name, kind) in [("one_cosine", Pulse::OneCosine), ("ricker", Pulse::Ricker)] {
-        let scenario = scenario(&small(ARCH, name, ""));
+        let scenario = parsed(&small(ARCH, name, ""));
         let points = OverturningSpectrum::new(&scenario).unwrap();
         let tried = points.over_incipient().to_vec();
         let mut below = 0;
@@ -254,7 +250,7 @@ fn the_least_is_the_least_of_what_overturns() {
 /// Just above the edge the first fall overturns, just below it does not: in histories of their own.
 #[test]
 fn the_edge_without_impact_is_an_edge() {
-    let scenario = scenario(&small(ARCH, "one_sine", ""));
+    let scenario = parsed(&small(ARCH, "one_sine", ""));
     let points = OverturningSpectrum::new(&scenario).unwrap();
     for index in 0..points.count() {
         let point = points.row(index);
@@ -277,7 +273,7 @@ fn step_pairs_overturn_an_arch_as_computed_elsewhere() {
     let printed = [(0.2, 3.066), (0.5, 0.820), (1.0, 0.465)];
     let arch = "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n";
     let text = format!("{arch}{}", pulse("step_pair"));
-    let of_arch = scenario(&text);
+    let of_arch = parsed(&text);
     let of_arch = OverturningSpectrum::new(&of_arch).unwrap();
     let (_, model) = &of_arch.structures()[0];
     let block = model.equivalent(9.81).unwrap().at_critical.unwrap();
@@ -343,7 +339,7 @@ fn accelerations_beyond_the_largest_of_a_scenario() {
 
 #[test]
 fn what_has_no_spectrum_says_so() {
-    let of = |text: &str| OverturningSpectrum::new(&scenario(text)).err();
+    let of = |text: &str| OverturningSpectrum::new(&parsed(text)).err();
     assert_eq!(of(ARCH), Some(NoSpectrum::NoPulse));
     let initial = "[initial]\nsway = 'right'\nrotation_rad = 0.01\n";
     let text = format!("{ARCH}{}{initial}", pulse("ricker"));
@@ -397,7 +393,7 @@ fn errors_have_a_place_and_a_remedy() {
 #[test]
 fn pictures_of_much_and_of_little() {
     let picture = |text: &str| {
-        let scenario = scenario(text);
+        let scenario = parsed(text);
         let points = OverturningSpectrum::new(&scenario).unwrap();
         let rows: Vec<_> = (0..points.count()).map(|index| points.row(index)).collect();
         let picture = draw(Figure::SCREEN, "a title", &points, &rows);

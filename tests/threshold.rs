@@ -8,6 +8,7 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
+use crate::common::pulse;
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use crate::program::{archrock, printed, refused, stderr};
 use crate::results::{Row, Table};
@@ -47,10 +48,6 @@ fn found(model: &dyn Model, ground: &GroundMotion, end_s: f64, factors: &Factors
 
 fn factors(from: f64, to: f64, stride: f64) -> Factors {
     Factors::new(from, to, stride).unwrap()
-}
-
-fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
 }
 
 /// Slender column, rectangular pulse `(a, t)`: `cosh(p t) = 1 + 1 / (2 x (x - 1))`, `x = a / (g alpha)`, solved

@@ -2,6 +2,8 @@
 //! ground and at a height; spectra from files; what cannot be checked, and why.
 
 use crate::browser;
+use crate::common::parsed;
+use crate::common::{ARCH, COLUMN};
 use crate::program::{archrock, printed as print_of, refused, scenarios};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
@@ -10,8 +12,6 @@ use archrock::studies::verify::{
 use archrock::{Scenario, Sway};
 use serde_json::Value;
 
-const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
-const SEMICIRCLE: &str = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
 const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n\
     [demand.sld]\nag_g = 0.10\nf0 = 2.40\ntc_star_s = 0.28\n\
     [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n\
@@ -20,16 +20,12 @@ const HEIGHT: &str = "[demand.height]\nmodes = [{ gamma = 1.2857142857142858, ps
     sld = { t_s = 0.30, damping_percent = 5 }, slv = { t_s = 0.45, damping_percent = 10 }, \
     slc = { t_s = 0.60, damping_percent = 15 } }]\n";
 
-fn scenario(text: &str) -> Scenario {
-    Scenario::parse(text, "a.toml").unwrap_or_else(|errors| panic!("{errors}"))
-}
-
 fn on_piers() -> String {
     std::fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap()
 }
 
 fn check(text: &str) -> Check {
-    Check::new(&scenario(text)).unwrap_or_else(|error| panic!("{error}"))
+    Check::new(&parsed(text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn side(check: &Check, state: LimitState, sway: Sway) -> &SideCheck {
@@ -56,7 +52,7 @@ fn printed(value: f64, expected: &str) {
 fn cases() -> [(String, Sway); 4] {
     [
         (COLUMN.to_owned(), Sway::Right),
-        (SEMICIRCLE.to_owned(), Sway::Right),
+        (ARCH.to_owned(), Sway::Right),
         (on_piers(), Sway::Right),
         (on_piers(), Sway::Left),
     ]
@@ -165,7 +161,7 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
         let own = displacement(&check, LimitState::Slv, *sway);
         printed(own.zeta_e_crown.unwrap(), zeta_e);
         // The displacement of the crown itself does not depend on how masses are grouped.
-        let scenario = scenario(&format!("{structure}{DEMAND}"));
+        let scenario = parsed(&format!("{structure}{DEMAND}"));
         let grouped = archrock::studies::capacity::capacity(&scenario, None).unwrap();
         let grouped = grouped.iter().find(|one| one.sway == *sway).unwrap();
         let ratio = grouped.end().displacement_m / crown.end().displacement_m;
@@ -450,7 +446,7 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
         for mechanism in &check.mechanisms {
             assert!(mechanism.way.as_ref().unwrap_err().contains(why));
             // The virtual work of the bodies gives the push of the limit analysis back.
-            let model = scenario(structure).model().unwrap();
+            let model = parsed(structure).model().unwrap();
             let incipient_g = model.incipient_acceleration_g(mechanism.sway).unwrap();
             assert!((mechanism.alpha0 / incipient_g - 1.0).abs() < 1e-9);
         }
@@ -474,7 +470,7 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
         let only = DEMAND.split_once("[demand.slc]").unwrap().1;
         let only =
             format!("{structure}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
-        let error = Check::new(&scenario(&only)).unwrap_err();
+        let error = Check::new(&parsed(&only)).unwrap_err();
         assert!(matches!(error, NoCheck::NoCurve(_)));
         assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
     }
@@ -508,7 +504,7 @@ fn c8_7_1_1_what_slides_before_is_no_mechanism() {
 
 #[test]
 fn what_does_not_stand_is_refused() {
-    let thin = SEMICIRCLE.replace("0.15", "0.08");
+    let thin = ARCH.replace("0.15", "0.08");
     let folder = in_folder(&thin, DEMAND);
     refused(
         folder.path(),
@@ -520,7 +516,7 @@ fn what_does_not_stand_is_refused() {
 /// The command: words, JSON with the same numbers, files; a verdict is no failure.
 #[test]
 fn the_command_says_and_writes_the_check() {
-    let folder = in_folder(SEMICIRCLE, DEMAND);
+    let folder = in_folder(ARCH, DEMAND);
     let said = print_of(folder.path(), &["verify", "a.toml"]);
     assert!(
         said.contains("SLV  not passed: zeta_E 0.48659 to the right, by displacement"),
@@ -562,8 +558,8 @@ fn the_command_says_and_writes_the_check() {
         DEMAND.to_owned(),
         format!("{DEMAND}{HEIGHT}[verify]\nsides = 'left'\nfree_standing = {{ t0_s = 0.1 }}\n"),
     ] {
-        let own = self::scenario(&format!("{COLUMN}{text}"));
-        assert_eq!(self::scenario(&own.to_toml()), own);
+        let own = parsed(&format!("{COLUMN}{text}"));
+        assert_eq!(parsed(&own.to_toml()), own);
     }
 }
 
@@ -573,7 +569,7 @@ fn the_command_says_and_writes_the_check() {
 fn page_and_json_agree() {
     let free = "[verify]\nsides = 'right'\nfree_standing = { t0_s = 0.15 }\n";
     for text in [
-        format!("title = 'A <title> & more'\n{SEMICIRCLE}{DEMAND}"),
+        format!("title = 'A <title> & more'\n{ARCH}{DEMAND}"),
         format!("{}{DEMAND}{HEIGHT}", on_piers()),
         format!("{COLUMN}{DEMAND}{free}"),
         format!("{LOCKS}{DEMAND}"),

@@ -1,7 +1,10 @@
 //! The formulas of the Circolare 7/2019 and of NTC 2018, clause by clause: against numbers computed apart from this program,
 //! closed forms, and a published check.
 
+use crate::common::parsed;
+use crate::common::{ARCH, COLUMN};
 use crate::common::{GRAVITY, Random};
+use crate::program::scenarios;
 use archrock::dynamics::demand::floor::{FloorSpectrum, Mode};
 use archrock::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
 use archrock::dynamics::demand::oscillator::peak_displacement;
@@ -450,19 +453,8 @@ fn c8_7_1_2_1_8_a_spectrum_of_points_counts_up_to_its_largest_displacement() {
 
 // Mechanisms.
 
-fn scenario(text: &str) -> Scenario {
-    Scenario::parse(text, "a.toml").unwrap_or_else(|errors| panic!("{errors}"))
-}
-
-const COLUMN: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
-const SEMICIRCLE: &str = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
-
 fn on_piers() -> Scenario {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/scenarios/pointed-arch-on-piers.toml"
-    );
-    Scenario::read(std::path::Path::new(file)).unwrap()
+    Scenario::read(&scenarios().join("pointed-arch-on-piers.toml")).unwrap()
 }
 
 fn model(scenario: &Scenario) -> Box<dyn MechanismModel> {
@@ -490,14 +482,14 @@ fn of_bodies(model: &dyn MechanismModel, sway: Sway) -> Capacity {
 fn cases() -> [(Scenario, Sway, [&'static str; 6]); 4] {
     [
         (
-            scenario(COLUMN),
+            parsed(COLUMN),
             Sway::Right,
             [
                 "0.20000", "6400.0", "1.00000", "6400.0", "0.40000", "0.40000",
             ],
         ),
         (
-            scenario(SEMICIRCLE),
+            parsed(ARCH),
             Sway::Right,
             [
                 "0.14433", "20418.6", "0.87684", "17903.9", "0.10919", "0.12453",
@@ -588,7 +580,7 @@ fn c8_7_1_2_1_2_virtual_displacements_are_those_of_the_motion() {
             );
         }
     }
-    let column = model(&scenario(COLUMN));
+    let column = model(&parsed(COLUMN));
     for part in [0.0, 0.3, 0.8] {
         let displaced = column.displaced(Sway::Left, part).unwrap();
         assert!((displaced.friction - displaced.acceleration_g).abs() < 1e-12);
@@ -607,8 +599,8 @@ fn c8_7_1_2_1_2_virtual_displacements_are_those_of_the_motion() {
 #[test]
 fn mirrored_structures_have_mirrored_bodies() {
     let text = "[pointed_arch]\nspan_m = 6\nrise_m = 4\nthickness_m = 0.6\nvoussoirs = 14\n[[load]]\nmass_kg = 1500\nx_m = 1\n";
-    let own = model(&scenario(text)).moving_bodies(Sway::Right).unwrap();
-    let image = scenario(&text.replace("x_m = 1", "x_m = -1"));
+    let own = model(&parsed(text)).moving_bodies(Sway::Right).unwrap();
+    let image = parsed(&text.replace("x_m = 1", "x_m = -1"));
     let image = model(&image).moving_bodies(Sway::Left).unwrap();
     for (a, b) in own.iter().zip(image.iter().rev()) {
         assert!((a.mass_kg / b.mass_kg - 1.0).abs() < 1e-9);
@@ -675,7 +667,7 @@ fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
 /// The curve of the semicircle is straight between a hundred points: its period at 0.4 d0 is that of the curve itself to 3e-6.
 #[test]
 fn c8_7_1_10_the_period_of_a_curve_that_is_not_straight() {
-    let model = model(&scenario(SEMICIRCLE));
+    let model = model(&parsed(ARCH));
     let bodies = model.moving_bodies(Sway::Right).unwrap();
     let capacity = of_bodies(&*model, Sway::Right);
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();

@@ -4,9 +4,14 @@ use archrock::dynamics::ground::Pulse;
 use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::masonry::{
+    BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, Masonry, Material, Pier,
+    Piers, PlacedLoad, PointedArch, Shape,
+};
 use archrock::mechanics::stability::falls;
 use archrock::{
-    Arch, FourLinkArch, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample, Sway,
+    Arch, FourLinkArch, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample,
+    Scenario, Sway,
 };
 use proptest::prelude::*;
 
@@ -26,6 +31,18 @@ pub fn arch(mean_radius_m: f64, thickness_ratio: f64, embrace_deg: f64, sites: H
         HingeSites::Anywhere => arch,
         HingeSites::Voussoirs(voussoirs) => arch.with_voussoirs(voussoirs).unwrap(),
     }
+}
+
+/// The table of [`semicircle`].
+pub const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+
+/// A column five times as high as wide.
+pub const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+
+/// A scenario that is as it should be.
+#[track_caller]
+pub fn parsed(text: &str) -> Scenario {
+    Scenario::parse(text, "s.toml").unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// An arch under the impact model of the paper.
@@ -75,6 +92,11 @@ pub fn released(end_s: f64, sway: Sway, rotation_rad: f64) -> Request {
     }
 }
 
+/// A pulse from the start on.
+pub fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
+    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
+}
+
 pub fn run(model: &impl Model, ground: &GroundMotion, request: &Request) -> History {
     model.history(ground, request).unwrap()
 }
@@ -105,6 +127,19 @@ impl Random {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn within(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.next()
+    }
+
+    /// A whole number below this one.
+    pub fn pick(&mut self, below: usize) -> usize {
+        (self.next() * below as f64) as usize
+    }
+
+    pub fn chance(&mut self, probability: f64) -> bool {
+        self.next() < probability
     }
 
     /// Four ordered sections; each one lies on a springing now and then, as maxima often do.
@@ -203,8 +238,8 @@ pub fn pairs<A, B>(
 
 /// Any arch or stack, of up to `most` blocks.
 pub fn random_row(random: &mut Random, most: usize) -> Row {
-    let count = 1 + (random.next() * most as f64) as usize;
-    if random.next() < 0.4 {
+    let count = 1 + random.pick(most);
+    if random.chance(0.4) {
         let mut width_m = 0.6 + random.next();
         let drums: Vec<Drum> = (0..count)
             .map(|_| {
@@ -223,11 +258,79 @@ pub fn random_row(random: &mut Random, most: usize) -> Row {
     let embrace = (0.35 + 0.65 * random.next()) * std::f64::consts::PI;
     let ring = Ring::new(0.11 + 0.15 * random.next(), embrace).unwrap();
     let radius_m = 1.0 + 12.0 * random.next();
-    if random.next() < 0.5 || count < 3 {
+    if random.chance(0.5) || count < 3 {
         Row::arch(&ring, count, radius_m, 0.7, 1900.0).unwrap()
     } else {
         Row::straight_sided_arch(&ring, count, radius_m, 0.7, 1900.0).unwrap()
     }
+}
+
+/// A pointed, elliptic, basket or uneven circular arch, on piers or not, under fill and a load or not.
+pub fn random_masonry(random: &mut Random) -> Option<Masonry> {
+    let voussoirs = [5, 8, 11, 16][random.pick(4)];
+    let thickness_m = random.within(0.5, 1.4);
+    let dimensions = |rise_m| Dimensions {
+        span_m: 10.0,
+        rise_m,
+        thickness_m,
+        voussoirs,
+        material: Material::default(),
+    };
+    let shape = match random.pick(4) {
+        0 => Shape::PointedArch(PointedArch {
+            dimensions: dimensions(random.within(5.0, 9.0)),
+        }),
+        1 => Shape::EllipticArch(EllipticArch {
+            dimensions: dimensions(random.within(3.0, 7.0)),
+        }),
+        2 => Shape::BasketArch(BasketArch {
+            dimensions: dimensions(random.within(3.2, 5.0)),
+            crown_deg: random.within(40.0, 75.0),
+        }),
+        _ => {
+            let embrace_deg = random.within(130.0, 180.0);
+            let arch = Arch::new(5.0, thickness_m / 5.0, embrace_deg).ok()?;
+            let mut inner: Vec<f64> = (1..voussoirs)
+                .map(|_| random.within(0.0, embrace_deg))
+                .collect();
+            inner.sort_by(f64::total_cmp);
+            let mut joints_deg = vec![0.0];
+            joints_deg.extend(inner);
+            joints_deg.push(embrace_deg);
+            Shape::Circular(CircularArch::new(arch, Some(joints_deg)).ok()?)
+        }
+    };
+    let pier = |random: &mut Random| {
+        random.chance(0.5).then(|| Pier {
+            height_m: random.within(1.0, 4.0),
+            width_m: random.within(1.5, 4.0),
+            blocks: 1 + random.pick(3),
+            density_kg_m3: None,
+            pedestal: false,
+        })
+    };
+    let piers = Piers {
+        left: pier(random),
+        right: pier(random),
+    };
+    let fill = random.chance(0.5).then(|| Fill {
+        level: if random.chance(0.5) {
+            FillLevel::AboveCrown(random.within(0.0, 1.0))
+        } else {
+            FillLevel::AboveSpringing(random.within(0.5, 3.0))
+        },
+        density_kg_m3: 1600.0,
+    });
+    let loads = if random.chance(0.5) {
+        vec![PlacedLoad {
+            mass_kg: random.within(100.0, 4000.0),
+            x_m: random.within(-3.0, 3.0),
+            width_m: 0.5,
+        }]
+    } else {
+        Vec::new()
+    };
+    Masonry::new(shape, piers, fill, loads).ok()
 }
 
 /// Broadband noise, with a vertical component of up to free fall.
@@ -256,8 +359,8 @@ pub fn random_history(random: &mut Random, most: usize, length_s: f64) -> (Row, 
         }
     };
     let strength_g = 0.05 + 1.5 * random.next() * random.next();
-    let ground = if random.next() < 0.4 {
-        let kind = Pulse::ALL[(random.next() * Pulse::ALL.len() as f64) as usize];
+    let ground = if random.chance(0.4) {
+        let kind = Pulse::ALL[random.pick(Pulse::ALL.len())];
         let amplitude = Vector2::new(strength_g, random.next() - 0.5) * GRAVITY;
         let duration_s = 0.05 + random.next();
         GroundMotion::pulse_along(kind, amplitude, duration_s, 0.1, Default::default()).unwrap()
