@@ -5,7 +5,7 @@ use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
-use archrock::dynamics::spread::Spread;
+use archrock::dynamics::spread::Repetitions;
 use archrock::{Request, Sway};
 
 /// Steps, over those of a run, with which what it calls certain must hold.
@@ -62,17 +62,8 @@ fn campaign(cases: usize) -> Counts {
             ..Request::default()
         };
         let own = model.simulate(&ground, &request, None).unwrap();
-        let repeated: Vec<_> = model
-            .repetitions()
-            .into_iter()
-            .map(|other| {
-                (
-                    other.name,
-                    other.model.simulate(&ground, &request, None).unwrap(),
-                )
-            })
-            .collect();
-        let spread = Spread::new(&own, &repeated);
+        let repeated = Repetitions::start(&model, &ground, &request);
+        let spread = repeated.spread(&own).unwrap();
         let cycles = own.half_cycles();
         let certain = spread.same_outcome();
         let same = spread.same_until_half_cycle;

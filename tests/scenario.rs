@@ -33,6 +33,25 @@ fn assert_error_after_arch(lines: &str, (line, column): (usize, usize), words: &
     assert_errors(&format!("{ARCH}{lines}"), &[(before + line, column, words)]);
 }
 
+/// What Python's keywords say of settings that are left out is what a scenario takes.
+#[test]
+fn defaults_are_those_of_python() {
+    let json = parse(ARCH).unwrap().to_json();
+    let settings = json["simulation"].as_object().unwrap();
+    let package = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("python/package/archrock");
+    let sources = ["_settings.py", "_scenario.py"];
+    let sources = sources.map(|name| std::fs::read_to_string(package.join(name)).unwrap());
+    for (source, (key, default)) in sources
+        .iter()
+        .flat_map(|source| settings.iter().map(move |setting| (source, setting)))
+    {
+        let keyword = format!("    {key}: float = ");
+        let said = source.lines().find_map(|line| line.strip_prefix(&keyword));
+        let said = said.map(|value| value.trim_end_matches(','));
+        assert_eq!(said, Some(default.to_string().as_str()), "{key}");
+    }
+}
+
 #[test]
 fn defaults() {
     let scenario = parse(ARCH).unwrap();

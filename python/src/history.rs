@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 
 use archrock::dynamics::spread::Repetitions;
 use archrock::dynamics::history::{Recording, Samples, Summary};
-use archrock::dynamics::model::Model as _;
 use archrock::mechanics::chain::Demand;
 use archrock::output::report::Report;
 use archrock::output::scene::Scene;
