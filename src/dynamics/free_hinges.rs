@@ -1,10 +1,10 @@
 //! Motion of a row of rigid blocks whose joints open and shut anywhere, at any time.
 //!
-//! The state is the gaps of the joints ([`crate::mechanics::joints`]) and the velocities of the pieces that move
-//! as one; `engine` steps them.
+//! `course` drives the motion and tells of it. What moves the blocks is a stepper behind it: `landing`, whose steps end where corners
+//! land, or `sliding`, in whose equal steps joints may slip too.
 
 mod course;
-mod engine;
+mod landing;
 mod model;
 mod sliding;
 
@@ -13,7 +13,7 @@ use thiserror::Error;
 pub use model::{DOUBTFUL_ENERGY_ERROR, FreeHinges, FreeHingesError, RowOptions};
 
 use self::course::Task;
-use self::engine::Engine;
+use self::landing::LandingStepper;
 use super::ground::GroundMotion;
 use super::history::Summary;
 use super::model::{Recorder, SimulationError};
@@ -235,13 +235,13 @@ fn motion(
     let recorder = recorder.map(|recorder| recorder as _);
     check(task.gravity_m_s2, task.settings)?;
     let Some(coefficient) = task.settings.friction_coefficient else {
-        return course::run(Engine::released(task, initial_rad, recorder)?);
+        return course::run(LandingStepper::released(task, initial_rad, recorder)?);
     };
     let placement = match initial_rad {
-        Some(_) => Engine::released(task, initial_rad, None)?.into_placement(),
+        Some(_) => LandingStepper::released(task, initial_rad, None)?.into_placement(),
         None => Placement::new(task.row),
     };
-    course::run(sliding::Engine::new(
+    course::run(sliding::SlidingStepper::new(
         &placement,
         task,
         coefficient,

@@ -12,7 +12,7 @@ use std::mem;
 use nalgebra::{Vector2, Vector3};
 
 use super::course::{Course, SWAY_RATIO, Stepper, Task, eccentricity_ratio, equal_step, only};
-use super::engine::{rise, sway};
+use super::landing::{rise, sway};
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{Sample, Sliding};
@@ -47,7 +47,7 @@ const CONVERGED: f64 = 1e-9;
 /// Bounds of friction that are wrong by more than this part of the largest one are an error.
 const LARGEST_BOUND_ERROR: f64 = 0.05;
 
-pub(super) struct Engine<'a> {
+pub(super) struct SlidingStepper<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
     gravity: f64,
@@ -89,7 +89,7 @@ pub(super) struct Engine<'a> {
     before: Vec<(f64, f64)>,
 }
 
-impl<'a> Engine<'a> {
+impl<'a> SlidingStepper<'a> {
     pub(super) fn new(
         placement: &Placement,
         task: Task<'a>,
@@ -439,7 +439,7 @@ fn contact(faces: &[Faces], positions: &[Position], joint: usize) -> Contact {
     )
 }
 
-impl<'a> Stepper<'a> for Engine<'a> {
+impl<'a> Stepper<'a> for SlidingStepper<'a> {
     fn course(&self) -> &Course<'a> {
         &self.course
     }

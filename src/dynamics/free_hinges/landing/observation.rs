@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Engine, Piece};
+use super::{LandingStepper, Piece};
 use crate::dynamics::free_hinges::FreeHingeError;
 use crate::dynamics::free_hinges::course::{
     Course, Stepper, eccentricity_ratio, equal_step, only, open_hinge,
@@ -45,7 +45,7 @@ pub(in crate::dynamics::free_hinges) fn sway(row: &Row, centres_m: &[Vector2<f64
         .sum()
 }
 
-impl Engine<'_> {
+impl LandingStepper<'_> {
     pub(super) fn height_energy(&self) -> f64 {
         self.gravity * rise(self.row, self.placement.centres_m())
     }
@@ -112,7 +112,7 @@ impl Engine<'_> {
     }
 }
 
-impl<'a> Stepper<'a> for Engine<'a> {
+impl<'a> Stepper<'a> for LandingStepper<'a> {
     fn course(&self) -> &Course<'a> {
         &self.course
     }

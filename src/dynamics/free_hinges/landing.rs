@@ -125,7 +125,7 @@ impl Fall {
     }
 }
 
-pub(super) struct Engine<'a> {
+pub(super) struct LandingStepper<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
     gravity: f64,
@@ -168,7 +168,7 @@ pub(super) struct Engine<'a> {
     crowd: Crowd,
 }
 
-impl<'a> Engine<'a> {
+impl<'a> LandingStepper<'a> {
     fn new(task: Task<'a>, recorder: Option<&'a mut dyn Recorder>) -> Self {
         let Task {
             row,
@@ -182,7 +182,7 @@ impl<'a> Engine<'a> {
         let program = Program::new(row);
         let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
         let fallen = -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity * row.size_m();
-        let mut engine = Self {
+        let mut stepper = Self {
             row,
             velocity: GroundVelocity::new(ground),
             gravity,
@@ -215,8 +215,8 @@ impl<'a> Engine<'a> {
             step_iterations: 0,
             crowd: Crowd::default(),
         };
-        engine.stand_still();
-        engine
+        stepper.stand_still();
+        stepper
     }
 
     /// All blocks at rest, as one piece.
@@ -239,11 +239,11 @@ impl<'a> Engine<'a> {
         initial_rad: Option<&[f64]>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Result<Self, FreeHingeError> {
-        let mut engine = Self::new(task, recorder);
+        let mut stepper = Self::new(task, recorder);
         if let Some(rotations_rad) = initial_rad {
-            engine.release(rotations_rad)?;
+            stepper.release(rotations_rad)?;
         }
-        Ok(engine)
+        Ok(stepper)
     }
 
     /// Where the blocks are.
@@ -839,30 +839,30 @@ mod tests {
 
     /// The program of a step as three rows per joint in the velocities of the blocks, for an interior-point solver. The unknowns
     /// are per block the velocity of its centre and its rate times the radius of gyration, all times the root of its mass.
-    fn judged(engine: &Engine) -> Option<Vec<Twist>> {
-        let blocks = engine.row.blocks();
-        let centres = engine.placement.centres_m();
+    fn judged(stepper: &LandingStepper) -> Option<Vec<Twist>> {
+        let blocks = stepper.row.blocks();
+        let centres = stepper.placement.centres_m();
         let gyration = |b: usize| (blocks[b].inertia_kg_m2 / blocks[b].mass_kg).sqrt();
         let root = |b: usize| (blocks[b].mass_kg / blocks[0].mass_kg).sqrt();
         let scale = 1e-2;
         let goal: Vec<f64> = (0..blocks.len())
             .flat_map(|b| {
-                let free = engine.free[b];
+                let free = stepper.free[b];
                 let v = free.at(centres[b]);
                 [v.x, v.y, free.rate * gyration(b)].map(|x| -x * root(b) / scale)
             })
             .collect();
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        let joints = engine.row.joints().len();
-        let gates: usize = engine.touching.iter().flatten().filter(|t| **t).count();
+        let joints = stepper.row.joints().len();
+        let gates: usize = stepper.touching.iter().flatten().filter(|t| **t).count();
         let mut right = vec![0.0; joints + gates];
         let mut gate = joints;
-        for (joint, frame) in engine.placement.frames().iter().enumerate() {
-            let jump = engine.jumps[joint];
+        for (joint, frame) in stepper.placement.frames().iter().enumerate() {
+            let jump = stepper.jumps[joint];
             let mut kinds = vec![(joint, frame.intrados_m, frame.along, 1.0)];
             for (edge, touching) in [Edge::Intrados, Edge::Extrados]
                 .into_iter()
-                .zip(engine.touching[joint])
+                .zip(stepper.touching[joint])
             {
                 if touching {
                     kinds.push((gate, frame.corner_m(edge), frame.normal, -1.0));
@@ -936,29 +936,29 @@ mod tests {
                 settings: &settings,
                 barrier_j: None,
             };
-            let mut engine = Engine::new(task, None);
+            let mut stepper = LandingStepper::new(task, None);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;
             for _ in 0..500 {
-                engine.touch_shut();
-                engine.landing.fill([0.0; 2]);
-                engine.solve_step(settings.longest_step_s).unwrap();
+                stepper.touch_shut();
+                stepper.landing.fill([0.0; 2]);
+                stepper.solve_step(settings.longest_step_s).unwrap();
                 // It cannot tell near rest, where the impulses are not unique.
-                let judge = judged(&engine);
+                let judge = judged(&stepper);
                 compared += usize::from(judge.is_some());
-                let velocities = engine.program.velocities();
+                let velocities = stepper.program.velocities();
                 for (block, (ours, judge)) in
                     velocities.iter().zip(judge.iter().flatten()).enumerate()
                 {
-                    let centre = engine.placement.centres_m()[block];
+                    let centre = stepper.placement.centres_m()[block];
                     fastest = fastest.max(ours.at(centre).norm());
                     worst = worst.max((ours.at(centre) - judge.at(centre)).norm());
                 }
-                engine.step(60.0).unwrap();
+                stepper.step(60.0).unwrap();
             }
             assert!(
-                fastest > 0.05 && engine.course.summary.impacts > 3,
+                fastest > 0.05 && stepper.course.summary.impacts > 3,
                 "{fastest}"
             );
             // The judge stops where its objective is known to 1e-14, which leaves velocities of a metre a second some 1e-7.
