@@ -6,8 +6,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use archrock::dynamics::spread::Repetitions;
 use archrock::dynamics::history::{Recording, Samples, Summary};
+use archrock::dynamics::spread::Repetitions;
 use archrock::mechanics::chain::Demand;
 use archrock::output::report::Report;
 use archrock::output::scene::Scene;
