@@ -1,9 +1,8 @@
 //! Motion of a row of rigid blocks whose joints open and shut anywhere, at any time.
 //!
-//! `course` drives the motion and tells of it. What moves the blocks is a stepper behind it: `landing`, whose steps end where corners
-//! land, or `sliding`, in whose equal steps joints may slip too.
+//! What moves the blocks, behind the driver of rows, is a stepper: `landing`, whose steps end where corners land, or `sliding`, in whose
+//! equal steps joints may slip too.
 
-mod course;
 mod landing;
 mod model;
 mod sliding;
@@ -12,11 +11,11 @@ use thiserror::Error;
 
 pub use model::{DOUBTFUL_ENERGY_ERROR, FreeHinges, FreeHingesError, RowOptions};
 
-use self::course::Task;
 use self::landing::LandingStepper;
 use super::ground::GroundMotion;
 use super::history::Summary;
 use super::model::{Recorder, SimulationError};
+use super::row::course::{self, Clock, Task};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::joints::Placement;
@@ -81,6 +80,15 @@ impl Settings {
             longest_step_s: self.longest_step_s * factor,
             shortest_step_s: self.shortest_step_s * factor,
             ..*self
+        }
+    }
+
+    const fn clock(&self) -> Clock {
+        Clock {
+            longest_step_s: self.longest_step_s,
+            shortest_step_s: self.shortest_step_s,
+            end_s: self.end_s,
+            output_step_s: self.output_step_s,
         }
     }
 
@@ -219,31 +227,38 @@ pub fn simulate(
         row,
         ground,
         gravity_m_s2,
-        settings,
+        clock: settings.clock(),
         barrier_j: None,
     };
-    motion(task, initial_rad, recorder)
+    motion(task, settings, initial_rad, recorder)
 }
 
 /// The same of any task.
 fn motion(
     task: Task<'_>,
+    settings: &Settings,
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, FreeHingeError> {
     // One of any lifetime serves for as long as the task.
     let recorder = recorder.map(|recorder| recorder as _);
-    check(task.gravity_m_s2, task.settings)?;
-    let Some(coefficient) = task.settings.friction_coefficient else {
-        return course::run(LandingStepper::released(task, initial_rad, recorder)?);
+    check(task.gravity_m_s2, settings)?;
+    let Some(coefficient) = settings.friction_coefficient else {
+        return course::run(LandingStepper::released(
+            task,
+            settings,
+            initial_rad,
+            recorder,
+        )?);
     };
     let placement = match initial_rad {
-        Some(_) => LandingStepper::released(task, initial_rad, None)?.into_placement(),
+        Some(_) => LandingStepper::released(task, settings, initial_rad, None)?.into_placement(),
         None => Placement::new(task.row),
     };
     course::run(sliding::SlidingStepper::new(
         &placement,
         task,
+        settings,
         coefficient,
         recorder,
     ))

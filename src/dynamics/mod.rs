@@ -7,5 +7,6 @@ pub mod history;
 #[doc(hidden)]
 pub mod hybrid;
 pub mod model;
+mod row;
 pub mod spread;
 pub mod thrust;

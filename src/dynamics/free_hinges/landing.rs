@@ -20,10 +20,10 @@ use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
 pub(super) use self::observation::{rise, sway};
-use super::course::{Course, Stepper as _, Task};
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::model::Recorder;
+use crate::dynamics::row::course::{Course, Stepper as _, Task};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::contact::{Corners, Load, Program};
 use crate::mechanics::geometry::field::{Twist, turned};
@@ -169,12 +169,11 @@ pub(super) struct LandingStepper<'a> {
 }
 
 impl<'a> LandingStepper<'a> {
-    fn new(task: Task<'a>, recorder: Option<&'a mut dyn Recorder>) -> Self {
+    fn new(task: Task<'a>, settings: &'a Settings, recorder: Option<&'a mut dyn Recorder>) -> Self {
         let Task {
             row,
             ground,
             gravity_m_s2: gravity,
-            settings,
             ..
         } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
@@ -236,10 +235,11 @@ impl<'a> LandingStepper<'a> {
     /// The same, from rest or at rest with the initial rotations.
     pub(super) fn released(
         task: Task<'a>,
+        settings: &'a Settings,
         initial_rad: Option<&[f64]>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Result<Self, FreeHingeError> {
-        let mut stepper = Self::new(task, recorder);
+        let mut stepper = Self::new(task, settings, recorder);
         if let Some(rotations_rad) = initial_rad {
             stepper.release(rotations_rad)?;
         }
@@ -933,10 +933,10 @@ mod tests {
                 row: &row,
                 ground: &ground,
                 gravity_m_s2: 9.81,
-                settings: &settings,
+                clock: settings.clock(),
                 barrier_j: None,
             };
-            let mut stepper = LandingStepper::new(task, None);
+            let mut stepper = LandingStepper::new(task, &settings, None);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;

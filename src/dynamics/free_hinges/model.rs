@@ -4,20 +4,18 @@ use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
-use super::{FreeHingeError, Settings, Task, motion};
+use super::{FreeHingeError, Settings, motion};
 use crate::argument::{ArgumentError, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
-use crate::dynamics::model::{Initial, Model, Recorder, Repetition, Request, SimulationError};
+use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
+use crate::dynamics::row::course::Task;
+use crate::dynamics::row::standing::RigidRow;
 use crate::mechanics::arch::Arch;
-use crate::mechanics::blocks::{Row, RowError, Supports};
-use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
+use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::column::Column;
-use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::row::FourLinkRow;
-use crate::mechanics::friction::{self, FrictionError};
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::stability::{StabilityError, onset};
+use crate::mechanics::friction::FrictionError;
+use crate::mechanics::stability::StabilityError;
 use crate::mechanics::sway::Sway;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
@@ -26,13 +24,7 @@ use crate::mechanics::sway::Sway;
 /// blocks: which hinges open, and what an impact leaves, follow.
 #[derive(Clone, Debug)]
 pub struct FreeHinges {
-    row: Row,
-    /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
-    incipient_g: [Option<f64>; 2],
-    /// The same where they do.
-    with_friction_g: Option<[Option<f64>; 2]>,
-    /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
-    first: Option<FirstMechanism>,
+    rigid: RigidRow,
     options: RowOptions,
     /// The other settings with which a repetition is computed.
     repeated: Option<fn(&Settings) -> Settings>,
@@ -101,15 +93,6 @@ pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
 /// One that is wrong by more than this is an error.
 const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 
-/// What the motion of the first mechanism is known by.
-#[derive(Clone, Debug)]
-enum FirstMechanism {
-    /// Four links.
-    FourLinks(FourLinkRow),
-    /// A stack turns about an edge of its base.
-    Base,
-}
-
 /// Why there is no such model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FreeHingesError {
@@ -133,22 +116,8 @@ impl FreeHinges {
     /// # Errors
     /// When the row cannot carry its own weight.
     pub fn new(row: Row) -> Result<Self, FreeHingesError> {
-        let incipient_g = [
-            onset(&row, Sway::Right)?.map(|onset| onset.acceleration_g),
-            onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
-        ];
-        let first = match row.supports() {
-            Supports::Left => Some(FirstMechanism::Base),
-            // An impact model is asked for, and not used: the first mechanism comes before any impact.
-            Supports::Both => FourLinkRow::new(&row, ImpactModel::MaxRestitution)
-                .ok()
-                .map(FirstMechanism::FourLinks),
-        };
         Ok(Self {
-            row,
-            incipient_g,
-            with_friction_g: None,
-            first,
+            rigid: RigidRow::new(row)?,
             options: RowOptions::default(),
             repeated: None,
         })
@@ -195,32 +164,12 @@ impl FreeHinges {
     /// shortest step is given for joints that slip, or the row slides apart under its own weight.
     pub fn with_options(self, options: RowOptions) -> Result<Self, FreeHingesError> {
         let options = options.checked()?;
-        let with_friction_g = match options.friction_coefficient {
-            None => None,
-            Some(coefficient) if friction::stands(&self.row, coefficient)? => {
-                Some(self.with_friction_g(coefficient)?)
-            }
-            Some(coefficient) => return Err(FrictionError::CannotStand(coefficient).into()),
-        };
+        let rigid = self.rigid.with_friction(options.friction_coefficient)?;
         Ok(Self {
+            rigid,
             options,
-            with_friction_g,
             ..self
         })
-    }
-
-    /// The push that starts it to either side where joints slip, by limit analysis.
-    fn with_friction_g(&self, coefficient: f64) -> Result<[Option<f64>; 2], FrictionError> {
-        let [mut right, mut left] = self.incipient_g;
-        for (push_g, sway) in [(&mut right, Sway::Right), (&mut left, Sway::Left)] {
-            *push_g = match friction::onset_of_standing(&self.row, coefficient, sway) {
-                Ok(onset) => onset.map(|onset| onset.acceleration_g),
-                // Joints that do not slip bear no less: theirs is a bound as well.
-                Err(FrictionError::NotSolved(_)) => *push_g,
-                Err(error) => return Err(error),
-            };
-        }
-        Ok([right, left])
     }
 
     /// Coulomb's coefficient of friction, where joints slip.
@@ -232,32 +181,14 @@ impl FreeHinges {
     /// The blocks.
     #[must_use]
     pub const fn row(&self) -> &Row {
-        &self.row
+        self.rigid.row()
     }
 
     /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is
     /// not known.
     #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
-        match &self.first {
-            Some(FirstMechanism::FourLinks(row)) => {
-                let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));
-                let barrier = links.map(|link| link.barrier).reduce(f64::min)?;
-                Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
-            }
-            Some(FirstMechanism::Base) | None => match (self.row.blocks(), self.row.joints()) {
-                // One block turns about the nearer edge of its base, up to where its centre is above that.
-                ([block], [base]) => {
-                    let rise = |edge: Edge| {
-                        let arm_m = block.centre_m - base.corner_m(edge);
-                        arm_m.norm() - arm_m.y
-                    };
-                    let rise_m = rise(Edge::Intrados).min(rise(Edge::Extrados));
-                    Some(block.mass_kg * gravity_m_s2 * rise_m)
-                }
-                _ => None,
-            },
-        }
+        self.rigid.barrier_j(gravity_m_s2)
     }
 
     /// The longest step that a history takes, in seconds.
@@ -267,7 +198,7 @@ impl FreeHinges {
 
     /// How a motion is computed.
     fn settings(&self, request: &Request) -> Settings {
-        let (row, gravity_m_s2, end_s) = (&self.row, request.gravity_m_s2, request.end_s);
+        let (row, gravity_m_s2, end_s) = (self.row(), request.gravity_m_s2, request.end_s);
         let mut settings = match self.options.friction_coefficient {
             None => Settings::to_landings(row, gravity_m_s2, end_s),
             Some(_) => Settings::equal(row, gravity_m_s2, end_s),
@@ -282,57 +213,6 @@ impl FreeHinges {
         settings.output_step_s = Some(request.output_step_s);
         settings.friction_coefficient = self.options.friction_coefficient;
         self.repeated.map_or(settings, |other| other(&settings))
-    }
-
-    /// Rotations of the blocks when the first mechanism is open so far.
-    fn released(&self, initial: Initial) -> Result<Vec<f64>, SimulationError> {
-        let refused = |allowed: String| {
-            SimulationError::Argument(ArgumentError {
-                argument: "rotation_rad",
-                value: initial.rotation_rad,
-                allowed,
-            })
-        };
-        let blocks = self.row.blocks().len();
-        // Swaying right, in the frame in which the mechanism does so; the other side is its mirror image.
-        let side = match initial.sway {
-            Sway::Right => 1.0,
-            Sway::Left => -1.0,
-        };
-        let row = match &self.first {
-            Some(FirstMechanism::FourLinks(row)) => row,
-            Some(FirstMechanism::Base) => return Ok(vec![-side * initial.rotation_rad; blocks]),
-            None => {
-                return Err(refused(
-                    "left out: this row starts as no mechanism that it could be released in"
-                        .to_owned(),
-                ));
-            }
-        };
-        let link = row
-            .link_from(initial.sway, 0)
-            .expect("a row that starts as four links has its first mechanism");
-        if initial.rotation_rad >= link.limit_rad {
-            let limit_rad = link.limit_rad;
-            return Err(refused(format!(
-                "below {limit_rad:?}, the limit position of the first mechanism"
-            )));
-        }
-        let mut bodies_rad = link.mechanism.rotations(initial.rotation_rad);
-        if initial.sway == Sway::Left {
-            bodies_rad.reverse();
-        }
-        let hinges = row.hinges(0, initial.sway);
-        let hinges_before = |block: usize| {
-            let before =
-                |hinge: &&Hinge| matches!(hinge, Hinge::Joint { joint, .. } if *joint <= block);
-            hinges.iter().filter(before).count()
-        };
-        let rotation_rad = |block: usize| {
-            let body = hinges_before(block).checked_sub(1);
-            side * body.and_then(|body| bodies_rad.get(body)).unwrap_or(&0.0)
-        };
-        Ok((0..blocks).map(rotation_rad).collect())
     }
 }
 
@@ -357,26 +237,22 @@ impl Model for FreeHinges {
     }
 
     fn bodies(&self) -> Vec<String> {
-        (1..=self.row.blocks().len())
+        (1..=self.row().blocks().len())
             .map(|block| block.to_string())
             .collect()
     }
 
     fn shape(&self) -> Shape {
-        let joints = self.row.joints().len();
+        let joints = self.row().joints().len();
         Shape {
-            bodies: self.row.blocks().len(),
+            bodies: self.row().blocks().len(),
             joints,
             slipping: self.options.friction_coefficient.map_or(0, |_| joints),
         }
     }
 
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        let [right, left] = self.with_friction_g.unwrap_or(self.incipient_g);
-        match sway {
-            Sway::Right => right,
-            Sway::Left => left,
-        }
+        self.rigid.incipient_acceleration_g(sway)
     }
 
     fn simulate(
@@ -389,16 +265,16 @@ impl Model for FreeHinges {
         let settings = self.settings(request);
         let initial_rad = request
             .initial
-            .map(|initial| self.released(initial))
+            .map(|initial| self.rigid.released(initial))
             .transpose()?;
         let task = Task {
-            row: &self.row,
+            row: self.row(),
             ground,
             gravity_m_s2: request.gravity_m_s2,
-            settings: &settings,
+            clock: settings.clock(),
             barrier_j: self.barrier_j(request.gravity_m_s2),
         };
-        let summary = motion(task, initial_rad.as_deref(), recorder)?;
+        let summary = motion(task, &settings, initial_rad.as_deref(), recorder)?;
         match summary.row.as_ref().map_or(0.0, |row| row.energy_error) {
             error if error > LARGEST_ENERGY_ERROR => Err(FreeHingeError::Energy {
                 error,

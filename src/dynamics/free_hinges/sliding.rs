@@ -11,12 +11,15 @@ use std::mem;
 
 use nalgebra::{Vector2, Vector3};
 
-use super::course::{Course, SWAY_RATIO, Stepper, Task, eccentricity_ratio, equal_step, only};
 use super::landing::{rise, sway};
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{Sample, Sliding};
 use crate::dynamics::model::Recorder;
+use crate::dynamics::row::course::{
+    Course, LEAST_RETURN, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, REST_TIME_RATIO,
+    SWAY_RATIO, Stepper, Summit, Task, eccentricity_ratio, equal_step, only,
+};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode, Program};
@@ -30,16 +33,6 @@ const RATE_TOLERANCE: f64 = 1e-9;
 const DRAWN: f64 = 1e-6;
 /// Corners land when they were farther apart than this part of the thickness of their joint.
 const APART_RATIO: f64 = 1e-9;
-/// At rest, the kinetic energy is below this part of weight times size ...
-const REST_ENERGY_RATIO: f64 = 1e-9;
-/// ... for this part of the time in which the size falls free: longer than at any turning point.
-const REST_TIME_RATIO: f64 = 0.5;
-/// A block that has turned by this, in radians, has overturned ...
-const OVERTURNED_RAD: f64 = 0.8;
-/// ... and one that has moved by this part of the size, besides what the row slid along a support.
-const OVERTURNED_RATIO: f64 = 0.6;
-/// Heights that come back by less than this part of weight times size, on the way down, are no way back.
-const LEAST_RETURN: f64 = 1e-3;
 /// Joints with less than this part of the largest normal force are not pressed.
 const LOADED: f64 = 1e-6;
 /// Bounds of friction that are wrong by less than this part of the largest one have converged.
@@ -93,6 +86,7 @@ impl<'a> SlidingStepper<'a> {
     pub(super) fn new(
         placement: &Placement,
         task: Task<'a>,
+        settings: &'a Settings,
         coefficient: f64,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
@@ -100,7 +94,6 @@ impl<'a> SlidingStepper<'a> {
             row,
             ground,
             gravity_m_s2: gravity,
-            settings,
             ..
         } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
@@ -399,36 +392,6 @@ impl<'a> SlidingStepper<'a> {
     }
 }
 
-/// When something was highest before it came down for good.
-struct Summit {
-    time: f64,
-    highest: f64,
-    /// The lowest since then.
-    lowest: f64,
-}
-
-impl Summit {
-    const fn new(height: f64) -> Self {
-        Self {
-            time: 0.0,
-            highest: height,
-            lowest: height,
-        }
-    }
-
-    /// Notes a height; what rises again by `least` from where it was lowest has not come down.
-    fn note(&mut self, time: f64, height: f64, least: f64) {
-        self.lowest = self.lowest.min(height);
-        if height >= self.highest || height >= self.lowest + least {
-            *self = Self {
-                time,
-                highest: height,
-                lowest: height,
-            };
-        }
-    }
-}
-
 /// The joint of this index at the positions of its blocks.
 fn contact(faces: &[Faces], positions: &[Position], joint: usize) -> Contact {
     let block = |index: Option<usize>| index.and_then(|index| positions.get(index));
@@ -440,6 +403,8 @@ fn contact(faces: &[Faces], positions: &[Position], joint: usize) -> Contact {
 }
 
 impl<'a> Stepper<'a> for SlidingStepper<'a> {
+    type Error = FreeHingeError;
+
     fn course(&self) -> &Course<'a> {
         &self.course
     }

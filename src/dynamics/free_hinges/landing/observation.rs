@@ -4,10 +4,10 @@ use nalgebra::Vector2;
 
 use super::{LandingStepper, Piece};
 use crate::dynamics::free_hinges::FreeHingeError;
-use crate::dynamics::free_hinges::course::{
+use crate::dynamics::history::Sample;
+use crate::dynamics::row::course::{
     Course, Stepper, eccentricity_ratio, equal_step, only, open_hinge,
 };
-use crate::dynamics::history::Sample;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
@@ -113,6 +113,8 @@ impl LandingStepper<'_> {
 }
 
 impl<'a> Stepper<'a> for LandingStepper<'a> {
+    type Error = FreeHingeError;
+
     fn course(&self) -> &Course<'a> {
         &self.course
     }

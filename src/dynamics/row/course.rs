@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
-use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::dynamics::history::{
     Cost, Elapsed, Event, EventKind, HalfCycle, Impact, OpenHinge, Outcome, RowSummary, Sample,
@@ -19,26 +18,49 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
 /// Sways below this part of the size do not count as a change of side.
-pub(super) const SWAY_RATIO: f64 = 1e-9;
+pub(in crate::dynamics) const SWAY_RATIO: f64 = 1e-9;
+/// At rest, the kinetic energy is below this part of weight times size ...
+pub(in crate::dynamics) const REST_ENERGY_RATIO: f64 = 1e-9;
+/// ... for this part of the time in which the size falls free: longer than at any turning point.
+pub(in crate::dynamics) const REST_TIME_RATIO: f64 = 0.5;
+/// A block that has turned by this, in radians, has overturned ...
+pub(in crate::dynamics) const OVERTURNED_RAD: f64 = 0.8;
+/// ... and one that has moved by this part of the size, besides what the row slid along a support.
+pub(in crate::dynamics) const OVERTURNED_RATIO: f64 = 0.6;
+/// Heights that come back by less than this part of weight times size, on the way down, are no way back.
+pub(in crate::dynamics) const LEAST_RETURN: f64 = 1e-3;
 /// Motions whose energies are below this part of weight times size are none: their balance is rounding.
 const LEAST_ENERGY_RATIO: f64 = 1e-6;
 /// A row has slipped when friction took more than this part of the barrier of its first mechanism. It then stands lower than it did,
 /// and its potential energy tells nothing about that barrier.
 const SLIPPED_RATIO: f64 = 0.01;
 
+/// How long a motion is computed, and in which steps.
+#[derive(Clone, Copy)]
+pub(in crate::dynamics) struct Clock {
+    /// Longest step in seconds.
+    pub longest_step_s: f64,
+    /// Shortest step in seconds.
+    pub shortest_step_s: f64,
+    /// When to stop at the latest, in seconds.
+    pub end_s: f64,
+    /// Time between samples in seconds; without it there are none. Steps end there whether or not samples are asked for.
+    pub output_step_s: Option<f64>,
+}
+
 /// What is to be computed.
 #[derive(Clone, Copy)]
-pub(super) struct Task<'a> {
+pub(in crate::dynamics) struct Task<'a> {
     pub row: &'a Row,
     pub ground: &'a GroundMotion,
     pub gravity_m_s2: f64,
-    pub settings: &'a Settings,
+    pub clock: Clock,
     /// Energy that the first mechanism has to gain to overturn, where that is known.
     pub barrier_j: Option<f64>,
 }
 
 /// What has happened so far.
-pub(super) struct Course<'a> {
+pub(in crate::dynamics) struct Course<'a> {
     pub time: f64,
     /// Potential energy above the undeformed row.
     pub potential: f64,
@@ -74,14 +96,17 @@ pub(super) struct Course<'a> {
 }
 
 /// What moves a row, step by step.
-pub(super) trait Stepper<'a>: Sized {
+pub(in crate::dynamics) trait Stepper<'a>: Sized {
+    /// Why a step fails.
+    type Error;
+
     fn course(&self) -> &Course<'a>;
     fn course_mut(&mut self) -> &mut Course<'a>;
     /// One step, at most to the given time.
-    fn step(&mut self, until: f64) -> Result<(), FreeHingeError>;
+    fn step(&mut self, until: f64) -> Result<(), Self::Error>;
     /// Writes into a blank sample where the blocks are, their rates at that instant, offsets, friction and, if it is wanted, the line
     /// of thrust. Returns the kinetic energy at that instant.
-    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, FreeHingeError>;
+    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, Self::Error>;
     /// Rotations of the blocks, and their rates after the last step.
     fn turns(&self) -> impl Iterator<Item = (f64, f64)>;
     /// Gaps of a joint at intrados and extrados.
@@ -197,7 +222,7 @@ pub(super) trait Stepper<'a>: Sized {
     }
 
     /// Makes a sample.
-    fn sample(&mut self) -> Result<(), FreeHingeError> {
+    fn sample(&mut self) -> Result<(), Self::Error> {
         let (mut sample, thrust_line) = self.course_mut().blank_sample();
         let kinetic = self.write(&mut sample, thrust_line)?;
         sample
@@ -221,22 +246,19 @@ pub(super) trait Stepper<'a>: Sized {
 }
 
 /// Steps a row until it rests, has overturned, or the time is over.
-pub(super) fn run<'a>(mut stepper: impl Stepper<'a>) -> Result<Summary, FreeHingeError> {
-    let Task {
-        ground, settings, ..
-    } = stepper.course().task;
+pub(in crate::dynamics) fn run<'a, S: Stepper<'a>>(mut stepper: S) -> Result<Summary, S::Error> {
+    let Task { clock, .. } = stepper.course().task;
     let mut samples = 0.0;
     let mut sampled_s = None;
-    let quiet_s = ground.end_s();
-    let samples_are_made = settings.output_step_s.is_some() && stepper.course().is_followed();
+    let samples_are_made = clock.output_step_s.is_some() && stepper.course().is_followed();
     let mut longest_step = samples_are_made.then_some(Duration::ZERO);
     let (outcome, outcome_time_s) = loop {
-        let mark = settings
+        let mark = clock
             .output_step_s
             .map_or(f64::INFINITY, |step| samples * step);
         let course = stepper.course();
         let time = course.time;
-        if time >= mark - 1e-9 * settings.shortest_step_s {
+        if time >= mark - 1e-9 * clock.shortest_step_s {
             samples += 1.0;
             if samples_are_made {
                 stepper.sample()?;
@@ -244,26 +266,11 @@ pub(super) fn run<'a>(mut stepper: impl Stepper<'a>) -> Result<Summary, FreeHing
             }
             continue;
         }
-        if course.stopped {
-            break (Outcome::StillRocking, time);
-        }
-        if let Some(time_s) = stepper.overturned_s() {
-            break (Outcome::Overturned(towards(course.sway)), time_s);
-        }
-        if time >= quiet_s
-            && let Some(time_s) = stepper.rests_since()
-        {
-            break if course.moved {
-                (Outcome::Rest, time_s)
-            } else {
-                (Outcome::NeverMoved, time)
-            };
-        }
-        if time >= settings.end_s {
-            break (Outcome::StillRocking, time);
+        if let Some(ending) = course.ending(stepper.overturned_s(), || stepper.rests_since()) {
+            break ending;
         }
         let begun = longest_step.map(|_| Instant::now());
-        stepper.step(mark.min(settings.end_s))?;
+        stepper.step(mark.min(clock.end_s))?;
         longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
     };
     let course = stepper.course();
@@ -275,19 +282,49 @@ pub(super) fn run<'a>(mut stepper: impl Stepper<'a>) -> Result<Summary, FreeHing
     Ok(course.end(outcome, outcome_time_s))
 }
 
+/// When something was highest before it came down for good.
+pub(in crate::dynamics) struct Summit {
+    pub time: f64,
+    highest: f64,
+    /// The lowest since then.
+    lowest: f64,
+}
+
+impl Summit {
+    pub(in crate::dynamics) const fn new(height: f64) -> Self {
+        Self {
+            time: 0.0,
+            highest: height,
+            lowest: height,
+        }
+    }
+
+    /// Notes a height; what rises again by `least` from where it was lowest has not come down.
+    pub(in crate::dynamics) fn note(&mut self, time: f64, height: f64, least: f64) {
+        self.lowest = self.lowest.min(height);
+        if height >= self.highest || height >= self.lowest + least {
+            *self = Self {
+                time,
+                highest: height,
+                lowest: height,
+            };
+        }
+    }
+}
+
 /// The side of what is positive to the right.
 fn towards(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
 }
 
 /// Length of the next step of a leapfrog: equal steps up to the given time.
-pub(super) fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
+pub(in crate::dynamics) fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
     let left = until - time;
     left / (left / longest - 1e-9).ceil().max(1.0)
 }
 
 /// The edge of the only one of two corners of a joint, intrados and extrados.
-pub(super) fn only(corners: [bool; 2]) -> Option<Edge> {
+pub(in crate::dynamics) fn only(corners: [bool; 2]) -> Option<Edge> {
     match corners {
         [true, false] => Some(Edge::Intrados),
         [false, true] => Some(Edge::Extrados),
@@ -301,14 +338,14 @@ fn turning(gaps: [f64; 2]) -> Option<Edge> {
 }
 
 /// A joint with these gaps as a hinge, if it is open.
-pub(super) fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
+pub(in crate::dynamics) fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
     let edge = turning(gaps);
     (gaps != [0.0; 2]).then_some(Hinge::Joint { joint, edge })
 }
 
 /// How far the thrust lies towards the extrados from the middle of a joint, by the impulses at its corners, over the thickness; `None`
 /// where none presses. The solver takes a pull below its tolerance for none.
-pub(super) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
+pub(in crate::dynamics) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
     let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));
     let normal = intrados + extrados;
     (normal > 0.0).then(|| 0.5 * (extrados - intrados) / normal)
@@ -316,12 +353,12 @@ pub(super) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
 
 impl<'a> Course<'a> {
     /// Below the potential energy `fallen` the row has overturned; `None` where the stepper tells by other signs.
-    pub(super) fn new(
+    pub(in crate::dynamics) fn new(
         task: Task<'a>,
         fallen: Option<f64>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
-        let Task { row, settings, .. } = task;
+        let Task { row, clock, .. } = task;
         let joints = row.joints().len();
         Self {
             time: 0.0,
@@ -365,8 +402,8 @@ impl<'a> Course<'a> {
                 energy_error: 0.0,
                 least_normal_n: f64::INFINITY,
                 closure_error_m: 0.0,
-                longest_step_s: settings.longest_step_s,
-                shortest_step_s: settings.shortest_step_s,
+                longest_step_s: clock.longest_step_s,
+                shortest_step_s: clock.shortest_step_s,
                 programs: 0,
                 most_iterations: 0,
                 relaxed: 0,
@@ -376,14 +413,39 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// How and when the motion ended, if it has: when it overturned, if it did, and since when it stands still for good, if it does.
+    pub(in crate::dynamics) fn ending(
+        &self,
+        overturned_s: Option<f64>,
+        rests_since: impl FnOnce() -> Option<f64>,
+    ) -> Option<(Outcome, f64)> {
+        let time = self.time;
+        if self.stopped {
+            return Some((Outcome::StillRocking, time));
+        }
+        if let Some(time_s) = overturned_s {
+            return Some((Outcome::Overturned(towards(self.sway)), time_s));
+        }
+        if time >= self.task.ground.end_s()
+            && let Some(time_s) = rests_since()
+        {
+            return Some(if self.moved {
+                (Outcome::Rest, time_s)
+            } else {
+                (Outcome::NeverMoved, time)
+            });
+        }
+        (time >= self.task.clock.end_s).then_some((Outcome::StillRocking, time))
+    }
+
     /// Whether anybody is told of samples and events.
-    pub(super) const fn is_followed(&self) -> bool {
+    pub(in crate::dynamics) const fn is_followed(&self) -> bool {
         self.recorder.is_some()
     }
 
     /// The row is released at rest, with these rotations, this potential energy and this displacement of its centre of gravity times
     /// the mass.
-    pub(super) fn released(
+    pub(in crate::dynamics) fn released(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
         potential: f64,
@@ -400,7 +462,7 @@ impl<'a> Course<'a> {
 
     /// Peaks, half cycles and energy after a step, from the rotations of the blocks, the potential and kinetic energy, and the
     /// displacement of the centre of gravity times the mass.
-    pub(super) fn observe(
+    pub(in crate::dynamics) fn observe(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
         potential: f64,
@@ -463,7 +525,7 @@ impl<'a> Course<'a> {
     }
 
     /// Notes a difference of the energy from what it should be.
-    pub(super) fn note_defect(&mut self, energy: f64) {
+    pub(in crate::dynamics) fn note_defect(&mut self, energy: f64) {
         let worst = &mut self.summary.energy_defect_ratio;
         *worst = worst.max(energy / self.energy_unit);
     }

@@ -1,0 +1,178 @@
+//! What is known of a row of rigid blocks before it moves: the push that starts it, and its first mechanism.
+
+use crate::argument::ArgumentError;
+use crate::dynamics::model::Initial;
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
+use crate::mechanics::four_link::impact::ImpactModel;
+use crate::mechanics::four_link::row::FourLinkRow;
+use crate::mechanics::friction::{self, FrictionError};
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::stability::{StabilityError, onset};
+use crate::mechanics::sway::Sway;
+
+/// A row of rigid blocks that stands.
+#[derive(Clone, Debug)]
+pub(in crate::dynamics) struct RigidRow {
+    row: Row,
+    /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
+    incipient_g: [Option<f64>; 2],
+    /// The same where they do.
+    with_friction_g: Option<[Option<f64>; 2]>,
+    /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
+    first: Option<FirstMechanism>,
+}
+
+/// What the motion of the first mechanism is known by.
+#[derive(Clone, Debug)]
+enum FirstMechanism {
+    /// Four links.
+    FourLinks(FourLinkRow),
+    /// A stack turns about an edge of its base.
+    Base,
+}
+
+impl RigidRow {
+    /// Any row that stands.
+    ///
+    /// # Errors
+    /// When the row cannot carry its own weight.
+    pub(in crate::dynamics) fn new(row: Row) -> Result<Self, StabilityError> {
+        let incipient_g = [
+            onset(&row, Sway::Right)?.map(|onset| onset.acceleration_g),
+            onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
+        ];
+        let first = match row.supports() {
+            Supports::Left => Some(FirstMechanism::Base),
+            // An impact model is asked for, and not used: the first mechanism comes before any impact.
+            Supports::Both => FourLinkRow::new(&row, ImpactModel::MaxRestitution)
+                .ok()
+                .map(FirstMechanism::FourLinks),
+        };
+        Ok(Self {
+            row,
+            incipient_g,
+            with_friction_g: None,
+            first,
+        })
+    }
+
+    /// Its blocks.
+    pub(in crate::dynamics) const fn row(&self) -> &Row {
+        &self.row
+    }
+
+    /// The push that starts it to that side, in units of gravity; `None` if no push does.
+    pub(in crate::dynamics) fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
+        let [right, left] = self.with_friction_g.unwrap_or(self.incipient_g);
+        match sway {
+            Sway::Right => right,
+            Sway::Left => left,
+        }
+    }
+
+    /// The same row with the push that starts it to either side where joints slip, if they do, by limit analysis.
+    ///
+    /// # Errors
+    /// When the row slides apart under its own weight, or that could not be told.
+    pub(in crate::dynamics) fn with_friction(
+        mut self,
+        coefficient: Option<f64>,
+    ) -> Result<Self, FrictionError> {
+        self.with_friction_g = None;
+        let Some(coefficient) = coefficient else {
+            return Ok(self);
+        };
+        if !friction::stands(&self.row, coefficient)? {
+            return Err(FrictionError::CannotStand(coefficient));
+        }
+        let [mut right, mut left] = self.incipient_g;
+        for (push_g, sway) in [(&mut right, Sway::Right), (&mut left, Sway::Left)] {
+            *push_g = match friction::onset_of_standing(&self.row, coefficient, sway) {
+                Ok(onset) => onset.map(|onset| onset.acceleration_g),
+                // Joints that do not slip bear no less: theirs is a bound as well.
+                Err(FrictionError::NotSolved(_)) => *push_g,
+                Err(error) => return Err(error),
+            };
+        }
+        self.with_friction_g = Some([right, left]);
+        Ok(self)
+    }
+
+    /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is
+    /// not known.
+    #[must_use]
+    pub(in crate::dynamics) fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+        match &self.first {
+            Some(FirstMechanism::FourLinks(row)) => {
+                let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));
+                let barrier = links.map(|link| link.barrier).reduce(f64::min)?;
+                Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
+            }
+            Some(FirstMechanism::Base) | None => match (self.row.blocks(), self.row.joints()) {
+                // One block turns about the nearer edge of its base, up to where its centre is above that.
+                ([block], [base]) => {
+                    let rise = |edge: Edge| {
+                        let arm_m = block.centre_m - base.corner_m(edge);
+                        arm_m.norm() - arm_m.y
+                    };
+                    let rise_m = rise(Edge::Intrados).min(rise(Edge::Extrados));
+                    Some(block.mass_kg * gravity_m_s2 * rise_m)
+                }
+                _ => None,
+            },
+        }
+    }
+
+    /// Rotations of the blocks when the first mechanism is open so far.
+    pub(in crate::dynamics) fn released(
+        &self,
+        initial: Initial,
+    ) -> Result<Vec<f64>, ArgumentError> {
+        let refused = |allowed: String| ArgumentError {
+            argument: "rotation_rad",
+            value: initial.rotation_rad,
+            allowed,
+        };
+        let blocks = self.row.blocks().len();
+        // Swaying right, in the frame in which the mechanism does so; the other side is its mirror image.
+        let side = match initial.sway {
+            Sway::Right => 1.0,
+            Sway::Left => -1.0,
+        };
+        let row = match &self.first {
+            Some(FirstMechanism::FourLinks(row)) => row,
+            Some(FirstMechanism::Base) => return Ok(vec![-side * initial.rotation_rad; blocks]),
+            None => {
+                return Err(refused(
+                    "left out: this row starts as no mechanism that it could be released in"
+                        .to_owned(),
+                ));
+            }
+        };
+        let link = row
+            .link_from(initial.sway, 0)
+            .expect("a row that starts as four links has its first mechanism");
+        if initial.rotation_rad >= link.limit_rad {
+            let limit_rad = link.limit_rad;
+            return Err(refused(format!(
+                "below {limit_rad:?}, the limit position of the first mechanism"
+            )));
+        }
+        let mut bodies_rad = link.mechanism.rotations(initial.rotation_rad);
+        if initial.sway == Sway::Left {
+            bodies_rad.reverse();
+        }
+        let hinges = row.hinges(0, initial.sway);
+        let hinges_before = |block: usize| {
+            let before =
+                |hinge: &&Hinge| matches!(hinge, Hinge::Joint { joint, .. } if *joint <= block);
+            hinges.iter().filter(before).count()
+        };
+        let rotation_rad = |block: usize| {
+            let body = hinges_before(block).checked_sub(1);
+            side * body.and_then(|body| bodies_rad.get(body)).unwrap_or(&0.0)
+        };
+        Ok((0..blocks).map(rotation_rad).collect())
+    }
+}
