@@ -70,7 +70,7 @@ fn curves_begin_at_the_onset_and_end_at_the_unstable_equilibrium() {
         POINTED,
     ] {
         let scenario = parsed(text);
-        let model = scenario.structure.model(scenario.impact).unwrap();
+        let model = scenario.mechanisms().unwrap();
         for side in &capacity(&scenario, None).unwrap() {
             check_side(side, model.incipient_acceleration_g(side.sway).unwrap());
         }
@@ -82,8 +82,8 @@ fn curves_begin_at_the_onset_and_end_at_the_unstable_equilibrium() {
 #[test]
 fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
     let scenario = parsed(POINTED);
-    let Structure::Masonry(masonry) = &scenario.structure else {
-        panic!("{:?}", scenario.structure);
+    let Structure::Masonry(masonry) = scenario.structure() else {
+        panic!("{:?}", scenario.structure());
     };
     let model = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution).unwrap();
     let unit_j = 9.81 * model.mass_unit_kg() * model.length_m();

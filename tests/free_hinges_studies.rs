@@ -154,8 +154,8 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
     let map = OverturningMap::new(&scenario).unwrap();
     let request = scenario.request_from_rest();
     let row = scenario
-        .structure
-        .free_hinges(scenario.free_hinges.unwrap())
+        .structure()
+        .free_hinges(scenario.motion().row().unwrap())
         .unwrap();
     let mut rows = Vec::new();
     for index in 0..map.count() {
@@ -441,7 +441,7 @@ fn what_is_of_four_links_is_refused() {
     assert!(
         Scenario::parse(&spread, "s.toml")
             .unwrap()
-            .map
+            .map()
             .unwrap()
             .spread
     );
@@ -467,7 +467,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
     let free = read_with(&file, Hinges::Free).unwrap();
     assert_eq!(free, chosen);
     let four = read_with(&file, Hinges::Four).unwrap();
-    assert_eq!(four.free_hinges, None);
+    assert_eq!(four.motion().row(), None);
     for scenario in [free, four] {
         assert_eq!(parsed(&scenario.to_toml()), scenario);
     }

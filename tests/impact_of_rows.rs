@@ -230,8 +230,8 @@ fn on_a_pier(folder: &Path) -> (Row, f64) {
                 [[load]]\nmass_kg = 1500.0\nx_m = 1.0\nwidth_m = 0.5\n";
     fs::write(folder.join("s.toml"), text).unwrap();
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
-    let Structure::Masonry(masonry) = &scenario.structure else {
-        panic!("{:?}", scenario.structure);
+    let Structure::Masonry(masonry) = scenario.structure() else {
+        panic!("{:?}", scenario.structure());
     };
     (masonry.row().clone(), 2.5)
 }

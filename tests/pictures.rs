@@ -294,8 +294,8 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
                 [[load]]\nmass_kg = 1500.0\nx_m = 1.0\nwidth_m = 0.5\n";
     fs::write(folder.join("s.toml"), text).unwrap();
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
-    let Structure::Masonry(masonry) = &scenario.structure else {
-        panic!("{:?}", scenario.structure);
+    let Structure::Masonry(masonry) = scenario.structure() else {
+        panic!("{:?}", scenario.structure());
     };
     let outlines_m = masonry.row().outlines_m();
     let corner = |outlines: &[Vec<Vector2<f64>>], block: usize| outlines[block][0];

@@ -23,8 +23,8 @@ fn halving_the_rest_energy_changes_no_scenario() {
         scenarios += 1;
         let scenario = Scenario::read(&path).unwrap();
         // What is no four links has a criterion of its own.
-        let Ok(model) = scenario.structure.model(scenario.impact) else {
-            assert!(scenario.free_hinges.is_some());
+        let Ok(model) = scenario.mechanisms() else {
+            assert!(scenario.motion().row().is_some());
             continue;
         };
         let run = |part: f64| {
@@ -79,7 +79,7 @@ fn an_arch_that_hardly_stands_does_not_lock() {
 fn the_largest_rotation_is_measured_against_the_mechanism_that_moved() {
     let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/semicircle-record.toml");
     let scenario = Scenario::read(&scenario).unwrap();
-    let model = scenario.structure.model(scenario.impact).unwrap();
+    let model = scenario.mechanisms().unwrap();
     let first_rad = model.critical_rotations_rad()[0].abs();
     let summary = model
         .simulate(scenario.ground_motion(), &scenario.request(), None)

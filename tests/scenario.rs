@@ -55,7 +55,7 @@ fn defaults_are_those_of_python() {
 #[test]
 fn defaults() {
     let scenario = parse(ARCH).unwrap();
-    let Structure::Arch(arch) = &scenario.structure else {
+    let Structure::Arch(arch) = scenario.structure() else {
         panic!("an arch")
     };
     assert_eq!(
@@ -69,7 +69,7 @@ fn defaults() {
     assert_eq!([arch.depth_m(), arch.density_kg_m3()], [1.0, 2000.0]);
     assert_eq!(arch.voussoirs(), None);
     assert_eq!(
-        scenario.simulation,
+        *scenario.simulation(),
         Simulation {
             duration_s: 10.0,
             output_step_s: 0.005,
@@ -78,19 +78,24 @@ fn defaults() {
             gravity_m_s2: 9.81,
         }
     );
-    assert_eq!(scenario.impact, ImpactModel::MaxRestitution.into());
-    assert!(scenario.title.is_none() && scenario.ground.is_none() && scenario.initial.is_none());
+    assert_eq!(
+        scenario.motion().impact(),
+        ImpactModel::MaxRestitution.into()
+    );
     assert!(
-        scenario.free_hinges.is_none()
-            && scenario.map.is_none()
-            && scenario.spectrum.is_none()
-            && scenario.suite.is_none()
+        scenario.title().is_none() && scenario.ground().is_none() && scenario.initial().is_none()
+    );
+    assert!(
+        scenario.motion().row().is_none()
+            && scenario.map().is_none()
+            && scenario.spectrum().is_none()
+            && scenario.suite().is_none()
     );
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
 
     let scenario = parse(&format!("{COLUMN}[free_hinges]\n")).unwrap();
-    assert_eq!(scenario.free_hinges, Some(RowOptions::default()));
-    let Structure::Column(column) = &scenario.structure else {
+    assert_eq!(scenario.motion().row(), Some(RowOptions::default()));
+    let Structure::Column(column) = scenario.structure() else {
         panic!("a column")
     };
     assert_eq!(
@@ -121,14 +126,14 @@ fn every_key_of_a_row() {
         shortest_step_s: Some(1e-5),
         friction_coefficient: None,
     };
-    assert_eq!(scenario.free_hinges, Some(steps));
+    assert_eq!(scenario.motion().row(), Some(steps));
     let column = Column::new(2.0, 0.8)
         .and_then(|column| column.with_drum_heights_m(vec![0.8, 0.8, 0.4]))
         .and_then(|column| column.with_top_width_m(0.6))
         .and_then(|column| column.with_depth_m(0.5))
         .and_then(|column| column.with_density_kg_m3(2400.0))
         .unwrap();
-    assert_eq!(scenario.structure, Structure::Column(column));
+    assert_eq!(*scenario.structure(), Structure::Column(column));
     let text = scenario.to_toml();
     for lines in [
         "[free_hinges]\nlongest_step_s = 0.0003\nshortest_step_s = 1e-5\n",
@@ -153,7 +158,7 @@ fn releases_of_rows() {
     assert_eq!(
         released(&drums, "1.57")
             .unwrap()
-            .initial
+            .initial()
             .unwrap()
             .rotation_rad,
         1.57
@@ -261,13 +266,13 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
 "#
     );
     // What is written is what was read, not only what was given.
-    assert_eq!(scenario.title.as_deref(), Some("all of it"));
+    assert_eq!(scenario.title(), Some("all of it"));
     let arch = Arch::new(10.0, 0.15, 157.5)
         .and_then(|arch| arch.with_depth_m(2.0))
         .and_then(|arch| arch.with_density_kg_m3(2000.0))
         .and_then(|arch| arch.with_voussoirs(7))
         .unwrap();
-    assert_eq!(scenario.structure, Structure::Arch(arch));
+    assert_eq!(*scenario.structure(), Structure::Arch(arch));
     let pulse = json!({
         "amplitude_g": -1000.0,
         "vertical_amplitude_g": 0.0,
@@ -276,7 +281,7 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
         "gamma": 3.0,
         "phase_deg": 90.0,
     });
-    let ground = scenario.ground.as_ref().unwrap();
+    let ground = scenario.ground().unwrap();
     let kind = Pulse::MavroeidisPapageorgiou.name();
     assert_eq!(
         serde_json::to_value(ground).unwrap(),
@@ -293,18 +298,18 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
         rest_energy_ratio: 0.1,
         gravity_m_s2: 1.62,
     };
-    assert_eq!(scenario.simulation, simulation);
-    let map = scenario.map.as_ref().unwrap();
+    assert_eq!(*scenario.simulation(), simulation);
+    let map = scenario.map().unwrap();
     let axes = [&map.x, &map.y].map(|axis| (axis.quantity, axis.sequence.values()));
     assert_eq!(axes[0], (Quantity::Duration, vec![0.1, 0.55, 1.0]));
     assert_eq!(axes[1], (Quantity::Amplitude, vec![1.0, 2.0]));
     assert!(!map.spread);
-    assert_eq!(scenario.spectrum.as_ref().unwrap().p_t.values(), [1.0]);
+    assert_eq!(scenario.spectrum().unwrap().p_t.values(), [1.0]);
     assert_eq!(
-        scenario.impact,
+        scenario.motion().impact(),
         ImpactModel::Prescribed { restitution: 1.0 }.into()
     );
-    let initial = scenario.initial.as_ref().unwrap();
+    let initial = scenario.initial().unwrap();
     assert_eq!((initial.sway, initial.rotation_rad), (Sway::Left, 0.02));
 }
 
@@ -441,7 +446,7 @@ fn structures() {
 fn columns() {
     let scenario = parse(COLUMN).unwrap();
     let expected = Column::new(4.0, 0.8).unwrap();
-    assert_eq!(scenario.structure, Structure::Column(expected));
+    assert_eq!(*scenario.structure(), Structure::Column(expected));
     assert_errors(
         "[column]\nheight = 4\nwidth_m = -0.8\nmean_radius_m = 5\n",
         &[
@@ -524,7 +529,7 @@ fn grounds() {
     for kind in Pulse::ALL {
         let name = kind.name();
         let text = format!("{ARCH}[ground.{name}]\namplitude_g = 1\nduration_s = 1");
-        let ground = parse(&text).unwrap().ground.unwrap();
+        let ground = parse(&text).unwrap().ground().cloned().unwrap();
         let Ground::Pulse(ground) = ground else {
             panic!("{name} is a pulse")
         };
@@ -868,7 +873,7 @@ fn pedestals() {
         let scenario = parse(text).unwrap();
         assert_eq!(parse(&scenario.to_toml()).unwrap(), scenario);
         let model = scenario
-            .structure
+            .structure()
             .free_hinges(RowOptions::default())
             .unwrap();
         model.row().supports_go_on()

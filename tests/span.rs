@@ -6,8 +6,8 @@ use archrock::scenario::Structure;
 fn arch(keys: &str) -> Result<archrock::Arch, String> {
     let text = format!("[arch]\n{keys}\n");
     match Scenario::parse(&text, "s.toml") {
-        Ok(scenario) => match scenario.structure {
-            Structure::Arch(arch) => Ok(arch),
+        Ok(scenario) => match scenario.structure() {
+            Structure::Arch(arch) => Ok(arch.clone()),
             other => panic!("{other:?}"),
         },
         Err(errors) => Err(errors.to_string()),

@@ -157,7 +157,7 @@ impl History {
         memory_bytes: u64,
     ) -> PyResult<Self> {
         let inner = &scenario.inner;
-        let motion = |ground: &Ground| ground.motion(inner.simulation.gravity_m_s2);
+        let motion = |ground: &Ground| ground.motion(inner.gravity_m_s2());
         let other = ground.map(motion).transpose()?;
         let motion = match &other {
             Some(motion) => motion,
@@ -421,10 +421,10 @@ impl History {
     fn report(&self, py: Python<'_>, words: &str) -> PyResult<String> {
         let scenario = self.shaken();
         let scene = match &self.standing {
-            Standing::Mechanisms(_) => Scene::new(&scenario.structure),
+            Standing::Mechanisms(_) => Scene::new(scenario.structure()),
             Standing::Row(row) => Scene::of_row(row.row()),
         };
-        let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+        let gravity_m_s2 = scenario.gravity_m_s2();
         let mut filming = Filming {
             report: Report::new(scene, &self.bodies(), gravity_m_s2),
             signals: Signals::new(),

@@ -91,13 +91,13 @@ pub enum Standing {
 
 impl Standing {
     fn of(scenario: &archrock::Scenario) -> Result<Self, String> {
-        let structure = &scenario.structure;
-        match scenario.free_hinges {
+        let structure = scenario.structure();
+        match scenario.motion().row() {
             Some(options) => match structure.free_hinges(options) {
                 Ok(row) => Ok(Self::Row(Arc::new(row))),
                 Err(error) => Err(error.to_string()),
             },
-            None => match structure.model(scenario.impact) {
+            None => match structure.model(scenario.motion().impact()) {
                 Ok(model) => Ok(Self::Mechanisms(model.into())),
                 Err(error) => Err(error.to_string()),
             },
@@ -140,10 +140,10 @@ impl Scenario {
 
     /// As mechanisms, whatever the scenario chooses.
     fn mechanisms(&self, py: Python<'_>) -> PyResult<Arc<dyn MechanismModel>> {
-        if let (None, Standing::Mechanisms(model)) = (self.inner.free_hinges, self.standing(py)?) {
+        if let (None, Standing::Mechanisms(model)) = (self.inner.motion().row(), self.standing(py)?) {
             return Ok(Arc::clone(model));
         }
-        let model = py.detach(|| self.inner.structure.model(self.inner.impact));
+        let model = py.detach(|| self.inner.mechanisms());
         Ok(model.map_err(refused)?.into())
     }
 }
@@ -197,7 +197,7 @@ impl Scenario {
 
     /// What stands on the ground, as JSON.
     fn structure_json(&self) -> PyResult<String> {
-        serde_json::to_string(&self.inner.structure).map_err(refused)
+        serde_json::to_string(self.inner.structure()).map_err(refused)
     }
 
     fn __eq__(&self, other: &Self) -> bool {
@@ -217,7 +217,7 @@ impl Scenario {
 
     /// The push that starts it to either side, as `archrock limit --format json`.
     fn limit_json(&self, py: Python<'_>) -> PyResult<String> {
-        let gravity_m_s2 = self.inner.simulation.gravity_m_s2;
+        let gravity_m_s2 = self.inner.gravity_m_s2();
         if let Some(row) = self.inner.row().map_err(refused)? {
             let [right, left] =
                 py.detach(|| [Sway::Right, Sway::Left].map(|sway| onset(&row, sway)));

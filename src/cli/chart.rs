@@ -24,7 +24,7 @@ pub struct Arguments {
 pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.read(None)?;
-    let Structure::Arch(arch) = &scenario.structure else {
+    let Structure::Arch(arch) = scenario.structure() else {
         let message = "chart is for arches only; the scenario has a column";
         return Err(Failure::Input(message.to_owned()));
     };
@@ -32,7 +32,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     commands::model(&scenario)?;
     let place = input.results(arguments.out.as_deref())?;
     let folder = place.open(&FILES)?;
-    let results = Chart::of(arch, scenario.impact).tell(arguments.figure.get())?;
+    let results = Chart::of(arch, scenario.motion().impact()).tell(arguments.figure.get())?;
     results.write(folder)?;
     if !quiet {
         say(&format!(

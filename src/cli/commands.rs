@@ -18,7 +18,7 @@ use super::{Failure, Format, print};
 
 /// The model of a scenario.
 pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
-    let model = scenario.structure.model(scenario.impact);
+    let model = scenario.mechanisms();
     model.map_err(|error| Failure::Input(error.to_string()))
 }
 
@@ -57,7 +57,7 @@ impl From<NoLimit> for Failure {
 
 /// The four links of a scenario; the error for a column begins with `what`, subject and verb.
 pub fn four_links(scenario: &Scenario, what: &str) -> Result<Box<dyn FourLinkModel>, Failure> {
-    let model = scenario.structure.four_links(scenario.impact);
+    let model = scenario.structure().four_links(scenario.motion().impact());
     model
         .map_err(|error| Failure::Input(error.to_string()))?
         .ok_or_else(|| Failure::Input(format!("{what} for arches only; the scenario has a column")))

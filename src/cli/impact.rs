@@ -58,7 +58,7 @@ impl Arguments {
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.open()?.read(None)?;
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
-    if matches!(scenario.structure, Structure::Column(_)) && !arguments.of_arches_only() {
+    if matches!(scenario.structure(), Structure::Column(_)) && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;
         let answer = chain_answer(&scenario, &*model, first, count);
         return commands::answer(&answer, arguments.format);

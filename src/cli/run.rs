@@ -30,7 +30,6 @@ use self::extras::{Extras, File, POSES, PosesTable};
 use super::check::sampling_in_words;
 use super::figure::FigureOption;
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
-use super::study::impact_ignored;
 use super::{Failure, Format, commands, print};
 
 #[derive(clap::Args)]
@@ -97,7 +96,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut failures = Vec::new();
     for job in &jobs {
         if !quiet {
-            super::warn(&job.scenario.unlikely());
+            super::warn(&job.scenarios[0].unlikely());
         }
         let told = match job.run(arguments, quiet) {
             Ok(told) => told,
@@ -134,9 +133,8 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 struct Job {
     /// Its file.
     name: String,
-    scenario: Scenario,
-    /// The same with free hinges, where both models are asked for.
-    other: Option<Scenario>,
+    /// Once for each model of motion that is asked for.
+    scenarios: Vec<Scenario>,
     place: Place,
 }
 
@@ -172,11 +170,11 @@ impl Job {
     /// The scenario of a file, or what its records make of it.
     fn read(path: &Path, arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let input = arguments.set.open(path)?;
-        let both = Models::read(arguments.hinges, &input)?;
+        let models = Models::read(arguments.hinges, &input)?;
         let about = |failure| input.about(failure);
-        let chosen = arguments.suite.choose(both).map_err(about)?;
-        let jobs = chosen.into_iter().map(|(record, (scenario, other))| {
-            scenario
+        let chosen = arguments.suite.choose(models).map_err(about)?;
+        let jobs = chosen.into_iter().map(|(record, scenarios)| {
+            scenarios[0]
                 .check_for_run()
                 .map_err(|reason| about(Failure::Input(reason)))?;
             let file = path.display();
@@ -186,8 +184,7 @@ impl Job {
                     None => file.to_string(),
                 },
                 place: Place::of(arguments, &input, record.as_deref())?,
-                scenario,
-                other,
+                scenarios,
             })
         });
         jobs.collect()
@@ -195,22 +192,17 @@ impl Job {
 
     /// Runs it, and says what happened.
     fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
-        let Self {
-            scenario,
-            other,
-            place,
-            ..
-        } = self;
-        let title = scenario.title.as_ref();
+        let (scenario, place) = (&self.scenarios[0], &self.place);
+        let title = scenario.title();
         let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
         text += &records(scenario);
-        if let Some(ignored) = impact_ignored(other.as_ref().unwrap_or(scenario)) {
+        if let Some(ignored) = self.scenarios.iter().find_map(Scenario::ignored) {
             let _ = writeln!(text, "  {ignored}");
         }
-        let told = match (&scenario.free_hinges, other) {
-            (_, Some(free)) => both(scenario, free, place, arguments, quiet)?,
-            (Some(_), None) => free_hinges::run(scenario, place, arguments.options(quiet)?, None)?,
-            (None, None) => {
+        let told = match (&self.scenarios[..], scenario.motion().row()) {
+            ([four, free], _) => both(four, free, place, arguments, quiet)?,
+            (_, Some(_)) => free_hinges::run(scenario, place, arguments.options(quiet)?, None)?,
+            (_, None) => {
                 if arguments.no_spread {
                     let message = "--no-spread goes with free hinges: four links and columns are not repeated";
                     return Err(Failure::Input(message.to_owned()));
@@ -227,12 +219,12 @@ impl Job {
 
 /// The records that shake a scenario, a line each.
 fn records(scenario: &Scenario) -> String {
-    let Some(Ground::Record(record)) = &scenario.ground else {
+    let Some(Ground::Record(record)) = scenario.ground() else {
         return String::new();
     };
     let line = |series: &Series| {
         let (file, sampling) = (series.name(), sampling_in_words(&series.sampling()));
-        let peak_g = series.peak_g(scenario.simulation.gravity_m_s2);
+        let peak_g = series.peak_g(scenario.gravity_m_s2());
         format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
     };
     record.series().map(line).collect()
@@ -247,19 +239,15 @@ struct Told {
 }
 
 impl Models {
-    /// Reads a scenario for the model that is asked for, or that it chooses; with both, for four links and then
-    /// for free hinges.
-    pub fn read(
-        asked: Option<Self>,
-        input: &Input<'_>,
-    ) -> Result<(Scenario, Option<Scenario>), Failure> {
-        let read = |hinges| input.read(hinges);
-        Ok(match asked {
-            None => (read(None)?, None),
-            Some(Self::Four) => (read(Some(Hinges::Four))?, None),
-            Some(Self::Free) => (read(Some(Hinges::Free))?, None),
-            Some(Self::Both) => (read(Some(Hinges::Four))?, Some(read(Some(Hinges::Free))?)),
-        })
+    /// Reads a scenario for each model that is asked for, or for the one that it chooses.
+    pub fn read(asked: Option<Self>, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
+        let models: &[Option<Hinges>] = match asked {
+            None => &[None],
+            Some(Self::Four) => &[Some(Hinges::Four)],
+            Some(Self::Free) => &[Some(Hinges::Free)],
+            Some(Self::Both) => &[Some(Hinges::Four), Some(Hinges::Free)],
+        };
+        models.iter().map(|hinges| input.read(*hinges)).collect()
     }
 }
 
@@ -386,10 +374,7 @@ fn both(
         for name in own.iter().chain(&extras::Options::FILES) {
             folder.forget(name);
         }
-        let title = four
-            .title
-            .as_deref()
-            .unwrap_or("Four links and free hinges");
+        let title = four.title().unwrap_or("Four links and free hinges");
         let [of_four, of_free] = &curves;
         let named = [("four links", of_four), ("free hinges", of_free)];
         let subject = subject(four, &*models.0, title);
@@ -419,7 +404,7 @@ fn four_links(
 ) -> Result<Told, Failure> {
     let model = commands::model(scenario)?;
     let ground = scenario.ground_motion();
-    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+    let gravity_m_s2 = scenario.gravity_m_s2();
     let scales = dimensionless
         .then(|| {
             Scales::new(&*model, gravity_m_s2).ok_or_else(|| {
@@ -434,7 +419,7 @@ fn four_links(
     let mut folder = place.open(&[EVENTS, IMPACTS, PICTURE, SUMMARY])?;
     let bodies = model.bodies();
     let mut timeline = Timeline::new(&bodies);
-    let scene = Scene::new(&scenario.structure);
+    let scene = Scene::new(scenario.structure());
     let mut extras = Extras::new(
         &place.extras,
         folder.as_ref(),
@@ -476,7 +461,7 @@ fn four_links(
         }
         table.finish()?;
         results::write_impacts(folder.file(IMPACTS), &*model, &events)?;
-        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let title = scenario.title().unwrap_or("Rocking history");
         let subject = subject(scenario, &*model, title);
         let picture = timeline.draw(place.figure, &subject, &events, &summary);
         folder
@@ -507,7 +492,7 @@ fn subject<'a>(
     Subject {
         title,
         ground: scenario.ground_motion(),
-        gravity_m_s2: scenario.simulation.gravity_m_s2,
+        gravity_m_s2: scenario.gravity_m_s2(),
         incipient_g: [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway)),
     }
 }
@@ -606,7 +591,7 @@ fn human_summary(
     text += &incipient(scenario, model, ground, history);
     text += &cut_short(scenario, ground, history);
     if let Some(thrust) = &history.thrust {
-        text += &trust(thrust, &scenario.structure);
+        text += &trust(thrust, scenario.structure());
     }
     text
 }
@@ -647,7 +632,7 @@ fn incipient<M: Model + ?Sized>(
         reaches(scenario, ground, history, least_g),
         "the smaller one",
     );
-    let options = scenario.free_hinges.unwrap_or_default();
+    let options = scenario.motion().row().unwrap_or_default();
     let incipient = match options.friction_coefficient {
         None => "incipient acceleration A_L",
         Some(_) => "incipient acceleration with friction",
@@ -671,7 +656,7 @@ fn reaches(
     history: &Summary,
     incipient_g: f64,
 ) -> String {
-    let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.simulation.gravity_m_s2;
+    let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.gravity_m_s2();
     let mut reaches = if peaks_g.x > 0.0 {
         format!(
             "reaches {:.4} g, {:.2} times as much",
@@ -693,7 +678,7 @@ fn reaches(
 
 /// Warns of a run that ends before the ground does.
 fn cut_short(scenario: &Scenario, ground: &GroundMotion, history: &Summary) -> String {
-    if history.end_s >= scenario.simulation.duration_s && ground.end_s() > history.end_s {
+    if history.end_s >= scenario.simulation().duration_s && ground.end_s() > history.end_s {
         return format!(
             "  the run ends at {:.4} s and the ground moves until {:.4} s: a longer duration_s in [simulation] \
              shows the rest\n",

@@ -64,28 +64,25 @@ pub struct SuiteOption {
     suite: bool,
 }
 
-/// A scenario for one model of motion, or for both.
-pub type Both = (Scenario, Option<Scenario>);
+/// Scenarios that differ in their models of motion, and the record of the suite that shakes them, if one does.
+pub type Shaken = (Option<String>, Vec<Scenario>);
 
 impl SuiteOption {
-    /// The scenario, or the scenario once for each record of its suite, if that is asked for.
-    pub fn choose(self, (scenario, other): Both) -> Result<Vec<(Option<String>, Both)>, Failure> {
+    /// The scenarios, which differ in their models of motion, or the same once for each record of their suite, if that
+    /// is asked for.
+    pub fn choose(self, models: Vec<Scenario>) -> Result<Vec<Shaken>, Failure> {
         if !self.suite {
-            return Ok(vec![(None, (scenario, other))]);
+            return Ok(vec![(None, models)]);
         }
-        let chosen: Vec<_> = match other {
-            Some(other) => scenario
-                .by_record()
-                .into_iter()
-                .zip(other.by_record())
-                .map(|((file, scenario), (_, other))| (Some(file), (scenario, Some(other))))
-                .collect(),
-            None => scenario
-                .by_record()
-                .into_iter()
-                .map(|(file, scenario)| (Some(file), (scenario, None)))
-                .collect(),
-        };
+        let mut chosen: Vec<Shaken> = Vec::new();
+        for model in &models {
+            for (index, (file, scenario)) in model.by_record().into_iter().enumerate() {
+                match chosen.get_mut(index) {
+                    Some((_, scenarios)) => scenarios.push(scenario),
+                    None => chosen.push((Some(file), vec![scenario])),
+                }
+            }
+        }
         if chosen.is_empty() {
             let message = "--suite is for a scenario with a table [suite], which names records";
             return Err(Failure::Input(message.to_owned()));

@@ -9,7 +9,6 @@ use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::scenario::{Hinges, Scenario, shown_lines};
 use archrock::studies::catalogue::{Done, StudyError, StudyKind};
 use archrock::studies::part::{PartError, PartFile, Shard};
@@ -82,19 +81,12 @@ impl HingesOption {
         let scenario = input.read(hinges)?;
         if !quiet {
             super::warn(&scenario.unlikely());
-            if let Some(ignored) = impact_ignored(&scenario) {
+            if let Some(ignored) = scenario.ignored() {
                 say(ignored);
             }
         }
         Ok(scenario)
     }
-}
-
-/// Says that the impact model of a scenario does not count, where that is so.
-pub fn impact_ignored(scenario: &Scenario) -> Option<&'static str> {
-    let ignored =
-        scenario.free_hinges.is_some() && scenario.impact != ImpactModel::MaxRestitution.into();
-    ignored.then_some("[impact] is ignored: with free hinges impacts follow from the blocks")
 }
 
 impl From<PartError> for Failure {

@@ -1,6 +1,5 @@
 //! The command `threshold`.
 
-use std::iter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -15,7 +14,7 @@ use serde_json::Value;
 use super::figure::FigureOption;
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
-use super::study::{Display, Threads, impact_ignored, say};
+use super::study::{Display, Threads, say};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -52,17 +51,16 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
     let input = arguments.scenario.open()?;
-    let both = Models::read(arguments.hinges, &input)?;
+    let models = Models::read(arguments.hinges, &input)?;
     let about = |failure| input.about(failure);
     let place = input.results(arguments.out.as_deref())?;
     let (mut names, mut tasks) = (Vec::new(), Vec::new());
-    for (record, (scenario, other)) in arguments.suite.choose(both).map_err(about)? {
-        check(&scenario).map_err(|message| about(Failure::Input(message)))?;
+    for (record, scenarios) in arguments.suite.choose(models).map_err(about)? {
+        check(&scenarios[0]).map_err(|message| about(Failure::Input(message)))?;
         let place = match &record {
             Some(record) => place.of_record(record)?,
             None => place.clone(),
         };
-        let scenarios: Vec<Scenario> = iter::once(scenario).chain(other).collect();
         names.push(record.unwrap_or_default());
         tasks.push((scenarios, place));
     }
@@ -72,7 +70,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         && let Some(ignored) = tasks
             .iter()
             .flat_map(|(scenarios, _)| scenarios)
-            .find_map(impact_ignored)
+            .find_map(Scenario::ignored)
     {
         say(ignored);
     }
@@ -92,7 +90,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             print(&pretty(&only.unwrap_or(Value::Array(results))))
         }
         Format::Text => {
-            let title = tasks[0].0[0].title.as_ref();
+            let title = tasks[0].0[0].title();
             let title = title.map_or(String::new(), |title| format!("{title}\n"));
             let sampled = factors.in_words();
             print(&format!("{title}{}  {sampled}\n", texts.concat()))

@@ -11,7 +11,7 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
             .any(|axis| quantities.contains(&axis.quantity) || axis.key == key)
     };
     let mut parts = structure(scenario, &varies);
-    match &scenario.ground {
+    match scenario.ground() {
         Some(Ground::Pulse(pulse)) => {
             let kind = pulse.kind.name();
             let mut part = format!("{} pulse", kind.replace('_', " "));
@@ -37,7 +37,7 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
 
 fn structure(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Vec<String> {
     let mut words = Vec::new();
-    match &scenario.structure {
+    match scenario.structure() {
         Structure::Arch(arch) => {
             if !varies(&[Quantity::MeanRadius], "arch.mean_radius_m") {
                 words.push(format!("R {} m", short(arch.mean_radius_m())));
@@ -74,14 +74,14 @@ fn short(value: f64) -> f64 {
 }
 
 fn model(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> String {
-    if scenario.free_hinges.is_some() {
+    if scenario.motion().row().is_some() {
         return "free hinges".to_owned();
     }
-    let name = match scenario.structure {
+    let name = match scenario.structure() {
         Structure::Column(_) => "Housner's block",
         Structure::Arch(_) | Structure::Masonry(_) => "four links",
     };
-    match scenario.impact.model {
+    match scenario.motion().impact().model {
         ImpactModel::Prescribed { .. }
             if varies(&[Quantity::Restitution], "impact.restitution") =>
         {

@@ -85,7 +85,7 @@ impl Report {
     /// the one before begin with four spaces.
     #[must_use]
     pub fn page(&self, scenario: &Scenario, ground: &GroundMotion, said: &str) -> String {
-        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let title = scenario.title().unwrap_or("Rocking history");
         let mut lines: Vec<String> = Vec::new();
         for line in said.lines() {
             match lines.last_mut() {

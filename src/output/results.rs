@@ -277,10 +277,10 @@ pub fn summary(
         "incipient_acceleration_g".to_owned(),
         json!({ "right": incipient_g(Sway::Right), "left": incipient_g(Sway::Left) }),
     );
-    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+    let gravity_m_s2 = scenario.gravity_m_s2();
     if let Some(scales) = Scales::new(model, gravity_m_s2) {
         let p_rad_s = scales.frequency_rad_s;
-        let p_t_p = match &scenario.ground {
+        let p_t_p = match scenario.ground() {
             Some(Ground::Pulse(pulse)) => Some(pulse.duration_s * p_rad_s),
             Some(Ground::Record(_)) | None => None,
         };

@@ -2,7 +2,7 @@
 
 use std::ops::Bound::Included;
 
-use serde::ser::{SerializeMap as _, Serializer};
+use serde_json::{Value, json};
 
 use super::table::{Number, OneOf, Reading, Table};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
@@ -54,14 +54,13 @@ fn read_model(table: &mut Table<'_>) -> Reading<ImpactModel> {
 }
 
 /// Writes `[impact]`.
-pub(super) fn serialize<S: Serializer>(law: &ImpactLaw, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(None)?;
-    map.serialize_entry("model", law.model.name())?;
-    if let ImpactModel::Prescribed { restitution } = &law.model {
-        map.serialize_entry("restitution", restitution)?;
+pub(super) fn to_json(law: &ImpactLaw) -> Value {
+    let mut table = json!({ "model": law.model.name() });
+    if let ImpactModel::Prescribed { restitution } = law.model {
+        table["restitution"] = json!(restitution);
     }
     if !law.is_theory() {
-        map.serialize_entry("restitution_factor", &law.restitution_factor)?;
+        table["restitution_factor"] = json!(law.restitution_factor);
     }
-    map.end()
+    table
 }

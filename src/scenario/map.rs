@@ -20,7 +20,7 @@ use super::record::PEAK_G;
 use super::sequence::Sequence;
 use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::table::{Number, Reading, Switch, Table};
-use super::{Ground, PulseGround, Simulation, Structure};
+use super::{Ground, Hinges, Motion, PulseGround, Simulation, Structure};
 use crate::argument::plain;
 use crate::mechanics::four_link::impact::ImpactModel;
 
@@ -117,19 +117,18 @@ impl Map {
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
-        free_hinges: bool,
+        (hinges, motion): (Hinges, Option<&Motion>),
         ground: Option<&Option<Ground>>,
-        impact: Option<&ImpactModel>,
         simulation: Option<&Simulation>,
     ) -> Reading<Self> {
-        let spread = read_spread(table, free_hinges);
+        let spread = read_spread(table, hinges);
         let read = Quantity::ALL
             .iter()
             .filter(|quantity| **quantity != Quantity::Other)
             .map(|&quantity| {
                 let sequence = Sequence::read(table, quantity.name(), quantity.range())?;
                 if sequence.is_some() {
-                    suits(table, quantity, structure, free_hinges, impact)?;
+                    suits(table, quantity, structure, (hinges, motion))?;
                     check_ground(table, quantity, ground)?;
                 }
                 let key = quantity.name().to_owned();
@@ -268,9 +267,9 @@ fn check_ground(
 const SPREAD: &str = "spread";
 
 /// Reads `spread`, which is of free hinges.
-fn read_spread(table: &mut Table<'_>, free_hinges: bool) -> Reading<bool> {
+fn read_spread(table: &mut Table<'_>, hinges: Hinges) -> Reading<bool> {
     let spread = table.or(SPREAD, &Switch, false)?;
-    if spread && !free_hinges {
+    if spread && hinges == Hinges::Four {
         let wrong = "goes with a table [free_hinges]: four links are integrated to a tolerance, not in steps";
         return Err(table.wrong(SPREAD, wrong));
     }
@@ -282,8 +281,7 @@ fn suits(
     table: &mut Table<'_>,
     quantity: Quantity,
     structure: Option<&Structure>,
-    free_hinges: bool,
-    impact: Option<&ImpactModel>,
+    (hinges, motion): (Hinges, Option<&Motion>),
 ) -> Reading<()> {
     let wrong = match quantity {
         Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace
@@ -294,11 +292,13 @@ fn suits(
         {
             "applies to a circular [arch] without piers and loads"
         }
-        Quantity::Restitution if free_hinges => {
+        Quantity::Restitution if hinges == Hinges::Free => {
             "goes with four links: with free hinges impacts follow from the blocks"
         }
         Quantity::Restitution
-            if impact.is_some_and(|model| !matches!(model, ImpactModel::Prescribed { .. })) =>
+            if motion.is_some_and(|motion| {
+                !matches!(motion.impact().model, ImpactModel::Prescribed { .. })
+            }) =>
         {
             "needs model = \"prescribed\" in [impact]"
         }

@@ -34,6 +34,7 @@ mod initial;
 mod listing;
 mod map;
 mod masonry;
+mod motion;
 mod record;
 mod sequence;
 mod shown;
@@ -57,14 +58,15 @@ use serde_json::Value;
 
 use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{Initial, Model, Request};
+use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
 use crate::mechanics::blocks::Row;
-use crate::mechanics::four_link::impact::ImpactLaw;
+use crate::mechanics::four_link::arch::FourLinkError;
 pub use assignment::Assignment;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
 pub use map::{Axis, Map, Quantity};
+pub use motion::{Hinges, Motion};
 pub use record::{
     Component, Contents, Decimal, Form, Format, Layout, LineFault, Record, Recorded, Sampling,
     Scaling, Series, TableColumn, TableLayout, Times, Unit,
@@ -84,16 +86,6 @@ pub use verify::{
     Height, LimitState, ModeState, PointDemand, Records, Relief, Sides, StateRule, Verify,
 };
 
-named! {
-    /// A model of motion.
-    pub enum Hinges {
-        /// Mechanisms of one degree of freedom that follow one another: four links, or Housner's column.
-        Four = "four",
-        /// A row of blocks whose joints open and shut anywhere.
-        Free = "free",
-    }
-}
-
 /// What changes a scenario as it is read.
 ///
 /// With free hinges asked for, the steps are those of `[free_hinges]` if that is there, and `[impact]` is not asked
@@ -108,48 +100,107 @@ pub struct Changes<'a> {
 
 /// What to simulate, every default resolved.
 ///
-/// A scenario is read from text, which checks it; it is serialized as it is read, to TOML by
+/// A scenario is read from text, which checks it; it is written as it is read, to TOML by
 /// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    /// Free text for the results, as it is [shown](fn@shown).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub title: Option<String>,
-    /// What stands on the ground.
-    #[serde(flatten)]
-    pub structure: Structure,
-    /// Options of the model whose joints open and shut anywhere; `None`: four links.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub free_hinges: Option<RowOptions>,
-    /// How the ground moves; `None`: it stays still.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ground: Option<Ground>,
-    /// What happens when the hinges of four links close; nothing that is asked of free hinges.
-    #[serde(serialize_with = "impact::serialize")]
-    pub impact: ImpactLaw,
-    /// Where the motion starts from; `None`: from rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub initial: Option<Initial>,
-    /// How the motion is computed.
-    pub simulation: Simulation,
-    /// What varies over an overturning map.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub map: Option<Map>,
-    /// What is tried for an overturning spectrum; `None`: the defaults.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub spectrum: Option<Spectrum>,
-    /// Which records shake the structure for its fragility.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub suite: Option<Suite>,
-    /// What is demanded of it in a check.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub demand: Option<Demand>,
-    /// How it is checked; `None`: by the defaults.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub verify: Option<Verify>,
+    title: Option<String>,
+    structure: Structure,
+    motion: Motion,
+    /// Whether the text has an `[impact]` that does not count.
+    ignores_impact: bool,
+    ground: Option<Ground>,
+    initial: Option<Initial>,
+    simulation: Simulation,
+    map: Option<Map>,
+    spectrum: Option<Spectrum>,
+    suite: Option<Suite>,
+    demand: Option<Demand>,
+    verify: Option<Verify>,
     /// The motion of `ground`, built when that was read.
-    #[serde(skip)]
-    motion: Arc<GroundMotion>,
+    ground_motion: Arc<GroundMotion>,
+}
+
+/// What it says.
+impl Scenario {
+    /// Free text for the results, as it is [shown](fn@shown).
+    #[must_use]
+    pub fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    /// What stands on the ground.
+    #[must_use]
+    pub const fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// The model of motion.
+    #[must_use]
+    pub const fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// How the ground moves; `None`: it stays still.
+    #[must_use]
+    pub const fn ground(&self) -> Option<&Ground> {
+        self.ground.as_ref()
+    }
+
+    /// Where the motion starts from; `None`: from rest.
+    #[must_use]
+    pub const fn initial(&self) -> Option<Initial> {
+        self.initial
+    }
+
+    /// How the motion is computed.
+    #[must_use]
+    pub const fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// What varies over an overturning map.
+    #[must_use]
+    pub const fn map(&self) -> Option<&Map> {
+        self.map.as_ref()
+    }
+
+    /// What is tried for an overturning spectrum; `None`: the defaults.
+    #[must_use]
+    pub const fn spectrum(&self) -> Option<&Spectrum> {
+        self.spectrum.as_ref()
+    }
+
+    /// Which records shake the structure for its fragility.
+    #[must_use]
+    pub const fn suite(&self) -> Option<&Suite> {
+        self.suite.as_ref()
+    }
+
+    /// What is demanded of it in a check.
+    #[must_use]
+    pub const fn demand(&self) -> Option<&Demand> {
+        self.demand.as_ref()
+    }
+
+    /// How it is checked; `None`: by the defaults.
+    #[must_use]
+    pub const fn verify(&self) -> Option<&Verify> {
+        self.verify.as_ref()
+    }
+
+    /// Gravity, in m/s2.
+    #[must_use]
+    pub const fn gravity_m_s2(&self) -> f64 {
+        self.simulation.gravity_m_s2
+    }
+
+    /// Says what of the text does not count with its model of motion, where there is such.
+    #[must_use]
+    pub fn ignored(&self) -> Option<&'static str> {
+        self.ignores_impact
+            .then_some("[impact] is ignored: with free hinges impacts follow from the blocks")
+    }
 }
 
 impl Scenario {
@@ -190,36 +241,29 @@ impl Scenario {
     /// Reads a scenario whose files are relative to `folder`.
     fn read_table(table: &mut Table<'_>, folder: &Path, hinges: Option<Hinges>) -> Reading<Self> {
         let title = table.optional("title", &Text);
-        let steps = table.table("free_hinges", free_hinges::read);
-        let free = match hinges {
-            Some(hinges) => hinges == Hinges::Free,
-            None => table.gives_table("free_hinges"),
-        };
-        let structure = Structure::read(table, folder, free);
+        let motion = motion::Tables::read(table, hinges);
+        let hinges = motion.hinges;
+        let structure = Structure::read(table, folder, hinges);
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let gravity_m_s2 = match &simulation {
             Ok(simulation) => Ok(simulation.gravity_m_s2),
             Err(reported) => Err(*reported),
         };
         let ground = table.table("ground", |table| Ground::read(table, folder, gravity_m_s2));
-        let (ground, motion) = match ground {
+        let (ground, ground_motion) = match ground {
             Ok(Some((ground, motion))) => (Ok(Some(ground)), motion),
             Ok(None) => (Ok(None), GroundMotion::still()),
             Err(reported) => (Err(reported), GroundMotion::still()),
         };
-        if hinges.is_none() && table.gives("free_hinges") && table.gives("impact") {
-            let wrong = "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out";
-            return Err(table.wrong("impact", wrong));
-        }
-        let impact = table.table_or_defaults("impact", impact::read);
+        let motion = motion.complete(table);
         let initial = table.table("initial", |table| {
             Initial::read(table, structure.as_ref().ok())
         });
         let map = table.table("map", |table| {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
-            let impact = impact.as_ref().ok().map(|law| &law.model);
+            let motion = motion.as_ref().ok().map(|(motion, _)| motion);
             let simulation = simulation.as_ref().ok();
-            Map::read(table, structure, free, ground, impact, simulation)
+            Map::read(table, structure, (hinges, motion), ground, simulation)
         });
         let spectrum = table.table("spectrum", |table| {
             let structure = structure.as_ref().ok();
@@ -242,16 +286,14 @@ impl Scenario {
         if let Some(verify) = &verify {
             verify.suits(table, demand.as_ref())?;
         }
-        let (steps, structure) = (steps?, structure?);
-        if let Some(options) = steps.filter(|_| free) {
-            free_hinges::carries(table, &structure, options)?;
-        }
+        let ((motion, ignores_impact), structure) = (motion?, structure?);
+        motion.check(table, &structure)?;
         Ok(Self {
             title: title?.map(|title| shown(&title)),
             structure,
-            free_hinges: free.then(|| steps.unwrap_or_default()),
+            motion,
+            ignores_impact,
             ground: ground?,
-            impact: impact?,
             initial: initial?,
             simulation: simulation?,
             map: map?,
@@ -259,7 +301,7 @@ impl Scenario {
             suite: suite?,
             demand,
             verify,
-            motion: Arc::new(motion),
+            ground_motion: Arc::new(ground_motion),
         })
     }
 
@@ -275,7 +317,7 @@ impl Scenario {
             map: None,
             spectrum: None,
             suite: None,
-            motion: Arc::new(motion),
+            ground_motion: Arc::new(motion),
             ..self.clone()
         }
     }
@@ -286,25 +328,26 @@ impl Scenario {
         suite::shaking(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
     }
 
-    /// The model of motion that the scenario chooses.
+    /// What moves, by its model of motion.
     ///
     /// # Errors
-    /// As [`Structure::model`] or [`Structure::free_hinges`].
+    /// As [`Motion::model`].
     pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
-        Ok(match self.free_hinges {
-            Some(steps) => Box::new(self.structure.free_hinges(steps)?),
-            None => self.structure.model(self.impact)?,
-        })
+        self.motion.model(&self.structure)
     }
 
-    /// The name in results of the model of motion that the scenario chooses.
+    /// The name of that model in results.
     #[must_use]
     pub const fn model_name(&self) -> &'static str {
-        match (&self.free_hinges, &self.structure) {
-            (Some(_), _) => "free_hinges",
-            (None, Structure::Arch(_) | Structure::Masonry(_)) => "four_links",
-            (None, Structure::Column(_)) => "column",
-        }
+        self.motion.name(&self.structure)
+    }
+
+    /// What stands as mechanisms of one degree of freedom, also where it moves otherwise.
+    ///
+    /// # Errors
+    /// As [`Structure::model`].
+    pub fn mechanisms(&self) -> Result<Box<dyn MechanismModel>, FourLinkError> {
+        self.structure.model(self.motion.impact())
     }
 
     /// Refuses a scenario that does not start from rest, as the histories of what is asked for do.
@@ -339,7 +382,7 @@ impl Scenario {
     /// The ground motion, of still ground where the scenario has no `[ground]`.
     #[must_use]
     pub fn ground_motion(&self) -> &GroundMotion {
-        &self.motion
+        &self.ground_motion
     }
 
     /// Whether there is a history to simulate: the ground moves, or the structure is released from a rotated
@@ -395,12 +438,34 @@ impl Scenario {
     /// The scenario as JSON, every default written out, with the keys of the file.
     #[must_use]
     pub fn to_json(&self) -> Value {
-        let mut table =
-            serde_json::to_value(self).expect("a scenario consists of tables of numbers and texts");
-        // Beside free hinges there is no `[impact]`.
-        if let (Some(_), Some(table)) = (self.free_hinges, table.as_object_mut()) {
-            table.shift_remove("impact");
+        fn json(value: &impl Serialize) -> Value {
+            serde_json::to_value(value).expect("a scenario consists of tables of numbers and texts")
         }
-        table
+        // What a row of blocks is asked for stands beside it, and what mechanisms are asked for after the ground.
+        let motion = |row: bool| match self.motion.row().is_some() {
+            is_row if is_row == row => self.motion.table(),
+            _ => ("", Value::Null),
+        };
+        let Value::Object(structure) = json(&self.structure) else {
+            unreachable!("a structure is some tables");
+        };
+        let tables = [
+            motion(true),
+            ("ground", json(&self.ground)),
+            motion(false),
+            ("initial", json(&self.initial)),
+            ("simulation", json(&self.simulation)),
+            ("map", json(&self.map)),
+            ("spectrum", json(&self.spectrum)),
+            ("suite", json(&self.suite)),
+            ("demand", json(&self.demand)),
+            ("verify", json(&self.verify)),
+        ];
+        let tables = tables
+            .into_iter()
+            .map(|(key, table)| (key.to_owned(), table));
+        let title = ("title".to_owned(), json(&self.title));
+        let all = [title].into_iter().chain(structure).chain(tables);
+        Value::Object(all.filter(|(_, value)| !value.is_null()).collect())
     }
 }

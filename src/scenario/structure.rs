@@ -8,6 +8,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::masonry::{self, Beside};
+use super::motion::Hinges;
 use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Switch, Table};
 use super::unlikely::LIKELY_EMBRACE_DEG;
@@ -68,8 +69,9 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads what stands, to be simulated with free hinges or not. Files are relative to `folder`.
-    pub(super) fn read(table: &mut Table<'_>, folder: &Path, free_hinges: bool) -> Reading<Self> {
+    /// Reads what stands, for a model of motion. Files are relative to `folder`.
+    pub(super) fn read(table: &mut Table<'_>, folder: &Path, hinges: Hinges) -> Reading<Self> {
+        let free_hinges = hinges == Hinges::Free;
         let beside = Beside::read(table);
         let alone = beside.as_ref().is_ok_and(Beside::is_nothing);
         let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));

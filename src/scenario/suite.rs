@@ -15,7 +15,6 @@
 
 use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
-use std::sync::Arc;
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
@@ -201,14 +200,7 @@ impl Scenario {
         records
             .map(|series| {
                 let record = shaking(series, Scaling::Factor(1.0));
-                let scenario = Self {
-                    motion: Arc::new(record.motion(self.simulation.gravity_m_s2)),
-                    ground: Some(Ground::Record(Box::new(record))),
-                    map: None,
-                    spectrum: None,
-                    suite: None,
-                    ..self.clone()
-                };
+                let scenario = self.with_ground(Some(Ground::Record(Box::new(record))));
                 (series.file.clone(), scenario)
             })
             .collect()

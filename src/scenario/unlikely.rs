@@ -100,7 +100,7 @@ impl Scenario {
     fn takes_long(&self) -> Option<String> {
         let duration_s = self.simulation.duration_s;
         let begin = format!("the simulation lasts {} s", short(duration_s));
-        let Some(options) = self.free_hinges else {
+        let Some(options) = self.motion.row() else {
             return (duration_s > DURATION_S).then(|| {
                 format!("{begin}: unless it rests or overturns before, that takes minutes or more")
             });

@@ -40,7 +40,7 @@ impl Scenario {
         let mut changed = Self::of(&Source::of_text(&text, ""), &changes)
             .map_err(|errors| errors.as_slice()[0].message.clone())?;
         if let Some(record) = record {
-            changed.motion = Arc::new(record.motion(changed.simulation.gravity_m_s2));
+            changed.ground_motion = Arc::new(record.motion(changed.simulation.gravity_m_s2));
             changed.ground = Some(Ground::Record(record));
         }
         Ok(changed)

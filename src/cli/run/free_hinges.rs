@@ -39,9 +39,9 @@ pub struct Options {
 
 /// The model of a scenario that has free hinges.
 pub fn model(scenario: &Scenario) -> Result<FreeHinges, Failure> {
-    let steps = scenario.free_hinges.unwrap_or_default();
+    let steps = scenario.motion().row().unwrap_or_default();
     scenario
-        .structure
+        .structure()
         .free_hinges(steps)
         .map_err(|error| Failure::Input(error.to_string()))
 }
@@ -62,13 +62,13 @@ pub fn run(
         folder.as_ref(),
         &Scene::of_row(model.row()),
         &model.bodies(),
-        scenario.simulation.gravity_m_s2,
+        scenario.gravity_m_s2(),
     );
     let mut impacts = Notable::default();
     let repetitions = options
         .spread
         .then(|| Repetitions::start(&model, ground, &scenario.request()));
-    let progress = RunProgress::new(scenario.simulation.duration_s, options.quiet);
+    let progress = RunProgress::new(scenario.simulation().duration_s, options.quiet);
     let (summary, rows) = {
         let mut results = Results {
             tables: Tables::new(&model, ground, place, folder.as_mut())?,
@@ -95,7 +95,7 @@ pub fn run(
         json["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
     }
     if let Some(mut folder) = folder {
-        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let title = scenario.title().unwrap_or("Rocking history");
         let subject = subject(scenario, &model, title);
         let picture = timeline.draw(place.figure, &subject, &summary);
         folder

@@ -41,14 +41,14 @@ pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<[Capacity; 2], NoCapacity> {
-    let model = scenario.structure.model(scenario.impact)?;
-    let parts = parts(&scenario.structure);
+    let model = scenario.mechanisms()?;
+    let parts = parts(scenario.structure());
     let control = match point_m {
         Some(at_m) => (
-            place_of(&scenario.structure, at_m).ok_or(NoCapacity::Outside(at_m))?,
+            place_of(scenario.structure(), at_m).ok_or(NoCapacity::Outside(at_m))?,
             at_m,
         ),
-        None => crown(&scenario.structure),
+        None => crown(scenario.structure()),
     };
     let side = |sway| {
         let carried = carrying(&*model, sway);
@@ -61,7 +61,7 @@ pub fn capacity(
             let displaced = model.displaced(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
-        let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+        let gravity_m_s2 = scenario.gravity_m_s2();
         let control = Control::point(carried(place, at_m));
         Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
     };

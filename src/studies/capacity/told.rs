@@ -28,9 +28,9 @@ pub fn tell(
     sides: &[Capacity; 2],
     figure: Figure,
 ) -> Result<(Results, Value), OutputError> {
-    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
-    let title = scenario.title.as_deref().unwrap_or("Capacity");
-    let masses = grouping(&scenario.structure);
+    let gravity_m_s2 = scenario.gravity_m_s2();
+    let title = scenario.title().unwrap_or("Capacity");
+    let masses = grouping(scenario.structure());
     let words = words(sides, &masses, gravity_m_s2);
     let mut json = to_json(sides, gravity_m_s2);
     json["masses"] = masses.into();

@@ -157,7 +157,7 @@ pub fn four_links_answer(
 ) -> Result<Answer, ProjectionError> {
     let (model, count) = (impact.model, question.count);
     // An arch of equal voussoirs, or of none, is its own mirror image, and so is its chain.
-    let sides = match scenario.structure {
+    let sides = match scenario.structure() {
         Structure::Masonry(_) => vec![Sway::Right, Sway::Left],
         _ => vec![impact.first],
     };
@@ -173,7 +173,7 @@ pub fn four_links_answer(
     let mut text = chains.collect::<Vec<_>>().join("\n");
     if let Some(before) = impact.before().map(|link| &link.mechanism) {
         if question.models {
-            let models = impact.by_models(before, scenario.impact.model);
+            let models = impact.by_models(before, scenario.motion().impact().model);
             json["models"] = told::models(impact, &models);
             text += &words::models_text(impact, &models);
         }

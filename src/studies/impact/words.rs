@@ -25,8 +25,8 @@ pub(super) fn chain_text(
     let mut text = format!(
         "impacts after a first sway to the {}, model {}{} (r = kinetic energy after / before",
         first.name(),
-        scenario.impact.model.name(),
-        match scenario.impact.restitution_factor {
+        scenario.motion().impact().model.name(),
+        match scenario.motion().impact().restitution_factor {
             1.0 => String::new(),
             factor => format!(" times {factor:?}"),
         },
@@ -269,7 +269,7 @@ pub(super) fn certificate_text(
         asked.index,
         asked.after_first(),
         projection.joints.len(),
-        scenario.impact.model.name(),
+        scenario.motion().impact().model.name(),
         projection.restitution,
     );
     if let Some(line) = asked.line() {
@@ -306,7 +306,7 @@ pub(super) fn certificate_text(
         let _ = writeln!(
             text,
             "Model {} keeps more energy than any admissible motion can.",
-            scenario.impact.model.name()
+            scenario.motion().impact().model.name()
         );
     }
     if projection.opened().next().is_none() {

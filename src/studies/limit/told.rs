@@ -19,7 +19,7 @@ use crate::scenario::{Scenario, Structure};
 
 /// The push that starts a row, by the static programme, and what opens: for programs and for people.
 pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
-    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+    let gravity_m_s2 = scenario.gravity_m_s2();
     let onsets = [onset(row, Sway::Right)?, onset(row, Sway::Left)?];
     let mut json = row_json(row, &onsets, gravity_m_s2);
     let mut text = String::new();
@@ -48,12 +48,12 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
         }
         text.push('\n');
     }
-    if let Structure::Column(_) = scenario.structure {
+    if let Structure::Column(_) = scenario.structure() {
         text += "joints are counted from the base, which is 0; their intrados is the left side\n";
         return Ok(Answer { json, text });
     }
     text += "joints are counted from the left, 0 at the left base or springing\n\n";
-    match scenario.structure.model(scenario.impact) {
+    match scenario.mechanisms() {
         Err(error) => {
             json["four_links"] = json!({ "none_because": error.to_string() });
             let _ = writeln!(text, "{error}");
@@ -80,8 +80,8 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
 
 /// The push that starts the first mechanism of one degree of freedom.
 pub(super) fn mechanism(scenario: &Scenario) -> Result<Answer, NoLimit> {
-    let model = scenario.structure.model(scenario.impact)?;
-    let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+    let model = scenario.mechanisms()?;
+    let gravity_m_s2 = scenario.gravity_m_s2();
     Ok(Answer {
         json: mechanism_json(&*model, gravity_m_s2),
         text: mechanism_text(&*model, gravity_m_s2),

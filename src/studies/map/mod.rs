@@ -163,7 +163,7 @@ impl<'a> OverturningMap<'a> {
     /// The cells of a scenario's map; `None` if it has no map or no ground motion.
     #[must_use]
     pub fn new(scenario: &'a Scenario) -> Option<Self> {
-        let (Some(map), Some(_)) = (&scenario.map, &scenario.ground) else {
+        let (Some(map), Some(_)) = (scenario.map(), scenario.ground()) else {
             return None;
         };
         let axes = [&map.x, &map.y];
@@ -177,7 +177,7 @@ impl<'a> OverturningMap<'a> {
             Quantity::Other,
         ];
         let mut structures = depends(&shapes);
-        if scenario.free_hinges.is_some() {
+        if scenario.motion().row().is_some() {
             for (depends, of_size) in structures.iter_mut().zip(depends(&[Quantity::MeanRadius])) {
                 *depends |= of_size;
             }
@@ -219,7 +219,7 @@ impl<'a> OverturningMap<'a> {
     /// Whether cells are rows of blocks with free hinges.
     #[must_use]
     pub const fn has_free_hinges(&self) -> bool {
-        self.scenario.free_hinges.is_some()
+        self.scenario.motion().row().is_some()
     }
 
     /// Whether each cell tells how many outcomes it has when it is computed in other ways.
@@ -286,7 +286,7 @@ impl<'a> OverturningMap<'a> {
 
     /// What stands in a cell.
     fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
-        let make = || match scenario.free_hinges {
+        let make = || match scenario.motion().row() {
             Some(steps) => {
                 let structure = self
                     .structure(index, scenario)
@@ -320,7 +320,7 @@ impl<'a> OverturningMap<'a> {
 
     /// The structure of a cell.
     fn structure(&self, index: usize, scenario: &Scenario) -> Result<Structure, ArgumentError> {
-        let arch = match &scenario.structure {
+        let arch = match scenario.structure() {
             Structure::Arch(arch) => arch,
             other @ (Structure::Column(_) | Structure::Masonry(_)) => return Ok(other.clone()),
         };
@@ -340,7 +340,7 @@ impl<'a> OverturningMap<'a> {
 
     /// The mechanisms of the structure of a cell.
     fn mechanisms(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
-        let model = match scenario.impact.model {
+        let model = match scenario.motion().impact().model {
             ImpactModel::Prescribed { restitution } => ImpactModel::Prescribed {
                 restitution: self
                     .value(index, Quantity::Restitution)
@@ -350,7 +350,7 @@ impl<'a> OverturningMap<'a> {
         };
         let impact = ImpactLaw {
             model,
-            ..scenario.impact
+            ..scenario.motion().impact()
         };
         let structure = self
             .structure(index, scenario)
@@ -369,7 +369,7 @@ impl<'a> OverturningMap<'a> {
     /// The pulse of a cell, of any amplitude; `None` under a record, or where the cell has no scenario.
     pub(super) fn pulse(&self, index: usize) -> Option<ScalablePulse> {
         let scenario = self.variant(index).ok()?;
-        let Some(Ground::Pulse(pulse)) = &scenario.ground else {
+        let Some(Ground::Pulse(pulse)) = scenario.ground() else {
             return None;
         };
         Some(self.pulses.get(self.place(index), || {
@@ -384,22 +384,22 @@ impl<'a> OverturningMap<'a> {
                 duration_s,
                 ..pulse.clone()
             };
-            ScalablePulse::new(pulse, scenario.simulation.gravity_m_s2)
+            ScalablePulse::new(pulse, scenario.gravity_m_s2())
         }))
     }
 
     /// The ground motion of a cell, or why there is none.
     fn motion(&self, index: usize, scenario: &Scenario) -> Result<GroundMotion, String> {
-        if let (Some(Ground::Pulse(pulse)), Some(scalable)) = (&scenario.ground, self.pulse(index))
+        if let (Some(Ground::Pulse(pulse)), Some(scalable)) = (scenario.ground(), self.pulse(index))
         {
             let amplitude_g = self.value(index, Quantity::Amplitude);
             return Ok(scalable.motion(amplitude_g.unwrap_or(pulse.amplitude_g)));
         }
         let factor = self.value(index, Quantity::Scale).map(Scaling::Factor);
         let scaling = factor.or(self.value(index, Quantity::PeakG).map(Scaling::PeakG));
-        match (&scenario.ground, scaling) {
+        match (scenario.ground(), scaling) {
             (Some(Ground::Record(record)), Some(scaling)) => {
-                record.rescaled(scaling, scenario.simulation.gravity_m_s2)
+                record.rescaled(scaling, scenario.gravity_m_s2())
             }
             _ => Ok(scenario.ground_motion().clone()),
         }
@@ -460,7 +460,7 @@ impl Study for OverturningMap<'_> {
     }
 
     fn inputs(&self) -> Vec<String> {
-        match &self.scenario.ground {
+        match self.scenario.ground() {
             Some(Ground::Record(record)) => {
                 let series = record.series();
                 series

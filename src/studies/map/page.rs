@@ -137,12 +137,12 @@ fn command(map: &OverturningMap<'_>) -> String {
             }
         };
         let mut inner = &mut table[outer];
-        if let Some(Ground::Pulse(pulse)) = &scenario.ground
+        if let Some(Ground::Pulse(pulse)) = scenario.ground()
             && outer == "ground"
         {
             inner = &mut inner[pulse.kind.name()];
         }
-        if let Some(Ground::Record(_)) = &scenario.ground
+        if let Some(Ground::Record(_)) = scenario.ground()
             && outer == "ground"
         {
             inner = &mut inner["record"];

@@ -23,7 +23,7 @@ impl OverturningMap<'_> {
     pub fn tell(&self, rows: Vec<MapRow>, look: Look) -> Result<Results, OutputError> {
         let scenario = self.scenario();
         let (cells, boundaries) = MapRow::sorted(rows);
-        let title = scenario.title.as_deref().unwrap_or("Overturning map");
+        let title = scenario.title().unwrap_or("Overturning map");
         let remarks = remarks(self, &cells, &boundaries);
         let summary = remarks::summary(scenario, cells.len(), &remarks);
         let picture = picture::draw(title, self, &cells, &boundaries, look);
@@ -174,19 +174,19 @@ impl Look {
     /// # Errors
     /// Says what a map needs for that.
     pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
-        let map = scenario.map.as_ref().ok_or("there is no map")?;
+        let map = scenario.map().ok_or("there is no map")?;
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
             return Err("needs the axes `duration_s` and `amplitude_g`");
         }
-        if scenario.free_hinges.is_some() {
+        if scenario.motion().row().is_some() {
             return Err("goes with four links and columns: free hinges have no p");
         }
-        let model = scenario.structure.model(scenario.impact);
+        let model = scenario.mechanisms();
         let scales = model
             .ok()
-            .and_then(|model| Scales::new(&*model, scenario.simulation.gravity_m_s2))
+            .and_then(|model| Scales::new(&*model, scenario.gravity_m_s2()))
             .ok_or("needs a mechanism that has an unstable equilibrium")?;
-        let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+        let gravity_m_s2 = scenario.gravity_m_s2();
         Ok([scales.frequency_rad_s, gravity_m_s2 / scales.incipient_m_s2])
     }
 }

@@ -129,29 +129,29 @@ impl<'a> OverturningSpectrum<'a> {
     /// # Errors
     /// When the scenario has no spectrum.
     pub fn new(scenario: &'a Scenario) -> Result<Self, NoSpectrum> {
-        if scenario.initial.is_some() {
+        if scenario.initial().is_some() {
             return Err(NoSpectrum::Initial);
         }
-        if scenario.free_hinges.is_some() {
+        if scenario.motion().row().is_some() {
             return Err(NoSpectrum::FreeHinges);
         }
-        let Some(Ground::Pulse(pulse)) = &scenario.ground else {
+        let Some(Ground::Pulse(pulse)) = scenario.ground() else {
             return Err(NoSpectrum::NoPulse);
         };
         let request = scenario.request_from_rest();
-        let model = scenario.structure.model(scenario.impact)?;
+        let model = scenario.mechanisms()?;
         let (slenderness_rad, block) =
             block(&*model, request.gravity_m_s2).ok_or(NoSpectrum::NoBlock)?;
-        let structures = match &scenario.structure {
+        let structures = match scenario.structure() {
             Structure::Column(_) => vec![(StructureKind::Column, model)],
             Structure::Arch(_) | Structure::Masonry(_) => {
-                let (depth_m, density_kg_m3) = scenario.structure.depth_and_density();
+                let (depth_m, density_kg_m3) = scenario.structure().depth_and_density();
                 let (sin, cos) = slenderness_rad.sin_cos();
                 let diagonal_m = 2.0 * block.half_diagonal_m;
                 let column = Column::new(diagonal_m * cos, diagonal_m * sin)
                     .and_then(|column| column.with_depth_m(depth_m))
                     .and_then(|column| column.with_density_kg_m3(density_kg_m3))
-                    .and_then(|column| RockingColumn::new(&column, scenario.impact))
+                    .and_then(|column| RockingColumn::new(&column, scenario.motion().impact()))
                     .map_err(FourLinkError::from)?;
                 vec![
                     (StructureKind::Arch, model),
@@ -159,7 +159,7 @@ impl<'a> OverturningSpectrum<'a> {
                 ]
             }
         };
-        let spectrum = scenario.spectrum.clone().unwrap_or_default();
+        let spectrum = scenario.spectrum().cloned().unwrap_or_default();
         Ok(Self {
             scenario,
             pulse,

@@ -15,7 +15,7 @@ impl OverturningSpectrum<'_> {
     /// # Errors
     /// When a value is not finite.
     pub fn tell(&self, rows: &[PointRow], figure: Figure) -> Result<Results, OutputError> {
-        let title = self.scenario.title.as_deref();
+        let title = self.scenario.title();
         let title = title.unwrap_or("Overturning spectrum");
         let remarks = remarks(rows);
         let summary = remarks::summary(self.scenario, rows.len(), &remarks);

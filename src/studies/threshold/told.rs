@@ -26,7 +26,7 @@ pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"
 /// In words, what to change.
 pub fn check(scenario: &Scenario) -> Result<(), String> {
     scenario.check_from_rest("threshold")?;
-    if scenario.ground.is_some() {
+    if scenario.ground().is_some() {
         return Ok(());
     }
     Err(
@@ -50,7 +50,7 @@ pub fn tell(
 ) -> Result<(Results, Value), OutputError> {
     let scenario = scenarios[0];
     let ground = scenario.ground_motion();
-    let title = scenario.title.as_deref();
+    let title = scenario.title();
     let title = title.unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario, ground);
     let json = to_json(scenarios, ground, factors, thresholds)?;
@@ -81,7 +81,7 @@ pub const fn outcome(sample: &FactorSample) -> &'static str {
 /// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.
 #[must_use]
 pub fn peak_g(scenario: &Scenario, ground: &GroundMotion) -> f64 {
-    ground.peaks_m_s2(f64::INFINITY).x / scenario.simulation.gravity_m_s2
+    ground.peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
 }
 
 /// A factor or an acceleration for people: with four digits, about as many as are certain of an edge.
@@ -224,7 +224,7 @@ fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -
     for threshold in thresholds {
         let model = threshold.model.replace('_', " ");
         let several = thresholds.len() > 1;
-        if let Some(Ground::Record(record)) = &scenario.ground {
+        if let Some(Ground::Record(record)) = scenario.ground() {
             let model = if several {
                 format!(", {model}")
             } else {
@@ -241,7 +241,7 @@ fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -
         }
         doubts(&mut text, threshold);
     }
-    let end_s = scenario.simulation.duration_s;
+    let end_s = scenario.simulation().duration_s;
     if ground.end_s() > end_s {
         let _ = writeln!(
             text,

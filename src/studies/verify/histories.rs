@@ -121,7 +121,7 @@ pub(super) fn histories(
         return Ok(None);
     }
     let failed = |why: String| NoCheck::Histories { state, why };
-    let model = scenario.structure.model(scenario.impact);
+    let model = scenario.mechanisms();
     let model = model.map_err(|error| failed(error.to_string()))?;
     let ways: Result<Vec<(&Mechanism, &Way)>, String> = (check.mechanisms.iter())
         .map(|mechanism| Ok((mechanism, mechanism.way.as_ref().map_err(String::clone)?)))

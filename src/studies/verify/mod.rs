@@ -354,16 +354,16 @@ impl Check {
     /// # Errors
     /// When there is no demand, no mechanism, no check for one, or a spectrum of points ends too early.
     pub fn new(scenario: &Scenario) -> Result<Self, NoCheck> {
-        let demand = scenario.demand.clone().ok_or(NoCheck::NoDemand)?;
-        let settings = scenario.verify.clone().unwrap_or_default();
-        let gravity_m_s2 = scenario.simulation.gravity_m_s2;
+        let demand = scenario.demand().cloned().ok_or(NoCheck::NoDemand)?;
+        let settings = scenario.verify().cloned().unwrap_or_default();
+        let gravity_m_s2 = scenario.gravity_m_s2();
         let sides: &[Sway] = match settings.sides {
             Sides::Both => Sway::ALL,
             Sides::Right => &[Sway::Right],
             Sides::Left => &[Sway::Left],
         };
-        let mechanisms = mechanism::mechanisms(&scenario.structure, sides, gravity_m_s2)?;
-        let (_, density_kg_m3) = scenario.structure.depth_and_density();
+        let mechanisms = mechanism::mechanisms(scenario.structure(), sides, gravity_m_s2)?;
+        let (_, density_kg_m3) = scenario.structure().depth_and_density();
         let free = settings.free_standing.as_ref();
         let t0_s = free.map(|free| free.period_s(density_kg_m3));
         let mut check = Self {

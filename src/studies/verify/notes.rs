@@ -198,7 +198,7 @@ pub fn warnings(check: &Check) -> Vec<String> {
 /// What is left out.
 #[must_use]
 pub fn not_covered(scenario: &Scenario, check: &Check) -> Vec<String> {
-    let vertical = match (check.by_the_code(), &scenario.structure) {
+    let vertical = match (check.by_the_code(), scenario.structure()) {
         (false, _) => "Vertical ground motion.",
         (true, Structure::Column(_)) => "Vertical ground motion: C8.7.1.2.1 has no vertical term.",
         (true, Structure::Arch(_) | Structure::Masonry(_)) => {

@@ -23,10 +23,7 @@ use crate::scenario::{LimitState, Scenario, StateRule};
 /// The page of a check of a scenario, made on a date.
 #[must_use]
 pub fn page(scenario: &Scenario, check: &Check, date: &str) -> String {
-    let title = scenario
-        .title
-        .as_deref()
-        .unwrap_or("Check of local mechanisms");
+    let title = scenario.title().unwrap_or("Check of local mechanisms");
     let (by, footer) = if check.by_the_code() {
         (
             "Local mechanisms by Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018. C: clauses of the Circolare; \
@@ -337,7 +334,7 @@ impl Writer<'_> {
     // Mechanism.
 
     fn mechanism(&self, mechanism: &Mechanism, figure: Figure) -> String {
-        let picture = picture::mechanism(figure, &self.scenario.structure, mechanism);
+        let picture = picture::mechanism(figure, self.scenario.structure(), mechanism);
         let hinges = ('A'..='Z').zip(&mechanism.hinges).map(|(letter, placed)| {
             let place = match placed.hinge {
                 Hinge::Section { edge, .. } => edge.name().to_owned(),

@@ -44,7 +44,7 @@ pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError>
     Ok(json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
-        "title": scenario.title,
+        "title": scenario.title(),
         "formulas": check.by_the_code().then_some("Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018"),
         "scenario_sha256": scenario_sha256(scenario),
         "zeta_e": zeta_e,
