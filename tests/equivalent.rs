@@ -2,7 +2,7 @@
 
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::equivalent::equivalent;
-use archrock::output::rotations::Scales;
+use archrock::studies::run::Scales;
 use archrock::{
     Arch, Column, FourLinkArch, GroundMotion, ImpactModel, Initial, Model as _, Pulse, Request,
     RockingColumn, Sway,

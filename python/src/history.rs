@@ -9,10 +9,12 @@ use std::time::{Duration, Instant};
 use archrock::dynamics::history::{Recording, Samples, Summary};
 use archrock::dynamics::spread::Repetitions;
 use archrock::mechanics::chain::Demand;
-use archrock::output::report::Report;
-use archrock::output::scene::Scene;
-use archrock::output::{free_hinges, mechanisms, results};
-use archrock::{Event, GroundMotion, Impact, Outcome, Recorder, Sample, SimulationError, State};
+use archrock::output::mechanisms;
+use archrock::studies::run;
+use archrock::studies::run::report::Report;
+use archrock::{
+    Event, GroundMotion, Impact, Model, Outcome, Recorder, Sample, SimulationError, State,
+};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -20,7 +22,7 @@ use pyo3::sync::PyOnceLock;
 use serde_json::{Value, json};
 
 use crate::error::{not_written, panicked, refused, too_large};
-use crate::scenario::{Ground, Scenario, Standing};
+use crate::scenario::{Ground, Scenario};
 
 /// How often a history looks for signals.
 const TICK: Duration = Duration::from_millis(100);
@@ -114,7 +116,7 @@ pub struct History {
     scenario: Arc<archrock::Scenario>,
     /// The ground, where it is not the scenario's own.
     ground: Option<archrock::scenario::Ground>,
-    standing: Standing,
+    model: Arc<dyn Model>,
     summary: Summary,
     events: Vec<Event>,
     /// Number of samples, of bodies, of joints with gaps and of joints that slip.
@@ -127,7 +129,7 @@ pub struct History {
 /// Simulates with the interpreter's lock free. A panic is an error, and so is what a signal raises.
 fn simulate<R: Recorder + Send>(
     py: Python<'_>,
-    standing: &Standing,
+    model: &dyn Model,
     scenario: &archrock::Scenario,
     ground: &GroundMotion,
     recorder: &mut R,
@@ -136,7 +138,6 @@ fn simulate<R: Recorder + Send>(
     let request = scenario.request();
     let simulated = py.detach(|| {
         catch_unwind(AssertUnwindSafe(|| {
-            let model = standing.model();
             model.simulate(ground, &request, Some(&mut *recorder))
         }))
     });
@@ -166,14 +167,14 @@ impl History {
                 inner.ground_motion()
             }
         };
-        let standing = scenario.standing(py)?;
-        let (shape, most_samples) = (standing.model().shape(), inner.request().most_samples());
+        let model = scenario.model(py)?;
+        let (shape, most_samples) = (model.shape(), inner.request().most_samples());
         let recording = Recording::new(shape, most_samples, memory_bytes).map_err(too_large)?;
         let mut watched = Watched {
             recording,
             signals: Signals::new(),
         };
-        let summary = simulate(py, standing, inner, motion, &mut watched, |watched| {
+        let summary = simulate(py, &**model, inner, motion, &mut watched, |watched| {
             watched.signals.raised.take()
         })?;
         let (samples, events) = watched.recording.finish().map_err(too_large)?;
@@ -182,7 +183,7 @@ impl History {
         Ok(Self {
             scenario: Arc::clone(inner),
             ground: ground.map(|ground| ground.inner.clone()),
-            standing: standing.clone(),
+            model: Arc::clone(model),
             summary,
             events,
             counts: [
@@ -352,7 +353,7 @@ impl History {
 
     /// Names of the bodies.
     fn bodies(&self) -> Vec<String> {
-        self.standing.model().bodies()
+        self.model.bodies()
     }
 
     /// How it ended.
@@ -396,43 +397,32 @@ impl History {
 
     /// `summary.json` of the program; with `spread`, a row of blocks is simulated again in its repetitions.
     fn summary_json(&self, py: Python<'_>, spread: bool) -> PyResult<String> {
-        let scenario = self.shaken();
-        let motion = scenario.ground_motion();
-        let summary = match &self.standing {
-            Standing::Mechanisms(model) => {
-                results::summary(&scenario, &**model, motion, &self.summary)
-            }
-            Standing::Row(row) => {
-                let repeat = || {
-                    Repetitions::start(&**row, motion, &scenario.request()).spread(&self.summary)
-                };
-                let spread = spread.then(|| py.detach(repeat));
-                if let Some(Err(error)) = &spread {
-                    return Err(refused(error));
-                }
-                let spread = spread.as_ref();
-                free_hinges::summary(&scenario, row, &self.summary, spread)
-            }
-        };
+        let (scenario, model) = (self.shaken(), &*self.model);
+        let repeats = spread && model.row().is_some();
+        let spread = repeats.then(|| {
+            py.detach(|| {
+                Repetitions::start(model, scenario.ground_motion(), &scenario.request())
+                    .spread(&self.summary)
+            })
+        });
+        if let Some(Err(error)) = &spread {
+            return Err(refused(error));
+        }
+        let summary = run::summary(&scenario, model, &self.summary, spread.as_ref());
         Ok(summary.map_err(not_written)?.to_string())
     }
 
     /// `report.html`, with these words on it. Simulates it again, with the line of thrust.
     fn report(&self, py: Python<'_>, words: &str) -> PyResult<String> {
         let scenario = self.shaken();
-        let scene = match &self.standing {
-            Standing::Mechanisms(_) => Scene::new(scenario.structure()),
-            Standing::Row(row) => Scene::of_row(row.row()),
-        };
-        let gravity_m_s2 = scenario.gravity_m_s2();
         let mut filming = Filming {
-            report: Report::new(scene, &self.bodies(), gravity_m_s2),
+            report: Report::new(&scenario, &*self.model),
             signals: Signals::new(),
         };
         let motion = scenario.ground_motion();
         simulate(
             py,
-            &self.standing,
+            &*self.model,
             &scenario,
             motion,
             &mut filming,

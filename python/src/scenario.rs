@@ -5,7 +5,6 @@ use std::fs;
 use std::path::{Component, Path};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::stability::onset;
 use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source};
 use archrock::studies::{impact, limit};
@@ -80,71 +79,52 @@ impl Text {
     }
 }
 
-/// What stands, as a model of motion.
-#[derive(Clone)]
-pub enum Standing {
-    /// Mechanisms of one degree of freedom.
-    Mechanisms(Arc<dyn MechanismModel>),
-    /// A row of blocks.
-    Row(Arc<FreeHinges>),
-}
-
-impl Standing {
-    fn of(scenario: &archrock::Scenario) -> Result<Self, String> {
-        let structure = scenario.structure();
-        match scenario.motion().row() {
-            Some(options) => match structure.free_hinges(options) {
-                Ok(row) => Ok(Self::Row(Arc::new(row))),
-                Err(error) => Err(error.to_string()),
-            },
-            None => match structure.model(scenario.motion().impact()) {
-                Ok(model) => Ok(Self::Mechanisms(model.into())),
-                Err(error) => Err(error.to_string()),
-            },
-        }
-    }
-
-    /// As any model of motion.
-    pub fn model(&self) -> &dyn Model {
-        match self {
-            Self::Mechanisms(model) => &**model,
-            Self::Row(row) => &**row,
-        }
-    }
-}
-
 /// A scenario, every default resolved.
 #[pyclass(frozen, module = "archrock._native")]
 pub struct Scenario {
     pub inner: Arc<archrock::Scenario>,
-    /// Built when first asked for.
-    standing: OnceLock<Result<Standing, String>>,
+    /// Its model of motion, built when first asked for.
+    model: OnceLock<Result<Arc<dyn Model>, String>>,
 }
 
 impl Scenario {
     pub fn new(inner: Arc<archrock::Scenario>) -> Self {
         Self {
             inner,
-            standing: OnceLock::new(),
+            model: OnceLock::new(),
         }
     }
 
     /// Its model of motion.
-    pub fn standing(&self, py: Python<'_>) -> PyResult<&Standing> {
-        let standing = match self.standing.get() {
-            Some(standing) => standing,
-            None => py.detach(|| self.standing.get_or_init(|| Standing::of(&self.inner))),
+    pub fn model(&self, py: Python<'_>) -> PyResult<&Arc<dyn Model>> {
+        let make = || match self.inner.model() {
+            Ok(model) => Ok(model.into()),
+            Err(error) => Err(error.to_string()),
         };
-        standing.as_ref().map_err(refused)
+        let model = match self.model.get() {
+            Some(model) => model,
+            None => py.detach(|| self.model.get_or_init(make)),
+        };
+        model.as_ref().map_err(refused)
     }
 
-    /// As mechanisms, whatever the scenario chooses.
-    fn mechanisms(&self, py: Python<'_>) -> PyResult<Arc<dyn MechanismModel>> {
-        if let (None, Standing::Mechanisms(model)) = (self.inner.motion().row(), self.standing(py)?) {
-            return Ok(Arc::clone(model));
-        }
-        let model = py.detach(|| self.inner.mechanisms());
-        Ok(model.map_err(refused)?.into())
+    /// Tells of it as mechanisms, whatever the scenario chooses.
+    fn of_mechanisms<T: Send>(
+        &self,
+        py: Python<'_>,
+        tell: impl FnOnce(&dyn MechanismModel) -> T + Send,
+    ) -> PyResult<T> {
+        let own = match self.inner.motion().row() {
+            None => Some(self.model(py)?),
+            Some(_) => None,
+        };
+        py.detach(|| match own.and_then(|model| model.as_mechanisms()) {
+            Some(model) => Ok(tell(model)),
+            None => Ok(tell(
+                &*self.inner.mechanisms().map_err(|error| error.to_string())?,
+            )),
+        })
+        .map_err(|error: String| refused(error))
     }
 }
 
@@ -211,7 +191,7 @@ impl Scenario {
 
     /// Bytes that the samples of its history take at most.
     fn memory_bytes(&self, py: Python<'_>) -> PyResult<u64> {
-        let shape = self.standing(py)?.model().shape();
+        let shape = self.model(py)?.shape();
         Ok(shape.bytes(self.inner.request().most_samples()))
     }
 
@@ -224,8 +204,8 @@ impl Scenario {
             let onsets = [right.map_err(refused)?, left.map_err(refused)?];
             return Ok(limit::row_json(&row, &onsets, gravity_m_s2).to_string());
         }
-        let model = self.mechanisms(py)?;
-        Ok(limit::mechanism_json(&*model, gravity_m_s2).to_string())
+        let json = self.of_mechanisms(py, |model| limit::mechanism_json(model, gravity_m_s2))?;
+        Ok(json.to_string())
     }
 
     /// The mechanisms that impacts lead through after a first sway to a side, as `archrock impact --format json`.
@@ -236,14 +216,13 @@ impl Scenario {
                 "`sway = {sway:?}` is not one of \"right\" and \"left\""
             ))
         })?;
-        let model = self.mechanisms(py)?;
-        let impacts = py.detach(|| impact::chain(&*model, first, count));
+        let impacts = self.of_mechanisms(py, |model| impact::chain(model, first, count))?;
         Ok(json!(impacts).to_string())
     }
 
     /// Names of the bodies.
     fn bodies(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        Ok(self.standing(py)?.model().bodies())
+        Ok(self.model(py)?.bodies())
     }
 }
 

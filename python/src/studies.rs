@@ -155,11 +155,11 @@ pub fn threshold<'py>(
     let factors = Factors::new(from, to, stride).map_err(refused)?;
     let runner = runner(threads);
     check(&scenario.inner).map_err(refused)?;
-    let standing = scenario.standing(py)?.clone();
+    let model = Arc::clone(scenario.model(py)?);
     let scenario = Arc::clone(&scenario.inner);
     let files = watched(py, progress, move |watch| {
         let ground = scenario.ground_motion();
-        let models = [(scenario.model_name(), standing.model())];
+        let models = [(scenario.model_name(), &*model)];
         let request = scenario.request();
         let found = thresholds(&models, ground, &request, &factors, &runner, watch);
         let found = found.map_err(|error| match error {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
 use archrock::output::record as output;
-use archrock::scenario::{Form, Format, Layout, Recorded, Sampling, Series};
+use archrock::scenario::{Form, Format, Layout, Recorded, Series};
 
 use super::figure::FigureOption;
 use super::scenario_file::SetOption;
@@ -106,7 +106,7 @@ fn check_record(file: &Path, arguments: &Arguments, quiet: bool) -> Result<Strin
 
 fn record_text(series: &Series, intensity: &Intensity) -> String {
     let mut text = format!("{}: {}\n", series.name(), kind(series));
-    let _ = writeln!(text, "  {}", sampling_in_words(&series.sampling()));
+    let _ = writeln!(text, "  {}", series.sampling());
     let PeakMotion { value, time_s } = intensity.acceleration_m_s2;
     let _ = writeln!(
         text,
@@ -156,25 +156,4 @@ fn kind(series: &Series) -> String {
         Recorded::Velocity => "velocities",
     };
     format!("{format}, {quantity} in {}", series.unit.name())
-}
-
-/// Number, steps and length of the samples.
-pub fn sampling_in_words(sampling: &Sampling) -> String {
-    let step = match sampling.step_s {
-        Some(step_s) => format!("every {} s", rounded(step_s)),
-        None => format!(
-            "at uneven steps, the least of {} s",
-            rounded(sampling.least_step_s)
-        ),
-    };
-    format!(
-        "{} samples {step}, {} s long",
-        sampling.count,
-        rounded(sampling.duration_s)
-    )
-}
-
-/// Six digits at most, and no zeros behind them.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
 }

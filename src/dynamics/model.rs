@@ -12,6 +12,7 @@ use super::history::{
     Event, History, MEMORY_BYTES, MemoryError, Recording, Sample, Shape, Summary,
 };
 use crate::argument::{ArgumentError, within};
+use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::Displaced;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
@@ -31,6 +32,16 @@ pub trait Model: Debug + Send + Sync {
     /// Horizontal acceleration at which it starts to move from rest towards that side, in units of gravity;
     /// `None` if no push moves it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64>;
+
+    /// It as a model of mechanisms of one degree of freedom, if it is one.
+    fn as_mechanisms(&self) -> Option<&dyn MechanismModel> {
+        None
+    }
+
+    /// The blocks, where it moves a row of these one by one.
+    fn row(&self) -> Option<&Row> {
+        None
+    }
 
     /// The same structure, computed in other ways that are as good: what they do not agree in is not known. None where the
     /// computation does not matter.

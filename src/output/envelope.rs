@@ -1,11 +1,11 @@
 //! Long series thinned for pictures.
 
 /// Columns that a curve is thinned to, at most: about two to a pixel.
-pub(super) const COLUMNS: usize = 1600;
+pub(crate) const COLUMNS: usize = 1600;
 
 /// A long series of values thinned to the least and largest of each of equal groups.
 #[derive(Clone, Debug)]
-pub(super) struct Envelope {
+pub(crate) struct Envelope {
     /// Columns that it is thinned to.
     most: usize,
     group: usize,
@@ -23,12 +23,12 @@ impl Default for Envelope {
 }
 
 impl Envelope {
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self::of_columns(COLUMNS)
     }
 
     /// One that is thinned to so many columns at most.
-    pub(super) const fn of_columns(most: usize) -> Self {
+    pub(crate) const fn of_columns(most: usize) -> Self {
         Self {
             most,
             group: 1,
@@ -38,7 +38,7 @@ impl Envelope {
         }
     }
 
-    pub(super) fn push(&mut self, time_s: f64, value: f64) {
+    pub(crate) fn push(&mut self, time_s: f64, value: f64) {
         let point = (time_s, value);
         self.last = Some(point);
         if self.in_last < self.group
@@ -61,7 +61,7 @@ impl Envelope {
     }
 
     /// The points to draw, in the order of time.
-    pub(super) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub(crate) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         let mut points: Vec<(f64, f64)> = Vec::new();
         let extremes = self.columns.iter().flat_map(|[low, high]| {
             if low.0 <= high.0 {

@@ -7,7 +7,7 @@ use crate::dynamics::ground::GroundMotion;
 const POINTS: u32 = 24;
 
 /// Times in seconds up to an end, and horizontal accelerations in g there; a jump is two points at the same time.
-pub(super) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> Vec<(f64, f64)> {
+pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> Vec<(f64, f64)> {
     let mut points = Vec::new();
     let pieces = ground.pieces().iter();
     for piece in pieces.take_while(|piece| piece.start_s < end_s) {

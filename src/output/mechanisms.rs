@@ -26,6 +26,15 @@ pub fn hinges(hinges: &[Hinge]) -> Value {
 /// Names of the hinges of an arch, from left to right.
 pub(crate) const HINGES: [&str; 4] = ["A", "B", "C", "D"];
 
+/// Names of the columns for each body: `rotation_left_rad`, or `rotation_rad` where there is only one body.
+pub(crate) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<String> {
+    let name = |body: &String| match &**body {
+        "" => format!("{quantity}_{unit}"),
+        body => format!("{quantity}_{body}_{unit}"),
+    };
+    bodies.iter().map(name).collect()
+}
+
 /// Values of the bodies with their names, from left to right.
 #[must_use]
 pub fn by_body(bodies: &[String], values: &[f64]) -> String {

@@ -3,26 +3,16 @@
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
 pub mod caption;
-mod envelope;
-mod film;
+pub(crate) mod envelope;
 mod folder;
-pub mod free_hinges;
-mod ground;
+pub(crate) mod ground;
 pub mod mechanisms;
-pub mod overlay;
 pub(crate) mod page;
-mod panels;
-pub mod poses;
+pub(crate) mod panels;
 pub mod record;
-pub mod report;
-pub mod results;
-pub mod rotations;
-pub mod row_timeline;
 pub mod scene;
-pub mod snapshots;
 pub(crate) mod svg;
 pub(crate) mod table;
-pub mod timeline;
 
 use std::io;
 use std::path::PathBuf;

@@ -26,18 +26,18 @@ pub struct Subject<'a> {
 }
 
 /// A curve over time.
-pub(super) struct Curve {
-    pub(super) name: String,
-    pub(super) points: Vec<(f64, f64)>,
-    pub(super) stroke: Stroke,
+pub(crate) struct Curve {
+    pub(crate) name: String,
+    pub(crate) points: Vec<(f64, f64)>,
+    pub(crate) stroke: Stroke,
 }
 
-pub(super) const MAIN: Stroke = Stroke::new(color::BLACK, 1.4, "");
+pub(crate) const MAIN: Stroke = Stroke::new(color::BLACK, 1.4, "");
 const INCIPIENT: Stroke = Stroke::new(color::PURPLE, 1.3, "6 4");
 const OVERTURNING: Stroke = Stroke::new(color::VERMILION, 1.8, "8 3 2 3");
 
 impl Curve {
-    pub(super) fn new(
+    pub(crate) fn new(
         name: impl Into<String>,
         points: impl IntoIterator<Item = (f64, f64)>,
         stroke: Stroke,
@@ -50,19 +50,20 @@ impl Curve {
     }
 
     /// Whether there is anything to be seen of it.
-    pub(super) fn is_flat(&self) -> bool {
+    pub(crate) fn is_flat(&self) -> bool {
         self.points.iter().all(|(_, value)| *value == 0.0)
     }
 }
 
 /// What the structure does over time, for shading.
-pub(super) struct Doing {
-    pub(super) start: State,
-    pub(super) changes: Vec<(f64, State)>,
+#[derive(Clone, Debug)]
+pub(crate) struct Doing {
+    pub(crate) start: State,
+    pub(crate) changes: Vec<(f64, State)>,
 }
 
 /// A picture of panels, one below the other.
-pub(super) struct Panels {
+pub(crate) struct Panels {
     figure: Figure,
     drawing: Drawing,
     start_s: f64,
@@ -78,12 +79,12 @@ pub(super) struct Panels {
 
 impl Panels {
     /// Of a history, from time zero on.
-    pub(super) fn new(figure: Figure, title: &str, end_s: f64) -> Self {
+    pub(crate) fn new(figure: Figure, title: &str, end_s: f64) -> Self {
         Self::spanning(figure, title, [0.0, end_s.max(f64::MIN_POSITIVE)])
     }
 
     /// Over these times.
-    pub(super) fn spanning(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
+    pub(crate) fn spanning(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
         let mut drawing = Drawing::new(figure);
         let top = drawing.title(title) + 20.0;
         Self {
@@ -99,7 +100,7 @@ impl Panels {
     }
 
     /// The next panel, so high on the screen: shades behind, axes, then what `draw` draws.
-    pub(super) fn panel(
+    pub(crate) fn panel(
         &mut self,
         label: &str,
         height_px: f64,
@@ -123,7 +124,7 @@ impl Panels {
     }
 
     /// A panel with these curves and a scale that holds them.
-    pub(super) fn curves(
+    pub(crate) fn curves(
         &mut self,
         label: &str,
         height_px: f64,
@@ -138,7 +139,7 @@ impl Panels {
     }
 
     /// The panel of the ground, with what starts the structure; nothing where the ground stays still.
-    pub(super) fn ground(&mut self, height_px: f64, subject: &Subject<'_>, doing: Option<&Doing>) {
+    pub(crate) fn ground(&mut self, height_px: f64, subject: &Subject<'_>, doing: Option<&Doing>) {
         let Subject {
             ground,
             gravity_m_s2,
@@ -174,7 +175,7 @@ impl Panels {
 
     /// The file, with the time below the panels and a legend: these entries first, then those of what all pictures
     /// have.
-    pub(super) fn finish(mut self, keys: &[Key<'_>], shaded: bool) -> String {
+    pub(crate) fn finish(mut self, keys: &[Key<'_>], shaded: bool) -> String {
         if let Some(axes) = self.last {
             axes.label_x(&mut self.drawing, "Time (s)");
         }
@@ -202,11 +203,11 @@ fn ticks(height_px: f64) -> u32 {
 }
 
 /// A scale that holds values and zero, with a little room, so that no curve runs along the frame.
-pub(super) fn around(values: impl Iterator<Item = f64>, ticks: u32) -> Scale {
+pub(crate) fn around(values: impl Iterator<Item = f64>, ticks: u32) -> Scale {
     Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
 }
 
-pub(super) fn draw_curves(drawing: &mut Drawing, axes: &Axes, curves: &[Curve]) {
+pub(crate) fn draw_curves(drawing: &mut Drawing, axes: &Axes, curves: &[Curve]) {
     for Curve {
         name,
         points,
@@ -276,21 +277,21 @@ fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &Doing) -> bool 
 }
 
 /// The entry of a legend for the instant of overturning.
-pub(super) const OVERTURNS: Key<'static> = ("overturns", Sign::Line(OVERTURNING));
+pub(crate) const OVERTURNS: Key<'static> = ("overturns", Sign::Line(OVERTURNING));
 
 /// Marks the instant of overturning.
-pub(super) fn mark_overturning(drawing: &mut Drawing, axes: &Axes, time_s: f64) {
+pub(crate) fn mark_overturning(drawing: &mut Drawing, axes: &Axes, time_s: f64) {
     let ends = [axes.y.low, axes.y.high].map(|y| axes.place(time_s, y));
     drawing.curve("overturning", ends, OVERTURNING);
 }
 
 /// How an impact is marked.
-pub(super) const IMPACT: Stroke = Stroke::new(color::VERMILION, 1.0, "");
+pub(crate) const IMPACT: Stroke = Stroke::new(color::VERMILION, 1.0, "");
 /// Marks closer together than this, in pixels, would run into one.
 const BETWEEN_MARKS_PX: f64 = 2.5;
 
 /// Marks impacts along the lower side by short upright lines, those apart from the last mark.
-pub(super) fn mark_impacts(
+pub(crate) fn mark_impacts(
     drawing: &mut Drawing,
     axes: &Axes,
     impacts_s: impl Iterator<Item = f64>,

@@ -8,58 +8,92 @@ use serde::Serialize;
 
 use super::OutputError;
 
-/// A column of a table over rows of some kind: its name, and the cell of a row.
+/// A column of a table over rows of some kind, or several side by side: their names, and the cells of a row.
 pub(crate) struct Column<'a, R> {
-    name: Cow<'a, str>,
-    cell: Box<dyn Fn(&R) -> Cell + 'a>,
+    names: Vec<Cow<'a, str>>,
+    cells: Cells<'a, R>,
 }
 
-/// A cell; numbers are written with the fewest digits that read back as the same.
+/// Adds the cells of a row, of which the number is given, from 1.
+type Cells<'a, R> = Box<dyn for<'r> Fn(&'r R, usize, &mut Vec<Cell<'r>>) + 'a>;
+
+/// A cell, or numbers in several; they are written with the fewest digits that read back as the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub(crate) enum Cell {
+pub(crate) enum Cell<'r> {
     Nothing,
     Text(Cow<'static, str>),
     Count(usize),
     Number(f64),
+    Numbers(Cow<'r, [f64]>),
 }
 
 /// A column, of a cell that is anything which makes one.
-pub(crate) fn column<'a, R, C: Into<Cell>>(
+pub(crate) fn column<'a, R, C: Into<Cell<'static>>>(
     name: impl Into<Cow<'a, str>>,
     cell: impl Fn(&R) -> C + 'a,
 ) -> Column<'a, R> {
     Column {
-        name: name.into(),
-        cell: Box::new(move |row| cell(row).into()),
+        names: vec![name.into()],
+        cells: Box::new(move |row, _, cells| cells.push(cell(row).into())),
     }
 }
 
-impl From<f64> for Cell {
+/// The column of the numbers of rows, from 1.
+pub(crate) fn row_number<'a, R>(name: &'a str) -> Column<'a, R> {
+    Column {
+        names: vec![name.into()],
+        cells: Box::new(|_, number, cells| cells.push(number.into())),
+    }
+}
+
+/// Columns whose cells are added together, one for each name.
+pub(crate) fn several<'a, R>(
+    names: impl IntoIterator<Item = String>,
+    add: impl for<'r> Fn(&'r R, &mut Vec<Cell<'r>>) + 'a,
+) -> Column<'a, R> {
+    Column {
+        names: names.into_iter().map(Cow::Owned).collect(),
+        cells: Box::new(move |row, _, cells| add(row, cells)),
+    }
+}
+
+/// Columns of numbers that a row has side by side.
+pub(crate) fn numbers<'a, R>(
+    names: impl IntoIterator<Item = String>,
+    numbers: impl Fn(&R) -> &[f64] + 'a,
+) -> Column<'a, R> {
+    Column {
+        names: names.into_iter().map(Cow::Owned).collect(),
+        cells: Box::new(move |row, _, cells| cells.push(Cell::Numbers(numbers(row).into()))),
+    }
+}
+
+impl From<f64> for Cell<'_> {
     fn from(number: f64) -> Self {
         Self::Number(number)
     }
 }
 
-impl From<usize> for Cell {
+impl From<usize> for Cell<'_> {
     fn from(count: usize) -> Self {
         Self::Count(count)
     }
 }
 
-impl From<&'static str> for Cell {
+impl From<&'static str> for Cell<'_> {
     fn from(text: &'static str) -> Self {
         Self::Text(text.into())
     }
 }
 
-impl From<String> for Cell {
+impl From<String> for Cell<'_> {
     fn from(text: String) -> Self {
         Self::Text(text.into())
     }
 }
 
-impl<C: Into<Self>> From<Option<C>> for Cell {
+impl<C: Into<Self>> From<Option<C>> for Cell<'_> {
     fn from(cell: Option<C>) -> Self {
         cell.map_or(Self::Nothing, Into::into)
     }
@@ -69,30 +103,69 @@ impl<C: Into<Self>> From<Option<C>> for Cell {
 ///
 /// # Errors
 /// When a number is not finite.
-pub(crate) fn csv<'r, R: 'r>(
-    columns: &[Column<'_, R>],
+pub(crate) fn csv<'a, 'r, R: 'r>(
+    columns: impl Into<Vec<Column<'a, R>>>,
     rows: impl IntoIterator<Item = &'r R>,
 ) -> Result<Vec<u8>, OutputError> {
-    const WHAT: &str = "cannot make a table";
     let mut bytes = Vec::new();
-    let mut csv = table(&mut bytes);
-    csv.write_record(columns.iter().map(|column| &*column.name))
-        .map_err(OutputError::csv(WHAT))?;
+    let mut table = TableWriter::new(&mut bytes, "cannot make a table", columns.into())?;
     for row in rows {
-        let cells = columns.iter().map(|column| (column.cell)(row));
-        csv.serialize(cells.collect::<Vec<_>>())
-            .map_err(OutputError::csv(WHAT))?;
+        table.write(row)?;
     }
-    csv.flush().map_err(OutputError::io(WHAT))?;
-    drop(csv);
+    table.finish()?;
     Ok(bytes)
 }
 
-/// Writes a table.
-pub(super) type Table<W> = csv::Writer<Finite<W>>;
+/// Writes a table row by row.
+pub(crate) struct TableWriter<'a, R, W: Write> {
+    csv: Table<W>,
+    columns: Vec<Column<'a, R>>,
+    rows: usize,
+    what: &'static str,
+}
+
+impl<'a, R, W: Write> TableWriter<'a, R, W> {
+    /// Starts with the header; `what` cannot be done where that fails.
+    pub(crate) fn new(
+        writer: W,
+        what: &'static str,
+        columns: Vec<Column<'a, R>>,
+    ) -> Result<Self, OutputError> {
+        let mut csv = table(writer);
+        let names = columns.iter().flat_map(|column| &column.names);
+        csv.write_record(names.map(|name| &**name))
+            .map_err(OutputError::csv(what))?;
+        Ok(Self {
+            csv,
+            columns,
+            rows: 0,
+            what,
+        })
+    }
+
+    /// Writes a row.
+    pub(crate) fn write(&mut self, row: &R) -> Result<(), OutputError> {
+        self.rows += 1;
+        let mut cells = Vec::with_capacity(self.columns.len());
+        for column in &self.columns {
+            (column.cells)(row, self.rows, &mut cells);
+        }
+        let written = self.csv.serialize(cells);
+        written.map_err(OutputError::csv(self.what))
+    }
+
+    /// Ends the table and returns the number of its rows.
+    pub(crate) fn finish(mut self) -> Result<usize, OutputError> {
+        self.csv.flush().map_err(OutputError::io(self.what))?;
+        Ok(self.rows)
+    }
+}
+
+/// Writes text as CSV.
+type Table<W> = csv::Writer<Finite<W>>;
 
 /// Begins a table.
-pub(super) fn table<W: Write>(writer: W) -> Table<W> {
+fn table<W: Write>(writer: W) -> Table<W> {
     csv::Writer::from_writer(Finite {
         writer,
         columns: Vec::new(),
@@ -105,7 +178,7 @@ pub(super) fn table<W: Write>(writer: W) -> Table<W> {
 
 /// Stands between the text of a table and its file, and refuses cells that are what numbers that are not finite are
 /// written as.
-pub(super) struct Finite<W> {
+struct Finite<W> {
     writer: W,
     /// Names of the columns.
     columns: Vec<String>,

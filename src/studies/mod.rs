@@ -5,6 +5,7 @@
 //! [runner](runner::Runner) does so, in memory or in [files](part) that can be resumed and merged. The result
 //! of a case is a row, a typed value from the computation to the last file.
 //!
+//! - [`run`]: one history, with all that is told of it;
 //! - [`map`]: which pulses overturn, over two quantities; [`boundary`](map::boundary): the amplitudes from which they do so
 //!   without impact;
 //! - [`spectrum`]: how strong a pulse must be, over the size of a structure;
@@ -28,6 +29,7 @@ pub mod part;
 pub mod pictures;
 mod remarks;
 pub mod results;
+pub mod run;
 pub mod runner;
 pub mod spectrum;
 pub mod suite;

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
+use archrock::studies::run::Stage;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// A run that takes less shows nothing.
@@ -49,18 +50,17 @@ impl RunProgress {
         }
     }
 
-    /// A time was reached.
-    pub fn reached(&self, time_s: f64) {
-        if self.shows() {
-            self.bar
-                .set_position((WHOLE as f64 * time_s / self.duration_s) as u64);
+    /// Shows how far it is.
+    pub fn show(&self, stage: Stage) {
+        if !self.shows() {
+            return;
         }
-    }
-
-    /// The time is over, and the repetitions are not.
-    pub fn repeating(&self) {
-        if self.shows() {
-            self.bar.set_message("; repeating it with other steps");
+        match stage {
+            Stage::Reached(time_s) => {
+                let part = WHOLE as f64 * time_s / self.duration_s;
+                self.bar.set_position(part as u64);
+            }
+            Stage::Repeating => self.bar.set_message("; repeating it with other steps"),
         }
     }
 

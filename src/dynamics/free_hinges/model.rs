@@ -236,6 +236,10 @@ impl Model for FreeHinges {
         others.map(repetition).into()
     }
 
+    fn row(&self) -> Option<&Row> {
+        Some(self.row())
+    }
+
     fn bodies(&self) -> Vec<String> {
         (1..=self.row().blocks().len())
             .map(|block| block.to_string())

@@ -37,6 +37,10 @@ impl<C: MechanismChain> Model for C {
         bodies.map(|body| (*body).to_owned()).collect()
     }
 
+    fn as_mechanisms(&self) -> Option<&dyn MechanismModel> {
+        Some(self)
+    }
+
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
         Some(self.incipient_towards_g(sway))
     }

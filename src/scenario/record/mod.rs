@@ -126,6 +126,24 @@ pub struct Sampling {
     pub duration_s: f64,
 }
 
+/// Number, steps and length of the samples.
+impl fmt::Display for Sampling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Six digits at most, and no zeros behind them.
+        let rounded = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
+        write!(f, "{} samples ", self.count)?;
+        match self.step_s {
+            Some(step_s) => write!(f, "every {} s", rounded(step_s))?,
+            None => write!(
+                f,
+                "at uneven steps, the least of {} s",
+                rounded(self.least_step_s)
+            )?,
+        }
+        write!(f, ", {} s long", rounded(self.duration_s))
+    }
+}
+
 /// Ground motion from one or two files.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Record {

@@ -68,7 +68,7 @@ fn table(sides: &[Capacity; 2]) -> Result<Vec<u8>, OutputError> {
         }),
         column("secant_period_s", |row: &Row<'_>| row.1.secant_period_s),
     ];
-    csv(&columns, &rows)
+    csv(columns, &rows)
 }
 
 /// Both sides, without the points of the curves.

@@ -42,7 +42,7 @@ fn table(results: &[ShapeResult]) -> Result<Vec<u8>, OutputError> {
             shape.last_restitution
         }),
     ];
-    csv(&columns, results)
+    csv(columns, results)
 }
 
 /// A quantity of a shape, if it has it.

@@ -76,7 +76,7 @@ fn section(profile: &dyn Profile, section: f64) -> (&'static str, Value) {
 }
 
 /// The same as a cell of a table.
-fn section_cell(profile: &dyn Profile, section: f64) -> Cell {
+fn section_cell(profile: &dyn Profile, section: f64) -> Cell<'static> {
     match profile.joint(section) {
         Some(joint) => joint.into(),
         None => section.to_degrees().into(),
@@ -202,5 +202,5 @@ pub(super) fn line_table(
         column("normal_n_s_per_m", |place| at(place).normal * unit),
         column("tangential_n_s_per_m", |place| at(place).tangential * unit),
     ];
-    csv(&columns, &sections)
+    csv(columns, &sections)
 }

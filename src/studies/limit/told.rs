@@ -13,8 +13,8 @@ use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
+use crate::output::mechanisms::columns;
 use crate::output::mechanisms::{HINGES, by_body, degrees, hinges};
-use crate::output::rotations::columns;
 use crate::scenario::{Scenario, Structure};
 
 /// The push that starts a row, by the static programme, and what opens: for programs and for people.

@@ -3,7 +3,6 @@
 use super::boundary::{Boundary, BoundaryRow, MapRow};
 use super::{CellResult, CellRow, OverturningMap, page, picture};
 use crate::dynamics::history::Outcome;
-use crate::output::rotations::Scales;
 use crate::output::table::{Column, column, csv};
 use crate::output::{OutputError, pretty};
 use crate::scenario::{Quantity, Scenario};
@@ -11,6 +10,7 @@ use crate::studies::ending::columns::{self, FAILED, number};
 use crate::studies::kind::{CANNOT_STAND, NOT_FOUR_LINKS};
 use crate::studies::remarks::{self, Remark, Remarks, counts, in_words};
 use crate::studies::results::{Look, Results};
+use crate::studies::run::Scales;
 
 const SUMMARY: &str = "map.json";
 const BOUNDARY: &str = "no_impact.csv";
@@ -32,7 +32,7 @@ impl OverturningMap<'_> {
             ("map.svg", picture.into_bytes()),
             ("map.html", page.into_bytes()),
             (SUMMARY, pretty(&summary).into_bytes()),
-            ("map.csv", csv(&self.columns(), &cells)?),
+            ("map.csv", csv(self.columns(), &cells)?),
         ];
         if look.no_impact {
             files.insert(0, (BOUNDARY, self.boundary_table(&boundaries)?));
@@ -79,7 +79,7 @@ impl OverturningMap<'_> {
             column("incipient_acceleration_g", |row: &Row| row.1.incipient_g),
             column("no_impact_amplitude_g", |row: &Row| row.1.impact_free_g),
         ];
-        csv(&columns, &rows)
+        csv(columns, &rows)
     }
 }
 

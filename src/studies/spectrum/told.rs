@@ -26,7 +26,7 @@ impl OverturningSpectrum<'_> {
                     picture::draw(figure, title, self, rows).into_bytes(),
                 ),
                 (SUMMARY, pretty(&summary).into_bytes()),
-                ("spectrum.csv", csv(&columns(), rows)?),
+                ("spectrum.csv", csv(columns(), rows)?),
             ],
             obsolete: None,
             words: words(self, rows, &remarks),

@@ -130,7 +130,7 @@ fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
         }),
         column("peak_rotation_rad", |row: &Row<'_>| row.1.peak_rotation_rad),
     ];
-    csv(&columns, &rows)
+    csv(columns, &rows)
 }
 
 /// All that was found, as JSON: per model the least factor that overturns, the bands that overturn, the safe gaps between

@@ -1,10 +1,10 @@
 //! `overlay.svg`: histories of several models of motion of one structure in one picture.
 
-use super::envelope::Envelope;
-use super::panels::{Curve, Panels, Subject};
-use super::svg::{CURVES, Figure, Key, Sign};
 use crate::dynamics::history::Sample;
 use crate::mechanics::sway::Sway;
+use crate::output::envelope::Envelope;
+use crate::output::panels::{Curve, Panels, Subject};
+use crate::output::svg::{CURVES, Figure, Key, Sign};
 
 /// What any model tells of a history, thinned.
 #[derive(Clone, Debug, Default)]

@@ -7,18 +7,19 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
-use super::envelope::Envelope;
 use super::film::{Film, Frame};
-use super::ground::curve_g;
-use super::page::{escaped, filled, script_safe};
-use super::scene::{FARTHEST, Mark, Scene};
-use super::timeline::LARGEST_EXCESS;
+use super::picture::LARGEST_EXCESS;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State};
+use crate::dynamics::model::Model;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
+use crate::output::envelope::Envelope;
+use crate::output::ground::curve_g;
+use crate::output::page::{escaped, filled, script_safe};
+use crate::output::scene::{FARTHEST, Mark, Scene};
 use crate::scenario::Scenario;
 
 /// Bytes that the frames of a page may take.
@@ -50,16 +51,17 @@ pub struct Report {
 }
 
 impl Report {
-    /// An empty one, for a structure whose bodies have these names.
+    /// An empty one, for the structure of a scenario as a model moves it.
     #[must_use]
-    pub fn new(scene: Scene, bodies: &[String], gravity_m_s2: f64) -> Self {
+    pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
+        let (scene, bodies) = (super::scene(scenario, model), model.bodies());
         // Rotation and displacement of a body, a section, time, ground and the rest, in base 64.
         let bytes = 4 * (6 * bodies.len() + 3 * scene.sections().len() + 24) / 3;
         let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);
         Self {
             scene,
-            bodies: bodies.to_vec(),
-            gravity_m_s2,
+            bodies,
+            gravity_m_s2: scenario.gravity_m_s2(),
             film: Film::new(most),
             energy: Envelope::of_columns(CURVE_COLUMNS),
             in_barriers: false,
@@ -114,13 +116,16 @@ impl Report {
                 ("SCRIPT", include_str!("report/page.js")),
                 (
                     "PLOT_STYLE",
-                    include_str!("../../vendor/uplot/uPlot.min.css"),
+                    include_str!("../../../vendor/uplot/uPlot.min.css"),
                 ),
                 (
                     "PLOT_SCRIPT",
-                    include_str!("../../vendor/uplot/uPlot.iife.min.js"),
+                    include_str!("../../../vendor/uplot/uPlot.iife.min.js"),
                 ),
-                ("PLOT_LICENCE", include_str!("../../vendor/uplot/LICENSE")),
+                (
+                    "PLOT_LICENCE",
+                    include_str!("../../../vendor/uplot/LICENSE"),
+                ),
                 ("DATA", &script_safe(&self.data(ground, &frames))),
             ],
         )

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector2;
 
-use super::scene::{Mark, Scene};
-use super::svg::{Anchor, Drawing, Figure, Stroke, color};
 use crate::dynamics::history::{Sample, State};
+use crate::output::scene::{Mark, Scene};
+use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
 /// Collects the samples nearest to chosen times, and draws them.
 #[derive(Clone, Debug)]
-pub struct Snapshots {
+pub(super) struct Snapshots {
     scene: Scene,
     exaggeration: f64,
     /// The times that are asked for, in seconds, with the nearest sample so far.
@@ -23,8 +23,7 @@ const LEAST_PX: f64 = 180.0;
 
 impl Snapshots {
     /// Of a structure at these times in seconds, displacements drawn times `exaggeration`.
-    #[must_use]
-    pub fn new(scene: Scene, times_s: &[f64], exaggeration: f64) -> Self {
+    pub(super) fn new(scene: Scene, times_s: &[f64], exaggeration: f64) -> Self {
         Self {
             scene,
             exaggeration,
@@ -34,7 +33,7 @@ impl Snapshots {
     }
 
     /// Takes a sample. Samples come in the order of time.
-    pub fn push(&mut self, sample: &Sample) {
+    pub(super) fn push(&mut self, sample: &Sample) {
         self.end_s = sample.time_s;
         for (time_s, nearest) in &mut self.taken {
             let miss_s = |sample: &Sample| (sample.time_s - *time_s).abs();
@@ -48,15 +47,13 @@ impl Snapshots {
     }
 
     /// Chosen times after the end of the history, in seconds: they show its last instant.
-    #[must_use]
-    pub fn beyond_s(&self) -> Vec<f64> {
+    pub(super) fn beyond_s(&self) -> Vec<f64> {
         let times = self.taken.iter().map(|(time_s, _)| *time_s);
         times.filter(|time_s| *time_s > self.end_s).collect()
     }
 
     /// The picture.
-    #[must_use]
-    pub fn draw(&self, figure: Figure, title: &str) -> String {
+    pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
         let taken = self.taken.iter();
         let shown: Vec<&Sample> = taken.filter_map(|(_, sample)| sample.as_ref()).collect();
         let columns = figure.columns(shown.len().clamp(1, COLUMNS), LEAST_PX);

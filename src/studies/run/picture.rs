@@ -1,13 +1,25 @@
 //! `history.svg`: a history at a glance, over a shared time axis.
 
-use super::envelope::Envelope;
-use super::panels::{
+use crate::dynamics::history::{Event, Outcome, Sample, State, Summary};
+use crate::mechanics::sway::Sway;
+use crate::output::envelope::Envelope;
+use crate::output::panels::{
     Curve, Doing, IMPACT, MAIN, OVERTURNS, Panels, Subject, around, draw_curves, mark_impacts,
     mark_overturning,
 };
-use super::svg::{CURVES, Figure, Key, Sign, Stroke};
-use crate::dynamics::history::{Event, Outcome, Sample, State, Summary, impacts};
-use crate::mechanics::sway::Sway;
+use crate::output::svg::{CURVES, Figure, Key, Sign, Stroke};
+
+/// Collects samples and events of a history, and draws them.
+pub(super) trait Picture {
+    /// Takes a sample. Samples come in the order of time.
+    fn sample(&mut self, sample: &Sample);
+
+    /// Takes an event. Events come in the order of time.
+    fn event(&mut self, _event: &Event) {}
+
+    /// The picture, with what the history came to.
+    fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String;
+}
 
 /// Where the excess of the thrust line is cut off, in parts of the thickness: a structure that falls has
 /// values that would hide all others.
@@ -35,7 +47,7 @@ const fn unstable(body: usize) -> Stroke {
 
 /// Collects the samples of a history, thinned, and draws them.
 #[derive(Clone, Debug)]
-pub struct Timeline {
+pub(super) struct Timeline {
     bodies: Vec<String>,
     rotations_rad: Vec<Envelope>,
     excess_ratio: Envelope,
@@ -45,15 +57,15 @@ pub struct Timeline {
     phase_from_s: f64,
     /// Half cycles that went far.
     far: Vec<FarCycle>,
-    /// What the structure does at first.
-    start: State,
+    /// What the structure does at first, and then.
+    doing: Doing,
+    impacts_s: Vec<f64>,
     end_s: f64,
 }
 
 impl Timeline {
     /// An empty one, for bodies of these names.
-    #[must_use]
-    pub fn new(bodies: &[String]) -> Self {
+    pub(super) fn new(bodies: &[String]) -> Self {
         Self {
             bodies: bodies.to_vec(),
             rotations_rad: vec![Envelope::new(); bodies.len()],
@@ -62,27 +74,13 @@ impl Timeline {
             phase: 0,
             phase_from_s: 0.0,
             far: Vec::new(),
-            start: State::Rest,
+            doing: Doing {
+                start: State::Rest,
+                changes: Vec::new(),
+            },
+            impacts_s: Vec::new(),
             end_s: 0.0,
         }
-    }
-
-    /// Takes a sample. Samples come in the order of time.
-    pub fn push(&mut self, sample: &Sample) {
-        let time_s = sample.time_s;
-        if sample.phase == 0 {
-            self.start = sample.state;
-        }
-        self.end_s = time_s;
-        let envelopes = self.rotations_rad.iter_mut();
-        for (envelope, rotation) in envelopes.zip(&sample.rotations_rad) {
-            envelope.push(time_s, *rotation);
-        }
-        let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
-        self.excess_ratio.push(time_s, excess_ratio);
-        self.note_if_far(sample);
-        self.energy_ratio
-            .push(time_s, sample.energy_ratio.unwrap_or(0.0));
     }
 
     /// Notes how far a half cycle goes, when it goes far.
@@ -112,23 +110,36 @@ impl Timeline {
             None => {}
         }
     }
+}
 
-    /// The picture, with all events of the history and what it came to.
-    #[must_use]
-    pub fn draw(
-        &self,
-        figure: Figure,
-        subject: &Subject<'_>,
-        events: &[Event],
-        summary: &Summary,
-    ) -> String {
+impl Picture for Timeline {
+    fn sample(&mut self, sample: &Sample) {
+        let time_s = sample.time_s;
+        if sample.phase == 0 {
+            self.doing.start = sample.state;
+        }
+        self.end_s = time_s;
+        let envelopes = self.rotations_rad.iter_mut();
+        for (envelope, rotation) in envelopes.zip(&sample.rotations_rad) {
+            envelope.push(time_s, *rotation);
+        }
+        let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
+        self.excess_ratio.push(time_s, excess_ratio);
+        self.note_if_far(sample);
+        self.energy_ratio
+            .push(time_s, sample.energy_ratio.unwrap_or(0.0));
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.doing.changes.push((event.time_s, event.state));
+        if event.impact.is_some() {
+            self.impacts_s.push(event.time_s);
+        }
+    }
+
+    fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String {
         let mut panels = Panels::new(figure, subject.title, self.end_s);
-        let changes = events.iter().map(|event| (event.time_s, event.state));
-        let doing = Doing {
-            start: self.start,
-            changes: changes.collect(),
-        };
-        let doing = Some(&doing);
+        let doing = Some(&self.doing);
         panels.ground(130.0, subject, doing);
 
         let bodies = self.bodies.iter().zip(CURVES);
@@ -153,7 +164,7 @@ impl Timeline {
                 let ends = [cycle.from_s, cycle.to_s].map(|t| axes.place(t, cycle.unstable_rad));
                 drawing.curve("unstable", ends, unstable(cycle.body));
             }
-            mark_impacts(drawing, axes, impacts(events).map(|(time_s, _)| time_s));
+            mark_impacts(drawing, axes, self.impacts_s.iter().copied());
             if let Some(time_s) = overturned_s {
                 mark_overturning(drawing, axes, time_s);
             }
@@ -174,7 +185,7 @@ impl Timeline {
         let mut keys: Vec<Key<'_>> = named
             .map(|(body, stroke)| (body.as_str(), Sign::Line(stroke)))
             .collect();
-        if impacts(events).next().is_some() {
+        if !self.impacts_s.is_empty() {
             keys.push(("impacts", Sign::Tick(IMPACT)));
         }
         if let Some(cycle) = self.far.first() {

@@ -2,16 +2,16 @@
 
 use std::fmt::Write as _;
 
-use super::envelope::{COLUMNS, Envelope};
-use super::panels::{
-    Curve, Doing, MAIN, OVERTURNS, Panels, Subject, around, draw_curves, mark_overturning,
-};
-use super::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
-use super::timeline::FAR;
+use super::picture::{FAR, Picture};
 use crate::dynamics::history::{Outcome, Sample, State, Summary};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
+use crate::output::envelope::{COLUMNS, Envelope};
+use crate::output::panels::{
+    Curve, Doing, MAIN, OVERTURNS, Panels, Subject, around, draw_curves, mark_overturning,
+};
+use crate::output::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 
 /// Columns that all curves of rotations are thinned to together, so that long rows do not make huge files.
 const COLUMNS_OF_ALL: usize = 16_000;
@@ -24,7 +24,7 @@ const JOINT_COLUMNS: usize = 800;
 
 /// Collects the samples of a history, thinned, and draws them.
 #[derive(Clone, Debug)]
-pub struct RowTimeline {
+pub(super) struct RowTimeline {
     rotations_rad: Vec<Envelope>,
     energy: Envelope,
     /// Slips in millimetres, where joints slip.
@@ -39,8 +39,7 @@ pub struct RowTimeline {
 
 impl RowTimeline {
     /// An empty one, for this row.
-    #[must_use]
-    pub fn new(row: &Row) -> Self {
+    pub(super) fn new(row: &Row) -> Self {
         let blocks = row.blocks().len();
         let columns = (COLUMNS_OF_ALL / blocks).clamp(LEAST_COLUMNS, COLUMNS);
         Self {
@@ -56,9 +55,10 @@ impl RowTimeline {
             end_s: 0.0,
         }
     }
+}
 
-    /// Takes a sample. Samples come in the order of time.
-    pub fn push(&mut self, sample: &Sample) {
+impl Picture for RowTimeline {
+    fn sample(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.end_s = time_s;
         let envelopes = self.rotations_rad.iter_mut();
@@ -79,9 +79,7 @@ impl RowTimeline {
         self.joints.push(sample);
     }
 
-    /// The picture, with what the history came to.
-    #[must_use]
-    pub fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String {
+    fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String {
         let mut panels = Panels::new(figure, subject.title, self.end_s);
         let doing = doing(summary);
         let doing = Some(&doing);

@@ -1,0 +1,492 @@
+//! A run: one history of a scenario, by its model of motion, in tables, pictures, a page, a summary and words.
+
+mod film;
+pub mod overlay;
+mod picture;
+pub mod report;
+mod row_picture;
+mod scales;
+mod snapshots;
+mod summary;
+mod tables;
+mod words;
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::ops::ControlFlow;
+
+use serde_json::Value;
+use thiserror::Error;
+
+use self::overlay::Curves;
+use self::picture::{Picture, Timeline};
+use self::report::Report;
+use self::row_picture::RowTimeline;
+pub use self::scales::Scales;
+use self::snapshots::Snapshots;
+pub use self::summary::summary;
+pub use self::words::heading;
+use self::words::{Notable, words};
+use crate::dynamics::history::{Event, Sample, Summary};
+use crate::dynamics::model::{Model, Recorder, SimulationError};
+use crate::dynamics::spread::Repetitions;
+use crate::mechanics::sway::Sway;
+use crate::output::scene::Scene;
+use crate::output::table::{Column, TableWriter};
+use crate::output::{Figure, Folder, OutputError, Subject, pretty};
+use crate::scenario::Scenario;
+
+const ROTATIONS: &str = "rotations.csv";
+const REPORT: &str = "report.html";
+const SNAPSHOTS: &str = "snapshots.svg";
+const POSES: &str = "poses.csv";
+const JOINTS: &str = "joints.csv";
+const EVENTS: &str = "events.csv";
+const IMPACTS: &str = "impacts.csv";
+const PICTURE: &str = "history.svg";
+/// Written last: a folder that has it is complete.
+const SUMMARY: &str = "summary.json";
+/// Several models of motion in one picture, in the folder around theirs.
+pub const OVERLAY: &str = "overlay.svg";
+
+/// All files that there may be, in the order in which they are told.
+pub const FILES: [&str; 10] = [
+    ROTATIONS, REPORT, SNAPSHOTS, POSES, JOINTS, EVENTS, IMPACTS, PICTURE, OVERLAY, SUMMARY,
+];
+
+/// What a run is asked for besides the history; by default as the program does it without options.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// Width of the pictures, and the size of their text.
+    pub figure: Figure,
+    /// Whether rotations go into a file.
+    pub rotations: bool,
+    /// Whether these have columns without dimension; of mechanisms only.
+    pub dimensionless: bool,
+    /// Whether what is computed in steps is repeated, to see what depends on them.
+    pub spread: bool,
+    /// Whether there is a page with the structure in motion.
+    pub report: bool,
+    /// When the deformed structure is drawn, in seconds.
+    pub snapshots_s: Vec<f64>,
+    /// What displacements are multiplied by there.
+    pub exaggeration: f64,
+    /// Whether there is a table of where every body is.
+    pub poses: bool,
+}
+
+impl Default for Wanted {
+    fn default() -> Self {
+        Self {
+            figure: Figure::SCREEN,
+            rotations: true,
+            dimensionless: false,
+            spread: true,
+            report: true,
+            snapshots_s: Vec::new(),
+            exaggeration: 1.0,
+            poses: false,
+        }
+    }
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stage {
+    /// It has come to this time, in seconds.
+    Reached(f64),
+    /// It is over, and its repetitions are not.
+    Repeating,
+}
+
+/// What a run tells.
+#[derive(Debug)]
+pub struct Told {
+    /// For people.
+    pub text: String,
+    /// For programs, as in `summary.json`.
+    pub summary: Value,
+    /// For a picture together with other models.
+    pub curves: Curves,
+}
+
+/// Why a run has no results.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// There is no history.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The results cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+/// A scenario to run.
+#[derive(Debug)]
+pub struct Run<'a> {
+    scenario: &'a Scenario,
+    model: Box<dyn Model>,
+    wanted: Wanted,
+    scales: Option<Scales>,
+}
+
+impl<'a> Run<'a> {
+    /// A run of a scenario.
+    ///
+    /// # Errors
+    /// In words, when its structure has no such model of motion, or what is wanted does not go with it.
+    pub fn new(scenario: &'a Scenario, wanted: Wanted) -> Result<Self, String> {
+        if wanted.dimensionless && scenario.motion().row().is_some() {
+            return Err(
+                "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to \
+                 measure by"
+                    .to_owned(),
+            );
+        }
+        let model = scenario.model().map_err(|error| error.to_string())?;
+        let scales = match model.as_mechanisms().filter(|_| wanted.dimensionless) {
+            Some(model) => {
+                let scales = Scales::new(model, scenario.gravity_m_s2());
+                let why_not = "the mechanism has no unstable equilibrium to measure by: leave --dimensionless out";
+                Some(scales.ok_or(why_not)?)
+            }
+            None => None,
+        };
+        Ok(Self {
+            scenario,
+            model,
+            wanted,
+            scales,
+        })
+    }
+
+    /// The name of its model for people.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        self.scenario.motion().words()
+    }
+
+    /// The files that it writes, the seal last.
+    #[must_use]
+    pub fn files(&self) -> Vec<&'static str> {
+        let wanted = |file: &&str| match *file {
+            ROTATIONS => self.wanted.rotations,
+            REPORT => self.wanted.report,
+            SNAPSHOTS => !self.wanted.snapshots_s.is_empty(),
+            POSES => self.wanted.poses,
+            JOINTS => self.model.row().is_some(),
+            OVERLAY => false,
+            _ => true,
+        };
+        FILES.into_iter().filter(wanted).collect()
+    }
+
+    /// Simulates it. Its files go into a folder that was opened for them, the rotations of one that has no file for them
+    /// elsewhere.
+    ///
+    /// # Errors
+    /// When the motion cannot be computed, or a result not written.
+    pub fn compute(
+        &self,
+        mut folder: Option<Folder>,
+        rotations: Option<Box<dyn io::Write + '_>>,
+        watch: &mut dyn FnMut(Stage),
+    ) -> Result<Told, RunError> {
+        let (scenario, model) = (self.scenario, &*self.model);
+        let (ground, request) = (scenario.ground_motion(), scenario.request());
+        let mut shown = Shown::new(self, folder.is_some());
+        let repeats = self.wanted.spread && model.row().is_some();
+        let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
+        let (history, rows) = {
+            let mut recording = Recording {
+                tables: Tables::new(self, folder.as_mut(), rotations)?,
+                shown: &mut shown,
+                watch,
+                written: Ok(()),
+            };
+            let history = model.simulate(ground, &request, Some(&mut recording))?;
+            recording.written?;
+            (history, recording.tables.finish()?)
+        };
+        watch(Stage::Repeating);
+        let spread = repetitions.map(|repetitions| repetitions.spread(&history));
+        let spread = spread.as_ref();
+        let mut text = words(scenario, model, &history, spread, &shown.notable);
+        let mut summary = summary(scenario, model, &history, spread)?;
+        let row = history.row.as_ref();
+        if let Some(longest_step) = row.and_then(|row| row.longest_step.0) {
+            // What a computation takes is told here, and belongs to no result.
+            summary["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
+        }
+        if let Some(mut folder) = folder {
+            shown.write(self, &mut folder, &history, &mut text)?;
+            write(&mut folder, SUMMARY, "the summary", &pretty(&summary))?;
+            let path = folder.path().to_owned();
+            folder.complete()?;
+            let files = self.files().into_iter().map(|name| match name {
+                ROTATIONS => format!("{ROTATIONS} ({rows} rows)"),
+                name => name.to_owned(),
+            });
+            let files = files.collect::<Vec<_>>().join(", ");
+            let _ = writeln!(text, "  results in {}: {files}", path.display());
+        }
+        Ok(Told {
+            text,
+            summary,
+            curves: shown.curves,
+        })
+    }
+
+    /// What the pictures are of.
+    fn subject<'s>(&'s self, title: &'s str) -> Subject<'s> {
+        let incipient_g = |sway| self.model.incipient_acceleration_g(sway);
+        Subject {
+            title,
+            ground: self.scenario.ground_motion(),
+            gravity_m_s2: self.scenario.gravity_m_s2(),
+            incipient_g: [Sway::Right, Sway::Left].map(incipient_g),
+        }
+    }
+}
+
+/// Several runs that differ in their models of motion, with their curves, as one picture.
+#[must_use]
+pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
+    let names: Vec<_> = runs.iter().map(Run::name).collect();
+    let first = &runs[0];
+    let mut all = names.join(" and ");
+    if let Some(initial) = all.get_mut(..1) {
+        initial.make_ascii_uppercase();
+    }
+    let subject = first.subject(first.scenario.title().unwrap_or(&all));
+    let named: Vec<_> = names.into_iter().zip(curves).collect();
+    overlay::draw(first.wanted.figure, &subject, &named)
+}
+
+/// What is drawn of a structure at an instant, as a model moves it.
+fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
+    match model.row() {
+        Some(row) => Scene::of_row(row),
+        None => Scene::new(scenario.structure()),
+    }
+}
+
+fn write(folder: &mut Folder, name: &str, what: &str, text: &str) -> Result<(), OutputError> {
+    let written = folder.file(name).write_all(text.as_bytes());
+    written.map_err(OutputError::io(format!("cannot write {what}")))
+}
+
+/// What is collected of a history for its words and pictures.
+struct Shown {
+    picture: Box<dyn Picture>,
+    report: Option<Report>,
+    snapshots: Option<Snapshots>,
+    notable: Notable,
+    curves: Curves,
+}
+
+impl Shown {
+    /// Page and snapshots are only for a folder.
+    fn new(run: &Run<'_>, has_folder: bool) -> Self {
+        let (model, wanted) = (&*run.model, &run.wanted);
+        let snapshots = has_folder && !wanted.snapshots_s.is_empty();
+        let scene = || scene(run.scenario, model);
+        Self {
+            picture: match model.row() {
+                Some(row) => Box::new(RowTimeline::new(row)),
+                None => Box::new(Timeline::new(&model.bodies())),
+            },
+            report: (has_folder && wanted.report).then(|| Report::new(run.scenario, model)),
+            snapshots: snapshots
+                .then(|| Snapshots::new(scene(), &wanted.snapshots_s, wanted.exaggeration)),
+            notable: Notable::default(),
+            curves: Curves::new(),
+        }
+    }
+
+    fn sample(&mut self, sample: &Sample) {
+        self.picture.sample(sample);
+        if let Some(report) = &mut self.report {
+            report.push(sample);
+        }
+        if let Some(snapshots) = &mut self.snapshots {
+            snapshots.push(sample);
+        }
+        self.curves.push(sample);
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.notable.note(event);
+        self.picture.event(event);
+    }
+
+    /// Writes the pictures, and the page with what was said; adds to that what is to be said of the snapshots.
+    fn write(
+        &self,
+        run: &Run<'_>,
+        folder: &mut Folder,
+        history: &Summary,
+        said: &mut String,
+    ) -> Result<(), OutputError> {
+        let (scenario, figure) = (run.scenario, run.wanted.figure);
+        let title = scenario.title().unwrap_or("Rocking history");
+        let picture = self.picture.draw(figure, &run.subject(title), history);
+        write(folder, PICTURE, "the picture", &picture)?;
+        if let Some(report) = &self.report {
+            let page = report.page(scenario, scenario.ground_motion(), said);
+            write(folder, REPORT, "the report", &page)?;
+        }
+        if let Some(snapshots) = &self.snapshots {
+            let picture = snapshots.draw(figure, title);
+            write(folder, SNAPSHOTS, "the snapshots", &picture)?;
+            let beyond: Vec<_> = snapshots.beyond_s().iter().map(f64::to_string).collect();
+            if !beyond.is_empty() {
+                let _ = writeln!(
+                    said,
+                    "  snapshots at {} s are after the end: they show its last instant",
+                    beyond.join(", ")
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A table that is written while the motion is computed.
+type Running<'f, R> = TableWriter<'static, R, Box<dyn io::Write + 'f>>;
+
+/// The tables of a run.
+struct Tables<'f> {
+    of_samples: Vec<Running<'f, Sample>>,
+    events: Option<Running<'f, Event>>,
+    impacts: Option<Running<'f, Event>>,
+}
+
+impl<'f> Tables<'f> {
+    fn new(
+        run: &Run<'_>,
+        folder: Option<&'f mut Folder>,
+        rotations: Option<Box<dyn io::Write + 'f>>,
+    ) -> Result<Self, OutputError> {
+        let model = &*run.model;
+        let columns = || {
+            let vertical = run.scenario.ground_motion().has_vertical();
+            tables::rotations(model, vertical, run.scales)
+        };
+        let mut tables = Self {
+            of_samples: Vec::new(),
+            events: None,
+            impacts: None,
+        };
+        if let Some(file) = rotations {
+            tables.add("cannot write the rotations", file, columns())?;
+        }
+        for (name, file) in folder.into_iter().flat_map(Folder::files) {
+            let file: Box<dyn io::Write + 'f> = Box::new(file);
+            match name {
+                ROTATIONS => tables.add("cannot write the rotations", file, columns())?,
+                POSES => tables.add(
+                    "cannot write the poses",
+                    file,
+                    tables::poses(&model.bodies()),
+                )?,
+                JOINTS => tables.add("cannot write the joints", file, tables::joints(model))?,
+                EVENTS => {
+                    let columns = tables::events(model);
+                    tables.events =
+                        Some(TableWriter::new(file, "cannot write the events", columns)?);
+                }
+                IMPACTS => {
+                    let columns = match model.as_mechanisms() {
+                        Some(model) => tables::impacts(model),
+                        None => tables::landings(model),
+                    };
+                    tables.impacts =
+                        Some(TableWriter::new(file, "cannot write the impacts", columns)?);
+                }
+                _ => {}
+            }
+        }
+        Ok(tables)
+    }
+
+    /// Adds a table of samples.
+    fn add(
+        &mut self,
+        what: &'static str,
+        file: Box<dyn io::Write + 'f>,
+        columns: Vec<Column<'static, Sample>>,
+    ) -> Result<(), OutputError> {
+        self.of_samples.push(TableWriter::new(file, what, columns)?);
+        Ok(())
+    }
+
+    fn sample(&mut self, sample: &Sample) -> Result<(), OutputError> {
+        let mut tables = self.of_samples.iter_mut();
+        tables.try_for_each(|table| table.write(sample))
+    }
+
+    fn event(&mut self, event: &Event) -> Result<(), OutputError> {
+        if let Some(events) = &mut self.events {
+            events.write(event)?;
+        }
+        match &mut self.impacts {
+            Some(impacts) if event.impact.is_some() => impacts.write(event),
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends the tables and returns the number of samples.
+    fn finish(self) -> Result<usize, OutputError> {
+        let mut samples = 0;
+        for table in self.of_samples {
+            samples = table.finish()?;
+        }
+        for table in [self.events, self.impacts].into_iter().flatten() {
+            table.finish()?;
+        }
+        Ok(samples)
+    }
+}
+
+/// Where samples and events go.
+struct Recording<'r, 'f> {
+    tables: Tables<'f>,
+    shown: &'r mut Shown,
+    watch: &'r mut dyn FnMut(Stage),
+    /// Why a table could not be written, which ends the history.
+    written: Result<(), OutputError>,
+}
+
+impl Recording<'_, '_> {
+    fn go_on(&mut self, written: Result<(), OutputError>) -> ControlFlow<()> {
+        self.written = written;
+        match self.written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    }
+}
+
+impl Recorder for Recording<'_, '_> {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        (self.watch)(Stage::Reached(sample.time_s));
+        self.shown.sample(sample);
+        let written = self.tables.sample(sample);
+        self.go_on(written)
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.shown.event(event);
+        // Of a history that was ended because a table failed, the end is no event of the tables.
+        if self.written.is_err() {
+            return ControlFlow::Break(());
+        }
+        let written = self.tables.event(event);
+        self.go_on(written)
+    }
+
+    fn wants_thrust_line(&self) -> bool {
+        self.shown.report.is_some() || self.shown.snapshots.is_some()
+    }
+}

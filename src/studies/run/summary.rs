@@ -1,0 +1,227 @@
+//! `summary.json`.
+
+use serde_json::{Map, Value, json};
+
+use super::Scales;
+use crate::dynamics::history::{Outcome, RowSummary, Summary};
+use crate::dynamics::model::{MechanismModel, Model};
+use crate::dynamics::spread::{PeakSpread, Spread, SpreadError};
+use crate::mechanics::sway::Sway;
+use crate::output::mechanisms::columns;
+use crate::output::{OutputError, finite};
+use crate::scenario::{Ground, Scenario};
+
+/// The summary of a run as JSON.
+///
+/// Of mechanisms, `peak_rotation_over_critical` is the largest rotation over that at the unstable equilibrium of the mechanism
+/// that moved. `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (times the duration of the pulse) and
+/// `peak_acceleration_over_incipient` (of the ground, over `g A_L`).
+///
+/// Of a row of blocks, `peak_potential_over_barrier` is the largest potential energy over that at which the first mechanism
+/// overturns, where that is known. Normal forces and friction are those outside impacts; `largest_friction_demand` is that of
+/// the samples, as in `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the
+/// diagonal of a column), `energy_defect_over_largest` over the larger of the barrier, where that is known, and the largest
+/// kinetic energy. Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and what
+/// did not converge. `spread` is left out where the run was not repeated; where a repetition failed it says why, as `failed`.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn summary(
+    scenario: &Scenario,
+    model: &dyn Model,
+    history: &Summary,
+    spread: Option<&Result<Spread, SpreadError>>,
+) -> Result<Value, OutputError> {
+    let mut told = Told::default();
+    told.put("program", json!(env!("CARGO_PKG_NAME")));
+    told.put("version", json!(env!("CARGO_PKG_VERSION")));
+    told.put("scenario", scenario.to_json());
+    told.put("outcome", json!(history.outcome.name()));
+    told.number("outcome_time_s", history.outcome_time_s)?;
+    let sway = match history.outcome {
+        Outcome::Overturned(sway) => Some(sway.name()),
+        _ => None,
+    };
+    told.put("overturning_sway", json!(sway));
+    told.put("impacts", json!(history.impacts));
+    let peaks = columns(&model.bodies(), "peak_rotation", "rad");
+    for (name, peak_rad) in peaks.iter().zip(&history.peak_rotations_rad) {
+        told.number(name, *peak_rad)?;
+    }
+    match (model.as_mechanisms(), &history.row) {
+        (Some(model), _) => told.mechanisms(scenario, model, history)?,
+        (None, Some(row)) => told.row(scenario, model, history, row)?,
+        (None, None) => {}
+    }
+    match spread {
+        Some(Ok(spread)) => told.put("spread", of_spread(spread)?),
+        Some(Err(reason)) => told.put("spread", json!({ "failed": reason.to_string() })),
+        None => {}
+    }
+    Ok(Value::Object(told.0))
+}
+
+/// What is told so far.
+#[derive(Default)]
+struct Told(Map<String, Value>);
+
+impl Told {
+    fn put(&mut self, name: &str, value: Value) {
+        self.0.insert(name.to_owned(), value);
+    }
+
+    /// A number or none, which is finite.
+    fn number(&mut self, name: &str, value: impl Into<Option<f64>>) -> Result<(), OutputError> {
+        let value = value.into();
+        finite(name, value.as_slice())?;
+        self.put(name, json!(value));
+        Ok(())
+    }
+
+    fn numbers(&mut self, name: &str, values: &[f64]) -> Result<(), OutputError> {
+        finite(name, values)?;
+        self.put(name, json!(values));
+        Ok(())
+    }
+
+    fn counts(&mut self, counts: impl IntoIterator<Item = (&'static str, u64)>) {
+        for (name, count) in counts {
+            self.put(name, json!(count));
+        }
+    }
+
+    /// What starts it.
+    fn incipient(&mut self, model: &dyn Model) {
+        let [right, left] =
+            [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
+        let both = json!({ "right": right, "left": left });
+        self.put("incipient_acceleration_g", both);
+    }
+
+    /// What is told of mechanisms.
+    fn mechanisms(
+        &mut self,
+        scenario: &Scenario,
+        model: &dyn MechanismModel,
+        history: &Summary,
+    ) -> Result<(), OutputError> {
+        self.number("peak_rotation_over_critical", history.peak_over_critical)?;
+        self.incipient(model);
+        if let Some(scales) = Scales::new(model, scenario.gravity_m_s2()) {
+            let p_rad_s = scales.frequency_rad_s;
+            let p_t_p = match scenario.ground() {
+                Some(Ground::Pulse(pulse)) => Some(pulse.duration_s * p_rad_s),
+                Some(Ground::Record(_)) | None => None,
+            };
+            let peaks_m_s2 = scenario.ground_motion().peaks_m_s2(history.end_s);
+            let mut dimensionless = Self::default();
+            dimensionless.number("p_rad_s", p_rad_s)?;
+            dimensionless.number("p_t_p", p_t_p)?;
+            dimensionless.number(
+                "peak_acceleration_over_incipient",
+                peaks_m_s2.x / scales.incipient_m_s2,
+            )?;
+            self.put("dimensionless", Value::Object(dimensionless.0));
+        }
+        self.number("energy_defect_ratio", history.energy_defect_ratio)?;
+        if let Some(thrust) = &history.thrust {
+            let (excess, friction) = (thrust.largest_excess, thrust.largest_friction);
+            let share = |level: usize| thrust.shares_within().map(|shares| shares[level]);
+            for (name, value) in [
+                ("largest_thrust_excess_ratio", Some(excess.value)),
+                ("largest_thrust_excess_time_s", Some(excess.time_s)),
+                ("largest_friction_demand", Some(friction.value)),
+                ("largest_friction_demand_time_s", Some(friction.time_s)),
+                ("rocking_share_thrust_excess_below_0_01", share(0)),
+                ("rocking_share_thrust_excess_below_0_05", share(1)),
+            ] {
+                self.number(name, value)?;
+            }
+        }
+        let cost = &history.cost;
+        self.counts([("evaluations", cost.evaluations), ("steps", cost.steps)]);
+        Ok(())
+    }
+
+    /// What is told of a row of blocks.
+    fn row(
+        &mut self,
+        scenario: &Scenario,
+        model: &dyn Model,
+        history: &Summary,
+        row: &RowSummary,
+    ) -> Result<(), OutputError> {
+        self.number("largest_peak_rotation_rad", history.largest_rotation_rad())?;
+        let over_barrier = history.peak_potential_over_barrier;
+        self.number("peak_potential_over_barrier", over_barrier)?;
+        self.incipient(model);
+        let mut half_cycles = Vec::new();
+        for cycle in &row.half_cycles {
+            let mut told = Self::default();
+            told.put("sway", json!(cycle.sway.name()));
+            told.number("start_s", cycle.start_s)?;
+            told.number("duration_s", cycle.duration_s)?;
+            told.number("peak_rad", cycle.peak_rad)?;
+            told.number("energy_ratio", cycle.energy_ratio)?;
+            half_cycles.push(Value::Object(told.0));
+        }
+        self.put("half_cycles", half_cycles.into());
+        // None where it was released beyond where it overturns.
+        if history.cost.steps > 0 {
+            self.number("least_normal_n", row.least_normal_n)?;
+        }
+        if let Some(thrust) = &history.thrust {
+            let friction = thrust.largest_friction;
+            self.number("largest_friction_demand", friction.value)?;
+            self.number("largest_friction_demand_time_s", friction.time_s)?;
+        }
+        self.number("energy_taken_j", row.energy_taken_j)?;
+        self.number("energy_defect_ratio", history.energy_defect_ratio)?;
+        self.number("energy_defect_over_largest", row.energy_error)?;
+        self.number("closure_error_m", row.closure_error_m)?;
+        if let Some(sliding) = &row.sliding {
+            let options = scenario.motion().row().unwrap_or_default();
+            self.number("friction_coefficient", options.friction_coefficient)?;
+            self.numbers("slips_m", &sliding.offsets_m)?;
+            self.numbers("largest_slips_m", &sliding.largest_offsets_m)?;
+            self.number("friction_j", sliding.friction_j)?;
+            self.number("friction_bound_error", sliding.bound_error)?;
+            self.counts([("unconverged_steps", sliding.unconverged)]);
+        }
+        self.counts([
+            ("steps", history.cost.steps),
+            ("programs", row.programs),
+            ("iterations", history.cost.evaluations),
+            ("most_iterations", row.most_iterations),
+            ("relaxed", row.relaxed),
+            ("merged", row.merged),
+        ]);
+        Ok(())
+    }
+}
+
+fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
+    let peak = |peak: &PeakSpread| -> Result<Value, OutputError> {
+        let mut told = Told::default();
+        told.number("own", peak.own_rad)?;
+        told.number("min", peak.min_rad)?;
+        told.number("max", peak.max_rad)?;
+        Ok(Value::Object(told.0))
+    };
+    let mut half_cycles = Vec::new();
+    for cycle in &spread.half_cycles {
+        half_cycles.push(json!({ "peak_rad": peak(cycle)? }));
+    }
+    let names = std::iter::once("own").chain(spread.repeated.iter().copied());
+    let names = names.map(|name| name.replace(' ', "_"));
+    let outcomes = spread.outcomes.iter().map(|outcome| json!(outcome.name()));
+    let outcomes: Map<_, _> = names.zip(outcomes).collect();
+    let largest = spread.largest.as_ref().map(peak).transpose()?;
+    Ok(json!({
+        "outcomes": outcomes,
+        "half_cycles": half_cycles,
+        "same_until_half_cycle": spread.same_until_half_cycle,
+        "parts_at_s": spread.parts_at_s,
+        "largest_rotation_rad": largest,
+    }))
+}

@@ -1,0 +1,324 @@
+//! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
+
+use crate::dynamics::history::{Event, Impact, Sample};
+use crate::dynamics::model::{MechanismModel, Model};
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
+use crate::output::mechanisms::columns;
+use crate::output::table::{Cell, Column, column, numbers, row_number, several};
+
+use super::Scales;
+use super::words::taken_j;
+
+/// Columns of `rotations.csv`, a row per sample: time, ground, `phase` (events so far), `state`, rotations and rates of all
+/// bodies; `thrust_excess_ratio` of mechanisms or `open_joints` of rows, whose line of thrust stays inside;
+/// `friction_demand`; the vertical acceleration where the ground has one.
+///
+/// With scales, three columns follow the others: `p_t` (time times `p`), `acceleration_over_incipient`
+/// (ground acceleration over `g A_L`) and `rotation_over_critical` (see [`Sample::rotation_over_critical`]).
+pub(super) fn rotations(
+    model: &dyn Model,
+    vertical: bool,
+    scales: Option<Scales>,
+) -> Vec<Column<'static, Sample>> {
+    let bodies = model.bodies();
+    let mut all = vec![
+        column("time_s", |sample: &Sample| sample.time_s),
+        column("ground_acceleration_m_s2", |sample: &Sample| {
+            sample.ground_acceleration_m_s2
+        }),
+        column("phase", |sample: &Sample| sample.phase),
+        column("state", |sample: &Sample| sample.state.name()),
+        numbers(columns(&bodies, "rotation", "rad"), |sample: &Sample| {
+            &sample.rotations_rad
+        }),
+        numbers(columns(&bodies, "rate", "rad_s"), |sample: &Sample| {
+            &sample.rates_rad_s
+        }),
+        match model.row() {
+            Some(_) => column("open_joints", |sample: &Sample| sample.hinges.len()),
+            None => column("thrust_excess_ratio", |sample: &Sample| {
+                sample.demand.excess_ratio
+            }),
+        },
+        column("friction_demand", |sample: &Sample| sample.demand.friction),
+    ];
+    if vertical {
+        all.push(column("vertical_acceleration_m_s2", |sample: &Sample| {
+            sample.vertical_acceleration_m_s2
+        }));
+    }
+    if let Some(scales) = scales {
+        all.extend([
+            column("p_t", move |sample: &Sample| {
+                sample.time_s * scales.frequency_rad_s
+            }),
+            column("acceleration_over_incipient", move |sample: &Sample| {
+                sample.ground_acceleration_m_s2 / scales.incipient_m_s2
+            }),
+            column("rotation_over_critical", |sample: &Sample| {
+                sample.rotation_over_critical.unwrap_or(0.0)
+            }),
+        ]);
+    }
+    all
+}
+
+/// Columns of `poses.csv`, a row per sample: `time_s`, then for each body `x_..._m`, `y_..._m`, `rotation_..._rad`.
+///
+/// The body's point that is at the origin when undeformed is at `(x, y)`, relative to the ground; the origin is the centre
+/// of a circular arch, the middle of a column's base. A corner that was at `c` is at `(x, y) + R c`, where `R` turns
+/// anticlockwise by the rotation.
+pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
+    let names = bodies.iter().flat_map(|body| {
+        let body = std::slice::from_ref(body);
+        [("x", "m"), ("y", "m"), ("rotation", "rad")]
+            .into_iter()
+            .flat_map(move |(quantity, unit)| columns(body, quantity, unit))
+    });
+    vec![
+        column("time_s", |sample: &Sample| sample.time_s),
+        several(names, |sample: &Sample, cells| {
+            let poses = sample.poses.iter();
+            let values = poses
+                .flat_map(|pose| [pose.translation.x, pose.translation.y, pose.rotation_rad()]);
+            cells.push(Cell::Numbers(values.collect()));
+        }),
+    ]
+}
+
+/// Columns of `joints.csv`, a row per sample: `time_s`, the gaps of all joints at both edges, `gap_0_intrados_m`,
+/// `gap_0_extrados_m` and so on; where joints slip, then `slip_0_m` and so on: the offset of the right face towards the
+/// extrados (of a column: of the upper face to the right).
+///
+/// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
+/// joint is an arc: thickness times relative rotation, plus the smaller gap.
+pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
+    let shape = model.shape();
+    let gaps = (0..shape.joints)
+        .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
+    let slips = (0..shape.slipping).map(|joint| format!("slip_{joint}_m"));
+    vec![
+        column("time_s", |sample: &Sample| sample.time_s),
+        numbers(gaps, |sample: &Sample| sample.gaps_m.as_flattened()),
+        numbers(slips, |sample: &Sample| &sample.offsets_m),
+    ]
+}
+
+/// Columns of `events.csv`, a row per transition.
+///
+/// | column | |
+/// |---|---|
+/// | `time_s` | instant |
+/// | `phase` | the phase that begins, as in `rotations.csv`; phase 0 begins with the run, without a row |
+/// | `kind` | `uplift`, `impact`, `rest` or `overturned` |
+/// | `sway` | `right` or `left`, from here on; empty at rest |
+/// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and of free hinges |
+/// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
+/// | `energy_j` | kinetic and potential, just after |
+/// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`impacts`]; empty at rest |
+/// | `joints_open`, `edges_open` | of a row of blocks: joints that are open or open now, and the edge about which each turns (`both`: it parts), with spaces between |
+///
+/// A column has no columns for hinges. A structure that is released starts in the first mechanism
+/// without a row: its hinges are in `impacts.csv`, as those that close first.
+///
+/// Rows of blocks have thousands of impacts, and bodies by the hundred: columns of these are left out.
+pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
+    let mut all = vec![
+        column("time_s", |event: &Event| event.time_s),
+        row_number("phase"),
+        column("kind", |event: &Event| event.kind.name()),
+        column("sway", |event: &Event| event.state.sway().map(Sway::name)),
+        column("mechanism", |event: &Event| event.mechanism),
+    ];
+    let energy = column("energy_j", |event: &Event| event.energy_j);
+    match model.as_mechanisms() {
+        Some(model) => {
+            let (bodies, sections) = (model.bodies(), sections(model));
+            let rotations = columns(&bodies, "rotation", "rad");
+            all.extend([
+                numbers(rotations, |event: &Event| &event.rotations_rad),
+                numbers(columns(&bodies, "rate", "rad_s"), |event: &Event| {
+                    &event.rates_rad_s
+                }),
+                energy,
+                hinges("hinge", sections, |event| &event.hinges),
+            ]);
+        }
+        None => all.extend([
+            energy,
+            column("joints_open", |event: &Event| joint_numbers(&event.hinges)),
+            column("edges_open", |event: &Event| joint_edges(&event.hinges)),
+        ]),
+    }
+    all
+}
+
+/// Columns of `impacts.csv` of mechanisms, a row per event that is an impact.
+///
+/// The mechanism after is the one that the impact leads to, with the energy that it would keep, also where
+/// that is so little that the structure comes to rest. Where no mechanism can follow the hinges are left
+/// empty. A column has no columns for hinges.
+///
+/// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after from the left, in degrees from the left
+/// springing, and `hinge_a_edge` ... where they are in the section, `intrados` or `extrados`; `closed_a_deg` and
+/// `closed_a_edge` ... the same of the mechanism before, in the first row the first of all.
+///
+/// The impulses at its hinges act on the part towards the crown, in the frame of the ground; they are empty
+/// where the restitution coefficient is prescribed.
+pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>> {
+    let (bodies, sections) = (model.bodies(), sections(model));
+    let rates = |moment: &str| columns(&bodies, "rate", &format!("{moment}_rad_s"));
+    vec![
+        row_number("impact"),
+        column("time_s", |event: &Event| event.time_s),
+        of_impact("sway_before", |impact| impact.sway_before.name()),
+        of_impact("sway_after", |impact| impact.sway_after().name()),
+        of_impact("restitution", |impact| impact.restitution),
+        of_impact("energy_before_j", |impact| impact.energy_before_j),
+        of_impact("energy_after_j", |impact| impact.energy_after_j),
+        numbers(rates("before"), |event: &Event| {
+            impact(event).map_or(&[][..], |impact| &impact.rates_before_rad_s)
+        }),
+        numbers(rates("after"), |event: &Event| {
+            impact(event).map_or(&[][..], |impact| &impact.rates_after_rad_s)
+        }),
+        several(
+            by_hinge(sections, |hinge| vec![format!("hinge_{hinge}_deg")]),
+            move |event: &Event, cells| {
+                let opened = hinge_cells(opened(event), sections);
+                cells.extend(
+                    opened
+                        .into_iter()
+                        .map(|(angle_deg, _)| Cell::from(angle_deg)),
+                );
+            },
+        ),
+        several(
+            by_hinge(sections, |hinge| {
+                ["x", "y"]
+                    .map(|axis| format!("impulse_{hinge}_{axis}_n_s"))
+                    .into()
+            }),
+            move |event: &Event, cells| {
+                let impulses = impact(event).map_or(&[][..], |impact| &impact.impulses_n_s);
+                let known = impulses.iter().flat_map(|one| [Some(one.x), Some(one.y)]);
+                let all = known.chain(std::iter::repeat(None)).take(2 * sections);
+                cells.extend(all.map(Cell::from));
+            },
+        ),
+        several(
+            by_hinge(sections, |hinge| vec![format!("hinge_{hinge}_edge")]),
+            move |event: &Event, cells| {
+                let opened = hinge_cells(opened(event), sections);
+                cells.extend(opened.into_iter().map(|(_, edge)| Cell::from(edge)));
+            },
+        ),
+        hinges("closed", sections, |event| {
+            impact(event).map_or(&[], |impact| &impact.closed)
+        }),
+    ]
+}
+
+/// Columns of `impacts.csv` of rows, a row per event that is an impact: `impact` (from 1), `time_s`, `joints_shut` and
+/// `joints_opened` (numbers with spaces between), each with its edges in the same order (`edges_shut`: which landed,
+/// `edges_opened`: about which they turn; `both` where both landed or the joint parts), `energy_before_j`,
+/// `energy_after_j` and `energy_taken_j`, kinetic energies, and where joints slip `friction_j`, the part that friction took.
+pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
+    let mut all = vec![
+        row_number("impact"),
+        column("time_s", |event: &Event| event.time_s),
+        of_impact("joints_shut", |impact| joint_numbers(&impact.closed)),
+        of_impact("edges_shut", |impact| joint_edges(&impact.closed)),
+        of_impact("joints_opened", |impact| joint_numbers(&impact.opened)),
+        of_impact("edges_opened", |impact| joint_edges(&impact.opened)),
+        of_impact("energy_before_j", |impact| impact.energy_before_j),
+        of_impact("energy_after_j", |impact| impact.energy_after_j),
+        of_impact("energy_taken_j", taken_j),
+    ];
+    if model.shape().slipping > 0 {
+        all.push(of_impact("friction_j", |impact| impact.friction_j));
+    }
+    all
+}
+
+fn impact(event: &Event) -> Option<&Impact> {
+    event.impact.as_ref()
+}
+
+fn opened(event: &Event) -> &[Hinge] {
+    impact(event).map_or(&[], |impact| &impact.opened)
+}
+
+/// A column of what an event is the impact of.
+fn of_impact<C: Into<Cell<'static>>>(
+    name: &'static str,
+    cell: impl Fn(&Impact) -> C + 'static,
+) -> Column<'static, Event> {
+    column(name, move |event: &Event| impact(event).map(&cell))
+}
+
+/// Hinges of a mechanism in the names of columns, from the left.
+const HINGES: [&str; 4] = ["a", "b", "c", "d"];
+
+/// Names of columns, some for each of so many hinges.
+fn by_hinge(sections: usize, names: impl Fn(&str) -> Vec<String>) -> Vec<String> {
+    let hinges = HINGES.iter().take(sections);
+    hinges.flat_map(|hinge| names(hinge)).collect()
+}
+
+/// How many hinges of the mechanisms of a model are at sections.
+fn sections(model: &dyn MechanismModel) -> usize {
+    hinge_cells(&model.hinges_after(0, Sway::Right), 0).len()
+}
+
+/// Columns of so many hinges, place and edge.
+fn hinges(
+    what: &str,
+    sections: usize,
+    of: impl Fn(&Event) -> &[Hinge] + 'static,
+) -> Column<'static, Event> {
+    let names = by_hinge(sections, |hinge| {
+        ["deg", "edge"]
+            .map(|part| format!("{what}_{hinge}_{part}"))
+            .into()
+    });
+    several(names, move |event: &Event, cells| {
+        for (angle_deg, edge) in hinge_cells(of(event), sections) {
+            cells.extend([Cell::from(angle_deg), Cell::from(edge)]);
+        }
+    })
+}
+
+/// Angles, in degrees from the left springing, and edges of the hinges that are at sections of an arch; filled up with
+/// empty cells to so many.
+fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'static str>)> {
+    let sections = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Section { angle_rad, edge } => {
+            Some((Some(angle_rad.to_degrees()), Some(edge.name())))
+        }
+        Hinge::Toe(_) | Hinge::Joint { .. } => None,
+    });
+    let mut cells: Vec<_> = sections.collect();
+    cells.resize(cells.len().max(least), (None, None));
+    cells
+}
+
+/// Numbers of the joints that hinges are at, with spaces between.
+fn joint_numbers(hinges: &[Hinge]) -> String {
+    let numbers = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Joint { joint, .. } => Some(joint.to_string()),
+        Hinge::Section { .. } | Hinge::Toe(_) => None,
+    });
+    numbers.collect::<Vec<_>>().join(" ")
+}
+
+/// Edges of these joints, with spaces between.
+fn joint_edges(hinges: &[Hinge]) -> String {
+    let names = hinges.iter().filter_map(|hinge| match hinge {
+        Hinge::Joint { edge, .. } => Some(edge.map_or("both", Edge::name)),
+        Hinge::Section { .. } | Hinge::Toe(_) => None,
+    });
+    names.collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,501 @@
+//! What a run says: what happened, when, and what it compares with.
+
+use std::fmt::Write as _;
+
+use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
+use crate::dynamics::history::{Event, HalfCycle, Impact, Outcome, RowSummary, Sliding, Summary};
+use crate::dynamics::model::{MechanismModel, Model};
+use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, SpreadError};
+use crate::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
+use crate::mechanics::blocks::Row;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::sway::Sway;
+use crate::output::mechanisms::by_body;
+use crate::scenario::{Ground, Scenario, Series, Structure};
+
+/// What stands above the words of runs of a scenario: its title, and the records that shake it, a line each.
+#[must_use]
+pub fn heading(scenario: &Scenario) -> String {
+    let title = scenario.title();
+    let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
+    if let Some(Ground::Record(record)) = scenario.ground() {
+        text.extend(record.series().map(|series: &Series| {
+            let (file, sampling) = (series.name(), series.sampling());
+            let peak_g = series.peak_g(scenario.gravity_m_s2());
+            format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
+        }));
+    }
+    text
+}
+
+/// What happened.
+pub(super) fn words(
+    scenario: &Scenario,
+    model: &dyn Model,
+    history: &Summary,
+    spread: Option<&Result<Spread, SpreadError>>,
+    impacts: &Notable,
+) -> String {
+    let mut text = outcome(history);
+    match (model.as_mechanisms(), &history.row) {
+        (Some(model), _) => text += &of_mechanisms(model, history, impacts),
+        (None, Some(row)) => text += &of_row(history, row, impacts),
+        (None, None) => {}
+    }
+    text += &incipient(scenario, model, history);
+    text += &cut_short(scenario, history);
+    let sliding = history.row.as_ref().and_then(|row| row.sliding.as_ref());
+    if let (Some(row), Some(sliding)) = (model.row(), sliding) {
+        text += &slips(row, sliding, history.outcome);
+    } else if let Some(thrust) = &history.thrust {
+        let to_be_told = match model.as_mechanisms() {
+            Some(_) => trust(thrust, scenario.structure()),
+            None => Some(String::new()),
+        };
+        if let Some(trust) = to_be_told {
+            let friction = thrust.largest_friction;
+            let _ = writeln!(
+                text,
+                "{trust}  friction coefficient needed to prevent sliding: {:.3} (at {:.4} s)",
+                friction.value, friction.time_s
+            );
+        }
+    }
+    match spread {
+        Some(Ok(spread)) if history.outcome != Outcome::NeverMoved => text += &sure(spread),
+        Some(Err(reason)) => {
+            let _ = writeln!(
+                text,
+                "  how far it depends on its steps is not known: {reason}"
+            );
+        }
+        _ => {}
+    }
+    text
+}
+
+/// What is said of the motion of mechanisms.
+fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notable) -> String {
+    let mut text = String::new();
+    if let Some((time_s, impact)) = &impacts.first {
+        let _ = writeln!(
+            text,
+            "  first impact at {time_s:.4} s, restitution (energy after/before) {:.4}",
+            impact.restitution,
+        );
+    }
+    if history.outcome == Outcome::NeverMoved {
+        return text;
+    }
+    let _ = writeln!(
+        text,
+        "  peak rotation in rad: {}",
+        by_body(&model.bodies(), &history.peak_rotations_rad),
+    );
+    if let Some(peak) = history.peak_over_critical {
+        text += &reached(
+            history.outcome,
+            peak,
+            "passed the unstable rotation of the mechanism that moved",
+            "the unstable rotation of the mechanism that moved",
+        );
+    }
+    let _ = writeln!(
+        text,
+        "  energy defect {:.1e} of the first mechanism's barrier, {} steps, {} evaluations",
+        history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
+    );
+    text
+}
+
+/// How far it came: that it `passed` what gravity alone overturns beyond, or what part of that.
+fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
+    match outcome {
+        // How far it fell on until the run ended says nothing; it may have overturned by another mechanism.
+        Outcome::Overturned(_) => format!("  {passed}\n"),
+        _ => {
+            // Rounded down, so that what was not reached is not said to be.
+            let percent = (1e3 * peak).floor() / 10.0;
+            format!("  reached {percent:.1} % of {of}\n")
+        }
+    }
+}
+
+/// What is said of the motion of a row.
+fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
+    let mut text = String::new();
+    if let Some((time_s, impact)) = &impacts.first {
+        let _ = writeln!(text, "  first impact at {time_s:.4} s: {}", landing(impact));
+    }
+    if let Some((time_s, impact)) = &impacts.hardest
+        && impacts.hardest != impacts.first
+    {
+        let _ = writeln!(
+            text,
+            "  largest loss in one impact at {time_s:.4} s: {}",
+            landing(impact)
+        );
+    }
+    if history.outcome == Outcome::NeverMoved {
+        return text;
+    }
+    let rocking = row
+        .half_cycles
+        .iter()
+        .filter(|cycle| cycle.peak_rad > STRAIGHT_RAD);
+    let cycles: Vec<_> = rocking.take(FIRST).map(cycle).collect();
+    if !cycles.is_empty() {
+        let cycles = cycles.join(", ");
+        let _ = writeln!(text, "  peaks of the first half cycles in rad: {cycles}");
+    }
+    let (peak, peaks) = (history.largest_rotation_rad(), &history.peak_rotations_rad);
+    if peak <= STRAIGHT_RAD {
+        text += "  slides without rocking\n";
+    } else if let Some(block) = peaks.iter().rposition(|other| *other == peak) {
+        let _ = writeln!(
+            text,
+            "  largest rotation {peak:.6} rad, of block {} of {}",
+            block + 1,
+            peaks.len()
+        );
+    }
+    if let Some(peak) = history.peak_potential_over_barrier {
+        text += &reached(
+            history.outcome,
+            peak,
+            "passed the barrier beyond which it overturns",
+            "the potential energy at which its first mechanism overturns",
+        );
+    }
+    let _ = writeln!(
+        text,
+        "  energy defect {:.1e} of weight times size, {} steps, {} iterations",
+        history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
+    );
+    if row.energy_error > DOUBTFUL_ENERGY_ERROR {
+        let _ = writeln!(
+            text,
+            "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [free_hinges] makes it less",
+            1e2 * row.energy_error
+        );
+    }
+    text
+}
+
+/// Half cycles that the words of a run tell of.
+const FIRST: usize = 3;
+
+/// What turns by no more than this slides straight on: printed, it is zero.
+const STRAIGHT_RAD: f64 = 5e-7;
+
+/// Impacts that the words of a run tell of, with their times.
+#[derive(Default)]
+pub(super) struct Notable {
+    first: Option<(f64, Impact)>,
+    /// The one that takes the most energy.
+    hardest: Option<(f64, Impact)>,
+}
+
+impl Notable {
+    pub(super) fn note(&mut self, event: &Event) {
+        let (time_s, Some(impact)) = (event.time_s, &event.impact) else {
+            return;
+        };
+        if self.first.is_none() {
+            self.first = Some((time_s, impact.clone()));
+        }
+        let harder = |(_, hardest): &(f64, Impact)| taken_j(impact) > taken_j(hardest);
+        if self.hardest.as_ref().is_none_or(harder) {
+            self.hardest = Some((time_s, impact.clone()));
+        }
+    }
+}
+
+/// Energy that an impact took, in J.
+pub(super) fn taken_j(impact: &Impact) -> f64 {
+    impact.energy_before_j - impact.energy_after_j
+}
+
+/// How it ended.
+fn outcome(history: &Summary) -> String {
+    let time_s = history.outcome_time_s;
+    let impacts = match history.impacts {
+        0 => "without impact".to_owned(),
+        1 => "after 1 impact".to_owned(),
+        count => format!("after {count} impacts"),
+    };
+    match history.outcome {
+        Outcome::NeverMoved => "  never moved\n".to_owned(),
+        Outcome::Rest => format!("  came to rest at {time_s:.4} s {impacts}\n"),
+        Outcome::Overturned(sway) => {
+            let sway = sway.name();
+            format!("  overturned to the {sway} at {time_s:.4} s {impacts}\n")
+        }
+        Outcome::StillRocking => format!("  still rocking at {time_s:.4} s {impacts}\n"),
+    }
+}
+
+/// What starts the structure to either side, beside what the ground reaches.
+fn incipient(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String {
+    let sides = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
+    let least_g = sides
+        .iter()
+        .flatten()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    let (reaches, uneven) = (reaches(scenario, history, least_g), "the smaller one");
+    let options = scenario.motion().row().unwrap_or_default();
+    let incipient = match options.friction_coefficient {
+        None => "incipient acceleration A_L",
+        Some(_) => "incipient acceleration with friction",
+    };
+    match sides {
+        [Some(right), Some(left)] if (right - left).abs() > 1e-9 * right => format!(
+            "  {incipient} {right:.4} g to the right, {left:.4} g to the left; the ground {}\n",
+            reaches.replacen("times as much", &format!("times {uneven}"), 1)
+        ),
+        [None, None] => {
+            format!("  {incipient} none, no push starts it; the ground {reaches}\n")
+        }
+        _ => format!("  {incipient} {least_g:.4} g; the ground {reaches}\n"),
+    }
+}
+
+/// What the ground reaches, beside what starts the structure.
+fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
+    let ground = scenario.ground_motion();
+    let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.gravity_m_s2();
+    let mut reaches = if peaks_g.x > 0.0 {
+        format!(
+            "reaches {:.4} g, {:.2} times as much",
+            peaks_g.x,
+            peaks_g.x / incipient_g
+        )
+    } else {
+        "stays still".to_owned()
+    };
+    if peaks_g.y > 0.0 {
+        let _ = write!(
+            reaches,
+            " sideways;\n    vertically it reaches {:.4} g, and A_L counts in gravity plus that",
+            peaks_g.y
+        );
+    }
+    reaches
+}
+
+/// Warns of a run that ends before the ground does.
+fn cut_short(scenario: &Scenario, history: &Summary) -> String {
+    let ground = scenario.ground_motion();
+    if history.end_s >= scenario.simulation().duration_s && ground.end_s() > history.end_s {
+        return format!(
+            "  the run ends at {:.4} s and the ground moves until {:.4} s: a longer duration_s in [simulation] \
+             shows the rest\n",
+            history.end_s,
+            ground.end_s()
+        );
+    }
+    String::new()
+}
+
+/// How far the motion can be trusted to be that of four links, or of a column on its toe; `None` where it did not rock.
+fn trust(thrust: &ThrustRecord, structure: &Structure) -> Option<String> {
+    let [_, near] = thrust.shares_within()?;
+    let Peak { value, time_s } = thrust.largest_excess;
+    let [close, most] = EXCESS_LEVELS;
+    let excess =
+        format!("the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s)");
+    Some(match structure {
+        Structure::Column(_) if value > 0.0 => format!(
+            "  the ground would have to hold the column down (at {time_s:.4} s): it flies off\n"
+        ),
+        Structure::Column(_) => String::new(),
+        Structure::Arch(_) | Structure::Masonry(_) if value <= close => {
+            format!(
+                "  four links suffice: the thrust line leaves the arch by {value:.4} t at most\n"
+            )
+        }
+        Structure::Arch(_) | Structure::Masonry(_) => {
+            let grade = if value <= most {
+                "four links are close"
+            } else {
+                "four links are a rough guide, not on the safe side"
+            };
+            let compare = match structure {
+                Structure::Arch(arch) if arch.voussoirs().is_none() => {
+                    "give `voussoirs` and compare with --hinges both"
+                }
+                _ => "compare with --hinges both",
+            };
+            format!(
+                "  {grade}: {excess},\n    and stays within {most} t for {:.1} % of the rocking time; {compare}\n",
+                100.0 * near
+            )
+        }
+    })
+}
+
+/// Slips below this part of the thickness of a joint are not worth a word.
+const LEAST_SLIP_RATIO: f64 = 1e-6;
+/// Joints that the words tell of.
+const SLIPPED: usize = 4;
+
+/// Which joints slipped, what is left of it, and what friction took.
+fn slips(row: &Row, sliding: &Sliding, outcome: Outcome) -> String {
+    let joints = row.joints().iter().zip(&sliding.largest_offsets_m);
+    let mut slipped: Vec<(usize, f64, f64)> = joints
+        .zip(&sliding.offsets_m)
+        .enumerate()
+        .filter(|(_, ((joint, largest_m), _))| **largest_m > LEAST_SLIP_RATIO * joint.thickness_m())
+        .map(|(index, ((_, largest_m), end_m))| (index, *largest_m, *end_m))
+        .collect();
+    slipped.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut text =
+        match &slipped[..] {
+            [] => "  no joint slipped".to_owned(),
+            [..] => {
+                let named = slipped.iter().take(SLIPPED).map(|(joint, largest_m, end_m)| {
+                let (largest_mm, end_mm) = (1e3 * largest_m, 1e3 * end_m.abs());
+                if outcome == Outcome::Rest && (largest_mm - end_mm).abs() > 0.05 * largest_mm {
+                    format!("joint {joint} slipped {largest_mm:.3} mm, {end_mm:.3} mm in the end")
+                } else {
+                    format!("joint {joint} slipped {largest_mm:.3} mm")
+                }
+            });
+                let mut text = format!("  {}", named.collect::<Vec<_>>().join("; "));
+                if slipped.len() > SLIPPED {
+                    let _ = write!(text, "; {} more slipped less", slipped.len() - SLIPPED);
+                }
+                text
+            }
+        };
+    let _ = write!(text, "; friction took {:.3} J", sliding.friction_j);
+    if outcome == Outcome::Rest
+        && let Some(most_m) = slipped
+            .iter()
+            .map(|(_, _, end_m)| end_m.abs())
+            .max_by(f64::total_cmp)
+    {
+        let _ = write!(
+            text,
+            "\n  at rest, but not as it stood: joints are up to {:.3} mm off",
+            1e3 * most_m
+        );
+    }
+    if sliding.unconverged > 0 {
+        let _ = write!(
+            text,
+            "\n  friction did not converge in {} steps: bounds off by up to {:.1e}; take shorter steps",
+            sliding.unconverged, sliding.bound_error
+        );
+    }
+    text.push('\n');
+    text
+}
+
+/// What an impact did.
+fn landing(impact: &Impact) -> String {
+    let mut text = String::new();
+    for (hinges, one, many) in [
+        (&impact.closed, "closes", "close"),
+        (&impact.opened, "opens", "open"),
+    ] {
+        let named = joints(hinges);
+        let _ = match hinges.len() {
+            0 => Ok(()),
+            1 => write!(text, "joint {named} {one}, "),
+            _ => write!(text, "joints {named} {many}, "),
+        };
+    }
+    let _ = write!(text, "energy after/before {:.4}", impact.restitution);
+    text
+}
+
+/// Numbers of the joints that hinges are at; neighbours as `3-7`.
+fn joints(hinges: &[Hinge]) -> String {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for hinge in hinges {
+        if let Hinge::Joint { joint, .. } = *hinge {
+            match runs.last_mut() {
+                Some((_, last)) if *last + 1 == joint => *last = joint,
+                _ => runs.push((joint, joint)),
+            }
+        }
+    }
+    let names = runs.into_iter().map(|(first, last)| match last - first {
+        0 => first.to_string(),
+        1 => format!("{first}, {last}"),
+        _ => format!("{first}-{last}"),
+    });
+    names.collect::<Vec<_>>().join(", ")
+}
+
+fn cycle(cycle: &HalfCycle) -> String {
+    format!("{} {:.6}", cycle.sway.name(), cycle.peak_rad)
+}
+
+/// What the repetitions leave as it is.
+fn sure(spread: &Spread) -> String {
+    let repeated = spread.repeated.join("; ");
+    let mut text = if spread.same_outcome() {
+        format!("  repeated ({repeated}): the same outcome")
+    } else {
+        let others: Vec<String> = spread.outcomes[1..]
+            .iter()
+            .map(|other| ending(*other))
+            .collect();
+        let others = others.join(" and ");
+        format!("  repeated ({repeated}): ANOTHER OUTCOME, {others}")
+    };
+    let mut peaks = spread.half_cycles.iter();
+    if peaks.all(|peak| peak.max_rad <= STRAIGHT_RAD) {
+        text.push('\n');
+        return text;
+    }
+    let percent = 100.0 * SAME_PEAK_RATIO;
+    let same = spread.same_until_half_cycle;
+    let _ = match (same, spread.parts_at_s) {
+        (0, None) => Ok(()),
+        (1, None) => write!(text, ", peak of the only half cycle within {percent} %"),
+        (_, None) => write!(text, ", peaks of all {same} half cycles within {percent} %"),
+        (0, Some(_)) => write!(text, "; the first half cycles differ already"),
+        (1, Some(time_s)) => write!(
+            text,
+            ", peak of the first half cycle within {percent} %;\n    from {time_s:.4} s on they differ"
+        ),
+        (_, Some(time_s)) => write!(
+            text,
+            ", peaks of the first {same} half cycles within {percent} %;\n    from {time_s:.4} s on they differ"
+        ),
+    };
+    if let Some(peak) = spread.half_cycles.get(same) {
+        let (min_rad, max_rad) = (peak.min_rad, peak.max_rad);
+        let _ = write!(
+            text,
+            ": half cycle {} peaks at {min_rad:.6} to {max_rad:.6} rad",
+            same + 1
+        );
+    }
+    if let Some(largest) = spread.largest {
+        let (min_rad, max_rad) = (largest.min_rad, largest.max_rad);
+        let _ = if largest.is_same() {
+            write!(text, "\n    largest rotation within {percent} %")
+        } else {
+            write!(
+                text,
+                "\n    LARGEST ROTATION {min_rad:.6} to {max_rad:.6} rad"
+            )
+        };
+    }
+    text.push('\n');
+    text
+}
+
+fn ending(outcome: Outcome) -> String {
+    match outcome {
+        Outcome::NeverMoved => "never moved".to_owned(),
+        Outcome::Rest => "rest".to_owned(),
+        Outcome::Overturned(sway) => format!("overturned to the {}", sway.name()),
+        Outcome::StillRocking => "still rocking".to_owned(),
+    }
+}
