@@ -32,6 +32,7 @@ mod impact_of_rows;
 mod impulse_line;
 mod init;
 mod integration;
+mod keys;
 mod landings;
 mod limit;
 mod long_work;

@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use archrock::output::{Figure, Folder, pretty};
+use archrock::output::{Figure, Folder};
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
@@ -12,7 +12,7 @@ use archrock::studies::part::Shard;
 use archrock::studies::results::Look;
 use archrock::studies::runner::{Runner, Task};
 use archrock::studies::threshold::{Factors, ThresholdError, check, tell, thresholds};
-use archrock::studies::verify::{Check, page, to_json, today};
+use archrock::studies::verify::{Check, tell as tell_check};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -166,8 +166,7 @@ pub fn threshold<'py>(
             ThresholdError::Argument(error) => refused(error),
             ThresholdError::Runner(error) => not_run(error),
         })?;
-        let (results, _) =
-            tell(&[&scenario], &factors, &found, Figure::SCREEN).map_err(not_written)?;
+        let results = tell(&[&scenario], &factors, &found, Figure::SCREEN).map_err(not_written)?;
         Ok(results.files)
     })?;
     Ok(to_python(py, files))
@@ -179,12 +178,7 @@ pub fn verify<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py
     let scenario = Arc::clone(&scenario.inner);
     let files = watched(py, None, move |_| {
         let check = Check::new(&scenario).map_err(refused)?;
-        let json = to_json(&scenario, &check).map_err(not_written)?;
-        let page = page(&scenario, &check, &today());
-        Ok(vec![
-            ("verify.html", page.into_bytes()),
-            ("verify.json", pretty(&json).into_bytes()),
-        ])
+        Ok(tell_check(&scenario, &check).map_err(not_written)?.files)
     })?;
     Ok(to_python(py, files))
 }

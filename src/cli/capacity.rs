@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 
-use archrock::output::pretty;
-use archrock::studies::capacity::{FILES, capacity as capacities, tell};
+use archrock::studies::capacity::{capacity as capacities, tell};
 use nalgebra::Vector2;
 
 use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
-use super::study::say;
-use super::{Failure, Format, print};
+use super::{Failure, Format, show};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -46,18 +44,7 @@ pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let sides = capacities(&scenario, arguments.point)
         .map_err(|error| Failure::Input(error.to_string()))?;
     let place = input.results(arguments.out.as_deref())?;
-    let folder = place.open(&FILES)?;
-    let (results, json) = tell(&scenario, &sides, arguments.figure.get())?;
-    results.write(folder)?;
-    if !quiet {
-        say(&format!(
-            "results in {}: {}",
-            place.path().display(),
-            FILES.join(", ")
-        ));
-    }
-    match arguments.format {
-        Format::Json => print(&pretty(&json)),
-        Format::Text => print(&results.words),
-    }
+    let results = tell(&scenario, &sides, arguments.figure.get())?;
+    place.write(&results, quiet)?;
+    show(&results, arguments.format)
 }

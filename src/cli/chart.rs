@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use archrock::scenario::Structure;
-use archrock::studies::chart::{Chart, FILES};
+use archrock::studies::chart::Chart;
 
 use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
@@ -31,16 +31,11 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     // An arch without results of its own is refused, with the reason.
     commands::model(&scenario)?;
     let place = input.results(arguments.out.as_deref())?;
-    let folder = place.open(&FILES)?;
-    let results = Chart::of(arch, scenario.motion().impact()).tell(arguments.figure.get())?;
-    results.write(folder)?;
+    let law = scenario.motion().impact();
+    let results = Chart::of(arch, law).tell(arguments.figure.get())?;
+    place.write(&results, true)?;
     if !quiet {
-        say(&format!(
-            "{} in {}: {}",
-            results.words,
-            place.path().display(),
-            FILES.join(", ")
-        ));
+        say(&format!("{} in {}", results.words, place.holds(&results)));
     }
     Ok(())
 }

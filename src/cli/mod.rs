@@ -23,9 +23,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use archrock::dynamics::model::SimulationError;
-use archrock::output::OutputError;
+use archrock::output::{OutputError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
+use archrock::studies::results::Results;
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
+
+use serde_json::Value;
 
 use figure::FigureOption;
 use first::FirstOption;
@@ -191,6 +194,21 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut command = Arguments::command();
     clap_complete::generate(shell, &mut command, "archrock", &mut script);
     print(&String::from_utf8_lossy(&script))
+}
+
+/// Prints what results tell, their files apart.
+fn show(results: &Results, format: Format) -> Result<(), Failure> {
+    match format {
+        Format::Json => print(&pretty(&results.summary)),
+        Format::Text => print(&results.words),
+    }
+}
+
+/// Prints summaries as JSON: the only one, or an array.
+fn print_all(summaries: impl IntoIterator<Item = Value>) -> Result<(), Failure> {
+    let mut all: Vec<Value> = summaries.into_iter().collect();
+    let only = (all.len() == 1).then(|| all.pop()).flatten();
+    print(&pretty(&only.unwrap_or(Value::Array(all))))
 }
 
 /// Prints a result on standard output. Names in it may hold what a terminal would obey.

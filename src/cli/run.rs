@@ -6,17 +6,17 @@ use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use archrock::output::{Folder, pretty};
+use archrock::output::Folder;
 use archrock::scenario::{Hinges, Scenario, shown_lines};
 use archrock::studies::run::overlay::Curves;
 use archrock::studies::run::{FILES, OVERLAY, Run, RunError, Told, Wanted, heading, overlay};
 use clap::ValueEnum;
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use self::progress::RunProgress;
 use super::figure::FigureOption;
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
-use super::{Failure, Format, print};
+use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -106,8 +106,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         }
     }
     if let Format::Json = arguments.format {
-        let only = (jobs.len() == 1).then(|| summaries.pop()).flatten();
-        print(&pretty(&only.unwrap_or(Value::Array(summaries))))?;
+        print_all(summaries)?;
     }
     if failures.is_empty() {
         Ok(())

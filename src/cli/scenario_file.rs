@@ -8,8 +8,10 @@ use std::path::{Path, PathBuf};
 
 use archrock::output::Folder;
 use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
+use archrock::studies::results::Results;
 
 use super::Failure;
+use super::study::say;
 
 /// The scenario of a command.
 #[derive(clap::Args)]
@@ -218,6 +220,20 @@ impl Destination {
             )));
         }
         Ok(Self { path, origin })
+    }
+
+    /// Writes results there, and says so.
+    pub fn write(&self, results: &Results, quiet: bool) -> Result<(), Failure> {
+        results.write(self.open(&results.names())?)?;
+        if !quiet {
+            say(&format!("results in {}", self.holds(results)));
+        }
+        Ok(())
+    }
+
+    /// The folder and the files of results in it.
+    pub fn holds(&self, results: &Results) -> String {
+        format!("{}: {}", self.path.display(), results.names().join(", "))
     }
 
     /// Opens the folder for files of these names, the seal last; a failure suggests `--out`.

@@ -183,12 +183,10 @@ pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
 
 /// Writes results into their folder, and says what they are.
 pub fn write(results: &Results, place: &Destination, quiet: bool) -> Result<(), Failure> {
-    let names = results.names();
-    results.write(place.open(&names)?)?;
+    place.write(results, true)?;
     if !quiet {
         say(&results.words);
-        let files = names.join(", ");
-        say(&format!("  results in {}: {files}", place.path().display()));
+        say(&format!("  results in {}", place.holds(results)));
     }
     Ok(())
 }

@@ -4,18 +4,17 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use archrock::dynamics::model::Model;
-use archrock::output::pretty;
 use archrock::scenario::Scenario;
+use archrock::studies::results::Results;
 use archrock::studies::threshold::{
     FILES, Factors, NoHistory, Threshold, ThresholdError, check, tell, thresholds,
 };
-use serde_json::Value;
 
 use super::figure::FigureOption;
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
 use super::study::{Display, Threads, say};
-use super::{Failure, Format, print};
+use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -74,39 +73,32 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     {
         say(ignored);
     }
-    let mut texts = Vec::new();
-    let mut results = Vec::new();
+    let mut found = Vec::new();
     for (scenarios, place) in &tasks {
         if !quiet {
             super::warn(&scenarios[0].unlikely());
         }
-        let (text, json) = find(scenarios, place, &factors, arguments, quiet)?;
-        texts.push(text);
-        results.push(json);
+        found.push(find(scenarios, place, &factors, arguments, quiet)?);
     }
     match arguments.format {
-        Format::Json => {
-            let only = (results.len() == 1).then(|| results.pop()).flatten();
-            print(&pretty(&only.unwrap_or(Value::Array(results))))
-        }
+        Format::Json => print_all(found.into_iter().map(|results| results.summary)),
         Format::Text => {
             let title = tasks[0].0[0].title();
             let title = title.map_or(String::new(), |title| format!("{title}\n"));
-            let sampled = factors.in_words();
-            print(&format!("{title}{}  {sampled}\n", texts.concat()))
+            let words: String = found.into_iter().map(|results| results.words).collect();
+            print(&format!("{title}{words}  {}\n", factors.in_words()))
         }
     }
 }
 
-/// Finds the thresholds of a scenario, for one model of motion or for both, and writes them. Returns what was found in
-/// words and as JSON.
+/// Finds the thresholds of a scenario, for one model of motion or for several, and writes them.
 fn find(
     scenarios: &[Scenario],
     place: &Destination,
     factors: &Factors,
     arguments: &Arguments,
     quiet: bool,
-) -> Result<(String, Value), Failure> {
+) -> Result<Results, Failure> {
     let scenario = &scenarios[0];
     let models: Vec<Box<dyn Model>> = scenarios
         .iter()
@@ -136,16 +128,12 @@ fn find(
     }
 
     let of_models: Vec<&Scenario> = scenarios.iter().collect();
-    let (results, json) = tell(&of_models, factors, &found, arguments.figure.get())?;
+    let results = tell(&of_models, factors, &found, arguments.figure.get())?;
     results.write(folder)?;
     if !quiet {
-        say(&format!(
-            "results in {}: {}",
-            place.path().display(),
-            FILES.join(", ")
-        ));
+        say(&format!("results in {}", place.holds(&results)));
     }
-    Ok((results.words, json))
+    Ok(results)
 }
 
 impl From<ThresholdError> for Failure {

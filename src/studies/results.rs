@@ -15,6 +15,8 @@ pub struct Results {
     pub obsolete: Option<&'static str>,
     /// What they say, line by line.
     pub words: String,
+    /// The same for programs, with all numbers.
+    pub summary: Value,
 }
 
 impl Results {

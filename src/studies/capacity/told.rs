@@ -27,7 +27,7 @@ pub fn tell(
     scenario: &Scenario,
     sides: &[Capacity; 2],
     figure: Figure,
-) -> Result<(Results, Value), OutputError> {
+) -> Result<Results, OutputError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let title = scenario.title().unwrap_or("Capacity");
     let masses = grouping(scenario.structure());
@@ -40,12 +40,12 @@ pub fn tell(
         table(sides)?,
         pretty(&json).into_bytes(),
     ];
-    let results = Results {
+    Ok(Results {
         files: FILES.into_iter().zip(contents).collect(),
-        obsolete: None,
         words,
-    };
-    Ok((results, json))
+        summary: json,
+        ..Results::default()
+    })
 }
 
 /// A row for each point of the curves, those to the right first. The secant period is empty at the unstable equilibrium.

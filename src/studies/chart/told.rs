@@ -19,8 +19,8 @@ impl Chart {
         let contents = [picture.into_bytes(), table(&self.shapes)?];
         Ok(Results {
             files: FILES.into_iter().zip(contents).collect(),
-            obsolete: None,
             words: format!("{} arches", self.shapes.len()),
+            ..Results::default()
         })
     }
 }

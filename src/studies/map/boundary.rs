@@ -46,27 +46,30 @@ impl<'m> ImpactFreeBoundary<'m> {
     fn result(&self, x: usize) -> Result<Option<Boundary>, String> {
         let amplitudes_g = &self.map.values()[1];
         let index = x * amplitudes_g.len();
-        let model = match self.map.mechanism_model(index) {
-            Ok(model) => model,
-            Err(CellResult::Failed(reason)) => return Err(reason),
-            Err(_) => return Ok(None),
-        };
-        let (Some((model, request)), Some(pulse)) = (model, self.map.pulse(index)) else {
-            return Ok(None);
-        };
+        let pulse = self.map.pulse(index);
         // The cells' amplitudes are tried too, so that no cell contradicts the boundary.
         let tried_g: Vec<f64> = amplitudes_g.iter().map(|value| value.abs()).collect();
-        let found = pulse
-            .minimum_without_impact(&*model, &request, &tried_g)
-            .map_err(|error| error.to_string())?;
-        let incipient_g = model
-            .incipient_acceleration_g(Sway::Right)
-            .unwrap_or(f64::INFINITY);
-        check_finite(&[incipient_g])?;
-        Ok(Some(Boundary {
-            incipient_g,
-            impact_free_g: found.map(|(amplitude_g, _)| amplitude_g),
-        }))
+        let found = self.map.ask_mechanisms(index, |model, request| {
+            let Some(pulse) = pulse else {
+                return Ok(None);
+            };
+            let found = pulse
+                .minimum_without_impact(model, request, &tried_g)
+                .map_err(|error| error.to_string())?;
+            let incipient_g = model
+                .incipient_acceleration_g(Sway::Right)
+                .unwrap_or(f64::INFINITY);
+            check_finite(&[incipient_g])?;
+            Ok(Some(Boundary {
+                incipient_g,
+                impact_free_g: found.map(|(amplitude_g, _)| amplitude_g),
+            }))
+        });
+        match found {
+            Ok(found) => found.unwrap_or(Ok(None)),
+            Err(CellResult::Failed(reason)) => Err(reason),
+            Err(_) => Ok(None),
+        }
     }
 }
 

@@ -15,18 +15,16 @@ use super::ending::Ending;
 use super::impact_free::ScalablePulse;
 use super::runner::Study;
 use crate::argument::ArgumentError;
-use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError};
+use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{MechanismModel, Model, Repetition, Request};
 use crate::dynamics::spread::objection;
-use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
-use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
+use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::limit::LimitError;
-use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::stability::StabilityError;
 use crate::scenario::{
-    Axis, Ground, ModelError, PulseGround, Quantity, Scaling, Scenario, Structure,
+    Axis, Ground, ModelError, Motion, PulseGround, Quantity, Scaling, Scenario, Structure,
 };
 
 /// What became of a cell.
@@ -90,22 +88,19 @@ pub struct OverturningMap<'a> {
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
 }
 
-/// What stands in cells: of any size, but for a row of blocks.
+/// What stands in cells.
 #[derive(Clone, Debug)]
 enum Standing {
+    /// Four links of an arch, of any size.
     Arch(FourLinkArch),
-    Column(RockingColumn),
-    FourLinkRow(Arc<FourLinkRow>),
-    Row(Arc<FreeHinges>),
+    Model(Arc<dyn Model>),
 }
 
 impl Standing {
     fn model(&self) -> &dyn Model {
         match self {
             Self::Arch(arch) => arch,
-            Self::Column(column) => column,
-            Self::FourLinkRow(row) => &**row,
-            Self::Row(row) => &**row,
+            Self::Model(model) => &**model,
         }
     }
 }
@@ -286,14 +281,15 @@ impl<'a> OverturningMap<'a> {
 
     /// What stands in a cell.
     fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
-        let make = || match scenario.motion().row() {
-            Some(steps) => {
-                let structure = self
-                    .structure(index, scenario)
-                    .map_err(FreeHingesError::from)?;
-                Ok(Standing::Row(Arc::new(structure.free_hinges(steps)?)))
-            }
-            None => self.mechanisms(index, scenario),
+        let make = || {
+            let structure = self.structure(index, scenario);
+            let structure = structure.map_err(FourLinkError::from)?;
+            Ok(match (self.moves(index, scenario), structure) {
+                (Motion::FourLinks(law), Structure::Arch(arch)) => {
+                    Standing::Arch(FourLinkArch::new(arch, law)?)
+                }
+                (motion, structure) => Standing::Model(motion.model(&structure)?.into()),
+            })
         };
         let standing = self.structures.get(self.place(index), make)?;
         Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
@@ -305,17 +301,16 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// The model of what stands in a cell, where it has one degree of freedom at a time, and what asks it for a motion;
-    /// or what becomes of the cell without it.
-    pub(super) fn mechanism_model(&self, index: usize) -> Result<Option<Asked>, CellResult> {
+    /// What asks mechanisms in a cell for a motion, answered by `ask`, or what becomes of the cell without it; `None` of a row.
+    pub(super) fn ask_mechanisms<T>(
+        &self,
+        index: usize,
+        ask: impl FnOnce(&dyn MechanismModel, &Request) -> T,
+    ) -> Result<Option<T>, CellResult> {
         let scenario = self.variant(index).map_err(CellResult::Failed)?;
-        let model: Box<dyn MechanismModel> = match self.standing(index, &scenario)? {
-            Standing::Arch(arch) => Box::new(arch),
-            Standing::Column(column) => Box::new(column),
-            Standing::FourLinkRow(row) => Box::new((*row).clone()),
-            Standing::Row(_) => return Ok(None),
-        };
-        Ok(Some((model, scenario.request_from_rest())))
+        let standing = self.standing(index, &scenario)?;
+        let model = standing.model().as_mechanisms();
+        Ok(model.map(|model| ask(model, &scenario.request_from_rest())))
     }
 
     /// The structure of a cell.
@@ -338,32 +333,16 @@ impl<'a> OverturningMap<'a> {
         Ok(Structure::Arch(arch))
     }
 
-    /// The mechanisms of the structure of a cell.
-    fn mechanisms(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
-        let model = match scenario.motion().impact().model {
-            ImpactModel::Prescribed { restitution } => ImpactModel::Prescribed {
-                restitution: self
-                    .value(index, Quantity::Restitution)
-                    .unwrap_or(restitution),
-            },
-            model => model,
-        };
-        let impact = ImpactLaw {
-            model,
-            ..scenario.motion().impact()
-        };
-        let structure = self
-            .structure(index, scenario)
-            .map_err(FourLinkError::from)?;
-        Ok(match structure {
-            Structure::Arch(arch) => Standing::Arch(FourLinkArch::new(arch, impact)?),
-            Structure::Column(column) => {
-                Standing::Column(RockingColumn::new(&column, impact).map_err(FourLinkError::from)?)
-            }
-            Structure::Masonry(masonry) => {
-                Standing::FourLinkRow(Arc::new(FourLinkRow::new(masonry.row(), impact)?))
-            }
-        })
+    /// The model of motion of a cell.
+    fn moves(&self, index: usize, scenario: &Scenario) -> Motion {
+        let mut motion = *scenario.motion();
+        if let (Motion::FourLinks(law), Some(varied)) =
+            (&mut motion, self.value(index, Quantity::Restitution))
+            && let ImpactModel::Prescribed { restitution } = &mut law.model
+        {
+            *restitution = varied;
+        }
+        motion
     }
 
     /// The pulse of a cell, of any amplitude; `None` under a record, or where the cell has no scenario.
@@ -420,9 +399,6 @@ impl<'a> OverturningMap<'a> {
         ended.map_err(CellResult::Failed)
     }
 }
-
-/// The model of a cell, and what asks it for a motion.
-pub(super) type Asked = (Box<dyn MechanismModel>, Request);
 
 /// How many outcomes a cell has when it is computed in several ways, or why that is not known.
 type Outcomes = Result<usize, String>;

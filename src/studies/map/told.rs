@@ -41,6 +41,7 @@ impl OverturningMap<'_> {
             files,
             obsolete: (!look.no_impact).then_some(BOUNDARY),
             words: words(self, &cells, &remarks),
+            summary,
         })
     }
 

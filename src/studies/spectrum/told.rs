@@ -28,8 +28,8 @@ impl OverturningSpectrum<'_> {
                 (SUMMARY, pretty(&summary).into_bytes()),
                 ("spectrum.csv", csv(columns(), rows)?),
             ],
-            obsolete: None,
             words: words(self, rows, &remarks),
+            ..Results::default()
         })
     }
 }

@@ -74,8 +74,8 @@ impl Heading {
                 (FRAGILITY, pretty(&to_json(self, &results)?).into_bytes()),
                 ("suite.csv", csv(self.case_columns(), &results.cases)?),
             ],
-            obsolete: None,
             words: words(&results),
+            ..Results::default()
         })
     }
 

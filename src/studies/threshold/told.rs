@@ -47,7 +47,7 @@ pub fn tell(
     factors: &Factors,
     thresholds: &[Threshold],
     figure: Figure,
-) -> Result<(Results, Value), OutputError> {
+) -> Result<Results, OutputError> {
     let scenario = scenarios[0];
     let ground = scenario.ground_motion();
     let title = scenario.title();
@@ -60,12 +60,12 @@ pub fn tell(
         table(thresholds)?,
         pretty(&json).into_bytes(),
     ];
-    let results = Results {
+    Ok(Results {
         files: FILES.into_iter().zip(contents).collect(),
-        obsolete: None,
         words: words(scenario, ground, thresholds),
-    };
-    Ok((results, json))
+        summary: json,
+        ..Results::default()
+    })
 }
 
 /// The outcome of a sample, also where there is no history.

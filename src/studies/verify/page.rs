@@ -5,8 +5,8 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::histories::{Histories, HistorySide, Peak};
-use super::summary::{Sums, scenario_sha256};
-use super::words::{in_passes, name, of_method};
+use super::summary::{Sums, scenario_sha256, to_json};
+use super::words::{in_passes, name, of_method, words};
 use super::{
     Activation, ByDisplacement, Check, Margin, Mechanism, Method, SideCheck, Simplified, Spectrum,
     StateCheck, Way, notes, picture,
@@ -16,9 +16,28 @@ use crate::dynamics::demand::ground::GroundSpectrum;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
-use crate::output::Figure;
 use crate::output::page::{escaped, filled};
+use crate::output::{Figure, OutputError, pretty};
 use crate::scenario::{LimitState, Scenario, StateRule};
+use crate::studies::results::Results;
+
+/// Page, numbers and words of a check of a scenario.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn tell(scenario: &Scenario, check: &Check) -> Result<Results, OutputError> {
+    let summary = to_json(scenario, check)?;
+    let page = page(scenario, check, &today());
+    Ok(Results {
+        files: vec![
+            ("verify.html", page.into_bytes()),
+            ("verify.json", pretty(&summary).into_bytes()),
+        ],
+        words: words(check),
+        summary,
+        ..Results::default()
+    })
+}
 
 /// The page of a check of a scenario, made on a date.
 #[must_use]

@@ -1,0 +1,151 @@
+//! The keys that a scenario knows, and what the documents say of them.
+
+use crate::common::{ARCH, parsed};
+use archrock::Scenario;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+fn document(name: &str) -> String {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    fs::read_to_string(docs.join(name)).unwrap()
+}
+
+/// The keys that the reader knows in a table, from what it says of one that it does not know.
+fn known(table: &str) -> BTreeSet<String> {
+    const UNKNOWN: &str = "no_such_key";
+    let lines = format!("[{table}]\n{UNKNOWN} = 1\n");
+    let arch = if table == "arch" || table == "column" {
+        ""
+    } else {
+        ARCH
+    };
+    let errors = Scenario::parse(&format!("{arch}{lines}"), "s.toml").unwrap_err();
+    let said = format!("unknown key `{UNKNOWN}` in [{table}]; known keys: ");
+    let keys = errors
+        .as_slice()
+        .iter()
+        .find_map(|error| error.message.strip_prefix(&said));
+    let keys = keys.unwrap_or_else(|| panic!("{errors}"));
+    keys.split(", ").map(str::to_owned).collect()
+}
+
+/// What stands in backticks.
+fn code(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+/// Rows of the reference behind the heading of a table: keys, and the default.
+fn rows(reference: &str, table: &str) -> Vec<(Vec<String>, String)> {
+    let heading = format!("| **`[{table}]`** |");
+    let mut lines = reference
+        .lines()
+        .skip_while(|line| !line.starts_with(&heading));
+    assert!(lines.next().is_some(), "{heading} is a heading");
+    let rows = lines.take_while(|line| line.starts_with("| `"));
+    rows.map(|row| {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let keys = code(cells[1]).map(str::to_owned).collect();
+        (keys, cells[3].to_owned())
+    })
+    .collect()
+}
+
+/// The reference names every key of a table, and no other.
+#[test]
+fn the_reference_has_the_keys_that_are_read() {
+    let reference = document("scenario.md");
+    let tables = [
+        ("arch", vec!["arch"]),
+        ("column", vec!["column"]),
+        ("free_hinges", vec!["free_hinges"]),
+        (
+            "ground.<kind>",
+            vec!["ground.rectangular", "ground.gabor", "ground.windowed_sine"],
+        ),
+        ("impact", vec!["impact"]),
+        ("initial", vec!["initial"]),
+        ("simulation", vec!["simulation"]),
+        ("suite", vec!["suite"]),
+        ("spectrum", vec!["spectrum"]),
+    ];
+    for (heading, tables) in tables {
+        let mut read: BTreeSet<String> = tables.into_iter().flat_map(known).collect();
+        let rows = rows(&reference, heading);
+        let mut told: BTreeSet<String> = rows.into_iter().flat_map(|(keys, _)| keys).collect();
+        // Those of arches of other shapes are told with these.
+        let elsewhere = ["joints_deg"].map(str::to_owned);
+        read.retain(|key| !elsewhere.contains(key));
+        // The span goes with a rise or an angle.
+        told.retain(|key| !elsewhere.contains(key));
+        assert_eq!(read, told, "[{heading}]");
+    }
+}
+
+/// What is told elsewhere is told completely.
+#[test]
+fn other_documents_name_all_keys() {
+    for (file, tables) in [
+        ("maps.md", &["map"][..]),
+        ("records.md", &["ground.record"]),
+        ("verify.md", &["demand", "verify"]),
+        (
+            "shapes.md",
+            &[
+                "pointed_arch",
+                "elliptic_arch",
+                "basket_arch",
+                "blocks",
+                "piers",
+                "fill",
+            ],
+        ),
+    ] {
+        let text = document(file) + &document("scenario.md");
+        let told: BTreeSet<&str> = code(&text).collect();
+        for table in tables {
+            for key in known(table) {
+                let is_told = told
+                    .iter()
+                    .any(|code| code.split([' ', '=', '{', ',']).any(|word| word == key));
+                assert!(is_told, "{file} does not name `{key}` of [{table}]");
+            }
+        }
+    }
+}
+
+/// The reference names the defaults that are taken.
+#[test]
+fn the_reference_has_the_defaults_that_are_taken() {
+    let reference = document("scenario.md");
+    let ground = "[ground.gabor]\namplitude_g = 0.1\nduration_s = 0.5\n";
+    let arch = parsed(&format!("{ARCH}{ground}")).to_json();
+    let column = parsed("[column]\nheight_m = 1.0\nwidth_m = 0.5\n").to_json();
+    let mut compared = 0;
+    for (table, taken) in [
+        ("arch", &arch["arch"]),
+        ("column", &column["column"]),
+        ("ground.<kind>", &arch["ground"]["gabor"]),
+        ("impact", &arch["impact"]),
+        ("simulation", &arch["simulation"]),
+    ] {
+        for (keys, defaults) in rows(&reference, table) {
+            for (key, default) in keys.iter().zip(defaults.split(", ")) {
+                let default = default.trim_matches('`');
+                let said = match default.parse::<f64>() {
+                    Ok(number) => number.into(),
+                    Err(_) => serde_json::Value::from(default),
+                };
+                let is = match &taken[key] {
+                    serde_json::Value::Number(number) => number.as_f64().into(),
+                    other => other.clone(),
+                };
+                if !is.is_null() && default != "required" && default != "one required" {
+                    assert_eq!(said, is, "`{key}` of [{table}]");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared >= 15, "{compared} defaults");
+}
