@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use archrock::scenario::Structure;
 use archrock::studies::chart::Chart;
 
 use super::figure::FigureOption;
@@ -24,7 +23,7 @@ pub struct Arguments {
 pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.read(None)?;
-    let Structure::Arch(arch) = scenario.structure() else {
+    let Some(arch) = scenario.structure().circular() else {
         let message = "chart is for arches only; the scenario has a column";
         return Err(Failure::Input(message.to_owned()));
     };

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::output::Folder;
-use archrock::scenario::Structure;
 use archrock::studies::impact::{LinkImpact, Question, chain_answer, four_links_answer};
 use archrock::studies::pictures;
 
@@ -58,7 +57,7 @@ impl Arguments {
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.open()?.read(None)?;
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
-    if matches!(scenario.structure(), Structure::Column(_)) && !arguments.of_arches_only() {
+    if !scenario.structure().thrusts() && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;
         let answer = chain_answer(&scenario, &*model, first, count);
         return commands::answer(&answer, arguments.format);

@@ -18,6 +18,7 @@ pub mod geometry;
 #[doc(hidden)]
 pub mod joints;
 pub mod masonry;
+pub mod parts;
 #[doc(hidden)]
 pub mod slip;
 pub mod stability;

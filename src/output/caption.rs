@@ -75,11 +75,11 @@ fn short(value: f64) -> f64 {
 
 fn model(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> String {
     if scenario.motion().row().is_some() {
-        return "free hinges".to_owned();
+        return scenario.motion().words().to_owned();
     }
-    let name = match scenario.structure() {
-        Structure::Column(_) => "Housner's block",
-        Structure::Arch(_) | Structure::Masonry(_) => "four links",
+    let name = match scenario.structure().thrusts() {
+        true => scenario.motion().words(),
+        false => "Housner's block",
     };
     match scenario.motion().impact().model {
         ImpactModel::Prescribed { .. }

@@ -49,10 +49,10 @@ impl Motion {
 
     /// The name in results of the model of a structure.
     pub(super) const fn name(&self, structure: &Structure) -> &'static str {
-        match (self, structure) {
-            (Self::FreeHinges(_), _) => "free_hinges",
-            (Self::FourLinks(_), Structure::Arch(_) | Structure::Masonry(_)) => "four_links",
-            (Self::FourLinks(_), Structure::Column(_)) => "column",
+        match self {
+            Self::FreeHinges(_) => "free_hinges",
+            Self::FourLinks(_) if structure.thrusts() => "four_links",
+            Self::FourLinks(_) => "column",
         }
     }
 

@@ -23,6 +23,7 @@ use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
 use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::masonry::{CircularArch, Masonry, Shape};
+use crate::mechanics::parts::Parts;
 use crate::mechanics::sway::Sway;
 
 /// Lengths and densities.
@@ -123,6 +124,37 @@ impl Structure {
             Self::Column(_) => None,
             Self::Masonry(masonry) => Some(Box::new(four_link_row(masonry, impact)?)),
         })
+    }
+
+    /// What it consists of.
+    #[must_use]
+    pub fn as_parts(&self) -> &dyn Parts {
+        match self {
+            Self::Arch(arch) => arch,
+            Self::Column(column) => column,
+            Self::Masonry(masonry) => masonry.row(),
+        }
+    }
+
+    /// Whether it thrusts: an arch does, and a column stands by itself.
+    #[must_use]
+    pub const fn thrusts(&self) -> bool {
+        !matches!(self, Self::Column(_))
+    }
+
+    /// Whether it is its own mirror image whatever its dimensions.
+    #[must_use]
+    pub const fn is_symmetric(&self) -> bool {
+        !matches!(self, Self::Masonry(_))
+    }
+
+    /// The circular arch by itself, where it is that.
+    #[must_use]
+    pub const fn circular(&self) -> Option<&Arch> {
+        match self {
+            Self::Arch(arch) => Some(arch),
+            Self::Column(_) | Self::Masonry(_) => None,
+        }
     }
 
     /// Length out of plane in m and density in kg/m3, of several the first.

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value, json};
 
-use super::grouping;
 use crate::mechanics::capacity::{Capacity, CurvePoint};
 use crate::mechanics::sway::Sway;
 use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign};
@@ -30,7 +29,7 @@ pub fn tell(
 ) -> Result<Results, OutputError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let title = scenario.title().unwrap_or("Capacity");
-    let masses = grouping(scenario.structure());
+    let masses = scenario.structure().as_parts().parts_in_words();
     let words = words(sides, &masses, gravity_m_s2);
     let mut json = to_json(sides, gravity_m_s2);
     json["masses"] = masses.into();

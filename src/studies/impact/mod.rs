@@ -20,7 +20,7 @@ use crate::mechanics::four_link::mechanism::FourLink;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
-use crate::scenario::{Scenario, Structure};
+use crate::scenario::Scenario;
 
 /// The impact that leads to a link of the chain of four links after a first sway to one side.
 #[derive(Clone, Copy, Debug)]
@@ -157,9 +157,9 @@ pub fn four_links_answer(
 ) -> Result<Answer, ProjectionError> {
     let (model, count) = (impact.model, question.count);
     // An arch of equal voussoirs, or of none, is its own mirror image, and so is its chain.
-    let sides = match scenario.structure() {
-        Structure::Masonry(_) => vec![Sway::Right, Sway::Left],
-        _ => vec![impact.first],
+    let sides = match scenario.structure().is_symmetric() {
+        true => vec![impact.first],
+        false => vec![Sway::Right, Sway::Left],
     };
     let keys = ["impacts", "impacts_after_left"].into_iter();
     let mut json: Value = keys

@@ -15,7 +15,7 @@ use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::columns;
 use crate::output::mechanisms::{HINGES, by_body, degrees, hinges};
-use crate::scenario::{Scenario, Structure};
+use crate::scenario::Scenario;
 
 /// The push that starts a row, by the static programme, and what opens: for programs and for people.
 pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
@@ -48,7 +48,7 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
         }
         text.push('\n');
     }
-    if let Structure::Column(_) = scenario.structure() {
+    if !scenario.structure().thrusts() {
         text += "joints are counted from the base, which is 0; their intrados is the left side\n";
         return Ok(Answer { json, text });
     }

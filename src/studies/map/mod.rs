@@ -315,11 +315,9 @@ impl<'a> OverturningMap<'a> {
 
     /// The structure of a cell.
     fn structure(&self, index: usize, scenario: &Scenario) -> Result<Structure, ArgumentError> {
-        let arch = match scenario.structure() {
-            Structure::Arch(arch) => arch,
-            other @ (Structure::Column(_) | Structure::Masonry(_)) => return Ok(other.clone()),
+        let Some(mut arch) = scenario.structure().circular().cloned() else {
+            return Ok(scenario.structure().clone());
         };
-        let mut arch = arch.clone();
         if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
             arch = arch.with_thickness_ratio(thickness_ratio)?;
         }

@@ -303,36 +303,31 @@ fn trust(thrust: &ThrustRecord, structure: &Structure) -> Option<String> {
     let [_, near] = thrust.shares_within()?;
     let Peak { value, time_s } = thrust.largest_excess;
     let [close, most] = EXCESS_LEVELS;
-    let excess =
-        format!("the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s)");
-    Some(match structure {
-        Structure::Column(_) if value > 0.0 => format!(
+    if !structure.thrusts() {
+        let flies = format!(
             "  the ground would have to hold the column down (at {time_s:.4} s): it flies off\n"
-        ),
-        Structure::Column(_) => String::new(),
-        Structure::Arch(_) | Structure::Masonry(_) if value <= close => {
-            format!(
-                "  four links suffice: the thrust line leaves the arch by {value:.4} t at most\n"
-            )
-        }
-        Structure::Arch(_) | Structure::Masonry(_) => {
-            let grade = if value <= most {
-                "four links are close"
-            } else {
-                "four links are a rough guide, not on the safe side"
-            };
-            let compare = match structure {
-                Structure::Arch(arch) if arch.voussoirs().is_none() => {
-                    "give `voussoirs` and compare with --hinges both"
-                }
-                _ => "compare with --hinges both",
-            };
-            format!(
-                "  {grade}: {excess},\n    and stays within {most} t for {:.1} % of the rocking time; {compare}\n",
-                100.0 * near
-            )
-        }
-    })
+        );
+        return Some(if value > 0.0 { flies } else { String::new() });
+    }
+    if value <= close {
+        return Some(format!(
+            "  four links suffice: the thrust line leaves the arch by {value:.4} t at most\n"
+        ));
+    }
+    let grade = if value <= most {
+        "four links are close"
+    } else {
+        "four links are a rough guide, not on the safe side"
+    };
+    let give = match structure.circular() {
+        Some(arch) if arch.voussoirs().is_none() => "give `voussoirs` and ",
+        _ => "",
+    };
+    Some(format!(
+        "  {grade}: the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s),\n    and stays within {most} t \
+         for {:.1} % of the rocking time; {give}compare with --hinges both\n",
+        100.0 * near
+    ))
 }
 
 /// Slips below this part of the thickness of a joint are not worth a word.

@@ -18,7 +18,7 @@ use crate::dynamics::model::{MechanismModel, Request};
 use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::sway::Sway;
-use crate::scenario::{Ground, MAX_ACCELERATION_G, PulseGround, Scenario, Structure, block};
+use crate::scenario::{Ground, MAX_ACCELERATION_G, PulseGround, Scenario, block};
 
 /// Why a scenario has no spectrum.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -142,22 +142,21 @@ impl<'a> OverturningSpectrum<'a> {
         let model = scenario.mechanisms()?;
         let (slenderness_rad, block) =
             block(&*model, request.gravity_m_s2).ok_or(NoSpectrum::NoBlock)?;
-        let structures = match scenario.structure() {
-            Structure::Column(_) => vec![(StructureKind::Column, model)],
-            Structure::Arch(_) | Structure::Masonry(_) => {
-                let (depth_m, density_kg_m3) = scenario.structure().depth_and_density();
-                let (sin, cos) = slenderness_rad.sin_cos();
-                let diagonal_m = 2.0 * block.half_diagonal_m;
-                let column = Column::new(diagonal_m * cos, diagonal_m * sin)
-                    .and_then(|column| column.with_depth_m(depth_m))
-                    .and_then(|column| column.with_density_kg_m3(density_kg_m3))
-                    .and_then(|column| RockingColumn::new(&column, scenario.motion().impact()))
-                    .map_err(FourLinkError::from)?;
-                vec![
-                    (StructureKind::Arch, model),
-                    (StructureKind::Column, Box::new(column)),
-                ]
-            }
+        let structures = if scenario.structure().thrusts() {
+            let (depth_m, density_kg_m3) = scenario.structure().depth_and_density();
+            let (sin, cos) = slenderness_rad.sin_cos();
+            let diagonal_m = 2.0 * block.half_diagonal_m;
+            let column = Column::new(diagonal_m * cos, diagonal_m * sin)
+                .and_then(|column| column.with_depth_m(depth_m))
+                .and_then(|column| column.with_density_kg_m3(density_kg_m3))
+                .and_then(|column| RockingColumn::new(&column, scenario.motion().impact()))
+                .map_err(FourLinkError::from)?;
+            vec![
+                (StructureKind::Arch, model),
+                (StructureKind::Column, Box::new(column)),
+            ]
+        } else {
+            vec![(StructureKind::Column, model)]
         };
         let spectrum = scenario.spectrum().cloned().unwrap_or_default();
         Ok(Self {

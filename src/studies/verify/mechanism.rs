@@ -124,7 +124,7 @@ impl Mechanism {
             };
             Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
         };
-        let crown = capacity::crown_of(structure, model, sway);
+        let crown = capacity::crown_of(structure.as_parts(), model, sway);
         let way = curve(Control::centre_of(&masses))
             .map(|centre| Way {
                 centre,

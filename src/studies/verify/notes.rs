@@ -2,7 +2,7 @@
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{Check, Spectrum};
-use crate::scenario::{CONFIDENCE_FACTOR, Scenario, Sides, Structure};
+use crate::scenario::{CONFIDENCE_FACTOR, Scenario, Sides};
 
 /// Friction coefficient that the Circolare names for walls (C8.7.1.2.1.2).
 pub const FRICTION: f64 = 0.577;
@@ -198,10 +198,10 @@ pub fn warnings(check: &Check) -> Vec<String> {
 /// What is left out.
 #[must_use]
 pub fn not_covered(scenario: &Scenario, check: &Check) -> Vec<String> {
-    let vertical = match (check.by_the_code(), scenario.structure()) {
+    let vertical = match (check.by_the_code(), scenario.structure().thrusts()) {
         (false, _) => "Vertical ground motion.",
-        (true, Structure::Column(_)) => "Vertical ground motion: C8.7.1.2.1 has no vertical term.",
-        (true, Structure::Arch(_) | Structure::Masonry(_)) => {
+        (true, false) => "Vertical ground motion: C8.7.1.2.1 has no vertical term.",
+        (true, true) => {
             "Vertical ground motion: \u{a7} 7.2.2 asks for it for structures that thrust, where a_g is at least 0.15 g \
              (\u{a7} 3.2.3.1); C8.7.1.2.1 has no vertical term."
         }

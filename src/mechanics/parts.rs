@@ -1,0 +1,167 @@
+//! What a structure consists of, and where: the same questions to an arch, a column and a row of blocks.
+
+use nalgebra::Vector2;
+
+use super::arch::Arch;
+use super::blocks::Row;
+use super::column::Column;
+use super::geometry::ring::Edge;
+
+/// Equal parts that a continuous ring is taken as: the participating mass errs by the square of their size, 1e-6.
+const PARTS: usize = 720;
+
+/// A part of a structure, which no hinge divides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Where its middle is along the structure: an angle from the left springing in radians, or half a joint beyond a number of
+    /// joints.
+    pub place: f64,
+    /// Its mass, in kg.
+    pub mass_kg: f64,
+    /// Its centre of gravity, in metres.
+    pub centre_m: Vector2<f64>,
+}
+
+/// What a structure consists of.
+pub trait Parts {
+    /// Its parts from left to right, or upwards.
+    fn parts(&self) -> Vec<Part>;
+
+    /// What these are, in words.
+    fn parts_in_words(&self) -> String;
+
+    /// Its crown, the highest point: place along the structure, and position in metres.
+    fn crown(&self) -> (f64, Vector2<f64>);
+
+    /// Place along the structure of a point in metres; `None` where it is not on it.
+    fn place_of(&self, at_m: Vector2<f64>) -> Option<f64>;
+}
+
+impl Parts for Arch {
+    fn parts(&self) -> Vec<Part> {
+        let (ring, radius_m) = (self.ring(), self.mean_radius_m());
+        let unit_kg = self.density_kg_m3() * self.depth_m() * radius_m * radius_m;
+        let sections = ring.sections(self.voussoirs().unwrap_or(PARTS));
+        let parts = sections.windows(2).map(|ends| {
+            let sector = ring.sector(ends[0], ends[1]);
+            Part {
+                place: 0.5 * (ends[0] + ends[1]),
+                mass_kg: sector.mass * unit_kg,
+                centre_m: sector.centroid() * radius_m,
+            }
+        });
+        parts.collect()
+    }
+
+    fn parts_in_words(&self) -> String {
+        match self.voussoirs() {
+            Some(voussoirs) => format!("{voussoirs} voussoirs"),
+            None => format!("{PARTS} equal parts of the ring"),
+        }
+    }
+
+    fn crown(&self) -> (f64, Vector2<f64>) {
+        let middle = 0.5 * self.ring().embrace_rad();
+        let at_m = self.ring().point(middle, Edge::Extrados) * self.mean_radius_m();
+        (middle, at_m)
+    }
+
+    fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {
+        let (ring, radius_m) = (self.ring(), self.mean_radius_m());
+        let ratio = at_m.norm() / radius_m;
+        let half = 0.5 * ring.thickness_ratio() * (1.0 + 1e-9);
+        let angle_rad = 0.5 * ring.embrace_rad() + at_m.x.atan2(at_m.y);
+        ((ratio - 1.0).abs() <= half && (0.0..=ring.embrace_rad()).contains(&angle_rad))
+            .then_some(angle_rad)
+    }
+}
+
+impl Parts for Column {
+    fn parts(&self) -> Vec<Part> {
+        vec![Part {
+            place: 0.5,
+            mass_kg: self.density_kg_m3() * self.depth_m() * self.height_m() * self.width_m(),
+            centre_m: Vector2::new(0.0, 0.5 * self.height_m()),
+        }]
+    }
+
+    fn parts_in_words(&self) -> String {
+        "the column as one block".to_owned()
+    }
+
+    fn crown(&self) -> (f64, Vector2<f64>) {
+        (0.5, Vector2::new(0.0, self.height_m()))
+    }
+
+    fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {
+        let inside =
+            at_m.x.abs() <= 0.5 * self.width_m() && (0.0..=self.height_m()).contains(&at_m.y);
+        inside.then_some(0.5)
+    }
+}
+
+impl Parts for Row {
+    fn parts(&self) -> Vec<Part> {
+        let blocks = self.blocks().iter().enumerate();
+        let parts = blocks.map(|(index, block)| Part {
+            place: middle_of(index),
+            mass_kg: block.mass_kg,
+            centre_m: block.centre_m,
+        });
+        parts.collect()
+    }
+
+    fn parts_in_words(&self) -> String {
+        format!("{} blocks", self.blocks().len())
+    }
+
+    fn crown(&self) -> (f64, Vector2<f64>) {
+        let outlines = self.outlines_m().iter().enumerate();
+        let corners = outlines.flat_map(|(block, outline)| {
+            outline
+                .iter()
+                .map(move |corner| (middle_of(block), *corner))
+        });
+        corners
+            .reduce(|highest, next| {
+                if next.1.y > highest.1.y {
+                    next
+                } else {
+                    highest
+                }
+            })
+            .expect("a row has blocks")
+    }
+
+    fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {
+        let outlines = self.outlines_m();
+        (0..outlines.len())
+            .find(|block| contains(&outlines[*block], at_m))
+            .map(middle_of)
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "blocks are few")]
+fn middle_of(block: usize) -> f64 {
+    block as f64 + 0.5
+}
+
+/// Whether a point is in a polygon or on its edge.
+fn contains(outline: &[Vector2<f64>], point: Vector2<f64>) -> bool {
+    let next = outline.iter().cycle().skip(1);
+    let mut inside = false;
+    for (from, to) in outline.iter().zip(next) {
+        let along = to - from;
+        let arm = point - from;
+        let part = (arm.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        if (arm - along * part).norm() <= 1e-9 * along.norm() {
+            return true;
+        }
+        if (from.y > point.y) != (to.y > point.y)
+            && point.x < from.x + along.x * (point.y - from.y) / along.y
+        {
+            inside = !inside;
+        }
+    }
+    inside
+}
