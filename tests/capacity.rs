@@ -178,11 +178,7 @@ fn the_command_writes_table_picture_and_summary() {
 fn curves_begin_at_no_displacement_and_no_period() {
     let folder = tempfile::tempdir().unwrap();
     let mut curves = 0;
-    for entry in std::fs::read_dir(program::scenarios()).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|extension| extension != "toml") {
-            continue;
-        }
+    for path in program::scenario_files() {
         let arguments = ["capacity", path.to_str().unwrap(), "--out", "out"];
         let output = program::archrock(folder.path(), &arguments);
         if !output.status.success() {

@@ -6,20 +6,12 @@ use std::time::{Duration, Instant};
 
 use crate::common::ARCH;
 use crate::program::{archrock, command, printed, refused, scenarios, stderr};
+use crate::program::{names, scenario_files};
 use crate::results::{Row, Table, summary};
 use serde_json::Value;
 
 fn scenario(folder: &Path, text: &str) {
     fs::write(folder.join("s.toml"), text).unwrap();
-}
-
-fn entries(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// Runs a scenario of the repository in a fresh folder, and returns its summary and its rows.
@@ -98,23 +90,15 @@ fn outcomes_of_the_other_scenarios() {
 
 #[test]
 fn every_scenario_of_the_repository_runs_and_says_what_it_is() {
-    let mut count = 0;
-    for entry in fs::read_dir(scenarios()).unwrap() {
-        let path = entry.unwrap().path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "toml")
-        {
-            let text = fs::read_to_string(&path).unwrap();
-            assert!(
-                text.starts_with("# ") && text.contains("\ntitle = "),
-                "{path:?}"
-            );
-            run(path.file_stem().unwrap().to_str().unwrap());
-            count += 1;
-        }
+    for path in scenario_files() {
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(
+            text.starts_with("# ") && text.contains("\ntitle = "),
+            "{path:?}"
+        );
+        run(path.file_stem().unwrap().to_str().unwrap());
     }
-    assert!(count >= 6);
+    assert!(scenario_files().len() >= 6);
 }
 
 #[test]
@@ -207,7 +191,7 @@ fn faulty(text: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let message = refused(folder.path(), &["run", "s.toml"], &[]);
-    assert_eq!(entries(folder.path()), ["s.toml"], "something was written");
+    assert_eq!(names(folder.path()), ["s.toml"], "something was written");
     assert!(
         message.starts_with("error: s.toml") && message.len() < 1000,
         "{message}"
@@ -273,7 +257,7 @@ fn every_command_refuses_wrong_input_with_exit_code_two() {
         &["s.toml: is not a part of a study"],
     );
     refused(folder, &["merge"], &["<PART>"]);
-    assert_eq!(entries(folder), ["s.toml"]);
+    assert_eq!(names(folder), ["s.toml"]);
 }
 
 #[test]
@@ -350,7 +334,7 @@ fn a_place_that_cannot_be_written_is_said_before_the_work() {
     ] {
         let arguments = [command, "s.toml", option, "s.toml/results"];
         refused(folder.path(), &arguments, &["s.toml/results", option]);
-        assert_eq!(entries(folder.path()), ["s.toml"]);
+        assert_eq!(names(folder.path()), ["s.toml"]);
     }
 }
 
@@ -391,7 +375,7 @@ fn a_run_that_nothing_moves_is_refused() {
         said.contains("[ground.<kind>]") && said.contains("[initial]"),
         "{said}"
     );
-    assert_eq!(entries(folder.path()), ["s.toml"]);
+    assert_eq!(names(folder.path()), ["s.toml"]);
 }
 
 #[test]
@@ -401,7 +385,7 @@ fn rotations_go_to_standard_output_and_nothing_else_is_written() {
     scenario(folder.path(), &format!("{ARCH}{released}"));
     let piped = archrock(folder.path(), &["run", "s.toml", "--rotations", "-"]);
     assert!(piped.status.success());
-    assert_eq!(entries(folder.path()), ["s.toml"]);
+    assert_eq!(names(folder.path()), ["s.toml"]);
     archrock(folder.path(), &["run", "s.toml", "--out", "o"]);
     let written = fs::read(folder.path().join("o/rotations.csv")).unwrap();
     assert_eq!(written, piped.stdout);

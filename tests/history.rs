@@ -486,11 +486,11 @@ fn the_time_of_overturning_is_the_last_passage_outwards() {
         for step in 0..60 {
             let amplitude_g = 0.16 + 0.012 * f64::from(step);
             let ground = pulse(Pulse::OneCosine, -amplitude_g, duration_s);
-            let (history, samples) = run_sampled(&arch, &ground, &sampled(20.0, 1e-3));
-            let summary = history.summary;
+            let summary = run(&arch, &ground, &request(20.0)).summary;
             if summary.outcome != Outcome::Overturned(Sway::Right) || summary.impacts > 0 {
                 continue;
             }
+            let (_, samples) = run_sampled(&arch, &ground, &sampled(20.0, 1e-3));
             overturned += 1;
             let inside = |s: &&Sample| -s.rotations_rad[0] < link.critical_rad * (1.0 - 1e-9);
             let last_inside = samples.iter().rfind(inside).unwrap().time_s;

@@ -1,7 +1,7 @@
 //! What the rest criterion costs: nothing that is reported.
 
+use crate::program::{scenario_files, scenarios};
 use std::ops::ControlFlow;
-use std::path::Path;
 
 use archrock::{
     Arch, FourLinkArch, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sample,
@@ -13,13 +13,8 @@ use archrock::{
 /// what follows by about that much; peaks may so change by 1e-6 of themselves, and mostly do not at all.
 #[test]
 fn halving_the_rest_energy_changes_no_scenario() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let mut scenarios = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|extension| extension != "toml") {
-            continue;
-        }
+    for path in scenario_files() {
         scenarios += 1;
         let scenario = Scenario::read(&path).unwrap();
         // What is no four links has a criterion of its own.
@@ -77,7 +72,7 @@ fn an_arch_that_hardly_stands_does_not_lock() {
 /// latter and rest.
 #[test]
 fn the_largest_rotation_is_measured_against_the_mechanism_that_moved() {
-    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/semicircle-record.toml");
+    let scenario = scenarios().join("semicircle-record.toml");
     let scenario = Scenario::read(&scenario).unwrap();
     let model = scenario.mechanisms().unwrap();
     let first_rad = model.critical_rotations_rad()[0].abs();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::common::ARCH;
 use crate::common::parsed;
-use crate::program::{done, printed, refused};
+use crate::program::{done, files, printed, refused};
 use archrock::output::Figure;
 use archrock::studies::runner::Study as _;
 use archrock::studies::spectrum::picture::draw;
@@ -422,16 +422,13 @@ fn pictures_of_much_and_of_little() {
     assert!(picture(&none).is_empty());
 }
 
+const FILES: [&str; 3] = ["spectrum.csv", "spectrum.json", "spectrum.svg"];
+
 fn results(folder: &Path) -> [Vec<u8>; 3] {
-    let mut names: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| !name.contains("-of-") && name != ".scenario")
-        .collect();
-    names.sort();
-    assert_eq!(names, ["spectrum.csv", "spectrum.json", "spectrum.svg"]);
-    ["spectrum.csv", "spectrum.json", "spectrum.svg"]
-        .map(|name| fs::read(folder.join(name)).unwrap())
+    let mut all = files(folder);
+    all.retain(|name, _| !name.contains("-of-"));
+    assert!(all.keys().eq(&FILES), "{:?}", all.keys());
+    FILES.map(|name| all[name].clone())
 }
 
 #[test]

@@ -67,22 +67,38 @@ pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
     said
 }
 
+/// Names of what is in a folder, in order.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
 /// All results in a folder with their contents: all files but that which names the scenario file.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| {
-            let entry = entry.unwrap();
-            let name = entry.file_name().into_string().unwrap();
-            (name, fs::read(entry.path()).unwrap())
+    names(folder)
+        .into_iter()
+        .filter(|name| name != ".scenario")
+        .map(|name| {
+            let contents = fs::read(folder.join(&name)).unwrap();
+            (name, contents)
         })
-        .filter(|(name, _)| name != ".scenario")
         .collect()
 }
 
-/// The scenarios of the repository.
+/// The folder of the scenarios of the repository.
 pub fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
+}
+
+/// The scenarios among them: the files of one each.
+pub fn scenario_files() -> Vec<PathBuf> {
+    let names = names(&scenarios()).into_iter();
+    let files = names.filter(|name| name.ends_with(".toml"));
+    files.map(|name| scenarios().join(name)).collect()
 }
 
 /// The commands that a page of the documentation shows, each with the lines that are shown of what it says.
