@@ -6,6 +6,7 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::model::Model;
 use archrock::dynamics::spread::Repetitions;
+use archrock::studies::ending::Ending;
 use archrock::{Request, Sway};
 
 /// Steps, over those of a run, with which what it calls certain must hold.
@@ -149,5 +150,79 @@ fn repetitions_have_other_steps_however_close_output_times_are() {
             // Steps also end at impacts.
             assert!((0.8..1.25).contains(&over), "{} {over}", other.name);
         }
+    }
+}
+
+/// Maps take longer steps, and end a history that cannot overturn any more. With the steps of a run, whether it overturns and its
+/// largest rotation are those of the whole history to the last bit. With longer ones no answer that is called certain differs. Of ten
+/// rows, each under five strengths of a pulse or a record.
+#[test]
+fn maps_answer_as_runs_do() {
+    let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
+    let mut random = Random(11);
+    let (mut early, mut overturned, mut uncertain, mut least) = (0, 0, 0, f64::INFINITY);
+    let (mut peaks, mut other_peaks) = (0, 0);
+    for _ in 0..cases {
+        let (model, ground, end_s) = case(&mut random);
+        let of_maps = model.clone().for_many_cases();
+        let request = Request {
+            end_s,
+            ..Request::default()
+        };
+        for factor in [0.5, 0.7, 1.0, 1.4, 2.0] {
+            let ground = ground.scaled(factor).unwrap();
+            let mut energies = Vec::new();
+            let mut watch = |sample: &archrock::Sample| {
+                energies.push((sample.time_s, sample.energy_ratio.unwrap_or(f64::INFINITY)));
+                std::ops::ControlFlow::Continue(())
+            };
+            let whole = model.simulate(&ground, &request, Some(&mut watch));
+            let same_steps = Ending::until_safe(&model, &ground, &request);
+            let cell = Ending::until_safe(&of_maps, &ground, &request);
+            // Ground much stronger than the onset may ask for shorter steps.
+            let (Ok(whole), Ok(same_steps), Ok(cell)) = (whole, same_steps, cell) else {
+                continue;
+            };
+            if let Outcome::Overturned(_) = whole.outcome {
+                overturned += 1;
+                let times_s = ground.end_s()..whole.outcome_time_s;
+                let energies = energies
+                    .iter()
+                    .filter(|(time_s, _)| times_s.contains(time_s));
+                least = energies.fold(least, |least: f64, (_, ratio)| least.min(*ratio));
+            }
+            let peak_rad = whole.largest_rotation_rad();
+            assert_eq!(
+                (same_steps.outcome, same_steps.peak.rad()),
+                (whole.outcome, Some(peak_rad))
+            );
+            if let Some(safe_from_s) = same_steps.safe_from_s {
+                early += 1;
+                assert!(safe_from_s <= whole.outcome_time_s);
+                assert_eq!(same_steps.known_time_s(), None);
+                assert_eq!(same_steps.known_impacts(), None);
+            }
+            if cell.uncertain.is_some() || same_steps.uncertain.is_some() {
+                uncertain += 1;
+                continue;
+            }
+            assert_eq!(cell.verdict(), same_steps.verdict());
+            let other = (cell.peak.rad().unwrap() / peak_rad - 1.0).abs() > 0.01;
+            if cell.outcome == Outcome::Rest {
+                peaks += 1;
+                other_peaks += usize::from(other);
+            }
+        }
+    }
+    let counts = format!(
+        "{early} ended early, {overturned} overturned, {uncertain} uncertain, {other_peaks} of {peaks} peaks of what \
+         rests by more than 1 % others, least energy {least}"
+    );
+    assert!(early > 2 * cases && overturned > cases / 2, "{counts}");
+    assert!(uncertain < cases && 10 * other_peaks <= peaks, "{counts}");
+    // What is ended early has half of that, in bounds of `safe` again.
+    assert!(least > 0.5, "{counts}");
+    if cases > 10 {
+        std::io::Write::write_all(&mut std::io::stderr(), counts.as_bytes()).unwrap();
     }
 }

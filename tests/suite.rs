@@ -512,6 +512,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
             peak: PeakRotation::OverCritical(Some(0.5)),
             energy_defect_ratio: 0.0,
             steps: None,
+            safe_from_s: None,
             uncertain: None,
         }),
     });
@@ -546,6 +547,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                         longest_s: 1e-4,
                         shortest_s: 1e-5,
                     }),
+                    safe_from_s: None,
                     uncertain,
                 }),
             }

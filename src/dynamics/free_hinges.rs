@@ -22,6 +22,9 @@ use crate::mechanics::joints::Placement;
 
 /// The shortest step over the longest one, where it is not given.
 const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
+/// How much longer the steps of studies of many cases are than those of a run. Of the second peaks of 73 random arches 8 are then off
+/// by more than 1 % of those of the shortest steps, and 5 with the steps of a run.
+const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
 /// Impacts within the shortest step after which the next landings are merged: without end they would stop time.
 const CROWDED_IMPACTS: usize = 50;
 /// The time after an impact in which a repetition merges landings, over the shortest step.

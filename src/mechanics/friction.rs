@@ -67,7 +67,9 @@ pub enum FrictionError {
     #[error("the row cannot carry its own weight, whatever the friction")]
     NeverStands,
     /// The programme was not solved.
-    #[error("the limit analysis with friction was not solved ({0})")]
+    #[error(
+        "the limit analysis with friction was not solved ({0}): give another friction_coefficient"
+    )]
     NotSolved(SolverStatus),
 }
 

@@ -67,6 +67,23 @@ impl Motion {
         })
     }
 
+    /// The same for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases).
+    ///
+    /// # Errors
+    /// As [`Motion::model`].
+    pub fn model_for_many_cases(
+        &self,
+        structure: &Structure,
+    ) -> Result<Box<dyn Model>, ModelError> {
+        match self {
+            Self::FourLinks(_) => self.model(structure),
+            Self::FreeHinges(options) => {
+                let row = structure.free_hinges(*options)?;
+                Ok(Box::new(row.for_many_cases()))
+            }
+        }
+    }
+
     /// What happens when the hinges of four links close, also where the structure moves otherwise: then as in theory.
     #[must_use]
     pub fn impact(&self) -> ImpactLaw {

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
-use super::{FreeHingeError, Settings, motion};
+use super::{FreeHingeError, MANY_CASES_STEP_RATIO, Settings, motion};
 use crate::argument::{ArgumentError, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
@@ -26,6 +26,8 @@ use crate::mechanics::sway::Sway;
 pub struct FreeHinges {
     rigid: RigidRow,
     options: RowOptions,
+    /// Whether it serves a study of many cases, whose steps are longer where none is given.
+    many_cases: bool,
     /// The other settings with which a repetition is computed.
     repeated: Option<fn(&Settings) -> Settings>,
 }
@@ -119,6 +121,7 @@ impl FreeHinges {
         Ok(Self {
             rigid: RigidRow::new(row)?,
             options: RowOptions::default(),
+            many_cases: false,
             repeated: None,
         })
     }
@@ -172,6 +175,14 @@ impl FreeHinges {
         })
     }
 
+    /// The same for a study of many cases: where no step is given and no joint slips, steps are longer, as long as most answers stay
+    /// the same. In what they do not, repetitions disagree.
+    #[must_use]
+    pub const fn for_many_cases(mut self) -> Self {
+        self.many_cases = true;
+        self
+    }
+
     /// Coulomb's coefficient of friction, where joints slip.
     #[must_use]
     pub const fn friction_coefficient(&self) -> Option<f64> {
@@ -200,6 +211,9 @@ impl FreeHinges {
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (self.row(), request.gravity_m_s2, request.end_s);
         let mut settings = match self.options.friction_coefficient {
+            None if self.many_cases => {
+                Settings::to_landings(row, gravity_m_s2, end_s).times(MANY_CASES_STEP_RATIO)
+            }
             None => Settings::to_landings(row, gravity_m_s2, end_s),
             Some(_) => Settings::equal(row, gravity_m_s2, end_s),
         };

@@ -86,16 +86,11 @@ impl RigidRow {
         if !friction::stands(&self.row, coefficient)? {
             return Err(FrictionError::CannotStand(coefficient));
         }
-        let [mut right, mut left] = self.incipient_g;
-        for (push_g, sway) in [(&mut right, Sway::Right), (&mut left, Sway::Left)] {
-            *push_g = match friction::onset_of_standing(&self.row, coefficient, sway) {
-                Ok(onset) => onset.map(|onset| onset.acceleration_g),
-                // Joints that do not slip bear no less: theirs is a bound as well.
-                Err(FrictionError::NotSolved(_)) => *push_g,
-                Err(error) => return Err(error),
-            };
-        }
-        self.with_friction_g = Some([right, left]);
+        let push_g = |sway| {
+            let onset = friction::onset_of_standing(&self.row, coefficient, sway)?;
+            Ok(onset.map(|onset| onset.acceleration_g))
+        };
+        self.with_friction_g = Some([push_g(Sway::Right)?, push_g(Sway::Left)?]);
         Ok(self)
     }
 

@@ -44,7 +44,7 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
             ended(row).ok().and_then(Ending::overturning_sway)
         }),
         column("impacts", move |row| {
-            ended(row).ok().map(|ending| ending.impacts)
+            ended(row).ok().and_then(Ending::known_impacts)
         }),
         column("impacts_before_overturning", move |row| {
             let overturned = ended(row)
@@ -52,7 +52,7 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
                 .filter(|one| one.overturning_sway().is_some());
             overturned.map(|ending| ending.impacts)
         }),
-        number("outcome_time_s", |ending| Some(ending.outcome_time_s)),
+        number("outcome_time_s", Ending::known_time_s),
         number("peak_rotation_over_critical", |ending| {
             ending.peak.over_critical()
         }),

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Model, Request};
+use crate::dynamics::model::{Model, Request, SimulationError};
 pub use crate::dynamics::spread::Verdict;
-use crate::dynamics::spread::doubt;
+use crate::dynamics::spread::{doubt, until_safe};
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,10 @@ pub struct Ending {
     pub outcome: Outcome,
     /// When, in seconds.
     pub outcome_time_s: f64,
+    /// When it was found that it cannot overturn any more and comes to rest, in seconds: there its history was ended, and what came
+    /// later, more impacts and the time of rest, is not known. `None` where the history was followed to its end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub safe_from_s: Option<f64>,
     /// Number of impacts; where the structure overturns, all are before.
     pub impacts: usize,
     /// Largest gap in the energy balance: of a mechanism over its energy barrier, of free hinges over weight times
@@ -80,6 +84,24 @@ impl PeakRotation {
 }
 
 impl Ending {
+    /// When it ended as it did, in seconds; `None` where that is not known.
+    #[must_use]
+    pub const fn known_time_s(&self) -> Option<f64> {
+        match self.safe_from_s {
+            None => Some(self.outcome_time_s),
+            Some(_) => None,
+        }
+    }
+
+    /// Number of all its impacts; `None` where that is not known.
+    #[must_use]
+    pub const fn known_impacts(&self) -> Option<usize> {
+        match self.safe_from_s {
+            None => Some(self.impacts),
+            Some(_) => None,
+        }
+    }
+
     /// Number of impacts at which all hinges close at once; `None` of free hinges, which close one by one.
     #[must_use]
     pub const fn impacts_of_all_hinges(&self) -> Option<usize> {
@@ -115,11 +137,31 @@ impl Ending {
     /// # Errors
     /// Says why there is no history, or none that could be kept.
     pub fn of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Result<Self, String> {
-        let summary = model
-            .simulate(ground, request, None)
-            .map_err(|error| error.to_string())?;
+        let whole = model.simulate(ground, request, None);
+        Self::repeated(whole.map(|own| (own, None)), model, ground, request)
+    }
+
+    /// The same, where a history that cannot overturn any more, and has ample time to come to rest, ends there.
+    ///
+    /// # Errors
+    /// Those of [`Ending::of`].
+    pub fn until_safe(
+        model: &dyn Model,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<Self, String> {
+        Self::repeated(until_safe(model, ground, request), model, ground, request)
+    }
+
+    fn repeated(
+        own: Result<(Summary, Option<f64>), SimulationError>,
+        model: &dyn Model,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<Self, String> {
+        let (summary, safe_from_s) = own.map_err(|error| error.to_string())?;
         let doubt = doubt(model, ground, request, &summary);
-        Self::from_summary(&summary, doubt)
+        Self::from_summary(&summary, safe_from_s, doubt)
     }
 
     /// What a history came to, and why that is uncertain, if it is.
@@ -128,11 +170,13 @@ impl Ending {
     /// Says that a number is not finite.
     pub(super) fn from_summary(
         summary: &Summary,
+        safe_from_s: Option<f64>,
         uncertain: Option<String>,
     ) -> Result<Self, String> {
         let ending = Self {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
+            safe_from_s,
             impacts: summary.impacts,
             energy_defect_ratio: summary.energy_defect_ratio,
             peak: PeakRotation::of(summary),

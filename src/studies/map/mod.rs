@@ -288,7 +288,9 @@ impl<'a> OverturningMap<'a> {
                 (Motion::FourLinks(law), Structure::Arch(arch)) => {
                     Standing::Arch(FourLinkArch::new(arch, law)?)
                 }
-                (motion, structure) => Standing::Model(motion.model(&structure)?.into()),
+                (motion, structure) => {
+                    Standing::Model(motion.model_for_many_cases(&structure)?.into())
+                }
             })
         };
         let standing = self.structures.get(self.place(index), make)?;
@@ -392,7 +394,7 @@ impl<'a> OverturningMap<'a> {
         let ended = if self.spread {
             all_outcomes(model, &ground, request).map(|(ending, all)| (ending, Some(all)))
         } else {
-            Ending::of(model, &ground, request).map(|ending| (ending, None))
+            Ending::until_safe(model, &ground, request).map(|ending| (ending, None))
         };
         ended.map_err(CellResult::Failed)
     }
@@ -421,7 +423,7 @@ fn all_outcomes(
     names.sort_unstable();
     names.dedup();
     let outcomes = failed.map_or(Ok(names.len()), Err);
-    Ok((Ending::from_summary(&own, doubt)?, outcomes))
+    Ok((Ending::from_summary(&own, None, doubt)?, outcomes))
 }
 
 impl Study for OverturningMap<'_> {

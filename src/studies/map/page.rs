@@ -73,8 +73,8 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -
     };
     #[expect(clippy::cast_precision_loss, reason = "numbers of impacts are small")]
     let columns = [
-        column("impacts", &|row| Some(ended(row)?.impacts as f64)),
-        column("outcome_time_s", &|row| Some(ended(row)?.outcome_time_s)),
+        column("impacts", &|row| Some(ended(row)?.known_impacts()? as f64)),
+        column("outcome_time_s", &|row| ended(row)?.known_time_s()),
         column("peak_rotation_over_critical", &|row| {
             ended(row)?.peak.over_critical()
         }),

@@ -128,7 +128,7 @@ impl FactorSample {
         let peak_rotation_rad = summary.as_ref().ok().map(|(s, _)| s.largest_rotation_rad());
         let result = match summary {
             Ok((summary, doubt)) => {
-                Ending::from_summary(&summary, doubt).map_err(NoHistory::Failed)
+                Ending::from_summary(&summary, None, doubt).map_err(NoHistory::Failed)
             }
             Err(error @ SimulationError::FreeFall { .. }) => {
                 Err(NoHistory::GroundFalls(error.to_string()))
