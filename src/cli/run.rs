@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use archrock::output::Folder;
 use archrock::scenario::{Hinges, Scenario, shown_lines};
 use archrock::studies::run::overlay::Curves;
-use archrock::studies::run::{FILES, OVERLAY, Run, RunError, Told, Wanted, heading, overlay};
+use archrock::studies::run::{FILES, OVERLAY, Run, RunError, RunResults, Wanted, heading, overlay};
 use clap::ValueEnum;
 use serde_json::Map;
 
@@ -100,9 +100,9 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             // What the rotations are read from gets nothing else.
             Format::Text if job.place.to_stdout => {
                 // Nobody is left to be told when standard error fails.
-                let _ = io::stderr().write_all(shown_lines(&told.text).as_bytes());
+                let _ = io::stderr().write_all(shown_lines(&told.words).as_bytes());
             }
-            Format::Text => print(&told.text)?,
+            Format::Text => print(&told.words)?,
         }
     }
     if let Format::Json = arguments.format {
@@ -177,7 +177,7 @@ impl Job {
     }
 
     /// Runs it, and says what happened.
-    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
+    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<RunResults, Failure> {
         let (scenarios, place) = (&self.scenarios, &self.place);
         let mut text = heading(&scenarios[0]);
         if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
@@ -203,20 +203,20 @@ impl Job {
         } else {
             place.run(&runs[0], &scenarios[0], quiet)?
         };
-        Ok(Told {
-            text: text + &told.text,
+        Ok(RunResults {
+            words: text + &told.words,
             ..told
         })
     }
 
     /// Runs several models, each in a folder of its own, and draws them in one picture.
-    fn run_all(&self, runs: &[Run<'_>], quiet: bool) -> Result<Told, Failure> {
+    fn run_all(&self, runs: &[Run<'_>], quiet: bool) -> Result<RunResults, Failure> {
         let folder = self.place.open(&[OVERLAY])?;
         let (mut text, mut summaries, mut curves) = (String::new(), Map::new(), Vec::new());
         for (run, scenario) in runs.iter().zip(&self.scenarios) {
             let name = scenario.motion().hinges().name();
             let told = self.place.within(name).run(run, scenario, quiet)?;
-            let _ = write!(text, "{}\n{}", run.name(), told.text);
+            let _ = write!(text, "{}\n{}", run.name(), told.words);
             summaries.insert(name.to_owned(), told.summary);
             curves.push(told.curves);
         }
@@ -230,8 +230,8 @@ impl Job {
             folder.complete()?;
             let _ = writeln!(text, "both in {}", path.display());
         }
-        Ok(Told {
-            text,
+        Ok(RunResults {
+            words: text,
             summary: summaries.into(),
             curves: Curves::new(),
         })
@@ -328,7 +328,7 @@ impl Place {
     }
 
     /// Runs a scenario to there.
-    fn run(&self, run: &Run<'_>, scenario: &Scenario, quiet: bool) -> Result<Told, Failure> {
+    fn run(&self, run: &Run<'_>, scenario: &Scenario, quiet: bool) -> Result<RunResults, Failure> {
         if let (None, Some(option)) = (&self.results, self.of_files) {
             let message = format!("{option} writes a file: name a folder for it with --out");
             return Err(Failure::Input(message));

@@ -57,7 +57,7 @@ impl Curve {
 
 /// What the structure does over time, for shading.
 #[derive(Clone, Debug)]
-pub(crate) struct Doing {
+pub(crate) struct States {
     pub(crate) start: State,
     pub(crate) changes: Vec<(f64, State)>,
 }
@@ -105,7 +105,7 @@ impl Panels {
         label: &str,
         height_px: f64,
         y: Scale,
-        doing: Option<&Doing>,
+        doing: Option<&States>,
         draw: impl FnOnce(&mut Drawing, &Axes),
     ) {
         let height = self.figure.height_px(height_px);
@@ -129,7 +129,7 @@ impl Panels {
         label: &str,
         height_px: f64,
         curves: &[Curve],
-        doing: Option<&Doing>,
+        doing: Option<&States>,
     ) {
         let values = curves.iter().flat_map(|curve| &curve.points);
         let y = around(values.map(|point| point.1), ticks(height_px));
@@ -139,7 +139,7 @@ impl Panels {
     }
 
     /// The panel of the ground, with what starts the structure; nothing where the ground stays still.
-    pub(crate) fn ground(&mut self, height_px: f64, subject: &Subject<'_>, doing: Option<&Doing>) {
+    pub(crate) fn ground(&mut self, height_px: f64, subject: &Subject<'_>, doing: Option<&States>) {
         let Subject {
             ground,
             gravity_m_s2,
@@ -242,7 +242,7 @@ const fn shade_of(state: State) -> Option<Shade> {
 
 /// Shades what the structure does from its beginning on, and tells whether there are hops too short to be told apart:
 /// these get one shade together.
-fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &Doing) -> bool {
+fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &States) -> bool {
     let place = |time_s: f64| axes.place(time_s.min(end_s), axes.y.low).x;
     let mut band = |(name, fill): Shade, left: f64, right: f64| {
         let mut frame = axes.frame;

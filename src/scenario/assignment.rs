@@ -80,12 +80,12 @@ fn only<'a, 'i>(table: &'a DeTable<'i>) -> Option<&'a DeValue<'i>> {
 /// Assignments behind a text of that length, each on a line of its own: where they are told apart from the text, and
 /// from one another, by their offsets.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Behind<'a> {
+pub(super) struct Appended<'a> {
     length: usize,
     assignments: &'a [Assignment],
 }
 
-impl<'a> Behind<'a> {
+impl<'a> Appended<'a> {
     pub(super) const fn new(text: &str, assignments: &'a [Assignment]) -> Self {
         Self {
             length: text.len(),
@@ -119,7 +119,7 @@ impl<'a> Behind<'a> {
             .collect()
     }
 
-    /// Texts with each assignment at its offset, to be read for [`Behind::assign`].
+    /// Texts with each assignment at its offset, to be read for [`Appended::assign`].
     pub(super) fn padded(self) -> Vec<(String, usize)> {
         self.places()
             .map(|(place, assignment)| {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::assignment::{Assignment, Behind};
+use super::assignment::{Appended, Assignment};
 use super::shown;
 use super::source::Source;
 
@@ -74,7 +74,7 @@ impl ScenarioErrors {
     /// A fault in an assignment has the assignment for its file, and no place.
     pub(super) fn placed(source: &Source, set: &[Assignment], mut faults: Vec<Fault>) -> Self {
         let text = &source.text;
-        let behind = Behind::new(text, set);
+        let behind = Appended::new(text, set);
         faults.sort_by_key(|fault| fault.offset);
         // One pass over the text serves all faults: a hostile file can have very many.
         let mut chars = text.char_indices().peekable();

@@ -239,13 +239,13 @@ fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
 type Outlines = Vec<(usize, Vec<Vector2<f64>>)>;
 
 /// What stands beside an arch.
-pub(super) struct Beside {
+pub(super) struct Additions {
     piers: Piers,
     fill: Option<Fill>,
     loads: Vec<PlacedLoad>,
 }
 
-impl Beside {
+impl Additions {
     pub fn read(table: &mut Table<'_>) -> Reading<Self> {
         let piers = table.table("piers", read_piers);
         let fill = table.table("fill", read_fill);

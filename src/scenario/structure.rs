@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use thiserror::Error;
 
-use super::masonry::{self, Beside};
+use super::masonry::{self, Additions};
 use super::motion::Hinges;
 use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Switch, Table};
@@ -73,8 +73,8 @@ impl Structure {
     /// Reads what stands, for a model of motion. Files are relative to `folder`.
     pub(super) fn read(table: &mut Table<'_>, folder: &Path, hinges: Hinges) -> Reading<Self> {
         let free_hinges = hinges == Hinges::Free;
-        let beside = Beside::read(table);
-        let alone = beside.as_ref().is_ok_and(Beside::is_nothing);
+        let beside = Additions::read(table);
+        let alone = beside.as_ref().is_ok_and(Additions::is_nothing);
         let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));
         let column = table.table("column", |table| {
             read_column(table, free_hinges).map(Read::Column)

@@ -8,7 +8,7 @@ use std::ops::{Bound, RangeBounds, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::assignment::{Assignment, Behind};
+use super::assignment::{Appended, Assignment};
 use super::error::{Fault, excerpt};
 use crate::argument::short;
 
@@ -22,7 +22,7 @@ pub(super) struct Reported;
 pub(super) type Reading<T> = Result<T, Reported>;
 
 /// Reads a whole TOML text with `read`, values replaced as `set` says, or says all that is wrong with it. What is
-/// wrong with an assignment is [behind](Behind) the text.
+/// wrong with an assignment is [behind](Appended) the text.
 pub(super) fn read_text<T>(
     text: &str,
     set: &[Assignment],
@@ -35,12 +35,12 @@ pub(super) fn read_text<T>(
     if !legible.is_toml {
         return Err(legible.faults);
     }
-    let behind = Behind::new(text, set);
+    let behind = Appended::new(text, set);
     legible.text += &behind.text();
     let padded = behind.padded();
     let (root, _) = DeTable::parse_recoverable(&legible.text[..text.len()]);
     let mut root = root.into_inner();
-    Behind::assign(&mut root, &padded);
+    Appended::assign(&mut root, &padded);
     let mut table = Table {
         name: "the scenario".to_owned(),
         offset: 0,

@@ -101,9 +101,9 @@ pub enum Stage {
 
 /// What a run tells.
 #[derive(Debug)]
-pub struct Told {
+pub struct RunResults {
     /// For people.
-    pub text: String,
+    pub words: String,
     /// For programs, as in `summary.json`.
     pub summary: Value,
     /// For a picture together with other models.
@@ -191,7 +191,7 @@ impl<'a> Run<'a> {
         mut folder: Option<Folder>,
         rotations: Option<Box<dyn io::Write + '_>>,
         watch: &mut dyn FnMut(Stage),
-    ) -> Result<Told, RunError> {
+    ) -> Result<RunResults, RunError> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
         let mut shown = Shown::new(self, folder.is_some());
@@ -230,8 +230,8 @@ impl<'a> Run<'a> {
             let files = files.collect::<Vec<_>>().join(", ");
             let _ = writeln!(text, "  results in {}: {files}", path.display());
         }
-        Ok(Told {
-            text,
+        Ok(RunResults {
+            words: text,
             summary,
             curves: shown.curves,
         })

@@ -4,7 +4,7 @@ use crate::dynamics::history::{Event, Outcome, Sample, State, Summary};
 use crate::mechanics::sway::Sway;
 use crate::output::envelope::Envelope;
 use crate::output::panels::{
-    Curve, Doing, IMPACT, MAIN, OVERTURNS, Panels, Subject, around, draw_curves, mark_impacts,
+    Curve, IMPACT, MAIN, OVERTURNS, Panels, States, Subject, around, draw_curves, mark_impacts,
     mark_overturning,
 };
 use crate::output::svg::{CURVES, Figure, Key, Sign, Stroke};
@@ -58,7 +58,7 @@ pub(super) struct Timeline {
     /// Half cycles that went far.
     far: Vec<FarCycle>,
     /// What the structure does at first, and then.
-    doing: Doing,
+    doing: States,
     impacts_s: Vec<f64>,
     end_s: f64,
 }
@@ -74,7 +74,7 @@ impl Timeline {
             phase: 0,
             phase_from_s: 0.0,
             far: Vec::new(),
-            doing: Doing {
+            doing: States {
                 start: State::Rest,
                 changes: Vec::new(),
             },

@@ -9,7 +9,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::output::envelope::{COLUMNS, Envelope};
 use crate::output::panels::{
-    Curve, Doing, MAIN, OVERTURNS, Panels, Subject, around, draw_curves, mark_overturning,
+    Curve, MAIN, OVERTURNS, Panels, States, Subject, around, draw_curves, mark_overturning,
 };
 use crate::output::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 
@@ -175,7 +175,7 @@ impl Picture for RowTimeline {
 }
 
 /// The half cycles, and the end.
-fn doing(summary: &Summary) -> Doing {
+fn doing(summary: &Summary) -> States {
     let end = match summary.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
@@ -185,7 +185,7 @@ fn doing(summary: &Summary) -> Doing {
     let changes = cycles
         .map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)))
         .chain(end.map(|state| (summary.outcome_time_s, state)));
-    Doing {
+    States {
         start: State::Rest,
         changes: changes.collect(),
     }

@@ -32,40 +32,40 @@ pub fn summary(
     history: &Summary,
     spread: Option<&Result<Spread, SpreadError>>,
 ) -> Result<Value, OutputError> {
-    let mut told = Told::default();
-    told.put("program", json!(env!("CARGO_PKG_NAME")));
-    told.put("version", json!(env!("CARGO_PKG_VERSION")));
-    told.put("scenario", scenario.to_json());
-    told.put("outcome", json!(history.outcome.name()));
-    told.number("outcome_time_s", history.outcome_time_s)?;
+    let mut object = Object::default();
+    object.put("program", json!(env!("CARGO_PKG_NAME")));
+    object.put("version", json!(env!("CARGO_PKG_VERSION")));
+    object.put("scenario", scenario.to_json());
+    object.put("outcome", json!(history.outcome.name()));
+    object.number("outcome_time_s", history.outcome_time_s)?;
     let sway = match history.outcome {
         Outcome::Overturned(sway) => Some(sway.name()),
         _ => None,
     };
-    told.put("overturning_sway", json!(sway));
-    told.put("impacts", json!(history.impacts));
+    object.put("overturning_sway", json!(sway));
+    object.put("impacts", json!(history.impacts));
     let peaks = columns(&model.bodies(), "peak_rotation", "rad");
     for (name, peak_rad) in peaks.iter().zip(&history.peak_rotations_rad) {
-        told.number(name, *peak_rad)?;
+        object.number(name, *peak_rad)?;
     }
     match (model.as_mechanisms(), &history.row) {
-        (Some(model), _) => told.mechanisms(scenario, model, history)?,
-        (None, Some(row)) => told.row(scenario, model, history, row)?,
+        (Some(model), _) => object.mechanisms(scenario, model, history)?,
+        (None, Some(row)) => object.row(scenario, model, history, row)?,
         (None, None) => {}
     }
     match spread {
-        Some(Ok(spread)) => told.put("spread", of_spread(spread)?),
-        Some(Err(reason)) => told.put("spread", json!({ "failed": reason.to_string() })),
+        Some(Ok(spread)) => object.put("spread", of_spread(spread)?),
+        Some(Err(reason)) => object.put("spread", json!({ "failed": reason.to_string() })),
         None => {}
     }
-    Ok(Value::Object(told.0))
+    Ok(Value::Object(object.0))
 }
 
 /// What is told so far.
 #[derive(Default)]
-struct Told(Map<String, Value>);
+struct Object(Map<String, Value>);
 
-impl Told {
+impl Object {
     fn put(&mut self, name: &str, value: Value) {
         self.0.insert(name.to_owned(), value);
     }
@@ -157,13 +157,13 @@ impl Told {
         self.incipient(model);
         let mut half_cycles = Vec::new();
         for cycle in &row.half_cycles {
-            let mut told = Self::default();
-            told.put("sway", json!(cycle.sway.name()));
-            told.number("start_s", cycle.start_s)?;
-            told.number("duration_s", cycle.duration_s)?;
-            told.number("peak_rad", cycle.peak_rad)?;
-            told.number("energy_ratio", cycle.energy_ratio)?;
-            half_cycles.push(Value::Object(told.0));
+            let mut object = Self::default();
+            object.put("sway", json!(cycle.sway.name()));
+            object.number("start_s", cycle.start_s)?;
+            object.number("duration_s", cycle.duration_s)?;
+            object.number("peak_rad", cycle.peak_rad)?;
+            object.number("energy_ratio", cycle.energy_ratio)?;
+            half_cycles.push(Value::Object(object.0));
         }
         self.put("half_cycles", half_cycles.into());
         // None where it was released beyond where it overturns.
@@ -202,11 +202,11 @@ impl Told {
 
 fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
     let peak = |peak: &PeakSpread| -> Result<Value, OutputError> {
-        let mut told = Told::default();
-        told.number("own", peak.own_rad)?;
-        told.number("min", peak.min_rad)?;
-        told.number("max", peak.max_rad)?;
-        Ok(Value::Object(told.0))
+        let mut object = Object::default();
+        object.number("own", peak.own_rad)?;
+        object.number("min", peak.min_rad)?;
+        object.number("max", peak.max_rad)?;
+        Ok(Value::Object(object.0))
     };
     let mut half_cycles = Vec::new();
     for cycle in &spread.half_cycles {
