@@ -20,7 +20,7 @@
 //! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
 //!   their histories ([`dynamics::history`]); mechanisms with one degree of freedom at a time
 //!   ([`dynamics::hybrid`]), and rows of blocks ([`dynamics::free_hinges`]).
-//! - [`scenario`]: what to simulate, as a TOML file. [`studies`]: many histories evaluated together.
+//! - [`scenario`]: what to simulate, as a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
 //! The arch of the paper, and the history of `docs/example.md`:

@@ -1,4 +1,4 @@
-//! Studies: many histories evaluated together.
+//! Studies: one history told, or many evaluated together.
 //!
 //! A [study](runner::Study) is a list of cases, and each case depends only on its definition, so cases may be
 //! computed in any order, by any number of threads, on several machines, and resumed later. The

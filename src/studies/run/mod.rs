@@ -208,8 +208,10 @@ impl<'a> Run<'a> {
             recording.written?;
             (history, recording.tables.finish()?)
         };
-        watch(Stage::Repeating);
-        let spread = repetitions.map(|repetitions| repetitions.spread(&history));
+        let spread = repetitions.map(|repetitions| {
+            watch(Stage::Repeating);
+            repetitions.spread(&history)
+        });
         let spread = spread.as_ref();
         let mut text = words(scenario, model, &history, spread, &shown.notable);
         let mut summary = summary(scenario, model, &history, spread)?;
