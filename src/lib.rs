@@ -79,6 +79,7 @@ pub mod scenario;
 pub mod studies;
 
 pub use argument::ArgumentError;
+pub use dynamics::elastic_joints::{ElasticJoints, ElasticJointsError, ElasticOptions};
 pub use dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 pub use dynamics::ground::{GroundError, GroundMotion, Pulse, WaveTrain};
 pub use dynamics::history::{
@@ -90,6 +91,9 @@ pub use mechanics::arch::Arch;
 pub use mechanics::blocks::Row;
 pub use mechanics::chain::Hinge;
 pub use mechanics::column::{Column, RockingColumn};
+pub use mechanics::elastic_joint::{
+    Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
+};
 pub use mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 pub use mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 pub use mechanics::four_link::row::FourLinkRow;

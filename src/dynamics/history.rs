@@ -120,6 +120,23 @@ pub struct Sample {
     pub eccentricity_ratios: Vec<Option<f64>>,
     /// Offsets of the joints, in m, the right face towards the extrados, of a row whose joints slip; else none.
     pub offsets_m: Vec<f64>,
+    /// What the joints bear, of a row with elastic joints; else none.
+    pub pressures: Vec<JointPressure>,
+}
+
+/// What an elastic joint bears, by its elastic stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointPressure {
+    /// Normal force, in N; compression is positive.
+    pub normal_n: f64,
+    /// Shear force, in N, positive where it keeps the right face from slipping towards the extrados.
+    pub shear_n: f64,
+    /// How far the normal force lies towards the extrados from the middle of the joint, over its length; `None` where nothing presses.
+    pub eccentricity_ratio: Option<f64>,
+    /// Part of the joint that presses.
+    pub contact_ratio: f64,
+    /// Compressive stress at intrados and extrados, in Pa.
+    pub edge_stresses_pa: [f64; 2],
 }
 
 impl Sample {
@@ -143,6 +160,7 @@ impl Sample {
             gaps_m: Vec::new(),
             eccentricity_ratios: Vec::new(),
             offsets_m: Vec::new(),
+            pressures: Vec::new(),
         }
     }
 }
@@ -304,6 +322,8 @@ pub struct RowSummary {
     pub half_cycles: Vec<HalfCycle>,
     /// What slipped; `None` where joints do not slip.
     pub sliding: Option<Sliding>,
+    /// What is elastic; `None` where joints are rigid.
+    pub elastic: Option<ElasticSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
     /// Energy taken by impacts, in J, without what friction takes.
@@ -358,6 +378,52 @@ pub struct Sliding {
     pub unconverged: u64,
     /// The largest error of such a bound, as part of the largest bound.
     pub bound_error: f64,
+}
+
+impl Sliding {
+    /// Nothing has slipped.
+    #[must_use]
+    pub fn none(joints: usize) -> Self {
+        Self {
+            friction_j: 0.0,
+            offsets_m: vec![0.0; joints],
+            largest_offsets_m: vec![0.0; joints],
+            unconverged: 0,
+            bound_error: 0.0,
+        }
+    }
+}
+
+/// What a motion with elastic joints tells besides: energies from the beginning to the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ElasticSummary {
+    /// The largest compressive stress.
+    pub largest_stress: Stress,
+    /// Elastic energy at the end, in J.
+    pub elastic_j: f64,
+    /// Energy that damping took, in J.
+    pub damped_j: f64,
+    /// Energy that friction took, in J.
+    pub friction_j: f64,
+    /// Energy that crushing took, in J.
+    pub crushed_j: f64,
+    /// Work of the moving ground, in J.
+    pub ground_j: f64,
+    /// How far the thrust lies from the middle of the worst joint at rest, over its length, before the motion.
+    pub rest_eccentricity_ratio: f64,
+    /// Which joint that is.
+    pub rest_eccentricity_joint: usize,
+}
+
+/// A compressive stress, where and when.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stress {
+    /// In Pa.
+    pub stress_pa: f64,
+    /// The joint at whose edge it was.
+    pub joint: usize,
+    /// When, in seconds.
+    pub time_s: f64,
 }
 
 /// Time that a computation took; `None` where it was not measured. It belongs to no result: any two are equal.
@@ -433,6 +499,8 @@ pub struct Samples {
     pub gaps_m: Vec<[f64; 2]>,
     /// Offsets of the joints of a row whose joints slip, in m, joint by joint; else none.
     pub offsets_m: Vec<f64>,
+    /// What the joints of a row with elastic joints bear, joint by joint; else none.
+    pub pressures: Vec<JointPressure>,
 }
 
 impl Samples {
@@ -470,6 +538,7 @@ impl Samples {
         self.energy_ratio.push(sample.energy_ratio);
         self.gaps_m.extend(&sample.gaps_m);
         self.offsets_m.extend(&sample.offsets_m);
+        self.pressures.extend(&sample.pressures);
         self.rotation_over_critical
             .push(sample.rotation_over_critical);
     }
@@ -484,6 +553,8 @@ impl Samples {
         let by_joint = index * joints..(index + 1) * joints;
         let slipping = self.offsets_m.len() / self.len();
         let slipping = index * slipping..(index + 1) * slipping;
+        let pressing = self.pressures.len() / self.len();
+        let pressing = index * pressing..(index + 1) * pressing;
         let hinges_end = self.first_hinge.get(index + 1).copied();
         let hinges = *self.first_hinge.get(index)?..hinges_end.unwrap_or(self.hinges.len());
         Some(Sample {
@@ -503,6 +574,7 @@ impl Samples {
             gaps_m: self.gaps_m.get(by_joint)?.to_vec(),
             eccentricity_ratios: Vec::new(),
             offsets_m: self.offsets_m.get(slipping)?.to_vec(),
+            pressures: self.pressures.get(pressing)?.to_vec(),
         })
     }
 
@@ -526,6 +598,8 @@ pub struct Shape {
     pub joints: usize,
     /// Number of joints that have offsets.
     pub slipping: usize,
+    /// Number of joints that tell what they bear.
+    pub pressing: usize,
 }
 
 impl Shape {
@@ -541,7 +615,9 @@ impl Shape {
         let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
         // Links have as many hinges more than bodies, at most one, as a row between supports has joints.
         let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
-        let by_joint = self.joints * size_of::<[f64; 2]>() + self.slipping * size_of::<f64>();
+        let by_joint = self.joints * size_of::<[f64; 2]>()
+            + self.slipping * size_of::<f64>()
+            + self.pressing * size_of::<JointPressure>();
         let each = alone + self.bodies * by_body + hinges + by_joint;
         samples.saturating_mul(each as u64)
     }

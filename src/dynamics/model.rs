@@ -61,12 +61,23 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
+    /// Its motions on several grounds, in their order, as [`Model::simulate`] has them without a recorder. A model that computes several
+    /// at once does so here; no result depends on what is beside it.
+    fn simulate_all(
+        &self,
+        cases: &[(GroundMotion, Request)],
+    ) -> Vec<Result<Summary, SimulationError>> {
+        let alone = |(ground, request): &_| self.simulate(ground, request, None);
+        cases.iter().map(alone).collect()
+    }
+
     /// What its samples tell of.
     fn shape(&self) -> Shape {
         Shape {
             bodies: self.bodies().len(),
             joints: 0,
             slipping: 0,
+            pressing: 0,
         }
     }
 

@@ -11,12 +11,15 @@ pub mod complementarity;
 pub mod contact;
 #[doc(hidden)]
 pub mod coulomb;
+pub mod elastic_joint;
 pub mod equivalent;
 pub mod four_link;
 pub mod friction;
 pub mod geometry;
 #[doc(hidden)]
 pub mod joints;
+#[doc(hidden)]
+pub mod lanes;
 pub mod masonry;
 pub mod parts;
 #[doc(hidden)]

@@ -266,6 +266,7 @@ impl Model for FreeHinges {
             bodies: self.row().blocks().len(),
             joints,
             slipping: self.options.friction_coefficient.map_or(0, |_| joints),
+            pressing: 0,
         }
     }
 

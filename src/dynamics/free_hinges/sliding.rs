@@ -106,13 +106,6 @@ impl<'a> SlidingStepper<'a> {
             .map(|joint| contact(&faces, &positions, joint))
             .collect();
         let program = Program::new(row, coefficient);
-        let still = Sliding {
-            friction_j: 0.0,
-            offsets_m: vec![0.0; joints],
-            largest_offsets_m: vec![0.0; joints],
-            unconverged: 0,
-            bound_error: 0.0,
-        };
         let mut course = Course::new(task, None, recorder);
         let start_energy = gravity * rise(row, placement.centres_m());
         let stands = placement.open_corners() == 0;
@@ -137,7 +130,7 @@ impl<'a> SlidingStepper<'a> {
             program,
             modes_before: vec![Mode::WHOLE; joints],
             stands,
-            sliding: still,
+            sliding: Sliding::none(joints),
             ground_work: 0.0,
             summit: Summit::new(start_energy),
             held_back: 0.0,

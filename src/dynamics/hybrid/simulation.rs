@@ -641,6 +641,7 @@ impl<'r> Sampler<'r> {
             gaps_m: Vec::new(),
             eccentricity_ratios,
             offsets_m: Vec::new(),
+            pressures: Vec::new(),
         }
     }
 

@@ -48,6 +48,37 @@ pub(in crate::dynamics) struct Clock {
     pub output_step_s: Option<f64>,
 }
 
+/// The times at which samples are due and steps end.
+pub(in crate::dynamics) struct Marks {
+    clock: Clock,
+    passed: f64,
+}
+
+impl Marks {
+    pub(in crate::dynamics) const fn new(clock: Clock) -> Self {
+        Self { clock, passed: 0.0 }
+    }
+
+    fn mark_s(&self) -> f64 {
+        let output_step_s = self.clock.output_step_s;
+        output_step_s.map_or(f64::INFINITY, |step_s| self.passed * step_s)
+    }
+
+    /// Whether a sample is due.
+    pub(in crate::dynamics) fn is_due(&self, time_s: f64) -> bool {
+        time_s >= self.mark_s() - 1e-9 * self.clock.shortest_step_s
+    }
+
+    pub(in crate::dynamics) fn pass(&mut self) {
+        self.passed += 1.0;
+    }
+
+    /// Where steps end next.
+    pub(in crate::dynamics) fn next_s(&self) -> f64 {
+        self.mark_s().min(self.clock.end_s)
+    }
+}
+
 /// What is to be computed.
 #[derive(Clone, Copy)]
 pub(in crate::dynamics) struct Task<'a> {
@@ -68,6 +99,8 @@ pub(in crate::dynamics) struct Course<'a> {
     pub sway: f64,
     /// Whether a joint has opened or slipped.
     pub moved: bool,
+    /// Mass times displacement below which a sway changes no side.
+    pub least_sway_kg_m: f64,
     /// Weight times size.
     pub energy_unit: f64,
     /// Joints that shut in a step, also where they open again at once, with the edge that landed; both, where none is named.
@@ -117,6 +150,15 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
     /// Whether a joint slips.
     fn slips(&self) -> bool {
         false
+    }
+    /// A joint as a hinge, if it is open.
+    fn hinge(&self, joint: usize) -> Option<Hinge> {
+        open_hinge(joint, self.gaps(joint))
+    }
+    /// Whether a row with these hinges and rotations stands.
+    fn stands(&self, sample: &Sample) -> bool {
+        let shut = sample.hinges.is_empty() && !self.slips();
+        shut || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
     /// Since when it stands still for good, once the ground does.
     fn rests_since(&self) -> Option<f64>;
@@ -183,8 +225,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
             opened
                 .find(|hinge| matches!(hinge, Hinge::Joint { joint: opens, .. } if *opens == joint))
         };
-        let hinge =
-            |joint: usize| opens_at_once(joint).or_else(|| open_hinge(joint, self.gaps(joint)));
+        let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
         let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
         // What lands undeformed came from the other side.
@@ -231,13 +272,12 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         for joint in 0..self.course().task.row.joints().len() {
             let gaps = self.gaps(joint);
             sample.gaps_m.push(gaps);
-            if let Some(hinge) = open_hinge(joint, gaps) {
+            if let Some(hinge) = self.hinge(joint) {
                 let position_m = self.corner(joint, turning(gaps).unwrap_or(Edge::Intrados));
                 sample.hinges.push(OpenHinge { hinge, position_m });
             }
         }
-        let shut = sample.hinges.is_empty() && !self.slips();
-        if !shut && sample.rotations_rad.iter().any(|angle| *angle != 0.0) {
+        if !self.stands(&sample) {
             sample.state = self.moving();
         }
         self.course_mut().record(sample, kinetic);
@@ -247,19 +287,16 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
 
 /// Steps a row until it rests, has overturned, or the time is over.
 pub(in crate::dynamics) fn run<'a, S: Stepper<'a>>(mut stepper: S) -> Result<Summary, S::Error> {
-    let Task { clock, .. } = stepper.course().task;
-    let mut samples = 0.0;
+    let clock = stepper.course().task.clock;
+    let mut marks = Marks::new(clock);
     let mut sampled_s = None;
     let samples_are_made = clock.output_step_s.is_some() && stepper.course().is_followed();
     let mut longest_step = samples_are_made.then_some(Duration::ZERO);
     let (outcome, outcome_time_s) = loop {
-        let mark = clock
-            .output_step_s
-            .map_or(f64::INFINITY, |step| samples * step);
         let course = stepper.course();
         let time = course.time;
-        if time >= mark - 1e-9 * clock.shortest_step_s {
-            samples += 1.0;
+        if marks.is_due(time) {
+            marks.pass();
             if samples_are_made {
                 stepper.sample()?;
                 sampled_s = Some(time);
@@ -270,7 +307,7 @@ pub(in crate::dynamics) fn run<'a, S: Stepper<'a>>(mut stepper: S) -> Result<Sum
             break ending;
         }
         let begun = longest_step.map(|_| Instant::now());
-        stepper.step(mark.min(clock.end_s))?;
+        stepper.step(marks.next_s())?;
         longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
     };
     let course = stepper.course();
@@ -360,12 +397,14 @@ impl<'a> Course<'a> {
     ) -> Self {
         let Task { row, clock, .. } = task;
         let joints = row.joints().len();
+        let energy_unit = row.mass_kg() * task.gravity_m_s2 * row.size_m();
         Self {
             time: 0.0,
             potential: 0.0,
             sway: 0.0,
             moved: false,
-            energy_unit: row.mass_kg() * task.gravity_m_s2 * row.size_m(),
+            least_sway_kg_m: SWAY_RATIO * energy_unit / task.gravity_m_s2,
+            energy_unit,
             shut: Vec::with_capacity(joints),
             opened: Vec::with_capacity(joints),
             task,
@@ -397,6 +436,7 @@ impl<'a> Course<'a> {
             of_row: RowSummary {
                 half_cycles: Vec::new(),
                 sliding: None,
+                elastic: None,
                 largest_kinetic_j: 0.0,
                 energy_taken_j: 0.0,
                 energy_error: 0.0,
@@ -480,8 +520,7 @@ impl<'a> Course<'a> {
         self.sway = sway;
         self.peak_potential = self.peak_potential.max(potential);
         self.of_row.largest_kinetic_j = self.of_row.largest_kinetic_j.max(kinetic);
-        let least = SWAY_RATIO * self.energy_unit / self.task.gravity_m_s2;
-        if sway.abs() > least {
+        if sway.abs() > self.least_sway_kg_m {
             let side = towards(sway);
             if self.cycle.is_none_or(|cycle| cycle.sway != side) {
                 self.end_cycle(Some(kinetic + potential));
@@ -553,6 +592,7 @@ impl<'a> Course<'a> {
         sample.gaps_m.clear();
         sample.eccentricity_ratios.clear();
         sample.offsets_m.clear();
+        sample.pressures.clear();
         let recorder = self.recorder.as_ref();
         (
             sample,
@@ -583,7 +623,7 @@ impl<'a> Course<'a> {
     }
 
     /// Sums up, and tells of the end, if it is one.
-    fn end(mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
+    pub(in crate::dynamics) fn end(mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.end_cycle(None);
         let Task { barrier_j, .. } = self.task;
         let (mut summary, mut of_row) = (self.summary, self.of_row);

@@ -1,0 +1,12 @@
+//! Motion of a row of rigid blocks with elastic joints.
+//!
+//! `motion` is the leapfrog, of one or several histories side by side; `stepper` what each of them is told and judged by, behind the
+//! driver of all rows.
+
+mod error;
+mod model;
+mod motion;
+mod stepper;
+
+pub use error::{ElasticJointError, ElasticJointsError};
+pub use model::{ElasticJoints, ElasticOptions};

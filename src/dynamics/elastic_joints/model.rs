@@ -1,0 +1,352 @@
+//! A row of blocks with elastic joints as a model of motion.
+
+use std::ops::RangeInclusive;
+
+use super::error::{ElasticJointError, ElasticJointsError};
+use super::stepper::{ElasticStepper, Group, Start};
+use crate::argument::{ArgumentError, within};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::{Shape, Summary};
+use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
+use crate::dynamics::row::course::{self, Clock, Task};
+use crate::dynamics::row::standing::RigidRow;
+use crate::mechanics::blocks::Row;
+use crate::mechanics::elastic_joint::{Contact, ElasticProperties, ElasticStructure, Rest};
+use crate::mechanics::sway::Sway;
+
+/// Rigid blocks in a row, an arch or a stack, whose joints give way elastically, without tension, slip, and crush.
+///
+/// It starts from its equilibrium under its own weight. No impact takes energy at an instant, and the hinge of a joint lies inside its
+/// edge: such a row falls before its twin with rigid joints ([`FreeHinges`](crate::FreeHinges)) does.
+#[derive(Clone, Debug)]
+pub struct ElasticJoints {
+    rigid: RigidRow,
+    properties: ElasticProperties,
+    options: ElasticOptions,
+    structure: ElasticStructure,
+    /// Under gravity of one m/s2 it would rest elsewhere: gravity and its rest.
+    rest: (f64, Rest),
+    /// By what a repetition multiplies the longest step.
+    steps_times: f64,
+}
+
+/// How the motion is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ElasticOptions {
+    /// The longest step, in seconds (1e-9 to 1); without it, a quarter (undamped) to a half of what is proved to be stable.
+    pub longest_step_s: Option<f64>,
+}
+
+impl ElasticOptions {
+    /// With shorter steps a run takes forever.
+    pub(crate) const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
+}
+
+/// The longest step over the longest stable one: without damping, and with as much as below. Undamped vibration that opens and shuts
+/// joints needs the shorter steps for an energy balance within a hundredth of the barrier.
+const STEP_RATIO: [f64; 2] = [0.25, 0.5];
+/// Damping of the fastest vibration, as a part of the critical one, with which the longer steps do.
+const DAMPED: f64 = 0.3;
+/// An energy balance that is wrong by more than this part of the largest energy of the motion is an error.
+const LARGEST_ENERGY_ERROR: f64 = 1e-2;
+/// Steps that a motion may have: some hours of computing.
+const MOST_STEPS: f64 = 1e9;
+/// Histories side by side.
+const SIDE_BY_SIDE: usize = 8;
+/// By what the stiffness is multiplied and divided to see what hangs on it.
+const OTHER_STIFFNESS: f64 = 3.0;
+/// Gravity under which the rest is found first.
+const GRAVITY_M_S2: f64 = 9.81;
+
+impl ElasticJoints {
+    /// Any row that stands, with such joints.
+    ///
+    /// # Errors
+    /// When a property is out of range, or the row cannot carry its own weight: with the reason.
+    pub fn new(row: Row, properties: ElasticProperties) -> Result<Self, ElasticJointsError> {
+        let structure = ElasticStructure::of_row(&row, &properties)?;
+        let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
+        Self::standing(rigid, properties, structure, GRAVITY_M_S2)
+    }
+
+    fn standing(
+        rigid: RigidRow,
+        properties: ElasticProperties,
+        structure: ElasticStructure,
+        gravity_m_s2: f64,
+    ) -> Result<Self, ElasticJointsError> {
+        let rest = structure.rest([0.0, -gravity_m_s2])?;
+        Ok(Self {
+            rigid,
+            properties,
+            options: ElasticOptions::default(),
+            structure,
+            rest: (gravity_m_s2, rest),
+            steps_times: 1.0,
+        })
+    }
+
+    /// The same with other options.
+    ///
+    /// # Errors
+    /// When a step is out of range.
+    pub fn with_options(self, options: ElasticOptions) -> Result<Self, ArgumentError> {
+        if let Some(step_s) = options.longest_step_s {
+            within("longest_step_s", step_s, ElasticOptions::STEP_S)?;
+        }
+        Ok(Self { options, ..self })
+    }
+
+    /// The blocks.
+    #[must_use]
+    pub const fn row(&self) -> &Row {
+        self.rigid.row()
+    }
+
+    /// What its joints are like.
+    #[must_use]
+    pub const fn properties(&self) -> &ElasticProperties {
+        &self.properties
+    }
+
+    /// Bodies and joints.
+    #[must_use]
+    pub const fn structure(&self) -> &ElasticStructure {
+        &self.structure
+    }
+
+    /// Where it rests under this gravity.
+    ///
+    /// # Errors
+    /// When it does not, with the reason.
+    pub fn rest(&self, gravity_m_s2: f64) -> Result<Rest, ElasticJointError> {
+        let (known_m_s2, rest) = &self.rest;
+        if gravity_m_s2 == *known_m_s2 {
+            return Ok(rest.clone());
+        }
+        Ok(self.structure.rest([0.0, -gravity_m_s2])?)
+    }
+
+    /// Energy that the first mechanism of the row with rigid joints has to gain to overturn, in J; `None` where it is not known.
+    #[must_use]
+    pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+        self.rigid.barrier_j(gravity_m_s2)
+    }
+
+    /// The longest step of a motion, in seconds.
+    #[must_use]
+    pub fn longest_step_s(&self) -> f64 {
+        let default_s = || {
+            let frequency = self.structure.frequency_bound_rad_s();
+            let damped = 0.5 * self.structure.damping_time_s() * frequency / DAMPED;
+            let [undamped, enough] = STEP_RATIO;
+            let ratio = undamped + (enough - undamped) * damped.min(1.0);
+            ratio * self.structure.stable_step_s()
+        };
+        self.steps_times * self.options.longest_step_s.unwrap_or_else(default_s)
+    }
+
+    /// The same structure with other properties that nobody knows better: what hangs on them. Those with which it does not stand are
+    /// left out.
+    #[must_use]
+    pub fn variations(&self) -> Vec<Repetition> {
+        let other_contact = match self.properties.contact {
+            Contact::Continuous => ("three contact points", Contact::Points(3)),
+            Contact::Points(_) => ("continuous contact", Contact::Continuous),
+        };
+        let stiffness = |factor| self.properties.stiffness_times(factor);
+        let others = [
+            ("three times the stiffness", stiffness(OTHER_STIFFNESS)),
+            ("a third of the stiffness", stiffness(1.0 / OTHER_STIFFNESS)),
+            (
+                other_contact.0,
+                ElasticProperties {
+                    contact: other_contact.1,
+                    ..self.properties
+                },
+            ),
+        ];
+        let variation = |(name, properties): (&'static str, ElasticProperties)| {
+            let structure = ElasticStructure::of_row(self.row(), &properties).ok()?;
+            let rigid = self.rigid.clone();
+            let model = Self::standing(rigid, properties, structure, self.rest.0).ok()?;
+            let model = Box::new(model);
+            Some(Repetition { name, model })
+        };
+        others.into_iter().filter_map(variation).collect()
+    }
+
+    fn clock(&self, request: &Request) -> Result<Clock, ElasticJointError> {
+        let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
+        if step_s > longest_s {
+            return Err(ElasticJointError::Unstable { step_s, longest_s });
+        }
+        let end_s = request.end_s;
+        if end_s / step_s > MOST_STEPS {
+            return Err(ElasticJointError::TooLong { step_s, end_s });
+        }
+        Ok(Clock {
+            longest_step_s: step_s,
+            shortest_step_s: step_s,
+            end_s,
+            output_step_s: Some(request.output_step_s),
+        })
+    }
+
+    fn check(&self, request: &Request) -> Result<(), ArgumentError> {
+        request.check()?;
+        match request.initial {
+            None => Ok(()),
+            Some(initial) => Err(ArgumentError {
+                argument: "rotation_rad",
+                value: initial.rotation_rad,
+                allowed:
+                    "left out: elastic joints start from rest under the weight of the structure"
+                        .to_owned(),
+            }),
+        }
+    }
+
+    fn task<'a>(
+        &'a self,
+        ground: &'a GroundMotion,
+        request: &Request,
+    ) -> Result<Task<'a>, SimulationError> {
+        self.check(request)?;
+        Ok(Task {
+            row: self.row(),
+            ground,
+            gravity_m_s2: request.gravity_m_s2,
+            clock: self.clock(request)?,
+            barrier_j: self.barrier_j(request.gravity_m_s2),
+        })
+    }
+
+    fn start<'a>(&'a self, rest: &'a Rest) -> Start<'a> {
+        Start {
+            structure: &self.structure,
+            rest,
+            longest_step_s: self.longest_step_s(),
+        }
+    }
+
+    /// Refuses a motion whose energy is not balanced.
+    fn judged(&self, mut summary: Summary, rest: &Rest) -> Result<Summary, SimulationError> {
+        let row = summary.row.as_mut().expect("a row has its summary");
+        if let Some(elastic) = &mut row.elastic {
+            let (joint, ratio) = rest.largest_eccentricity(&self.structure);
+            elastic.rest_eccentricity_ratio = ratio;
+            elastic.rest_eccentricity_joint = joint;
+        }
+        match row.energy_error {
+            error if error > LARGEST_ENERGY_ERROR => Err(ElasticJointError::Energy {
+                error,
+                longest_step_s: self.longest_step_s(),
+            }
+            .into()),
+            _ => Ok(summary),
+        }
+    }
+}
+
+impl Model for ElasticJoints {
+    fn repetitions(&self) -> Vec<Repetition> {
+        let others = [("half steps", 0.5), ("steps half as long again", 1.5)];
+        let repetition = |(name, factor): (&'static str, f64)| {
+            let model = Box::new(Self {
+                steps_times: factor * self.steps_times,
+                ..self.clone()
+            });
+            Repetition { name, model }
+        };
+        others.map(repetition).into()
+    }
+
+    fn bodies(&self) -> Vec<String> {
+        (1..=self.row().blocks().len())
+            .map(|block| block.to_string())
+            .collect()
+    }
+
+    fn shape(&self) -> Shape {
+        let joints = self.row().joints().len();
+        Shape {
+            bodies: self.row().blocks().len(),
+            joints,
+            slipping: self.properties.friction_coefficient.map_or(0, |_| joints),
+            pressing: joints,
+        }
+    }
+
+    fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
+        self.rigid.incipient_acceleration_g(sway)
+    }
+
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+        recorder: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError> {
+        let task = self.task(ground, request)?;
+        let rest = self.rest(request.gravity_m_s2)?;
+        // One of any lifetime serves for as long as the task.
+        let recorder = recorder.map(|recorder| recorder as _);
+        let stepper = ElasticStepper::new(task, self.start(&rest), recorder);
+        self.judged(course::run(stepper)?, &rest)
+    }
+
+    fn simulate_all(
+        &self,
+        cases: &[(GroundMotion, Request)],
+    ) -> Vec<Result<Summary, SimulationError>> {
+        let Some((_, first)) = cases.first() else {
+            return Vec::new();
+        };
+        let gravity_m_s2 = first.gravity_m_s2;
+        let alike = |(_, request): &(GroundMotion, Request)| request.gravity_m_s2 == gravity_m_s2;
+        let rest = match self.rest(gravity_m_s2) {
+            Ok(rest) if cases.len() > 1 && cases.iter().all(alike) => rest,
+            _ => {
+                let alone = |(ground, request): &_| self.simulate(ground, request, None);
+                return cases.iter().map(alone).collect();
+            }
+        };
+        let mut group = Group::<SIDE_BY_SIDE>::new(self.row(), self.start(&rest), gravity_m_s2);
+        let mut answers: Vec<Option<Result<Summary, SimulationError>>> = vec![None; cases.len()];
+        let mut waiting = 0..cases.len();
+        let mut running = [None; SIDE_BY_SIDE];
+        loop {
+            for lane in 0..SIDE_BY_SIDE {
+                if let Some(case) = running[lane]
+                    && let Some(ended) = group.go_on(lane)
+                {
+                    let ended = ended.map_err(SimulationError::from);
+                    answers[case] = Some(ended.and_then(|summary| self.judged(summary, &rest)));
+                    running[lane] = None;
+                }
+                while running[lane].is_none()
+                    && let Some(case) = waiting.next()
+                {
+                    let (ground, request) = &cases[case];
+                    match self.task(ground, request) {
+                        Ok(task) => {
+                            group.begin(lane, task, None);
+                            running[lane] = Some(case);
+                            group.go_on(lane);
+                        }
+                        Err(error) => answers[case] = Some(Err(error)),
+                    }
+                }
+            }
+            if running.iter().all(Option::is_none) {
+                break;
+            }
+            group.stride();
+        }
+        let answers = answers.into_iter();
+        answers
+            .map(|answer| answer.expect("all cases have ended"))
+            .collect()
+    }
+}

@@ -1,0 +1,413 @@
+//! Bodies with elastic joints that move, several motions side by side: the leapfrog.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::mechanics::elastic_joint::{ElasticStructure, Fibre, Memory, Place, Rest};
+use crate::mechanics::lanes::{Lanes, Real, both};
+
+/// A body that moves.
+#[derive(Clone, Copy)]
+struct Moving<R> {
+    place: Place<R>,
+    angle_rad: R,
+    /// Velocity half a step before the place, and rate of rotation.
+    velocity_m_s: [R; 2],
+    rate_rad_s: R,
+    /// Force and moment at the place.
+    force_n: [R; 2],
+    moment_n_m: R,
+}
+
+/// Motions side by side, each in its lane. What happens in one lane depends on no other.
+pub(super) struct Motion<'a, const L: usize> {
+    pub structure: &'a ElasticStructure,
+    gravity_m_s2: f64,
+    arch: Arch,
+    /// The last one is what all supports are fixed to.
+    bodies: Vec<Moving<Lanes<L>>>,
+    memories: Vec<Memory<Lanes<L>>>,
+    /// Of each joint, and in it of each place.
+    fibres: Vec<Fibre<Lanes<L>>>,
+    spent: Spent<Lanes<L>>,
+}
+
+/// Energies that went since the beginning, in J.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spent<R> {
+    pub friction_j: R,
+    pub damped_j: R,
+    pub crushed_j: R,
+    /// Work of the moving ground.
+    pub ground_j: R,
+}
+
+/// A step, by lane. All zero, a lane stays as it is.
+#[derive(Clone, Copy)]
+pub(super) struct Step<const L: usize> {
+    /// Time from place to place, in s.
+    pub drift_s: Lanes<L>,
+    /// Time from velocity to velocity, in s.
+    pub kick_s: Lanes<L>,
+    /// Damping time over the time from place to place.
+    pub damping: Lanes<L>,
+    /// What the ground gains in velocity in the time of the kick, in m/s.
+    pub shift_m_s: [Lanes<L>; 2],
+}
+
+impl<const L: usize> Step<L> {
+    pub(super) fn none() -> Self {
+        let zero = Lanes([0.0; L]);
+        Self {
+            drift_s: zero,
+            kick_s: zero,
+            damping: zero,
+            shift_m_s: [zero; 2],
+        }
+    }
+
+    pub(super) fn set(&mut self, lane: usize, alone: &Step<1>) {
+        self.drift_s.0[lane] = alone.drift_s.0[0];
+        self.kick_s.0[lane] = alone.kick_s.0[0];
+        self.damping.0[lane] = alone.damping.0[0];
+        for axis in [0, 1] {
+            self.shift_m_s[axis].0[lane] = alone.shift_m_s[axis].0[0];
+        }
+    }
+}
+
+/// A support along whose joint the whole structure may slide.
+pub(super) struct Slide {
+    pub joint: usize,
+    /// 1 where the structure is behind the joint, -1 where it is before.
+    pub sense: f64,
+    /// Whether the support goes on beyond the joint.
+    pub goes_on: bool,
+    /// How far the centre of gravity moves to the right as the joint slips.
+    pub along_x: f64,
+}
+
+/// What is known of motions at an instant.
+#[derive(Clone, Copy)]
+pub(super) struct Observed<R> {
+    pub kinetic_j: R,
+    /// Of gravity, above the undeformed structure.
+    pub potential_j: R,
+    pub elastic_j: R,
+    pub spent: Spent<R>,
+    /// Horizontal displacement of the centre of gravity times the mass.
+    pub sway_kg_m: R,
+    /// Square of the largest displacement of a body beside what the structure slid along either support.
+    pub farthest_m2: R,
+    /// Largest rotation.
+    pub turned_rad: R,
+    /// Largest compressive stress over the stiffness, and at which joint.
+    pub deepest: [R; 2],
+}
+
+impl<'a, const L: usize> Motion<'a, L> {
+    pub(super) fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
+        let zero = Lanes([0.0; L]);
+        let body = Moving {
+            place: Place::undeformed(),
+            angle_rad: zero,
+            velocity_m_s: [zero; 2],
+            rate_rad_s: zero,
+            force_n: [zero; 2],
+            moment_n_m: zero,
+        };
+        let joints = structure.joints().len();
+        Self {
+            structure,
+            gravity_m_s2,
+            arch: Arch::new(),
+            bodies: vec![body; structure.bodies().len() + 1],
+            memories: vec![Memory::none(); joints],
+            fibres: vec![Fibre::none(); joints * structure.fibres()],
+            spent: Spent {
+                friction_j: zero,
+                damped_j: zero,
+                crushed_j: zero,
+                ground_j: zero,
+            },
+        }
+    }
+
+    /// Starts the motion of a lane from rest.
+    pub(super) fn start(&mut self, lane: usize, rest: &Rest) {
+        for (body, moved) in self.bodies.iter_mut().zip(&rest.moved) {
+            let place = Place::at(moved);
+            for axis in [0, 1] {
+                body.place.moved_m[axis].0[lane] = place.moved_m[axis].0[0];
+                body.place.turn[axis].0[lane] = place.turn[axis].0[0];
+                body.velocity_m_s[axis].0[lane] = 0.0;
+            }
+            body.angle_rad.0[lane] = moved[2];
+            body.rate_rad_s.0[lane] = 0.0;
+        }
+        for (memory, alone) in self.memories.iter_mut().zip(&rest.memories) {
+            memory.set(lane, alone);
+        }
+        for (fibre, alone) in self.fibres.iter_mut().zip(&rest.fibres) {
+            fibre.set(lane, alone);
+        }
+        let spent = &mut self.spent;
+        for energy in [
+            &mut spent.friction_j,
+            &mut spent.damped_j,
+            &mut spent.crushed_j,
+            &mut spent.ground_j,
+        ] {
+            energy.0[lane] = 0.0;
+        }
+        self.press(Lanes([0.0; L]));
+    }
+
+    /// One step of all lanes, with the widest vectors of the processor: these change no bit.
+    pub(super) fn step(&mut self, step: &Step<L>, shaken: bool) {
+        if L == 1 {
+            return self.leap(step, shaken);
+        }
+        let arch = self.arch;
+        arch.dispatch(Leap {
+            motion: self,
+            step,
+            shaken,
+        });
+    }
+
+    #[inline(always)]
+    fn leap(&mut self, step: &Step<L>, shaken: bool) {
+        self.kick(step, shaken);
+        self.drift(step.drift_s);
+        self.press(step.damping);
+    }
+
+    /// Velocities half a step after the places.
+    #[inline(always)]
+    fn kick(&mut self, step: &Step<L>, shaken: bool) {
+        let structure = self.structure;
+        let [sideways, upwards] = step.shift_m_s;
+        let fall = [sideways, upwards + step.kick_s * self.gravity_m_s2];
+        let mut work = Lanes([0.0; L]);
+        let constants = structure.bodies();
+        let mut index = 0;
+        while index < constants.len() {
+            let (constants, body) = (&constants[index], &mut self.bodies[index]);
+            index += 1;
+            let per_mass = step.kick_s * (1.0 / constants.mass_kg);
+            let before = body.velocity_m_s;
+            let after = both!(i: before[i] + (body.force_n[i] * per_mass - fall[i]));
+            body.velocity_m_s = after;
+            if shaken {
+                let by_axis = both!(i: (before[i] + after[i]) * step.shift_m_s[i]);
+                work += (by_axis[0] + by_axis[1]) * (0.5 * constants.mass_kg);
+            }
+            body.rate_rad_s += body.moment_n_m * (step.kick_s * (1.0 / constants.inertia_kg_m2));
+        }
+        self.spent.ground_j -= work;
+    }
+
+    #[inline(always)]
+    fn drift(&mut self, drift_s: Lanes<L>) {
+        let mut index = 0;
+        while index < self.structure.bodies().len() {
+            let body = &mut self.bodies[index];
+            index += 1;
+            let moved = body.place.moved_m;
+            body.place.moved_m = both!(i: moved[i] + body.velocity_m_s[i] * drift_s);
+            let angle = body.rate_rad_s * drift_s;
+            body.angle_rad += angle;
+            body.place.turn = turned(body.place.turn, angle);
+        }
+    }
+
+    /// Forces at the places; the joints remember.
+    #[inline(always)]
+    fn press(&mut self, damping: Lanes<L>) {
+        let zero = Lanes([0.0; L]);
+        let mut index = 0;
+        while index < self.bodies.len() {
+            let body = &mut self.bodies[index];
+            index += 1;
+            body.force_n = [zero; 2];
+            body.moment_n_m = zero;
+        }
+        let structure = self.structure;
+        let damps = structure.damping_time_s() > 0.0;
+        let damping = if damps { Some(damping) } else { None };
+        let each = structure.fibres();
+        let ground = structure.bodies().len();
+        let joints = structure.joints();
+        let mut index = 0;
+        while index < joints.len() {
+            let (joint, memory) = (&joints[index], &mut self.memories[index]);
+            let fibres = &mut self.fibres[index * each..(index + 1) * each];
+            index += 1;
+            let [first, second] = both!(end: joint.link.bodies[end].min(ground));
+            let places = [&self.bodies[first].place, &self.bodies[second].place];
+            let (action, pressure) = structure.act(joint, places, damping, memory, fibres);
+            let body = &mut self.bodies[first];
+            body.force_n = both!(i: body.force_n[i] - action.force_n[i]);
+            body.moment_n_m += action.moments_n_m[0];
+            let body = &mut self.bodies[second];
+            body.force_n = both!(i: body.force_n[i] + action.force_n[i]);
+            body.moment_n_m += action.moments_n_m[1];
+            self.spent.friction_j += pressure.work.friction_j;
+            self.spent.damped_j += pressure.work.damped_j;
+            self.spent.crushed_j += pressure.work.crushed_j;
+        }
+    }
+
+    /// What is known at the places, where velocities are those after half a kick more.
+    pub(super) fn observe(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
+        let zero = Lanes([0.0; L]);
+        let structure = self.structure;
+        let mut seen = Observed {
+            kinetic_j: zero,
+            potential_j: zero,
+            elastic_j: zero,
+            spent: self.spent,
+            sway_kg_m: zero,
+            farthest_m2: zero,
+            turned_rad: zero,
+            deepest: [zero; 2],
+        };
+        for (index, (constants, body)) in structure.bodies().iter().zip(&self.bodies).enumerate() {
+            let (mass, inertia) = (constants.mass_kg, constants.inertia_kg_m2);
+            let velocity = self.velocity(index, half);
+            let before = [body.velocity_m_s[0], body.velocity_m_s[1], body.rate_rad_s];
+            for axis in [0, 1, 2] {
+                let half_mass = if axis < 2 { 0.5 * mass } else { 0.5 * inertia };
+                seen.kinetic_j += velocity[axis] * velocity[axis] * half_mass;
+            }
+            for axis in [0, 1] {
+                let work = (before[axis] + velocity[axis]) * half.shift_m_s[axis];
+                seen.spent.ground_j -= work * (0.5 * mass);
+            }
+            let [x, y] = body.place.moved_m;
+            seen.potential_j += y * (mass * self.gravity_m_s2);
+            seen.sway_kg_m += x * mass;
+            let mut nearest = Lanes([f64::INFINITY; L]);
+            for slide in slides {
+                let along = structure.joints()[slide.joint].link.along;
+                let slid = self.memories[slide.joint].slipped_m * slide.sense;
+                let beside = [x - slid * along[0], y - slid * along[1]];
+                nearest = nearest.min(beside[0] * beside[0] + beside[1] * beside[1]);
+            }
+            seen.farthest_m2 = seen.farthest_m2.max(nearest);
+            seen.turned_rad = seen.turned_rad.max(body.angle_rad.abs());
+        }
+        let each = structure.fibres();
+        for (index, (joint, memory)) in structure.joints().iter().zip(&self.memories).enumerate() {
+            let fibres = &self.fibres[index * each..(index + 1) * each];
+            seen.elastic_j += structure.energy_j(joint, memory, fibres);
+            let deepest = memory.penetrations_m[0].max(memory.penetrations_m[1]);
+            let stress =
+                deepest.min(Lanes([joint.strength_m; L])) * (joint.normal_n_m / joint.area_m2);
+            let more = stress - seen.deepest[0];
+            seen.deepest = [
+                more.positive(stress, seen.deepest[0]),
+                more.positive(Lanes([index as f64; L]), seen.deepest[1]),
+            ];
+        }
+        seen
+    }
+
+    /// Velocities and rate of rotation of a body after half a kick more.
+    #[inline(always)]
+    pub(super) fn velocity(&self, body: usize, half: &Step<L>) -> [Lanes<L>; 3] {
+        let constants = &self.structure.bodies()[body];
+        let moving = &self.bodies[body];
+        let [sideways, upwards] = half.shift_m_s;
+        let fall = [sideways, upwards + half.kick_s * self.gravity_m_s2];
+        let per_mass = half.kick_s * (1.0 / constants.mass_kg);
+        let [x, y] =
+            both!(axis: moving.velocity_m_s[axis] + (moving.force_n[axis] * per_mass - fall[axis]));
+        let turning = moving.moment_n_m * (half.kick_s * (1.0 / constants.inertia_kg_m2));
+        [x, y, moving.rate_rad_s + turning]
+    }
+
+    /// Displacement of a body in a lane, in m.
+    pub(super) fn moved_m(&self, body: usize, lane: usize) -> [f64; 2] {
+        self.bodies[body].place.moved_m.map(|part| part.0[lane])
+    }
+
+    /// Rotations and their rates half a step before, in a lane.
+    pub(super) fn turns(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
+        (0..self.structure.bodies().len()).map(move |body| self.turn(body, lane))
+    }
+
+    /// Rotation of a body and its rate half a step before, in a lane.
+    pub(super) fn turn(&self, body: usize, lane: usize) -> (f64, f64) {
+        let body = &self.bodies[body];
+        (body.angle_rad.0[lane], body.rate_rad_s.0[lane])
+    }
+
+    /// By how much a joint has slipped for good in a lane, in m.
+    pub(super) fn slipped_m(&self, joint: usize, lane: usize) -> f64 {
+        self.memories[joint].slipped_m.0[lane]
+    }
+
+    /// Momentum in a lane, half a step before.
+    pub(super) fn momentum(&self, lane: usize) -> [f64; 2] {
+        let bodies = self.structure.bodies().iter().zip(&self.bodies);
+        bodies.fold([0.0; 2], |sum, (constants, body)| {
+            [0, 1].map(|axis| sum[axis] + constants.mass_kg * body.velocity_m_s[axis].0[lane])
+        })
+    }
+
+    /// What a joint remembers in a lane.
+    pub(super) fn memory(&self, joint: usize, lane: usize) -> Memory<Lanes<1>> {
+        self.memories[joint].lane(lane)
+    }
+
+    /// What the places along a joint remember in a lane.
+    pub(super) fn fibres(
+        &self,
+        joint: usize,
+        lane: usize,
+    ) -> impl Iterator<Item = Fibre<Lanes<1>>> {
+        let each = self.structure.fibres();
+        let own = &self.fibres[joint * each..(joint + 1) * each];
+        own.iter().map(move |fibre| fibre.lane(lane))
+    }
+
+    /// Where a body is in a lane.
+    pub(super) fn place(&self, body: usize, lane: usize) -> Place<Lanes<1>> {
+        let Place { moved_m, turn } = self.bodies[body].place;
+        Place {
+            moved_m: moved_m.map(|part| Lanes([part.0[lane]])),
+            turn: turn.map(|part| Lanes([part.0[lane]])),
+        }
+    }
+}
+
+/// A step as what is compiled once for every kind of vectors.
+struct Leap<'m, 'a, const L: usize> {
+    motion: &'m mut Motion<'a, L>,
+    step: &'m Step<L>,
+    shaken: bool,
+}
+
+impl<const L: usize> WithSimd for Leap<'_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.motion.leap(self.step, self.shaken);
+    }
+}
+
+/// Cosine less one, and sine, after turning further: the series leaves less than rounding for steps below 0.01 rad, and what is beyond
+/// happens to nothing that stands.
+#[inline(always)]
+fn turned<const L: usize>([cos, sin]: [Lanes<L>; 2], by: Lanes<L>) -> [Lanes<L>; 2] {
+    let one = Lanes([1.0; L]);
+    let square = by * by;
+    let step_sin = by * (one - square * (one * (1.0 / 6.0) - square * (1.0 / 120.0)));
+    let step_cos = -(square * (one * 0.5 - square * (one * (1.0 / 24.0) - square * (1.0 / 720.0))));
+    [
+        cos + (step_cos + (cos * step_cos - sin * step_sin)),
+        sin + (step_sin + (sin * step_cos + cos * step_sin)),
+    ]
+}

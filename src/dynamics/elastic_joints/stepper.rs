@@ -1,0 +1,518 @@
+//! Steps of motions side by side, and what each of them is told and judged by.
+
+use nalgebra::Vector2;
+
+use super::error::ElasticJointError;
+use super::motion::{Motion, Observed, Slide, Step};
+use crate::dynamics::ground::GroundVelocity;
+use crate::dynamics::history::{ElasticSummary, JointPressure, Sample, Sliding, Stress, Summary};
+use crate::dynamics::model::Recorder;
+use crate::dynamics::row::course::{
+    Course, LEAST_RETURN, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO,
+    REST_TIME_RATIO, Stepper, Summit, Task, equal_step, open_hinge,
+};
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::elastic_joint::{ElasticStructure, Place, Rest};
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::lanes::Lanes;
+
+/// Steps from one look at a motion to the next: a little more than the period of the fastest vibration.
+const STRIDE: usize = 8;
+/// At rest a row may still vibrate, with energies below this part of the elastic energy under its own weight: by less than a third of
+/// what that bends it ...
+const REST_STRAIN_RATIO: f64 = 0.1;
+/// ... or below this part of the barrier of its first mechanism.
+const REST_BARRIER_RATIO: f64 = 0.01;
+/// Sways within this part of the mean displacement under the weight of the structure change no side.
+const SIDE_RATIO: f64 = 0.1;
+/// A joint that presses on less than this part of its length is drawn as a hinge.
+const HINGE_RATIO: f64 = 0.5;
+
+/// What all motions of a group start from.
+#[derive(Clone, Copy)]
+pub(super) struct Start<'a> {
+    pub structure: &'a ElasticStructure,
+    pub rest: &'a Rest,
+    pub longest_step_s: f64,
+}
+
+/// One motion of a group.
+struct Lane<'a> {
+    course: Course<'a>,
+    velocity: GroundVelocity<'a>,
+    quiet_s: f64,
+    /// Until when it steps without being asked.
+    until_s: f64,
+    /// Steps since it was looked at.
+    strides: usize,
+    /// Time up to which the kicks have gone, and the velocity of the ground then.
+    kicked_s: f64,
+    ground_m_s: Vector2<f64>,
+    /// Energy, potential and elastic, at rest.
+    rest_j: Option<f64>,
+    rest_sway_kg_m: f64,
+    /// Energies at rest, at most.
+    still_j: f64,
+    barrier_j: f64,
+    quiet_since_s: f64,
+    /// How long it must be quiet to rest.
+    rest_time_s: f64,
+    marks: Marks,
+    overturned: bool,
+    /// Why it cannot go on.
+    lost: Option<ElasticJointError>,
+    summit: Summit,
+    elastic: ElasticSummary,
+    sliding: Sliding,
+}
+
+/// Motions side by side.
+pub(super) struct Group<'a, const L: usize> {
+    row: &'a Row,
+    start: Start<'a>,
+    motion: Motion<'a, L>,
+    lanes: [Option<Lane<'a>>; L],
+    /// Along what the row may slide as a whole.
+    slides: Vec<Slide>,
+    mass_kg: f64,
+}
+
+impl<'a> Lane<'a> {
+    fn new(task: Task<'a>, recorder: Option<&'a mut dyn Recorder>) -> Self {
+        let joints = task.row.joints().len();
+        let velocity = GroundVelocity::new(task.ground);
+        Self {
+            ground_m_s: velocity.at(0.0),
+            velocity,
+            quiet_s: task.ground.end_s(),
+            until_s: 0.0,
+            strides: 0,
+            kicked_s: 0.0,
+            rest_j: None,
+            rest_sway_kg_m: 0.0,
+            still_j: 0.0,
+            barrier_j: task.barrier_j.unwrap_or(0.0),
+            quiet_since_s: 0.0,
+            rest_time_s: REST_TIME_RATIO * (task.row.size_m() / task.gravity_m_s2).sqrt(),
+            marks: Marks::new(task.clock),
+            overturned: false,
+            lost: None,
+            summit: Summit::new(0.0),
+            elastic: ElasticSummary::default(),
+            sliding: Sliding::none(joints),
+            course: Course::new(task, None, recorder),
+        }
+    }
+
+    /// Its next step.
+    fn next(&mut self, longest_step_s: f64, damping_time_s: f64) -> Step<1> {
+        let step_s = equal_step(self.course.time, self.until_s, longest_step_s);
+        let to_s = self.course.time + 0.5 * step_s;
+        let (mut step, ground_m_s) = self.kick(to_s);
+        step.drift_s = Lanes([step_s]);
+        step.damping = Lanes([damping_time_s / step_s]);
+        (self.kicked_s, self.ground_m_s) = (to_s, ground_m_s);
+        self.course.time += step_s;
+        self.course.summary.cost.steps += 1;
+        self.strides += 1;
+        step
+    }
+
+    /// A kick that lasts up to a time, and the velocity of the ground then, which stays when it is quiet for good.
+    fn kick(&self, to_s: f64) -> (Step<1>, Vector2<f64>) {
+        let ground_m_s = if self.is_shaken() {
+            self.velocity.at(to_s)
+        } else {
+            self.ground_m_s
+        };
+        let shift = ground_m_s - self.ground_m_s;
+        let step = Step {
+            kick_s: Lanes([to_s - self.kicked_s]),
+            shift_m_s: [Lanes([shift.x]), Lanes([shift.y])],
+            ..Step::none()
+        };
+        (step, ground_m_s)
+    }
+
+    fn is_shaken(&self) -> bool {
+        self.kicked_s < self.quiet_s
+    }
+
+    fn is_due(&self) -> bool {
+        self.strides >= STRIDE || self.course.time >= self.until_s
+    }
+}
+
+impl<'a, const L: usize> Group<'a, L> {
+    pub(super) fn new(row: &'a Row, start: Start<'a>, gravity_m_s2: f64) -> Self {
+        let [left, right] = row.supports_go_on();
+        let last = row.joints().len() - 1;
+        // At the right support the block is the left one.
+        let slides = match row.supports() {
+            Supports::Left => vec![(0, 1.0, left, 1.0)],
+            Supports::Both => vec![(0, 1.0, left, 0.5), (last, -1.0, right, 0.5)],
+        };
+        let slide = |(joint, sense, goes_on, part): (usize, f64, bool, f64)| Slide {
+            joint,
+            sense,
+            goes_on,
+            along_x: part * sense * row.joints()[joint].along().x,
+        };
+        Self {
+            row,
+            start,
+            motion: Motion::new(start.structure, gravity_m_s2),
+            lanes: [const { None }; L],
+            slides: slides.into_iter().map(slide).collect(),
+            mass_kg: row.mass_kg(),
+        }
+    }
+
+    /// Starts a motion in a lane.
+    pub(super) fn begin(
+        &mut self,
+        lane: usize,
+        task: Task<'a>,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) {
+        self.motion.start(lane, self.start.rest);
+        let mut begun = Lane::new(task, recorder);
+        let moved_m = |moved: &[f64; 3]| moved[0].hypot(moved[1]);
+        let weighted = self.row.blocks().iter().zip(&self.start.rest.moved);
+        let moved_kg_m: f64 = weighted
+            .map(|(block, moved)| block.mass_kg * moved_m(moved))
+            .sum();
+        begun.course.least_sway_kg_m = begun.course.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
+        self.lanes[lane] = Some(begun);
+        let seen = self.motion.observe(&Step::none(), &self.slides);
+        self.note(lane, &seen);
+    }
+
+    /// Steps until a motion has been looked at.
+    pub(super) fn stride(&mut self) {
+        let longest_step_s = self.start.longest_step_s;
+        let damping_time_s = self.start.structure.damping_time_s();
+        loop {
+            let mut step = Step::none();
+            let (mut shaken, mut due) = (false, false);
+            for (index, lane) in self.lanes.iter_mut().enumerate() {
+                let Some(lane) = lane else {
+                    continue;
+                };
+                shaken |= lane.is_shaken();
+                step.set(index, &lane.next(longest_step_s, damping_time_s));
+                due |= lane.is_due();
+            }
+            self.motion.step(&step, shaken);
+            if due {
+                break;
+            }
+        }
+        let half = self.half_kick();
+        let seen = self.motion.observe(&half, &self.slides);
+        for index in 0..L {
+            if self.lanes[index].as_ref().is_some_and(Lane::is_due) {
+                self.note(index, &seen);
+            }
+        }
+    }
+
+    /// From the velocities to the places.
+    fn half_kick(&self) -> Step<L> {
+        let mut half = Step::none();
+        for (index, lane) in self.lanes.iter().enumerate() {
+            if let Some(lane) = lane {
+                half.set(index, &lane.kick(lane.course.time).0);
+            }
+        }
+        half
+    }
+
+    /// Notes what is known of the motion of a lane.
+    fn note(&mut self, index: usize, seen: &Observed<Lanes<L>>) {
+        let Some(lane) = &mut self.lanes[index] else {
+            return;
+        };
+        let of = |lanes: Lanes<L>| lanes.0[index];
+        let course = &mut lane.course;
+        lane.strides = 0;
+        let time = course.time;
+        let (kinetic, elastic) = (of(seen.kinetic_j), of(seen.elastic_j));
+        let stored = of(seen.potential_j) + elastic;
+        if !(kinetic.is_finite() && stored.is_finite()) {
+            lane.lost = Some(ElasticJointError::Lost { time_s: time });
+            return;
+        }
+        let rest_j = *lane.rest_j.get_or_insert_with(|| {
+            lane.still_j = (REST_ENERGY_RATIO * course.energy_unit)
+                .max(REST_STRAIN_RATIO * elastic)
+                .max(REST_BARRIER_RATIO * lane.barrier_j);
+            lane.rest_sway_kg_m = of(seen.sway_kg_m);
+            stored
+        });
+        let spent = &seen.spent;
+        lane.elastic.elastic_j = elastic;
+        lane.elastic.damped_j = of(spent.damped_j);
+        lane.elastic.friction_j = of(spent.friction_j);
+        lane.elastic.crushed_j = of(spent.crushed_j);
+        lane.elastic.ground_j = of(spent.ground_j);
+        let taken = lane.elastic.damped_j + lane.elastic.friction_j + lane.elastic.crushed_j;
+        course.of_row.energy_taken_j = taken;
+        let potential = stored - rest_j;
+        let due = lane.elastic.ground_j - taken;
+        course.note_defect((kinetic + potential - due).abs());
+        if of(seen.deepest[0]) > lane.elastic.largest_stress.stress_pa {
+            lane.elastic.largest_stress = Stress {
+                stress_pa: of(seen.deepest[0]),
+                joint: of(seen.deepest[1]) as usize,
+                time_s: time,
+            };
+        }
+        let joints = self.start.structure.joints();
+        let mut slid = 0.0;
+        for (joint, largest) in lane.sliding.largest_offsets_m.iter_mut().enumerate() {
+            let slipped_m = self.motion.slipped_m(joint, index);
+            lane.sliding.offsets_m[joint] = slipped_m;
+            *largest = largest.max(slipped_m.abs());
+            // What slips along a face that ends leaves it.
+            match self
+                .slides
+                .iter()
+                .find(|slide| slide.joint == joint && slide.goes_on)
+            {
+                Some(slide) => slid += slipped_m * slide.along_x,
+                None => lane.overturned |= slipped_m.abs() >= joints[joint].link.length_m,
+            }
+        }
+        let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.mass_kg * slid;
+        let rotations = self.motion.turns(index).map(|(rotation, _)| rotation);
+        course.observe(rotations, potential, kinetic, sway);
+        let far = OVERTURNED_RATIO * self.row.size_m();
+        lane.overturned |=
+            of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
+        lane.summit
+            .note(time, potential + taken, LEAST_RETURN * course.energy_unit);
+        let vibrates = kinetic < lane.still_j && potential < lane.still_j;
+        // What is still but stands higher than it did holds by friction.
+        if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
+            lane.quiet_since_s = time;
+            course.moved = true;
+        }
+    }
+
+    /// Lets a lane step on, or returns its motion if that has ended. It steps without a pause up to the next mark of its clock, as if
+    /// samples were made.
+    pub(super) fn go_on(&mut self, index: usize) -> Option<Result<Summary, ElasticJointError>> {
+        let lane = self.lanes[index].as_mut()?;
+        if let Some(error) = lane.lost.take() {
+            self.lanes[index] = None;
+            return Some(Err(error));
+        }
+        let ending = lane
+            .course
+            .ending(lane.overturned_s(), || lane.rests_since());
+        if let Some((outcome, time_s)) = ending {
+            let slips = self.start.structure.slips();
+            let ended = self.lanes[index].take()?.into_course(slips);
+            return Some(Ok(ended.end(outcome, time_s)));
+        }
+        while lane.marks.is_due(lane.course.time) {
+            lane.marks.pass();
+        }
+        lane.until_s = lane.marks.next_s();
+        None
+    }
+}
+
+impl<'a> Lane<'a> {
+    fn rests_since(&self) -> Option<f64> {
+        let quiet_s = self.course.time - self.quiet_since_s.max(self.quiet_s);
+        (quiet_s >= self.rest_time_s).then_some(self.quiet_since_s)
+    }
+
+    fn overturned_s(&self) -> Option<f64> {
+        self.overturned.then_some(self.summit.time)
+    }
+
+    fn into_course(self, slips: bool) -> Course<'a> {
+        let mut course = self.course;
+        course.of_row.sliding = slips.then_some(Sliding {
+            friction_j: self.elastic.friction_j,
+            ..self.sliding
+        });
+        course.of_row.elastic = Some(self.elastic);
+        course
+    }
+}
+
+/// One motion alone, which may be told of.
+pub(super) struct ElasticStepper<'a> {
+    group: Group<'a, 1>,
+}
+
+impl<'a> ElasticStepper<'a> {
+    pub(super) fn new(
+        task: Task<'a>,
+        start: Start<'a>,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Self {
+        let mut group = Group::new(task.row, start, task.gravity_m_s2);
+        group.begin(0, task, recorder);
+        Self { group }
+    }
+
+    fn lane(&self) -> &Lane<'a> {
+        self.group.lanes[0].as_ref().expect("it was begun")
+    }
+
+    fn lane_mut(&mut self) -> &mut Lane<'a> {
+        self.group.lanes[0].as_mut().expect("it was begun")
+    }
+
+    /// Where the bodies of a joint are.
+    fn places(&self, joint: usize) -> [Place<Lanes<1>>; 2] {
+        let structure = self.group.start.structure;
+        let ground = structure.bodies().len();
+        let pair = structure.joints()[joint].link.bodies;
+        pair.map(|body| self.group.motion.place(body.min(ground), 0))
+    }
+
+    /// What a joint bears by its elastic stress.
+    fn pressure(&self, index: usize) -> JointPressure {
+        let structure = self.group.start.structure;
+        let joint = &structure.joints()[index];
+        let [first, second] = self.places(index);
+        let memory = self.group.motion.memory(index, 0);
+        let mut fibres: Vec<_> = self.group.motion.fibres(index, 0).collect();
+        let (edges_n, shear_n) =
+            structure.elastic_n(joint, [&first, &second], &memory, &mut fibres);
+        let [low, high] = memory.penetrations_m.map(|end| end.0[0]);
+        let normal_n = edges_n[0] + edges_n[1];
+        let stiffness_pa_m = joint.normal_n_m / joint.area_m2;
+        let contact_ratio = match (low > 0.0, high > 0.0) {
+            (true, true) => 1.0,
+            (true, false) => low / (low - high),
+            (false, true) => high / (high - low),
+            (false, false) => 0.0,
+        };
+        JointPressure {
+            normal_n,
+            shear_n,
+            eccentricity_ratio: (normal_n > 0.0)
+                .then(|| 0.5 * (edges_n[1] - edges_n[0]) / normal_n),
+            contact_ratio,
+            edge_stresses_pa: [low, high]
+                .map(|end| stiffness_pa_m * end.clamp(0.0, joint.strength_m)),
+        }
+    }
+}
+
+impl<'a> Stepper<'a> for ElasticStepper<'a> {
+    type Error = ElasticJointError;
+
+    fn course(&self) -> &Course<'a> {
+        &self.lane().course
+    }
+
+    fn course_mut(&mut self) -> &mut Course<'a> {
+        &mut self.lane_mut().course
+    }
+
+    fn into_course(mut self) -> Course<'a> {
+        let slips = self.group.start.structure.slips();
+        let lane = self.group.lanes[0].take().expect("it was begun");
+        lane.into_course(slips)
+    }
+
+    /// Some steps, up to the next look at the motion.
+    fn step(&mut self, until: f64) -> Result<(), ElasticJointError> {
+        let stood = !self.course().moved;
+        self.lane_mut().until_s = until;
+        self.group.stride();
+        if let Some(error) = self.lane_mut().lost.take() {
+            return Err(error);
+        }
+        let course = self.course();
+        if stood && course.moved {
+            let time_s = course.time;
+            self.course_mut().opened.clear();
+            let energy_j = self.course().potential;
+            self.tell_uplift(time_s, energy_j, |stepper| stepper.turns().unzip());
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, sample: &mut Sample, _: bool) -> Result<f64, ElasticJointError> {
+        let half = self.group.half_kick();
+        let motion = &self.group.motion;
+        for (index, block) in self.group.row.blocks().iter().enumerate() {
+            sample
+                .rates_rad_s
+                .push(motion.velocity(index, &half)[2].0[0]);
+            let moved_m = Vector2::from(motion.moved_m(index, 0));
+            let (rotation_rad, _) = motion.turn(index, 0);
+            let pose = Pose::about(block.centre_m, block.centre_m + moved_m, rotation_rad);
+            sample.poses.push(pose);
+        }
+        let seen = motion.observe(&half, &self.group.slides);
+        let joints = self.group.start.structure.joints().len();
+        for joint in 0..joints {
+            let pressure = self.pressure(joint);
+            if pressure.normal_n > 0.0 {
+                let needed = pressure.shear_n.abs() / pressure.normal_n;
+                sample.demand.friction = sample.demand.friction.max(needed);
+            }
+            sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
+            sample.pressures.push(pressure);
+        }
+        if self.group.start.structure.slips() {
+            sample.offsets_m.extend(&self.lane().sliding.offsets_m);
+        }
+        Ok(seen.kinetic_j.0[0])
+    }
+
+    fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.group.motion.turns(0)
+    }
+
+    fn gaps(&self, joint: usize) -> [f64; 2] {
+        let memory = self.group.motion.memory(joint, 0);
+        memory.penetrations_m.map(|end| (-end.0[0]).max(0.0))
+    }
+
+    /// A joint that presses on a small part of its length.
+    fn hinge(&self, joint: usize) -> Option<Hinge> {
+        let hinge = open_hinge(joint, self.gaps(joint));
+        hinge.filter(|_| self.pressure(joint).contact_ratio < HINGE_RATIO)
+    }
+
+    fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
+        let link = &self.group.start.structure.joints()[joint].link;
+        let blocks = self.group.row.blocks();
+        // The face of the block, or of the first of two.
+        let end = usize::from(link.bodies[0] >= blocks.len());
+        let centre_m = blocks[link.bodies[end]].centre_m;
+        let moved_m = Vector2::from(self.group.motion.moved_m(link.bodies[end], 0));
+        let (rotation_rad, _) = self.group.motion.turn(link.bodies[end], 0);
+        Pose::about(centre_m, centre_m + moved_m, rotation_rad)
+            .of(self.group.row.joints()[joint].corner_m(edge))
+    }
+
+    fn momentum(&self) -> Vector2<f64> {
+        self.group.motion.momentum(0).into()
+    }
+
+    fn stands(&self, _: &Sample) -> bool {
+        !self.course().moved || self.rests_since().is_some()
+    }
+
+    fn rests_since(&self) -> Option<f64> {
+        self.lane().rests_since()
+    }
+
+    fn overturned_s(&self) -> Option<f64> {
+        self.lane().overturned_s()
+    }
+}

@@ -1,0 +1,109 @@
+//! Linear equations whose matrix has a band: Gaussian elimination with partial pivoting.
+
+/// A square matrix that is zero farther than `width` from its diagonal.
+pub(super) struct Banded {
+    size: usize,
+    width: usize,
+    /// Row by row, each from `width` before the diagonal to `2 width` behind it, where exchanges of rows put numbers.
+    rows: Vec<f64>,
+}
+
+impl Banded {
+    pub(super) fn new(size: usize, width: usize) -> Self {
+        Self {
+            size,
+            width,
+            rows: vec![0.0; size * (3 * width + 1)],
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.rows.fill(0.0);
+    }
+
+    fn index(&self, row: usize, column: usize) -> usize {
+        row * (3 * self.width + 1) + self.width + column - row
+    }
+
+    pub(super) fn add(&mut self, row: usize, column: usize, value: f64) {
+        let index = self.index(row, column);
+        self.rows[index] += value;
+    }
+
+    /// Solves for a right-hand side, in its place; the matrix is used up. False if it is singular.
+    pub(super) fn solve(&mut self, right: &mut [f64]) -> bool {
+        let (size, width) = (self.size, self.width);
+        for column in 0..size {
+            let below = (column + width).min(size - 1);
+            let last = (column + 2 * width).min(size - 1);
+            let magnitude = |row: usize| self.rows[self.index(row, column)].abs();
+            let pivot = (column..=below)
+                .max_by(|one, other| magnitude(*one).total_cmp(&magnitude(*other)))
+                .unwrap_or(column);
+            if pivot != column {
+                for other in column..=last {
+                    let (one, two) = (self.index(column, other), self.index(pivot, other));
+                    self.rows.swap(one, two);
+                }
+                right.swap(column, pivot);
+            }
+            let diagonal = self.rows[self.index(column, column)];
+            if diagonal == 0.0 || !diagonal.is_finite() {
+                return false;
+            }
+            for row in column + 1..=below {
+                let factor = self.rows[self.index(row, column)] / diagonal;
+                if factor != 0.0 {
+                    for other in column..=last {
+                        let above = self.rows[self.index(column, other)];
+                        let index = self.index(row, other);
+                        self.rows[index] -= factor * above;
+                    }
+                    right[row] -= factor * right[column];
+                }
+            }
+        }
+        for row in (0..size).rev() {
+            let last = (row + 2 * width).min(size - 1);
+            let known: f64 = (row + 1..=last)
+                .map(|column| self.rows[self.index(row, column)] * right[column])
+                .sum();
+            right[row] = (right[row] - known) / self.rows[self.index(row, row)];
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the matrix times a known answer; diagonals of zero need exchanges of rows.
+    #[test]
+    fn equations_with_a_band_are_solved() {
+        let (size, width) = (30, 4);
+        let entry = |row: usize, column: usize| {
+            if row == column && row % 3 == 0 {
+                0.0
+            } else {
+                ((7 * row + 13 * column + row * column) % 17) as f64 - 7.5
+            }
+        };
+        let band = |row: usize| row.saturating_sub(width)..=(row + width).min(size - 1);
+        let due: Vec<f64> = (0..size).map(|i| (i as f64).sin()).collect();
+        let mut matrix = Banded::new(size, width);
+        let mut right = vec![0.0; size];
+        for row in 0..size {
+            for column in band(row) {
+                matrix.add(row, column, entry(row, column));
+                right[row] += entry(row, column) * due[column];
+            }
+        }
+        assert!(matrix.solve(&mut right));
+        for (found, due) in right.iter().zip(due) {
+            assert!((found - due).abs() < 1e-11, "{found} {due}");
+        }
+        matrix.clear();
+        assert!(!matrix.solve(&mut right));
+    }
+}

@@ -1,0 +1,518 @@
+//! What stress a joint bears, summed over its length.
+//!
+//! Forces are per stiffness of the whole joint (N per N/m: metres), until the end. The penetration changes linearly from edge to edge,
+//! so the part that presses is an interval, found without branches, and Simpson's rule is exact for forces, moments and energies.
+
+use std::f64::consts::PI;
+
+use super::kinematics::Gap;
+use super::structure::ElasticJoint;
+use crate::mechanics::lanes::{Lanes, Real, both};
+
+/// How the stress is summed over a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Contact {
+    /// Exactly, over the part that presses.
+    #[default]
+    Continuous,
+    /// By points, evenly spread with two on the edges (2 to 100): those on the edges stand for half as much as the others.
+    Points(usize),
+}
+
+/// Parts of a joint that may crush, each with linear stress: they are crowded at the edges, where stress is.
+const CELLS: usize = 12;
+
+/// Where along a joint its stress is known.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Section {
+    /// At the edges, and so everywhere.
+    Whole,
+    /// At nodes, from edge 0 to edge 1, and between two of them; as parts of the length.
+    Cells(Vec<f64>),
+    /// At points, each with its share of the joint.
+    Points(Vec<[f64; 2]>),
+}
+
+impl Section {
+    pub(super) fn new(contact: Contact, crushes: bool) -> Self {
+        match contact {
+            Contact::Continuous if crushes => {
+                let node = |index: usize| 0.5 * (1.0 - (PI * index as f64 / CELLS as f64).cos());
+                Self::Cells((0..=CELLS).map(node).collect())
+            }
+            Contact::Continuous => Self::Whole,
+            Contact::Points(count) => {
+                let spaces = (count - 1) as f64;
+                let point = |index: usize| {
+                    let ends = index == 0 || index + 1 == count;
+                    let share = if ends { 0.5 } else { 1.0 } / spaces;
+                    [index as f64 / spaces, share]
+                };
+                Self::Points((0..count).map(point).collect())
+            }
+        }
+    }
+
+    /// Number of places with a memory of crushing.
+    pub(super) fn fibres(&self) -> usize {
+        match self {
+            Self::Whole => 0,
+            Self::Cells(nodes) => nodes.len(),
+            Self::Points(points) => points.len(),
+        }
+    }
+
+    /// Rotational stiffness of the closed joint over that of all its stiffness at its ends' distance: a twelfth where continuous.
+    pub(super) fn second_moment(&self) -> f64 {
+        match self {
+            Self::Whole | Self::Cells(_) => 1.0 / 12.0,
+            Self::Points(points) => points
+                .iter()
+                .map(|[at, share]| share * (at - 0.5).powi(2))
+                .sum(),
+        }
+    }
+
+    /// Forces at the edges if the joint could pull as well.
+    pub(super) fn bonded<R: Real>(&self, p: [R; 2]) -> [R; 2] {
+        let [mean, half] = [(p[0] + p[1]) * 0.5, (p[1] - p[0]) * self.second_moment()];
+        [mean * 0.5 - half, mean * 0.5 + half]
+    }
+
+    /// Energy of pressing, per stiffness.
+    #[inline(always)]
+    pub(super) fn energy<R: Real>(&self, p: [R; 2], fibres: &[Fibre<R>]) -> R {
+        let at = |part: f64| p[0] + (p[1] - p[0]) * part;
+        match self {
+            Self::Whole => energy(p),
+            Self::Cells(nodes) => {
+                let mut sum = R::of(0.0);
+                for (pair, ends) in nodes.windows(2).zip(fibres.windows(2)) {
+                    let q = both!(end: at(pair[end]) - ends[end].crushed_m);
+                    sum += energy(q) * (pair[1] - pair[0]);
+                }
+                sum
+            }
+            Self::Points(points) => {
+                let mut sum = R::of(0.0);
+                for ([part, share], fibre) in points.iter().zip(fibres) {
+                    let q = (at(*part) - fibre.crushed_m).max(R::of(0.0));
+                    sum += q * q * (0.5 * share);
+                }
+                sum
+            }
+        }
+    }
+}
+
+/// What a joint remembers of the step before.
+#[derive(Clone, Copy, Debug)]
+pub struct Memory<R> {
+    /// Penetrations at the edges, in m.
+    pub penetrations_m: [R; 2],
+    /// Slip, in m.
+    pub slip_m: R,
+    /// Elastic shear force, in N.
+    pub shear_n: R,
+    /// By how much it has slipped for good, in m.
+    pub slipped_m: R,
+    /// Forces of damping at the edges, in N.
+    viscous_n: [R; 2],
+    /// Shear force of damping, in N.
+    viscous_shear_n: R,
+}
+
+/// What a place along a joint remembers.
+#[derive(Clone, Copy, Debug)]
+pub struct Fibre<R> {
+    /// By how much it is crushed, in m.
+    pub crushed_m: R,
+    /// Its elastic force, per stiffness.
+    force_m: R,
+}
+
+impl<R: Real> Memory<R> {
+    /// Nothing has happened.
+    #[must_use]
+    pub fn none() -> Self {
+        let zero = R::of(0.0);
+        Self {
+            penetrations_m: [zero; 2],
+            slip_m: zero,
+            shear_n: zero,
+            slipped_m: zero,
+            viscous_n: [zero; 2],
+            viscous_shear_n: zero,
+        }
+    }
+}
+
+impl<const L: usize> Memory<Lanes<L>> {
+    /// Sets one lane.
+    pub fn set(&mut self, lane: usize, alone: &Memory<Lanes<1>>) {
+        let from = alone.parts();
+        for (part, from) in self.parts_mut().into_iter().zip(from) {
+            part.0[lane] = from.0[0];
+        }
+    }
+
+    /// One lane.
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> Memory<Lanes<1>> {
+        let mut alone = Memory::<Lanes<1>>::none();
+        for (part, from) in alone.parts_mut().into_iter().zip(self.parts()) {
+            part.0[0] = from.0[lane];
+        }
+        alone
+    }
+}
+
+impl<R: Real> Memory<R> {
+    fn parts(&self) -> [R; 8] {
+        let [low, high] = self.penetrations_m;
+        let [viscous_low, viscous_high] = self.viscous_n;
+        [
+            low,
+            high,
+            self.slip_m,
+            self.shear_n,
+            self.slipped_m,
+            viscous_low,
+            viscous_high,
+            self.viscous_shear_n,
+        ]
+    }
+
+    fn parts_mut(&mut self) -> [&mut R; 8] {
+        let [low, high] = &mut self.penetrations_m;
+        let [viscous_low, viscous_high] = &mut self.viscous_n;
+        [
+            low,
+            high,
+            &mut self.slip_m,
+            &mut self.shear_n,
+            &mut self.slipped_m,
+            viscous_low,
+            viscous_high,
+            &mut self.viscous_shear_n,
+        ]
+    }
+}
+
+impl<const L: usize> Fibre<Lanes<L>> {
+    /// Sets one lane.
+    pub fn set(&mut self, lane: usize, alone: &Fibre<Lanes<1>>) {
+        self.crushed_m.0[lane] = alone.crushed_m.0[0];
+        self.force_m.0[lane] = alone.force_m.0[0];
+    }
+
+    /// One lane.
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> Fibre<Lanes<1>> {
+        Fibre {
+            crushed_m: Lanes([self.crushed_m.0[lane]]),
+            force_m: Lanes([self.force_m.0[lane]]),
+        }
+    }
+}
+
+impl<R: Real> Fibre<R> {
+    /// Nothing has happened.
+    #[must_use]
+    pub fn none() -> Self {
+        let zero = R::of(0.0);
+        Self {
+            crushed_m: zero,
+            force_m: zero,
+        }
+    }
+}
+
+/// Energy that a joint took in a step, in J, by the trapezoidal rule.
+#[derive(Clone, Copy, Debug)]
+pub struct Work<R> {
+    /// By slip.
+    pub friction_j: R,
+    /// By damping.
+    pub damped_j: R,
+    /// By crushing.
+    pub crushed_j: R,
+}
+
+/// What a joint bears.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressure<R> {
+    /// Forces at the edges that amount to the stress, in N.
+    pub edges_n: [R; 2],
+    /// Shear force, in N.
+    pub shear_n: R,
+    /// What the step took.
+    pub work: Work<R>,
+}
+
+/// What all joints of a structure have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Law {
+    pub section: Section,
+    pub crushes: bool,
+    /// Coefficient of friction, and what is added to its bound: infinity where nothing slips.
+    pub friction: [f64; 2],
+}
+
+impl Law {
+    /// The stress of a joint; it remembers. `damping` is the damping time over the length of the step.
+    #[inline(always)]
+    pub fn press<R: Real>(
+        &self,
+        joint: &ElasticJoint,
+        damping: Option<R>,
+        gap: &Gap<R>,
+        memory: &mut Memory<R>,
+        fibres: &mut [Fibre<R>],
+    ) -> Pressure<R> {
+        let zero = R::of(0.0);
+        let k = joint.normal_n_m;
+        let p = gap.penetrations_m;
+        let moved = both!(end: p[end] - memory.penetrations_m[end]);
+        let brakes = match damping {
+            Some(damping) => Some(both!(end: moved[end] * damping)),
+            None => None,
+        };
+        let sums = match &self.section {
+            Section::Whole => {
+                let elastic = pressed(p);
+                let total = match brakes {
+                    Some(b) => braked(p, both!(end: p[end] + b[end])),
+                    None => elastic,
+                };
+                Sums {
+                    elastic,
+                    total,
+                    crushed: zero,
+                }
+            }
+            Section::Cells(nodes) => {
+                let limit = self.crushes.then_some(joint.strength_m);
+                in_cells(nodes, limit, p, brakes, fibres)
+            }
+            Section::Points(points) => {
+                let limit = self.crushes.then_some(joint.strength_m);
+                at_points(points, limit, p, brakes, fibres)
+            }
+        };
+        let edges_n = both!(end: sums.total[end] * k);
+        let mut damped = zero;
+        if damping.is_some() {
+            let before = memory.viscous_n;
+            let viscous = both!(end: (sums.total[end] - sums.elastic[end]) * k);
+            let taken = both!(end: (viscous[end] + before[end]) * moved[end]);
+            damped += taken[0] + taken[1];
+            memory.viscous_n = viscous;
+        }
+
+        let [coefficient, lock] = self.friction;
+        let bound = (edges_n[0] + edges_n[1]) * coefficient + R::of(lock);
+        let kt = joint.shear_n_m;
+        let slid = gap.slip_m - memory.slip_m;
+        let trial = memory.shear_n + slid * kt;
+        let elastic = clamped(trial, bound);
+        let slipped = (trial - elastic) * (1.0 / kt);
+        let rubbed = (memory.shear_n + elastic) * slipped * 0.5;
+        let mut shear_n = elastic;
+        if let Some(damping) = damping {
+            shear_n = clamped(elastic + slid * damping * kt, bound);
+            let viscous = shear_n - elastic;
+            damped += (viscous + memory.viscous_shear_n) * slid;
+            memory.viscous_shear_n = viscous;
+        }
+        memory.penetrations_m = p;
+        memory.slip_m = gap.slip_m;
+        memory.shear_n = elastic;
+        memory.slipped_m += slipped;
+        Pressure {
+            edges_n,
+            shear_n,
+            work: Work {
+                friction_j: rubbed,
+                damped_j: damped * 0.5,
+                crushed_j: sums.crushed * k,
+            },
+        }
+    }
+}
+
+/// The force, at most as large as its bound.
+#[inline(always)]
+fn clamped<R: Real>(force: R, bound: R) -> R {
+    force.min(bound).max(-bound)
+}
+
+/// Forces at the edges, elastic and with damping, and work of crushing, per stiffness.
+struct Sums<R> {
+    elastic: [R; 2],
+    total: [R; 2],
+    crushed: R,
+}
+
+/// The stress of one place, this part of the way along: what is elastic, and with damping; by how much it crushes now.
+#[inline(always)]
+fn fibre<R: Real>(
+    at: f64,
+    p: [R; 2],
+    brakes: Option<[R; 2]>,
+    limit: Option<f64>,
+    memory: &mut Fibre<R>,
+) -> (R, R, R) {
+    let mut q = p[0] * (1.0 - at) + p[1] * at - memory.crushed_m;
+    let mut over = R::of(0.0);
+    if let Some(limit) = limit {
+        over = (q - R::of(limit)).max(over);
+        memory.crushed_m += over;
+        q -= over;
+    }
+    let mut v = q;
+    if let Some(brakes) = brakes {
+        v += brakes[0] * (1.0 - at) + brakes[1] * at;
+    }
+    if let Some(limit) = limit {
+        v = v.min(R::of(limit));
+    }
+    (q, v, over)
+}
+
+#[inline(always)]
+fn at_points<R: Real>(
+    points: &[[f64; 2]],
+    limit: Option<f64>,
+    p: [R; 2],
+    brakes: Option<[R; 2]>,
+    fibres: &mut [Fibre<R>],
+) -> Sums<R> {
+    let zero = R::of(0.0);
+    let mut sums = Sums {
+        elastic: [zero; 2],
+        total: [zero; 2],
+        crushed: zero,
+    };
+    let mut index = 0;
+    while index < points.len() {
+        let ([at, share], memory) = (points[index], &mut fibres[index]);
+        index += 1;
+        let (q, v, over) = fibre(at, p, brakes, limit, memory);
+        let elastic = q.max(zero) * share;
+        let total = q.positive(v.max(zero), zero) * share;
+        let parts = [1.0 - at, at];
+        sums.elastic = both!(end: sums.elastic[end] + elastic * parts[end]);
+        sums.total = both!(end: sums.total[end] + total * parts[end]);
+        sums.crushed += (memory.force_m + elastic) * over * 0.5;
+        memory.force_m = elastic;
+    }
+    sums
+}
+
+#[inline(always)]
+fn in_cells<R: Real>(
+    nodes: &[f64],
+    limit: Option<f64>,
+    p: [R; 2],
+    brakes: Option<[R; 2]>,
+    fibres: &mut [Fibre<R>],
+) -> Sums<R> {
+    let zero = R::of(0.0);
+    let mut sums = Sums {
+        elastic: [zero; 2],
+        total: [zero; 2],
+        crushed: zero,
+    };
+    let mut before = (0.0, (zero, zero, zero));
+    // The force at the node before that the cell before it makes.
+    let mut carried = zero;
+    let mut index = 0;
+    while index <= nodes.len() {
+        let (at, here) = match nodes.get(index) {
+            Some(&at) => {
+                let here = fibre(at, p, brakes, limit, &mut fibres[index]);
+                (at, here)
+            }
+            None => before,
+        };
+        if index > 0 {
+            let (left, (q, v, over)) = before;
+            let width = at - left;
+            let ends = [q, here.0];
+            let elastic = pressed(ends);
+            let total = match brakes {
+                None => elastic,
+                Some(_) => braked(ends, [v, here.1]),
+            };
+            let elastic = both!(end: elastic[end] * width);
+            let total = both!(end: total[end] * width);
+            let shares = [[1.0 - left, 1.0 - at], [left, at]];
+            sums.elastic = both!(end: {
+                let [from, to] = shares[end];
+                sums.elastic[end] + (elastic[0] * from + elastic[1] * to)
+            });
+            sums.total = both!(end: {
+                let [from, to] = shares[end];
+                sums.total[end] + (total[0] * from + total[1] * to)
+            });
+            let memory = &mut fibres[index - 1];
+            let force = carried + elastic[0];
+            sums.crushed += (memory.force_m + force) * over * 0.5;
+            memory.force_m = force;
+            carried = elastic[1];
+        }
+        before = (at, here);
+        index += 1;
+    }
+    sums
+}
+
+/// Where what is linear between two ends is positive, as parts of the way; nowhere, an empty part.
+#[inline(always)]
+fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    let crossing = ends[0] / (ends[0] - ends[1]);
+    [
+        ends[0].positive(zero, ends[1].positive(crossing, zero)),
+        ends[1].positive(one, ends[0].positive(crossing, zero)),
+    ]
+}
+
+/// Forces at the ends that amount to a stress that is linear over a part of the way, from and to these values.
+#[inline(always)]
+fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
+    let part = to - from;
+    let whole = part * (low + high) * 0.5;
+    let at_one = part * (low * (from * 2.0 + to) + high * (from + to * 2.0)) * (1.0 / 6.0);
+    [whole - at_one, at_one]
+}
+
+/// Forces at the ends where what is linear between them presses, and nothing pulls.
+#[inline(always)]
+fn pressed<R: Real>(ends: [R; 2]) -> [R; 2] {
+    let zero = R::of(0.0);
+    amount(positive_part(ends), both!(end: ends[end].max(zero)))
+}
+
+/// The same of another linear function, where both press.
+#[inline(always)]
+fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
+    let (touching, pressing) = (positive_part(ends), positive_part(stress));
+    let from = touching[0].max(pressing[0]);
+    let to = touching[1].min(pressing[1]).max(from);
+    let ends = [from, to];
+    let slope = stress[1] - stress[0];
+    amount(
+        ends,
+        both!(end: (stress[0] + slope * ends[end]).max(R::of(0.0))),
+    )
+}
+
+/// Energy of what presses.
+#[inline(always)]
+fn energy<R: Real>(ends: [R; 2]) -> R {
+    let [from, to] = positive_part(ends);
+    let [low, high] = both!(end: ends[end].max(R::of(0.0)));
+    (to - from) * (low * low + low * high + high * high) * (1.0 / 6.0)
+}

@@ -1,0 +1,350 @@
+//! Where a structure with elastic joints rests: Newton's method with exact tangents.
+
+use thiserror::Error;
+
+use super::banded::Banded;
+use super::contact::{Fibre, Memory};
+use super::kinematics::Place;
+use super::structure::ElasticStructure;
+use crate::mechanics::lanes::{Dual, Lanes};
+
+/// What a joint knows alone.
+type Alone = Lanes<1>;
+
+/// A structure at rest.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// Displacements (m) and rotations (rad) of the bodies.
+    pub moved: Vec<[f64; 3]>,
+    /// What the joints remember.
+    pub memories: Vec<Memory<Alone>>,
+    /// What the places along the joints remember, joint by joint.
+    pub fibres: Vec<Fibre<Alone>>,
+    /// Unbalanced force over the weight.
+    pub unbalanced: f64,
+    /// Steps of Newton's method.
+    pub steps: usize,
+}
+
+/// Why a structure does not rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum RestError {
+    /// It would if nothing slipped.
+    #[error(
+        "the joints slip under the weight of the structure: it needs a larger friction_coefficient"
+    )]
+    Friction,
+    /// It would if nothing crushed.
+    #[error(
+        "the joints crush under the weight of the structure: it needs a larger compressive_strength_mpa"
+    )]
+    Strength,
+    /// It would with continuous contact.
+    #[error(
+        "with so few contact points the structure is a mechanism: between two points the thrust bends no joint; give more \
+         contact_points, or contact = \"continuous\""
+    )]
+    Points,
+    /// It would with stiffer joints.
+    #[error(
+        "with joints as soft as these the structure bends so far under its weight that it falls: it needs a larger stiffness, \
+         or a greater thickness"
+    )]
+    Stiffness,
+    /// No equilibrium was found.
+    #[error("no equilibrium was found under the weight of the structure")]
+    NotFound,
+}
+
+/// Forces that are unbalanced by less than this part of the weight are rounding.
+const ROUNDING: f64 = 1e-12;
+/// What is left of the weight at rest, at most.
+const BALANCED: f64 = 1e-8;
+/// Newton's steps at one stiffness.
+const MOST_STEPS: usize = 80;
+/// Stiffness is raised by this from one equilibrium to the next.
+const RAISED: f64 = 3.162_277_660_168_379_5;
+/// Stiffnesses from which it is raised, where the full one fails at once.
+const FIRST_STIFFNESS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
+
+impl Rest {
+    /// The joint whose thrust lies farthest from its middle, and how far over its length.
+    #[must_use]
+    pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
+        let each = structure.fibres();
+        let place = |body: usize| {
+            self.moved
+                .get(body)
+                .map_or_else(Place::undeformed, Place::at)
+        };
+        let joints = structure.joints().iter().enumerate();
+        let eccentricities = joints.map(|(index, joint)| {
+            let [first, second] = joint.link.bodies.map(place);
+            let mut fibres = self.fibres[index * each..(index + 1) * each].to_vec();
+            let memory = &self.memories[index];
+            let (edges_n, _) = structure.elastic_n(joint, [&first, &second], memory, &mut fibres);
+            (
+                index,
+                0.5 * ((edges_n[1] - edges_n[0]) / (edges_n[0] + edges_n[1])).abs(),
+            )
+        });
+        eccentricities.fold(
+            (0, 0.0),
+            |most, other| if other.1 > most.1 { other } else { most },
+        )
+    }
+}
+
+impl ElasticStructure {
+    /// Where it rests under a load per unit mass, in m/s2, to the right and upwards: from the undeformed structure, first with joints
+    /// that pull.
+    ///
+    /// # Errors
+    /// When it does not, with the reason.
+    pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Rest, RestError> {
+        if let Some(rest) = self.balanced(load_m_s2) {
+            return Ok(rest);
+        }
+        let would_rest = |other: Self| other.balanced(load_m_s2).is_some();
+        let without_slip = self.without_slip();
+        let law = self.law();
+        if law.friction[0] > 0.0 && would_rest(without_slip.clone()) {
+            return Err(RestError::Friction);
+        }
+        if law.crushes && would_rest(without_slip.without_crushing()) {
+            return Err(RestError::Strength);
+        }
+        let continuous = without_slip.continuous();
+        if would_rest(continuous.clone()) {
+            return Err(RestError::Points);
+        }
+        if would_rest(continuous.stiffness_times(1e3)) {
+            return Err(RestError::Stiffness);
+        }
+        Err(RestError::NotFound)
+    }
+
+    /// Its equilibrium, if one is found.
+    fn balanced(&self, load_m_s2: [f64; 2]) -> Option<Rest> {
+        let bonded = Search::new(self, load_m_s2).bonded()?;
+        if let Some(rest) = Search::new(self, load_m_s2).from(bonded.clone(), 0) {
+            return Some(rest);
+        }
+        FIRST_STIFFNESS.into_iter().find_map(|first| {
+            let mut stiffness = first;
+            let mut moved: Vec<_> = bonded
+                .iter()
+                .map(|moved| moved.map(|part| part / first))
+                .collect();
+            let mut steps = 0;
+            loop {
+                let softer = self.stiffness_times(stiffness);
+                let rest = Search::new(&softer, load_m_s2).from(moved, steps)?;
+                if stiffness == 1.0 {
+                    return Some(rest);
+                }
+                let next = stiffness * RAISED;
+                let next = if next < 0.999 { next } else { 1.0 };
+                let raised = |moved: &[f64; 3]| moved.map(|part| part * stiffness / next);
+                moved = rest.moved.iter().map(raised).collect();
+                (stiffness, steps) = (next, rest.steps);
+            }
+        })
+    }
+}
+
+/// A search for the equilibrium of a structure.
+struct Search<'a> {
+    structure: &'a ElasticStructure,
+    load_m_s2: [f64; 2],
+    weight_n: f64,
+    /// Rotations and moments are measured with this length.
+    length_m: f64,
+    width: usize,
+}
+
+impl<'a> Search<'a> {
+    fn new(structure: &'a ElasticStructure, load_m_s2: [f64; 2]) -> Self {
+        let joints = structure.joints();
+        let bodies = structure.bodies().len();
+        let reach = joints.iter().map(|joint| match joint.link.bodies {
+            [one, other] if one < bodies && other < bodies => one.abs_diff(other),
+            _ => 0,
+        });
+        let lengths: f64 = joints.iter().map(|joint| joint.link.length_m).sum();
+        Self {
+            structure,
+            load_m_s2,
+            weight_n: structure.mass_kg() * load_m_s2[0].hypot(load_m_s2[1]),
+            length_m: lengths / joints.len() as f64,
+            width: 3 * reach.max().unwrap_or(0) + 2,
+        }
+    }
+
+    /// Unbalanced forces (moments over the length); with a matrix, minus their derivatives by the coordinates.
+    fn unbalanced(
+        &self,
+        moved: &[[f64; 3]],
+        bonded: bool,
+        mut matrix: Option<&mut Banded>,
+        forces: &mut [f64],
+    ) {
+        let bodies = self.structure.bodies();
+        for (index, body) in bodies.iter().enumerate() {
+            forces[3 * index] = body.mass_kg * self.load_m_s2[0];
+            forces[3 * index + 1] = body.mass_kg * self.load_m_s2[1];
+            forces[3 * index + 2] = 0.0;
+        }
+        let units = [1.0, 1.0, self.length_m];
+        for joint in self.structure.joints() {
+            let pair = joint.link.bodies;
+            let place = |end: usize| {
+                let Some(at) = moved.get(pair[end]) else {
+                    return Place::undeformed();
+                };
+                let variable = |axis: usize| Dual::<6>::variable(at[axis], 3 * end + axis);
+                let angle = variable(2);
+                let (sin, cos) = at[2].sin_cos();
+                let half = (0.5 * at[2]).sin();
+                Place {
+                    moved_m: [variable(0), variable(1)],
+                    turn: [
+                        angle.chained(-2.0 * half * half, -sin),
+                        angle.chained(sin, cos),
+                    ],
+                }
+            };
+            let gap = joint.link.gap(&place(0), &place(1));
+            let law = self.structure.law();
+            let action = if bonded {
+                let edges = law.section.bonded(gap.penetrations_m);
+                gap.action(
+                    edges.map(|edge| edge * joint.normal_n_m),
+                    gap.slip_m * joint.shear_n_m,
+                )
+            } else {
+                let mut fibres = [Fibre::none(); MOST_FIBRES];
+                let fibres = &mut fibres[..law.section.fibres()];
+                let pressure = law.press(joint, None, &gap, &mut Memory::none(), fibres);
+                gap.action(pressure.edges_n, pressure.shear_n)
+            };
+            let [x, y] = action.force_n;
+            let on = [
+                [-x, -y, action.moments_n_m[0]],
+                [x, y, action.moments_n_m[1]],
+            ];
+            for (end, &body) in pair.iter().enumerate() {
+                if body >= bodies.len() {
+                    continue;
+                }
+                for axis in 0..3 {
+                    let row = 3 * body + axis;
+                    forces[row] += on[end][axis].value / units[axis];
+                    let Some(matrix) = &mut matrix else {
+                        continue;
+                    };
+                    for (other, &of) in pair.iter().enumerate() {
+                        for by in 0..3 {
+                            if of < bodies.len() {
+                                let slope = on[end][axis].slope[3 * other + by];
+                                matrix.add(row, 3 * of + by, -slope / (units[axis] * units[by]));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn norm(&self, forces: &[f64]) -> f64 {
+        forces.iter().map(|force| force * force).sum::<f64>().sqrt() / self.weight_n
+    }
+
+    /// Displacements with joints that pull as well.
+    fn bonded(&self) -> Option<Vec<[f64; 3]>> {
+        let bodies = self.structure.bodies().len();
+        let moved = vec![[0.0; 3]; bodies];
+        let mut matrix = Banded::new(3 * bodies, self.width);
+        let mut forces = vec![0.0; 3 * bodies];
+        self.unbalanced(&moved, true, Some(&mut matrix), &mut forces);
+        matrix
+            .solve(&mut forces)
+            .then(|| self.stepped(&moved, &forces, 1.0))
+    }
+
+    fn stepped(&self, moved: &[[f64; 3]], step: &[f64], part: f64) -> Vec<[f64; 3]> {
+        let units = [1.0, 1.0, self.length_m];
+        let by = moved.iter().zip(step.chunks_exact(3));
+        by.map(|(moved, step)| [0, 1, 2].map(|axis| moved[axis] + part * step[axis] / units[axis]))
+            .collect()
+    }
+
+    /// Newton's method from these displacements; `None` where it stalls.
+    fn from(&self, mut moved: Vec<[f64; 3]>, steps_before: usize) -> Option<Rest> {
+        let size = 3 * moved.len();
+        let mut matrix = Banded::new(size, self.width);
+        let (mut forces, mut trial) = (vec![0.0; size], vec![0.0; size]);
+        self.unbalanced(&moved, false, None, &mut forces);
+        let mut norm = self.norm(&forces);
+        let mut steps = 0;
+        while norm > ROUNDING && steps < MOST_STEPS {
+            steps += 1;
+            matrix.clear();
+            self.unbalanced(&moved, false, Some(&mut matrix), &mut forces);
+            if !matrix.solve(&mut forces) {
+                break;
+            }
+            let shortened = (0..12)
+                .map(|halvings| 0.5_f64.powi(halvings))
+                .find_map(|part| {
+                    let there = self.stepped(&moved, &forces, part);
+                    self.unbalanced(&there, false, None, &mut trial);
+                    let other = self.norm(&trial);
+                    (other < norm * (1.0 - 1e-4 * part)).then_some((there, other))
+                });
+            let Some(better) = shortened else {
+                break;
+            };
+            (moved, norm) = better;
+        }
+        (norm < BALANCED).then(|| self.at_rest(moved, norm, steps_before + steps))
+    }
+
+    fn at_rest(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Rest {
+        let joints = self.structure.joints();
+        let each = self.structure.fibres();
+        let mut memories = vec![Memory::none(); joints.len()];
+        let mut fibres = vec![Fibre::none(); joints.len() * each];
+        for (index, joint) in joints.iter().enumerate() {
+            let place = |body: usize| moved.get(body).map_or_else(Place::undeformed, Place::at);
+            let [one, other] = joint.link.bodies.map(place);
+            let gap = joint.link.gap(&one, &other);
+            let fibres = &mut fibres[index * each..(index + 1) * each];
+            self.structure
+                .law()
+                .press(joint, None, &gap, &mut memories[index], fibres);
+        }
+        Rest {
+            moved,
+            memories,
+            fibres,
+            unbalanced,
+            steps,
+        }
+    }
+}
+
+/// The most places along a joint.
+const MOST_FIBRES: usize = 100;
+
+impl Place<Alone> {
+    /// Moved and turned by this much, in m and rad.
+    #[must_use]
+    pub fn at(moved: &[f64; 3]) -> Self {
+        let half = (0.5 * moved[2]).sin();
+        Self {
+            moved_m: [Lanes([moved[0]]), Lanes([moved[1]])],
+            turn: [Lanes([-2.0 * half * half]), Lanes([moved[2].sin()])],
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! Rigid bodies and the elastic joints between them.
+
+use std::ops::RangeInclusive;
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+use super::contact::{Contact, Fibre, Law, Memory, Pressure, Section};
+use super::kinematics::{Action, Link, Place};
+use crate::argument::{ArgumentError, within};
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::lanes::{Lanes, Real};
+
+/// Stiffness of an interface per area, in Pa/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointStiffness {
+    /// Against penetration.
+    pub normal_pa_m: f64,
+    /// Against slip.
+    pub shear_pa_m: f64,
+}
+
+/// What the stiffness of joints follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Materials {
+    /// Young's modulus of the blocks, in Pa.
+    pub stone_modulus_pa: f64,
+    /// Young's modulus of the mortar, in Pa, and its thickness, in m, if there is any.
+    pub mortar: Option<[f64; 2]>,
+    /// Stiffness against slip over that against penetration.
+    pub shear_ratio: f64,
+}
+
+/// The stiffness of the joints of a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stiffness {
+    /// All alike.
+    Uniform(JointStiffness),
+    /// Blocks and mortar in series: `1/kn = t_m/E_m + L/E_b`, with the distance `L` between the centres of the two blocks across the
+    /// joint; at a support, from the centre of the block to the joint.
+    Materials(Materials),
+}
+
+/// What elastic joints are like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticProperties {
+    /// How stiff.
+    pub stiffness: Stiffness,
+    /// Width of the structure out of its plane, in m.
+    pub depth_m: f64,
+    /// Coulomb's coefficient of friction; without it nothing slips for good.
+    pub friction_coefficient: Option<f64>,
+    /// Damping time in s: damping forces are this times the rates of the elastic ones.
+    pub damping_time_s: f64,
+    /// Stress at which joints crush, in Pa; without it they do not.
+    pub compressive_strength_pa: Option<f64>,
+    /// How the stress is summed.
+    pub contact: Contact,
+}
+
+impl ElasticProperties {
+    /// Beyond the upper end explicit steps are too many, and joints as good as rigid; below the lower one nothing stands.
+    pub(crate) const NORMAL_STIFFNESS_PA_M: RangeInclusive<f64> = 1e6..=1e14;
+    /// Stiffness against slip over that against penetration.
+    pub(crate) const SHEAR_RATIO: RangeInclusive<f64> = 1e-2..=1e2;
+    /// From soft rubber to beyond diamond, in Pa.
+    pub(crate) const MODULUS_PA: RangeInclusive<f64> = 1e5..=1e13;
+    /// Thickness of mortar, in m.
+    pub(crate) const MORTAR_M: RangeInclusive<f64> = 0.0..=1.0;
+    /// Joints of stone have 0.5 to 0.8.
+    pub(crate) const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
+    /// Damping times, in s. One of 0.05 s is that of a very viscous base.
+    pub(crate) const DAMPING_TIME_S: RangeInclusive<f64> = 0.0..=1.0;
+    /// Strengths, in Pa.
+    pub(crate) const STRENGTH_PA: RangeInclusive<f64> = 1e3..=1e12;
+    /// Numbers of contact points. One does not hold a block.
+    pub(crate) const CONTACT_POINTS: RangeInclusive<usize> = 2..=100;
+
+    /// Joints of this stiffness against penetration, and 0.4 of it against slip (the shear modulus over Young's); friction 0.7, a
+    /// damping time of 0.1 ms, continuous contact, no crushing; a metre wide.
+    #[must_use]
+    pub const fn of_stiffness(normal_pa_m: f64) -> Self {
+        Self {
+            stiffness: Stiffness::Uniform(JointStiffness {
+                normal_pa_m,
+                shear_pa_m: 0.4 * normal_pa_m,
+            }),
+            depth_m: 1.0,
+            friction_coefficient: Some(0.7),
+            damping_time_s: 1e-4,
+            compressive_strength_pa: None,
+            contact: Contact::Continuous,
+        }
+    }
+
+    /// Refuses what is no joint.
+    fn check(&self) -> Result<(), ArgumentError> {
+        match self.stiffness {
+            Stiffness::Uniform(stiffness) => check_stiffness(stiffness)?,
+            Stiffness::Materials(materials) => {
+                let modulus_pa = materials.stone_modulus_pa;
+                within("stone_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
+                if let Some([modulus_pa, thickness_m]) = materials.mortar {
+                    within("mortar_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
+                    within("mortar_thickness_m", thickness_m, Self::MORTAR_M)?;
+                }
+                within("shear_ratio", materials.shear_ratio, Self::SHEAR_RATIO)?;
+            }
+        }
+        within("depth_m", self.depth_m, 1e-6..=1e6)?;
+        if let Some(coefficient) = self.friction_coefficient {
+            within(
+                "friction_coefficient",
+                coefficient,
+                Self::FRICTION_COEFFICIENT,
+            )?;
+        }
+        within("damping_time_s", self.damping_time_s, Self::DAMPING_TIME_S)?;
+        if let Some(strength_pa) = self.compressive_strength_pa {
+            within("compressive_strength_pa", strength_pa, Self::STRENGTH_PA)?;
+        }
+        match self.contact {
+            Contact::Points(count) if !Self::CONTACT_POINTS.contains(&count) => {
+                Err(ArgumentError {
+                    argument: "contact_points",
+                    value: count as f64,
+                    allowed: "2 to 100: one point does not hold a block".to_owned(),
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The same with all stiffness multiplied.
+    #[must_use]
+    pub fn stiffness_times(mut self, factor: f64) -> Self {
+        match &mut self.stiffness {
+            Stiffness::Uniform(stiffness) => {
+                stiffness.normal_pa_m *= factor;
+                stiffness.shear_pa_m *= factor;
+            }
+            Stiffness::Materials(materials) => {
+                materials.stone_modulus_pa *= factor;
+                if let Some([modulus_pa, _]) = &mut materials.mortar {
+                    *modulus_pa *= factor;
+                }
+            }
+        }
+        self
+    }
+}
+
+fn check_stiffness(stiffness: JointStiffness) -> Result<(), ArgumentError> {
+    let normal_pa_m = stiffness.normal_pa_m;
+    within(
+        "normal_stiffness_pa_m",
+        normal_pa_m,
+        ElasticProperties::NORMAL_STIFFNESS_PA_M,
+    )?;
+    let shear_ratio = stiffness.shear_pa_m / normal_pa_m;
+    within("shear_ratio", shear_ratio, ElasticProperties::SHEAR_RATIO).map(|_| ())
+}
+
+/// A rigid body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Mass in kg.
+    pub mass_kg: f64,
+    /// Polar moment of inertia about the centre, in kg m2.
+    pub inertia_kg_m2: f64,
+}
+
+/// A joint between two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticJoint {
+    /// What it joins.
+    pub link: Link,
+    /// Stiffness of the closed joint against penetration, in N/m.
+    pub normal_n_m: f64,
+    /// Its stiffness against slip, in N/m.
+    pub shear_n_m: f64,
+    /// Penetration at which it crushes, in m; infinite where it does not.
+    pub strength_m: f64,
+    /// Area in m2.
+    pub area_m2: f64,
+}
+
+/// Rigid bodies with elastic joints between them. Whatever joints name beyond the last body is a support, which does not move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElasticStructure {
+    bodies: Vec<Body>,
+    joints: Vec<ElasticJoint>,
+    law: Law,
+    damping_time_s: f64,
+}
+
+impl ElasticStructure {
+    /// A row of blocks.
+    ///
+    /// # Errors
+    /// When a property is out of range.
+    pub fn of_row(row: &Row, properties: &ElasticProperties) -> Result<Self, ArgumentError> {
+        properties.check()?;
+        let blocks = row.blocks();
+        let ground = blocks.len();
+        let bodies = blocks.iter().map(|block| Body {
+            mass_kg: block.mass_kg,
+            inertia_kg_m2: block.inertia_kg_m2,
+        });
+        let joint = |(index, joint): (usize, &crate::mechanics::blocks::Joint)| {
+            let right = if index < ground { index } else { ground };
+            let pair = [index.checked_sub(1).unwrap_or(ground), right];
+            let middle_m = joint.middle_m();
+            let along = joint.along();
+            let centres = pair.map(|body| blocks.get(body).map(|block| block.centre_m));
+            // The support's centre is the origin.
+            let arms_m = centres.map(|centre| middle_m - centre.unwrap_or_else(Vector2::zeros));
+            let across_m = |centre: Option<Vector2<f64>>| {
+                centre.map_or(0.0, |centre| along.perp(&(centre - middle_m)).abs())
+            };
+            let length_m = joint.thickness_m();
+            let stiffness = match properties.stiffness {
+                Stiffness::Uniform(stiffness) => stiffness,
+                Stiffness::Materials(materials) => {
+                    in_series(&materials, centres.map(across_m).iter().sum())
+                }
+            };
+            check_stiffness(stiffness)?;
+            let area_m2 = properties.depth_m * length_m;
+            let strength_pa = properties.compressive_strength_pa;
+            Ok(ElasticJoint {
+                link: Link {
+                    bodies: pair,
+                    arms_m: arms_m.map(|arm| [arm.x, arm.y]),
+                    along: [along.x, along.y],
+                    handedness: row.handedness(),
+                    length_m,
+                },
+                normal_n_m: stiffness.normal_pa_m * area_m2,
+                shear_n_m: stiffness.shear_pa_m * area_m2,
+                strength_m: strength_pa.map_or(f64::INFINITY, |pa| pa / stiffness.normal_pa_m),
+                area_m2,
+            })
+        };
+        debug_assert!(row.supports() == Supports::Both || row.joints().len() == ground);
+        let joints: Result<_, ArgumentError> = row.joints().iter().enumerate().map(joint).collect();
+        Ok(Self::new(bodies.collect(), joints?, properties))
+    }
+
+    /// Any bodies and joints.
+    #[must_use]
+    pub fn new(
+        bodies: Vec<Body>,
+        joints: Vec<ElasticJoint>,
+        properties: &ElasticProperties,
+    ) -> Self {
+        let crushes = properties.compressive_strength_pa.is_some();
+        let friction = match properties.friction_coefficient {
+            Some(coefficient) => [coefficient, 0.0],
+            None => [0.0, f64::INFINITY],
+        };
+        Self {
+            bodies,
+            joints,
+            law: Law {
+                section: Section::new(properties.contact, crushes),
+                crushes,
+                friction,
+            },
+            damping_time_s: properties.damping_time_s,
+        }
+    }
+
+    /// The bodies.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// The joints.
+    #[must_use]
+    pub fn joints(&self) -> &[ElasticJoint] {
+        &self.joints
+    }
+
+    /// Whether joints slip for good.
+    #[must_use]
+    pub const fn slips(&self) -> bool {
+        self.law.friction[1] == 0.0
+    }
+
+    /// Damping time in s.
+    #[must_use]
+    pub const fn damping_time_s(&self) -> f64 {
+        self.damping_time_s
+    }
+
+    /// Mass of all bodies, in kg.
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.bodies.iter().map(|body| body.mass_kg).sum()
+    }
+
+    /// Places along each joint that remember what was crushed.
+    #[must_use]
+    pub fn fibres(&self) -> usize {
+        self.law.section.fibres()
+    }
+
+    /// The same without bounds of friction.
+    pub(super) fn without_slip(&self) -> Self {
+        let mut other = self.clone();
+        other.law.friction = [0.0, f64::INFINITY];
+        other
+    }
+
+    /// The same without crushing.
+    pub(super) fn without_crushing(&self) -> Self {
+        let mut other = self.clone();
+        other.law.crushes = false;
+        other
+    }
+
+    /// The same with continuous contact, without crushing.
+    pub(super) fn continuous(&self) -> Self {
+        let mut other = self.without_crushing();
+        other.law.section = Section::Whole;
+        other
+    }
+
+    /// The same with all stiffness multiplied.
+    pub(super) fn stiffness_times(&self, factor: f64) -> Self {
+        let mut other = self.clone();
+        for joint in &mut other.joints {
+            joint.normal_n_m *= factor;
+            joint.shear_n_m *= factor;
+            joint.strength_m /= factor;
+        }
+        other
+    }
+
+    pub(super) const fn law(&self) -> &Law {
+        &self.law
+    }
+
+    /// What a joint does with its bodies at these places, and what it bears; it remembers. `damping` is the damping time over the
+    /// length of the step.
+    #[inline(always)]
+    pub fn act<R: Real>(
+        &self,
+        joint: &ElasticJoint,
+        places: [&Place<R>; 2],
+        damping: Option<R>,
+        memory: &mut Memory<R>,
+        fibres: &mut [Fibre<R>],
+    ) -> (Action<R>, Pressure<R>) {
+        let gap = joint.link.gap(places[0], places[1]);
+        let pressure = self.law.press(joint, damping, &gap, memory, fibres);
+        (gap.action(pressure.edges_n, pressure.shear_n), pressure)
+    }
+
+    /// The elastic stress of a joint at rest, summed up: forces at its edges and the shear force, in N.
+    #[must_use]
+    pub fn elastic_n(
+        &self,
+        joint: &ElasticJoint,
+        places: [&Place<Lanes<1>>; 2],
+        memory: &Memory<Lanes<1>>,
+        fibres: &mut [Fibre<Lanes<1>>],
+    ) -> ([f64; 2], f64) {
+        let gap = joint.link.gap(places[0], places[1]);
+        let pressure = self
+            .law
+            .press(joint, None, &gap, &mut memory.clone(), fibres);
+        (
+            pressure.edges_n.map(|edge| edge.0[0]),
+            pressure.shear_n.0[0],
+        )
+    }
+
+    /// Elastic energy of a joint, in J.
+    #[inline(always)]
+    pub fn energy_j<R: Real>(
+        &self,
+        joint: &ElasticJoint,
+        memory: &Memory<R>,
+        fibres: &[Fibre<R>],
+    ) -> R {
+        let pressing = self.law.section.energy(memory.penetrations_m, fibres);
+        pressing * joint.normal_n_m + memory.shear_n * memory.shear_n * (0.5 / joint.shear_n_m)
+    }
+
+    /// A bound of the highest angular frequency, in rad/s, with any joints closed.
+    ///
+    /// Every joint is given a part of the mass of its bodies, in proportion to its stiffness. The highest frequency of a joint with its
+    /// part is then not below that of the whole, by Rayleigh's quotient (Irons and Treharne, "A bound theorem in eigenvalues and its
+    /// practical applications", 1971), and joints that are open in part are softer than closed ones.
+    #[must_use]
+    pub fn frequency_bound_rad_s(&self) -> f64 {
+        let mut held_n_m = vec![0.0; self.bodies.len()];
+        for joint in &self.joints {
+            for body in joint.link.bodies {
+                if let Some(held) = held_n_m.get_mut(body) {
+                    *held += joint.normal_n_m;
+                }
+            }
+        }
+        let squares = self.joints.iter().map(|joint| {
+            let mut flexibility = Matrix3::zeros();
+            let link = &joint.link;
+            let along = Vector2::from(link.along);
+            let normal = Vector2::new(-along.y, along.x) * link.handedness;
+            for (body, arm_m) in link.bodies.into_iter().zip(link.arms_m) {
+                let Some(of_body) = self.bodies.get(body) else {
+                    continue;
+                };
+                let part = joint.normal_n_m / held_n_m[body];
+                let arm = Vector2::from(arm_m);
+                // Gap, slip and angle by the motion of the body: both senses are the same squared.
+                let by_x = Vector3::new(normal.x, along.x, 0.0);
+                let by_y = Vector3::new(normal.y, along.y, 0.0);
+                let by_turn = Vector3::new(arm.perp(&normal), arm.perp(&along), 1.0);
+                let mass = part * of_body.mass_kg;
+                flexibility += (by_x * by_x.transpose() + by_y * by_y.transpose()) / mass;
+                flexibility += by_turn * by_turn.transpose() / (part * of_body.inertia_kg_m2);
+            }
+            let turning = self.law.section.second_moment() * link.length_m.powi(2);
+            let roots = Vector3::new(
+                joint.normal_n_m.sqrt(),
+                joint.shear_n_m.sqrt(),
+                (joint.normal_n_m * turning).sqrt(),
+            );
+            let scaled = flexibility.component_mul(&(roots * roots.transpose()));
+            scaled.symmetric_eigenvalues().max()
+        });
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
+    /// The longest step, in s, with which central differences with damping that lags by half a step are stable.
+    ///
+    /// With frequency `w` and `z = beta w/2` that is `2/w (sqrt(1 + z^2) - z)`, by the criterion of Jury; it falls with `w`.
+    #[must_use]
+    pub fn stable_step_s(&self) -> f64 {
+        let frequency = self.frequency_bound_rad_s();
+        let z = 0.5 * self.damping_time_s * frequency;
+        // The difference, without cancelling.
+        2.0 / frequency / (1.0_f64.hypot(z) + z)
+    }
+}
+
+/// Stiffness of mortar and of a length of stone, one after the other.
+fn in_series(materials: &Materials, length_m: f64) -> JointStiffness {
+    let mortar = materials
+        .mortar
+        .map_or(0.0, |[modulus, thickness]| thickness / modulus);
+    let normal_pa_m = 1.0 / (mortar + length_m / materials.stone_modulus_pa);
+    JointStiffness {
+        normal_pa_m,
+        shear_pa_m: materials.shear_ratio * normal_pa_m,
+    }
+}

@@ -1,0 +1,310 @@
+//! Numbers side by side, so that one source computes one motion, several at once, or derivatives.
+//!
+//! What is written for any [`Real`] takes no branch that depends on a value: it selects. Each lane of [`Lanes`] then has the bits that it
+//! would have alone, whatever is beside it.
+
+use std::array;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A pair, of an expression with 0 and with 1 for the name. Written out, not mapped: in functions as large as a step the compiler leaves
+/// calls of `map`.
+macro_rules! both {
+    ($index:ident: $value:expr) => {
+        [
+            {
+                let $index = 0;
+                $value
+            },
+            {
+                let $index = 1;
+                $value
+            },
+        ]
+    };
+}
+pub(crate) use both;
+
+/// What the mechanics of elastic joints computes with.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// A constant.
+    fn of(value: f64) -> Self;
+
+    /// The square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// `yes` where this is positive, else `no`.
+    #[must_use]
+    fn positive(self, yes: Self, no: Self) -> Self;
+
+    /// The larger of the two.
+    #[inline(always)]
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        (self - other).positive(self, other)
+    }
+
+    /// The smaller of the two.
+    #[inline(always)]
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        (self - other).positive(other, self)
+    }
+
+    /// The magnitude.
+    #[inline(always)]
+    #[must_use]
+    fn abs(self) -> Self {
+        self.positive(self, -self)
+    }
+}
+
+/// `L` numbers side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lanes<const L: usize>(pub [f64; L]);
+
+/// Applies an expression lane by lane. A loop of its own, not a closure: the compiler turns it into vectors wherever it stands.
+macro_rules! by_lane {
+    ($lane:ident: $value:expr) => {{
+        let mut lanes = [0.0; L];
+        let mut $lane = 0;
+        while $lane < L {
+            lanes[$lane] = $value;
+            $lane += 1;
+        }
+        Self(lanes)
+    }};
+}
+
+impl<const L: usize> Add for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        by_lane!(lane: self.0[lane] + other.0[lane])
+    }
+}
+
+impl<const L: usize> Sub for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        by_lane!(lane: self.0[lane] - other.0[lane])
+    }
+}
+
+impl<const L: usize> Mul for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        by_lane!(lane: self.0[lane] * other.0[lane])
+    }
+}
+
+impl<const L: usize> Div for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        by_lane!(lane: self.0[lane] / other.0[lane])
+    }
+}
+
+impl<const L: usize> Mul<f64> for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: f64) -> Self {
+        by_lane!(lane: self.0[lane] * other)
+    }
+}
+
+impl<const L: usize> Neg for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        by_lane!(lane: -self.0[lane])
+    }
+}
+
+impl<const L: usize> AddAssign for Lanes<L> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const L: usize> SubAssign for Lanes<L> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const L: usize> Real for Lanes<L> {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        Self([value; L])
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        by_lane!(lane: self.0[lane].sqrt())
+    }
+
+    #[inline(always)]
+    fn positive(self, yes: Self, no: Self) -> Self {
+        by_lane!(lane: if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] })
+    }
+
+    // Infinities differ by no number, so these compare instead of subtracting.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        by_lane!(lane: if self.0[lane] > other.0[lane] { self.0[lane] } else { other.0[lane] })
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        by_lane!(lane: if self.0[lane] < other.0[lane] { self.0[lane] } else { other.0[lane] })
+    }
+}
+
+/// A number with its derivatives by `D` variables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<const D: usize> {
+    /// The number.
+    pub value: f64,
+    /// Its derivatives.
+    pub slope: [f64; D],
+}
+
+impl<const D: usize> Dual<D> {
+    /// The variable of this index.
+    #[must_use]
+    pub fn variable(value: f64, index: usize) -> Self {
+        let slope = array::from_fn(|other| if other == index { 1.0 } else { 0.0 });
+        Self { value, slope }
+    }
+
+    /// A function of this number, by its value and derivative.
+    #[must_use]
+    pub fn chained(self, value: f64, derivative: f64) -> Self {
+        let slope = self.slope.map(|slope| slope * derivative);
+        Self { value, slope }
+    }
+
+    fn with(value: f64, slope: impl FnMut(usize) -> f64) -> Self {
+        let slope = array::from_fn(slope);
+        Self { value, slope }
+    }
+}
+
+impl<const D: usize> Add for Dual<D> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::with(self.value + other.value, |i| self.slope[i] + other.slope[i])
+    }
+}
+
+impl<const D: usize> Sub for Dual<D> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self::with(self.value - other.value, |i| self.slope[i] - other.slope[i])
+    }
+}
+
+impl<const D: usize> Mul for Dual<D> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self::with(self.value * other.value, |i| {
+            self.slope[i] * other.value + self.value * other.slope[i]
+        })
+    }
+}
+
+impl<const D: usize> Div for Dual<D> {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self::with(value, |i| {
+            (self.slope[i] - value * other.slope[i]) / other.value
+        })
+    }
+}
+
+impl<const D: usize> Mul<f64> for Dual<D> {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        self.chained(self.value * factor, factor)
+    }
+}
+
+impl<const D: usize> Neg for Dual<D> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self * -1.0
+    }
+}
+
+impl<const D: usize> AddAssign for Dual<D> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const D: usize> SubAssign for Dual<D> {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const D: usize> Real for Dual<D> {
+    fn of(value: f64) -> Self {
+        let slope = [0.0; D];
+        Self { value, slope }
+    }
+
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chained(root, 0.5 / root)
+    }
+
+    fn positive(self, yes: Self, no: Self) -> Self {
+        if self.value > 0.0 { yes } else { no }
+    }
+
+    fn max(self, other: Self) -> Self {
+        if self.value > other.value {
+            self
+        } else {
+            other
+        }
+    }
+
+    fn min(self, other: Self) -> Self {
+        if self.value < other.value {
+            self
+        } else {
+            other
+        }
+    }
+}
