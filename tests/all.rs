@@ -16,6 +16,7 @@ mod cli;
 mod column;
 mod column_results;
 mod drawing_data;
+mod elastic_joint_mechanics;
 mod elastic_joints;
 mod energy_balance;
 mod equivalent;

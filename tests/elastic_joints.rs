@@ -288,14 +288,14 @@ fn blocks_and_arches_overturn_where_an_independent_program_has_them() {
     ] {
         let model = ElasticJoints::new(stack(1, 5.0), joints(stiffness, contact)).unwrap();
         let due = [due_g * 9.81, 0.3];
-        overturns_at(&model, Pulse::Rectangular, due, &request(9.81, 3.0), 5e-3);
+        overturns_at(&model, Pulse::Rectangular, due, &request(9.81, 6.0), 5e-3);
     }
     let model = ElasticJoints::new(semicircle(36), joints(1e10, continuous)).unwrap();
     overturns_at(
         &model,
         Pulse::Rectangular,
         [0.2306 * 9.81, 0.2],
-        &request(9.81, 2.0),
+        &request(9.81, 4.0),
         5e-3,
     );
     let damped = ElasticProperties {
@@ -307,7 +307,7 @@ fn blocks_and_arches_overturn_where_an_independent_program_has_them() {
         &model,
         Pulse::HalfSine,
         [0.863, 0.25],
-        &request(10.0, 3.0),
+        &request(10.0, 4.0),
         1e-2,
     );
 }
@@ -401,7 +401,7 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
         };
         let [coarse, fine] = [0.5, 0.125].map(error);
         // Sixteen times less with steps four times shorter, if contacts changed at the same instants.
-        assert!(fine < 0.15 * coarse && coarse < 1e-6, "{coarse:e} {fine:e}");
+        assert!(fine < 0.15 * coarse && fine < 1e-6, "{coarse:e} {fine:e}");
     }
 }
 
@@ -465,7 +465,7 @@ fn stiff_joints_go_to_the_rigid_block() {
                         0.3,
                     )
                 })
-                .map(|ground| (ground, request(9.81, 2.0)))
+                .map(|ground| (ground, request(9.81, 6.0)))
                 .collect();
             let answers = model.simulate_all(&cases);
             let first = answers

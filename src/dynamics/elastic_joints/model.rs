@@ -24,7 +24,7 @@ pub struct ElasticJoints {
     properties: ElasticProperties,
     options: ElasticOptions,
     structure: ElasticStructure,
-    /// Under gravity of one m/s2 it would rest elsewhere: gravity and its rest.
+    /// A gravity, and where it rests under that.
     rest: (f64, Rest),
     /// By what a repetition multiplies the longest step.
     steps_times: f64,

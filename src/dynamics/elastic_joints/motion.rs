@@ -18,6 +18,28 @@ struct Moving<R> {
     moment_n_m: R,
 }
 
+impl<R> Moving<R> {
+    fn parts_mut(&mut self) -> [&mut R; 11] {
+        let Place { moved_m, turn } = &mut self.place;
+        let ([x, y], [cos, sin]) = (moved_m, turn);
+        let ([u, v], [fx, fy]) = (&mut self.velocity_m_s, &mut self.force_n);
+        let (angle, rate) = (&mut self.angle_rad, &mut self.rate_rad_s);
+        [
+            x,
+            y,
+            cos,
+            sin,
+            angle,
+            u,
+            v,
+            rate,
+            fx,
+            fy,
+            &mut self.moment_n_m,
+        ]
+    }
+}
+
 /// Motions side by side, each in its lane. What happens in one lane depends on no other.
 pub(super) struct Motion<'a, const L: usize> {
     pub structure: &'a ElasticStructure,
@@ -134,32 +156,27 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Starts the motion of a lane from rest.
     pub(super) fn start(&mut self, lane: usize, rest: &Rest) {
-        for (body, moved) in self.bodies.iter_mut().zip(&rest.moved) {
-            let place = Place::at(moved);
-            for axis in [0, 1] {
-                body.place.moved_m[axis].0[lane] = place.moved_m[axis].0[0];
-                body.place.turn[axis].0[lane] = place.turn[axis].0[0];
-                body.velocity_m_s[axis].0[lane] = 0.0;
+        let alone = Motion::at_rest(self.structure, self.gravity_m_s2, rest);
+        for (body, from) in self.bodies.iter_mut().zip(&alone.bodies) {
+            for (part, from) in body.parts_mut().into_iter().zip(from.clone().parts_mut()) {
+                part.0[lane] = from.0[0];
             }
-            body.angle_rad.0[lane] = moved[2];
-            body.rate_rad_s.0[lane] = 0.0;
         }
-        for (memory, alone) in self.memories.iter_mut().zip(&rest.memories) {
+        for (memory, alone) in self.memories.iter_mut().zip(&alone.memories) {
             memory.set(lane, alone);
         }
-        for (fibre, alone) in self.fibres.iter_mut().zip(&rest.fibres) {
+        for (fibre, alone) in self.fibres.iter_mut().zip(&alone.fibres) {
             fibre.set(lane, alone);
         }
-        let spent = &mut self.spent;
-        for energy in [
-            &mut spent.friction_j,
-            &mut spent.damped_j,
-            &mut spent.crushed_j,
-            &mut spent.ground_j,
-        ] {
+        let Spent {
+            friction_j,
+            damped_j,
+            crushed_j,
+            ground_j,
+        } = &mut self.spent;
+        for energy in [friction_j, damped_j, crushed_j, ground_j] {
             energy.0[lane] = 0.0;
         }
-        self.press(Lanes([0.0; L]));
     }
 
     /// One step of all lanes, with the widest vectors of the processor: these change no bit.
@@ -379,6 +396,20 @@ impl<'a, const L: usize> Motion<'a, L> {
             moved_m: moved_m.map(|part| Lanes([part.0[lane]])),
             turn: turn.map(|part| Lanes([part.0[lane]])),
         }
+    }
+}
+
+impl<'a> Motion<'a, 1> {
+    fn at_rest(structure: &'a ElasticStructure, gravity_m_s2: f64, rest: &Rest) -> Self {
+        let mut motion = Self::new(structure, gravity_m_s2);
+        for (body, moved) in motion.bodies.iter_mut().zip(&rest.moved) {
+            body.place = Place::at(moved);
+            body.angle_rad = Lanes([moved[2]]);
+        }
+        motion.memories.copy_from_slice(&rest.memories);
+        motion.fibres.copy_from_slice(&rest.fibres);
+        motion.press(Lanes([0.0]));
+        motion
     }
 }
 

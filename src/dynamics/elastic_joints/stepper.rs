@@ -24,7 +24,7 @@ const STRIDE: usize = 8;
 /// what that bends it ...
 const REST_STRAIN_RATIO: f64 = 0.1;
 /// ... or below this part of the barrier of its first mechanism.
-const REST_BARRIER_RATIO: f64 = 0.01;
+const REST_BARRIER_RATIO: f64 = 0.03;
 /// Sways within this part of the mean displacement under the weight of the structure change no side.
 const SIDE_RATIO: f64 = 0.1;
 /// A joint that presses on less than this part of its length is drawn as a hinge.
@@ -114,7 +114,13 @@ impl<'a> Lane<'a> {
         step.drift_s = Lanes([step_s]);
         step.damping = Lanes([damping_time_s / step_s]);
         (self.kicked_s, self.ground_m_s) = (to_s, ground_m_s);
-        self.course.time += step_s;
+        // The last of equal steps ends where it should, not within rounding of it.
+        let left_s = self.until_s - self.course.time;
+        self.course.time = if step_s > 0.75 * left_s {
+            self.until_s
+        } else {
+            self.course.time + step_s
+        };
         self.course.summary.cost.steps += 1;
         self.strides += 1;
         step
@@ -306,6 +312,9 @@ impl<'a, const L: usize> Group<'a, L> {
     /// samples were made.
     pub(super) fn go_on(&mut self, index: usize) -> Option<Result<Summary, ElasticJointError>> {
         let lane = self.lanes[index].as_mut()?;
+        if lane.strides > 0 {
+            return None;
+        }
         if let Some(error) = lane.lost.take() {
             self.lanes[index] = None;
             return Some(Err(error));
