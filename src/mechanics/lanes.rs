@@ -231,6 +231,7 @@ impl<const D: usize> Sub for Dual<D> {
 impl<const D: usize> Mul for Dual<D> {
     type Output = Self;
 
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of derivatives")]
     fn mul(self, other: Self) -> Self {
         Self::with(self.value * other.value, |i| {
             self.slope[i] * other.value + self.value * other.slope[i]
@@ -241,6 +242,7 @@ impl<const D: usize> Mul for Dual<D> {
 impl<const D: usize> Div for Dual<D> {
     type Output = Self;
 
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of derivatives")]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
         Self::with(value, |i| {

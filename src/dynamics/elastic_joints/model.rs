@@ -317,22 +317,22 @@ impl Model for ElasticJoints {
         let mut waiting = 0..cases.len();
         let mut running = [None; SIDE_BY_SIDE];
         loop {
-            for lane in 0..SIDE_BY_SIDE {
-                if let Some(case) = running[lane]
+            for (lane, running) in running.iter_mut().enumerate() {
+                if let Some(case) = *running
                     && let Some(ended) = group.go_on(lane)
                 {
                     let ended = ended.map_err(SimulationError::from);
                     answers[case] = Some(ended.and_then(|summary| self.judged(summary, &rest)));
-                    running[lane] = None;
+                    *running = None;
                 }
-                while running[lane].is_none()
+                while running.is_none()
                     && let Some(case) = waiting.next()
                 {
                     let (ground, request) = &cases[case];
                     match self.task(ground, request) {
                         Ok(task) => {
                             group.begin(lane, task, None);
-                            running[lane] = Some(case);
+                            *running = Some(case);
                             group.go_on(lane);
                         }
                         Err(error) => answers[case] = Some(Err(error)),

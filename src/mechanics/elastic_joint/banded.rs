@@ -83,7 +83,7 @@ mod tests {
     fn equations_with_a_band_are_solved() {
         let (size, width) = (30, 4);
         let entry = |row: usize, column: usize| {
-            if row == column && row % 3 == 0 {
+            if row == column && row.is_multiple_of(3) {
                 0.0
             } else {
                 ((7 * row + 13 * column + row * column) % 17) as f64 - 7.5
@@ -93,10 +93,10 @@ mod tests {
         let due: Vec<f64> = (0..size).map(|i| (i as f64).sin()).collect();
         let mut matrix = Banded::new(size, width);
         let mut right = vec![0.0; size];
-        for row in 0..size {
+        for (row, right) in right.iter_mut().enumerate() {
             for column in band(row) {
                 matrix.add(row, column, entry(row, column));
-                right[row] += entry(row, column) * due[column];
+                *right += entry(row, column) * due[column];
             }
         }
         assert!(matrix.solve(&mut right));

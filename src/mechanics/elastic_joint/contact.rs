@@ -274,6 +274,10 @@ impl Law {
         let k = joint.normal_n_m;
         let p = gap.penetrations_m;
         let moved = both!(end: p[end] - memory.penetrations_m[end]);
+        #[expect(
+            clippy::manual_map,
+            reason = "in functions as large as a step the compiler leaves calls of closures"
+        )]
         let brakes = match damping {
             Some(damping) => Some(both!(end: moved[end] * damping)),
             None => None,
