@@ -114,9 +114,9 @@ impl Scenario {
         py: Python<'_>,
         tell: impl FnOnce(&dyn MechanismModel) -> T + Send,
     ) -> PyResult<T> {
-        let own = match self.inner.motion().row() {
-            None => Some(self.model(py)?),
-            Some(_) => None,
+        let own = match self.inner.motion().hinges() {
+            Hinges::Four => Some(self.model(py)?),
+            Hinges::Free => None,
         };
         py.detach(|| match own.and_then(|model| model.as_mechanisms()) {
             Some(model) => Ok(tell(model)),

@@ -188,8 +188,8 @@ impl Job {
             let message = "--rotations - is for one model: choose --hinges four or --hinges free";
             return Err(Failure::Input(message.to_owned()));
         }
-        let mut in_steps = scenarios.iter().filter_map(|one| one.motion().row());
-        if arguments.no_spread && in_steps.next().is_none() {
+        let in_steps = |one: &Scenario| one.motion().hinges().has_joints();
+        if arguments.no_spread && !scenarios.iter().any(in_steps) {
             let message =
                 "--no-spread goes with free hinges: four links and columns are not repeated";
             return Err(Failure::Input(message.to_owned()));

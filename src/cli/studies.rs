@@ -87,7 +87,7 @@ impl MapOption {
     /// The look of a map.
     fn look(self, scenario: &Scenario, figure: Figure) -> Result<Look, String> {
         let by_peak = self.color == Color::Peak;
-        let free_hinges = scenario.motion().row().is_some();
+        let free_hinges = scenario.motion().hinges().has_joints();
         if self.no_impact && free_hinges {
             return Err(
                 "--no-impact is about four links, and the hinges of this map are free: leave it out, or give \

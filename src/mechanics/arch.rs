@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use serde::Serialize;
 
 use crate::argument::{ArgumentError, within};
+use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::ring::Ring;
@@ -224,6 +225,20 @@ impl Arch {
     #[must_use]
     pub const fn density_kg_m3(&self) -> f64 {
         self.density_kg_m3
+    }
+
+    /// Its voussoirs as a row of blocks.
+    ///
+    /// # Errors
+    /// When it has none.
+    pub fn row(&self) -> Result<Row, RowError> {
+        Row::arch(
+            &self.ring(),
+            self.voussoirs().ok_or(RowError::NoVoussoirs)?,
+            self.mean_radius_m(),
+            self.depth_m(),
+            self.density_kg_m3(),
+        )
     }
 
     /// Number of equal voussoirs; `None` where hinges may open at any section.

@@ -62,6 +62,9 @@ pub enum RowError {
         "{0} blocks: a row has 1 to {MAX_BLOCKS}, since steps get longer and shorter with their number"
     )]
     Count(usize),
+    /// An arch is a ring without joints.
+    #[error("an arch without joints is no row of blocks: give the number of voussoirs")]
+    NoVoussoirs,
     /// The number of joints does not fit.
     #[error(
         "{joints} joints for {blocks} blocks: a row between two supports has one more, a stack as many"

@@ -21,7 +21,7 @@ use nalgebra::{Rotation2, Vector2};
 use serde::Serialize;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
-use super::blocks::MAX_BLOCKS;
+use super::blocks::{MAX_BLOCKS, Row, RowError};
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
@@ -207,6 +207,21 @@ impl Column {
     #[must_use]
     pub const fn is_on_pedestal(&self) -> bool {
         self.pedestal
+    }
+
+    /// Its drums as a row of blocks, on ground that goes on unless it stands on a pedestal.
+    ///
+    /// # Errors
+    /// When the drums make no row.
+    pub fn row(&self) -> Result<Row, RowError> {
+        let row = Row::tapered_stack(
+            &self.drum_heights_m(),
+            self.width_m(),
+            self.top_width_m(),
+            self.depth_m(),
+            self.density_kg_m3(),
+        )?;
+        Ok(row.with_supports_that_go_on([!self.is_on_pedestal(), false]))
     }
 
     /// Heights of its drums from the base up, in metres; its own height where it is one block.

@@ -74,7 +74,7 @@ fn short(value: f64) -> f64 {
 }
 
 fn model(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> String {
-    if scenario.motion().row().is_some() {
+    if scenario.motion().hinges().has_joints() {
         return scenario.motion().words().to_owned();
     }
     let name = match scenario.structure().thrusts() {

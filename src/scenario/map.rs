@@ -269,7 +269,7 @@ const SPREAD: &str = "spread";
 /// Reads `spread`, which is of free hinges.
 fn read_spread(table: &mut Table<'_>, hinges: Hinges) -> Reading<bool> {
     let spread = table.or(SPREAD, &Switch, false)?;
-    if spread && hinges == Hinges::Four {
+    if spread && !hinges.has_joints() {
         let wrong = "goes with a table [free_hinges]: four links are integrated to a tolerance, not in steps";
         return Err(table.wrong(SPREAD, wrong));
     }
@@ -292,7 +292,7 @@ fn suits(
         {
             "applies to a circular [arch] without piers and loads"
         }
-        Quantity::Restitution if hinges == Hinges::Free => {
+        Quantity::Restitution if hinges.has_joints() => {
             "goes with four links: with free hinges impacts follow from the blocks"
         }
         Quantity::Restitution

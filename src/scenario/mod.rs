@@ -56,7 +56,7 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::dynamics::free_hinges::RowOptions;
+use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
 use crate::mechanics::blocks::Row;
@@ -372,8 +372,7 @@ impl Scenario {
         Ok(match &self.structure {
             Structure::Masonry(masonry) => Some(masonry.row().clone()),
             Structure::Column(column) if !column.is_one_prism() => {
-                let drums = self.structure.free_hinges(RowOptions::default())?;
-                Some(drums.row().clone())
+                Some(self.structure.row().map_err(FreeHingesError::from)?)
             }
             Structure::Arch(_) | Structure::Column(_) => None,
         })
@@ -442,8 +441,8 @@ impl Scenario {
             serde_json::to_value(value).expect("a scenario consists of tables of numbers and texts")
         }
         // What a row of blocks is asked for stands beside it, and what mechanisms are asked for after the ground.
-        let motion = |row: bool| match self.motion.row().is_some() {
-            is_row if is_row == row => self.motion.table(),
+        let motion = |row: bool| match self.motion.hinges().has_joints() {
+            has_joints if has_joints == row => self.motion.table(),
             _ => ("", Value::Null),
         };
         let Value::Object(structure) = json(&self.structure) else {

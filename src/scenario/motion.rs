@@ -6,7 +6,7 @@ use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
 use super::{free_hinges, impact};
 use crate::dynamics::free_hinges::RowOptions;
-use crate::dynamics::model::Model;
+use crate::dynamics::model::{Model, Request};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 
 named! {
@@ -16,6 +16,17 @@ named! {
         Four = "four",
         /// A row of blocks whose joints open and shut anywhere.
         Free = "free",
+    }
+}
+
+impl Hinges {
+    /// Whether it moves a row of blocks at its joints.
+    #[must_use]
+    pub const fn has_joints(self) -> bool {
+        match self {
+            Self::Four => false,
+            Self::Free => true,
+        }
     }
 }
 
@@ -93,12 +104,23 @@ impl Motion {
         }
     }
 
-    /// Options of a row of blocks; `None` of mechanisms, which are not computed in steps.
+    /// Coulomb's coefficient of friction of joints that slip; `None` where none does.
     #[must_use]
-    pub const fn row(&self) -> Option<RowOptions> {
+    pub const fn friction_coefficient(&self) -> Option<f64> {
         match self {
             Self::FourLinks(_) => None,
-            Self::FreeHinges(options) => Some(*options),
+            Self::FreeHinges(options) => options.friction_coefficient,
+        }
+    }
+
+    /// The longest step of a motion of a structure, in seconds; `None` where steps follow from a tolerance, or where it does not stand.
+    pub(super) fn longest_step_s(&self, structure: &Structure, request: &Request) -> Option<f64> {
+        match self {
+            Self::FourLinks(_) => None,
+            Self::FreeHinges(options) => {
+                let model = structure.free_hinges(*options).ok()?;
+                Some(model.longest_step_s(request))
+            }
         }
     }
 

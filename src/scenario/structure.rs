@@ -16,7 +16,7 @@ use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use crate::dynamics::model::{FourLinkModel, MechanismModel};
 use crate::mechanics::arch::{self, Arch};
-use crate::mechanics::blocks::MAX_BLOCKS;
+use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError};
 use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
@@ -72,7 +72,7 @@ pub enum ModelError {
 impl Structure {
     /// Reads what stands, for a model of motion. Files are relative to `folder`.
     pub(super) fn read(table: &mut Table<'_>, folder: &Path, hinges: Hinges) -> Reading<Self> {
-        let free_hinges = hinges == Hinges::Free;
+        let free_hinges = hinges.has_joints();
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_nothing);
         let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));
@@ -187,17 +187,24 @@ impl Structure {
         }
     }
 
+    /// Its blocks.
+    ///
+    /// # Errors
+    /// When it is an arch without voussoirs.
+    pub fn row(&self) -> Result<Row, RowError> {
+        match self {
+            Self::Arch(arch) => arch.row(),
+            Self::Column(column) => column.row(),
+            Self::Masonry(masonry) => Ok(masonry.row().clone()),
+        }
+    }
+
     /// The model of its motion as a row of blocks whose joints open and shut.
     ///
     /// # Errors
     /// When it is an arch without voussoirs, or cannot stand.
     pub fn free_hinges(&self, options: RowOptions) -> Result<FreeHinges, FreeHingesError> {
-        let model = match self {
-            Self::Arch(arch) => FreeHinges::of_arch(arch)?,
-            Self::Column(column) => FreeHinges::of_column(column)?,
-            Self::Masonry(masonry) => FreeHinges::new(masonry.row().clone())?,
-        };
-        model.with_options(options)
+        FreeHinges::new(self.row()?)?.with_options(options)
     }
 }
 

@@ -100,13 +100,14 @@ impl Scenario {
     fn takes_long(&self) -> Option<String> {
         let duration_s = self.simulation.duration_s;
         let begin = format!("the simulation lasts {} s", short(duration_s));
-        let Some(options) = self.motion.row() else {
+        if !self.motion.hinges().has_joints() {
             return (duration_s > DURATION_S).then(|| {
                 format!("{begin}: unless it rests or overturns before, that takes minutes or more")
             });
-        };
-        let model = self.structure.free_hinges(options).ok()?;
-        let longest_s = model.longest_step_s(&self.request());
+        }
+        let longest_s = self
+            .motion
+            .longest_step_s(&self.structure, &self.request())?;
         let steps = duration_s / longest_s;
         (steps > STEPS).then(|| {
             format!(

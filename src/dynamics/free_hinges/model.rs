@@ -131,18 +131,7 @@ impl FreeHinges {
     /// # Errors
     /// When the arch has no voussoirs, or cannot carry its own weight.
     pub fn of_arch(arch: &Arch) -> Result<Self, FreeHingesError> {
-        let voussoirs = arch.voussoirs().ok_or(ArgumentError {
-            argument: "voussoirs",
-            value: 0.0,
-            allowed: "given: free hinges open at joints".to_owned(),
-        })?;
-        Self::new(Row::arch(
-            &arch.ring(),
-            voussoirs,
-            arch.mean_radius_m(),
-            arch.depth_m(),
-            arch.density_kg_m3(),
-        )?)
+        Self::new(arch.row()?)
     }
 
     /// The drums of a column.
@@ -150,14 +139,7 @@ impl FreeHinges {
     /// # Errors
     /// When the drums make no row, or the column cannot carry its own weight.
     pub fn of_column(column: &Column) -> Result<Self, FreeHingesError> {
-        let row = Row::tapered_stack(
-            &column.drum_heights_m(),
-            column.width_m(),
-            column.top_width_m(),
-            column.depth_m(),
-            column.density_kg_m3(),
-        )?;
-        Self::new(row.with_supports_that_go_on([!column.is_on_pedestal(), false]))
+        Self::new(column.row()?)
     }
 
     /// The same with other options.

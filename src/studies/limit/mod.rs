@@ -41,10 +41,9 @@ pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
         Some(row) => told::row(scenario, &row)?,
         None => told::mechanism(scenario)?,
     };
-    let options = scenario.motion().row().unwrap_or_default();
-    if let Some(coefficient) = options.friction_coefficient {
-        let model = scenario.structure().free_hinges(options)?;
-        told::add_friction(&mut answer, model.row(), coefficient)?;
+    if let Some(coefficient) = scenario.motion().friction_coefficient() {
+        let row = scenario.structure().row().map_err(FreeHingesError::from)?;
+        told::add_friction(&mut answer, &row, coefficient)?;
     }
     Ok(answer)
 }

@@ -172,7 +172,7 @@ impl<'a> OverturningMap<'a> {
             Quantity::Other,
         ];
         let mut structures = depends(&shapes);
-        if scenario.motion().row().is_some() {
+        if scenario.motion().hinges().has_joints() {
             for (depends, of_size) in structures.iter_mut().zip(depends(&[Quantity::MeanRadius])) {
                 *depends |= of_size;
             }
@@ -214,7 +214,7 @@ impl<'a> OverturningMap<'a> {
     /// Whether cells are rows of blocks with free hinges.
     #[must_use]
     pub const fn has_free_hinges(&self) -> bool {
-        self.scenario.motion().row().is_some()
+        self.scenario.motion().hinges().has_joints()
     }
 
     /// Whether each cell tells how many outcomes it has when it is computed in other ways.

@@ -179,7 +179,7 @@ impl Look {
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
             return Err("needs the axes `duration_s` and `amplitude_g`");
         }
-        if scenario.motion().row().is_some() {
+        if scenario.motion().hinges().has_joints() {
             return Err("goes with four links and columns: free hinges have no p");
         }
         let model = scenario.mechanisms();

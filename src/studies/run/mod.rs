@@ -136,7 +136,7 @@ impl<'a> Run<'a> {
     /// # Errors
     /// In words, when its structure has no such model of motion, or what is wanted does not go with it.
     pub fn new(scenario: &'a Scenario, wanted: Wanted) -> Result<Self, String> {
-        if wanted.dimensionless && scenario.motion().row().is_some() {
+        if wanted.dimensionless && scenario.motion().hinges().has_joints() {
             return Err(
                 "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to \
                  measure by"

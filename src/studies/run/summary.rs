@@ -180,8 +180,8 @@ impl Object {
         self.number("energy_defect_over_largest", row.energy_error)?;
         self.number("closure_error_m", row.closure_error_m)?;
         if let Some(sliding) = &row.sliding {
-            let options = scenario.motion().row().unwrap_or_default();
-            self.number("friction_coefficient", options.friction_coefficient)?;
+            let coefficient = scenario.motion().friction_coefficient();
+            self.number("friction_coefficient", coefficient)?;
             self.numbers("slips_m", &sliding.offsets_m)?;
             self.numbers("largest_slips_m", &sliding.largest_offsets_m)?;
             self.number("friction_j", sliding.friction_j)?;

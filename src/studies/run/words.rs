@@ -244,8 +244,7 @@ fn incipient(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Strin
         .copied()
         .fold(f64::INFINITY, f64::min);
     let (reaches, uneven) = (reaches(scenario, history, least_g), "the smaller one");
-    let options = scenario.motion().row().unwrap_or_default();
-    let incipient = match options.friction_coefficient {
+    let incipient = match scenario.motion().friction_coefficient() {
         None => "incipient acceleration A_L",
         Some(_) => "incipient acceleration with friction",
     };

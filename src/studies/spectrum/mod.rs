@@ -132,7 +132,7 @@ impl<'a> OverturningSpectrum<'a> {
         if scenario.initial().is_some() {
             return Err(NoSpectrum::Initial);
         }
-        if scenario.motion().row().is_some() {
+        if scenario.motion().hinges().has_joints() {
             return Err(NoSpectrum::FreeHinges);
         }
         let Some(Ground::Pulse(pulse)) = scenario.ground() else {
