@@ -18,6 +18,7 @@ mod column_results;
 mod drawing_data;
 mod elastic_joint_mechanics;
 mod elastic_joints;
+mod elastic_joints_run;
 mod energy_balance;
 mod equivalent;
 mod figures;

@@ -159,15 +159,15 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
     let map = OverturningMap::new(&scenario).unwrap();
     let request = scenario.request_from_rest();
     let row = scenario
-        .structure()
-        .free_hinges(scenario.motion().row().unwrap())
+        .motion()
+        .model_for_many_cases(scenario.structure())
         .unwrap();
     let mut rows = Vec::new();
     for index in 0..map.count() {
         let [duration_s, amplitude_g] = map.coordinates(index);
         let ground =
             GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
-        let own = outcome_of(&row, &ground, &request);
+        let own = outcome_of(&*row, &ground, &request);
         let mut outcomes = vec![own];
         for repetition in row.repetitions() {
             outcomes.push(outcome_of(&*repetition.model, &ground, &request));
@@ -484,7 +484,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
     let free = read_with(&file, Hinges::Free).unwrap();
     assert_eq!(free, chosen);
     let four = read_with(&file, Hinges::Four).unwrap();
-    assert_eq!(four.motion().row(), None);
+    assert_eq!(four.motion().hinges(), Hinges::Four);
     for scenario in [free, four] {
         assert_eq!(parsed(&scenario.to_toml()), scenario);
     }

@@ -59,6 +59,7 @@ fn the_reference_has_the_keys_that_are_read() {
         ("arch", vec!["arch"]),
         ("column", vec!["column"]),
         ("free_hinges", vec!["free_hinges"]),
+        ("elastic_joints", vec!["elastic_joints"]),
         (
             "ground.<kind>",
             vec!["ground.rectangular", "ground.gabor", "ground.windowed_sine"],

@@ -183,7 +183,9 @@ proptest! {
         match &row {
             Err(RowError::Count(count)) => prop_assert!(*count == 0 && faces.len() < 2),
             Err(RowError::Dimension { .. }) => prop_assert!(!(size_m > 0.0 && size_m < f64::INFINITY)),
-            Err(RowError::Joints { .. }) => return Err(TestCaseError::fail("the joints are counted by the row")),
+            Err(RowError::Joints { .. } | RowError::NoVoussoirs) => {
+                return Err(TestCaseError::fail("the joints are counted by the row"));
+            }
             Err(RowError::Size { size_m, extent_m }) => prop_assert!(*size_m < 1e-6 * extent_m),
             Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) | Ok(_) => {}
         }

@@ -3,7 +3,7 @@
 use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::{
-    Ground, Place, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
+    Ground, Motion, Place, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
 };
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
@@ -86,7 +86,7 @@ fn defaults() {
         scenario.title().is_none() && scenario.ground().is_none() && scenario.initial().is_none()
     );
     assert!(
-        scenario.motion().row().is_none()
+        !scenario.motion().hinges().has_joints()
             && scenario.map().is_none()
             && scenario.spectrum().is_none()
             && scenario.suite().is_none()
@@ -94,7 +94,10 @@ fn defaults() {
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
 
     let scenario = parse(&format!("{COLUMN}[free_hinges]\n")).unwrap();
-    assert_eq!(scenario.motion().row(), Some(RowOptions::default()));
+    assert_eq!(
+        scenario.motion(),
+        &Motion::FreeHinges(RowOptions::default())
+    );
     let Structure::Column(column) = scenario.structure() else {
         panic!("a column")
     };
@@ -126,7 +129,7 @@ fn every_key_of_a_row() {
         shortest_step_s: Some(1e-5),
         friction_coefficient: None,
     };
-    assert_eq!(scenario.motion().row(), Some(steps));
+    assert_eq!(scenario.motion(), &Motion::FreeHinges(steps));
     let column = Column::new(2.0, 0.8)
         .and_then(|column| column.with_drum_heights_m(vec![0.8, 0.8, 0.4]))
         .and_then(|column| column.with_top_width_m(0.6))

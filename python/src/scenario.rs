@@ -116,7 +116,7 @@ impl Scenario {
     ) -> PyResult<T> {
         let own = match self.inner.motion().hinges() {
             Hinges::Four => Some(self.model(py)?),
-            Hinges::Free => None,
+            Hinges::Free | Hinges::Elastic => None,
         };
         py.detach(|| match own.and_then(|model| model.as_mechanisms()) {
             Some(model) => Ok(tell(model)),
@@ -133,6 +133,7 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
         None => Ok(None),
         Some("four_links") => Ok(Some(Hinges::Four)),
         Some("free_hinges") => Ok(Some(Hinges::Free)),
+        Some("elastic_joints") => Ok(Some(Hinges::Elastic)),
         Some(other) => Err(PyValueError::new_err(format!(
             "`model = {other:?}` is not one of \"four_links\" and \"free_hinges\""
         ))),

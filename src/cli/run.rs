@@ -43,9 +43,10 @@ pub struct Arguments {
     /// rotation_over_critical. For four links and columns only.
     #[arg(long)]
     dimensionless: bool,
-    /// Model of motion [default: free if the scenario has [free_hinges], else four].
-    #[arg(long, value_enum)]
-    hinges: Option<Models>,
+    /// Models of motion; of several the results are in folders of their names, with a picture of all [default: elastic or free
+    /// if the scenario has [elastic_joints] or [free_hinges], else four].
+    #[arg(long, value_enum, value_delimiter = ',')]
+    hinges: Vec<Models>,
     /// Do not repeat a run with free hinges with half and with double steps.
     #[arg(long)]
     no_spread: bool,
@@ -73,7 +74,9 @@ pub enum Models {
     Four,
     /// Blocks whose joints open and shut anywhere.
     Free,
-    /// Both: results in the folders `four` and `free`, and a picture of both.
+    /// Blocks whose joints give way.
+    Elastic,
+    /// Four and free.
     Both,
 }
 
@@ -156,7 +159,7 @@ impl Job {
     /// The scenario of a file, or what its records make of it.
     fn read(path: &Path, arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let input = arguments.set.open(path)?;
-        let models = Models::read(arguments.hinges, &input)?;
+        let models = Models::read(&arguments.hinges, &input)?;
         let about = |failure| input.about(failure);
         let chosen = arguments.suite.choose(models).map_err(about)?;
         let jobs = chosen.into_iter().map(|(record, scenarios)| {
@@ -185,7 +188,7 @@ impl Job {
         }
         let several = scenarios.len() > 1;
         if several && place.to_stdout {
-            let message = "--rotations - is for one model: choose --hinges four or --hinges free";
+            let message = "--rotations - is for one model: choose one by --hinges";
             return Err(Failure::Input(message.to_owned()));
         }
         let in_steps = |one: &Scenario| one.motion().hinges().has_joints();
@@ -228,7 +231,8 @@ impl Job {
                 .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
             let path = folder.path().join(OVERLAY);
             folder.complete()?;
-            let _ = writeln!(text, "both in {}", path.display());
+            let all = if runs.len() > 2 { "all" } else { "both" };
+            let _ = writeln!(text, "{all} in {}", path.display());
         }
         Ok(RunResults {
             words: text,
@@ -239,15 +243,28 @@ impl Job {
 }
 
 impl Models {
+    const fn hinges(self) -> &'static [Hinges] {
+        match self {
+            Self::Four => &[Hinges::Four],
+            Self::Free => &[Hinges::Free],
+            Self::Elastic => &[Hinges::Elastic],
+            Self::Both => &[Hinges::Four, Hinges::Free],
+        }
+    }
+
     /// Reads a scenario for each model that is asked for, or for the one that it chooses.
-    pub fn read(asked: Option<Self>, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
-        let models: &[Option<Hinges>] = match asked {
-            None => &[None],
-            Some(Self::Four) => &[Some(Hinges::Four)],
-            Some(Self::Free) => &[Some(Hinges::Free)],
-            Some(Self::Both) => &[Some(Hinges::Four), Some(Hinges::Free)],
-        };
-        models.iter().map(|hinges| input.read(*hinges)).collect()
+    pub fn read(asked: &[Self], input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
+        let mut models = Vec::new();
+        for hinges in asked.iter().flat_map(|model| model.hinges()) {
+            if !models.contains(hinges) {
+                models.push(*hinges);
+            }
+        }
+        if models.is_empty() {
+            return Ok(vec![input.read(None)?]);
+        }
+        let scenarios = models.into_iter().map(|hinges| input.read(Some(hinges)));
+        scenarios.collect()
     }
 }
 

@@ -69,6 +69,8 @@ enum Model {
     Four,
     /// A row of blocks whose joints open and shut anywhere.
     Free,
+    /// A row of blocks whose joints give way.
+    Elastic,
 }
 
 impl HingesOption {
@@ -77,6 +79,7 @@ impl HingesOption {
         let hinges = self.hinges.map(|model| match model {
             Model::Four => Hinges::Four,
             Model::Free => Hinges::Free,
+            Model::Elastic => Hinges::Elastic,
         });
         let scenario = input.read(hinges)?;
         if !quiet {

@@ -27,9 +27,9 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     figure: FigureOption,
-    /// Model of motion [default: free if the scenario has [free_hinges], else four].
-    #[arg(long, value_enum)]
-    hinges: Option<Models>,
+    /// Models of motion [default: elastic or free if the scenario has [elastic_joints] or [free_hinges], else four].
+    #[arg(long, value_enum, value_delimiter = ',')]
+    hinges: Vec<Models>,
     /// Smallest factor on the ground motion.
     #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
     from: f64,
@@ -50,7 +50,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
     let input = arguments.scenario.open()?;
-    let models = Models::read(arguments.hinges, &input)?;
+    let models = Models::read(&arguments.hinges, &input)?;
     let about = |failure| input.about(failure);
     let place = input.results(arguments.out.as_deref())?;
     let (mut names, mut tasks) = (Vec::new(), Vec::new());

@@ -24,21 +24,18 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
 }
 
-/// Refuses friction that does not carry the weight of the structure.
+/// Refuses friction that does not carry the weight of the structure, in the table of that name.
 pub(super) fn carries(
     table: &mut Table<'_>,
+    name: &str,
     structure: &Structure,
-    options: RowOptions,
+    coefficient: Option<f64>,
 ) -> Reading<()> {
-    let Some(coefficient) = options.friction_coefficient else {
+    let Some(coefficient) = coefficient else {
         return Ok(());
     };
     // Whatever else is wrong with the row is told where it is used.
-    let without = RowOptions {
-        friction_coefficient: None,
-        ..options
-    };
-    let Ok(model) = structure.free_hinges(without) else {
+    let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());
     };
     if friction::stands(model.row(), coefficient) != Ok(false) {
@@ -51,5 +48,5 @@ pub(super) fn carries(
         ),
         Err(error) => error.to_string(),
     };
-    Err(table.wrong_in("free_hinges", "friction_coefficient", wrong))
+    Err(table.wrong_in(name, "friction_coefficient", wrong))
 }

@@ -26,6 +26,7 @@
 //! Field names are the keys of the file, units included.
 
 mod assignment;
+mod elastic_joints;
 mod error;
 mod free_hinges;
 mod ground;
@@ -62,6 +63,7 @@ use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_link::arch::FourLinkError;
 pub use assignment::Assignment;
+pub use elastic_joints::ElasticTable;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
@@ -442,7 +444,7 @@ impl Scenario {
         }
         // What a row of blocks is asked for stands beside it, and what mechanisms are asked for after the ground.
         let motion = |row: bool| match self.motion.hinges().has_joints() {
-            has_joints if has_joints == row => self.motion.table(),
+            has_joints if has_joints == row => (self.motion.table_name(), self.motion.table()),
             _ => ("", Value::Null),
         };
         let Value::Object(structure) = json(&self.structure) else {

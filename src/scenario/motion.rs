@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::elastic_joints::ElasticTable;
 use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
 use super::{free_hinges, impact};
@@ -16,6 +17,8 @@ named! {
         Four = "four",
         /// A row of blocks whose joints open and shut anywhere.
         Free = "free",
+        /// A row of blocks whose joints give way.
+        Elastic = "elastic",
     }
 }
 
@@ -25,7 +28,7 @@ impl Hinges {
     pub const fn has_joints(self) -> bool {
         match self {
             Self::Four => false,
-            Self::Free => true,
+            Self::Free | Self::Elastic => true,
         }
     }
 }
@@ -37,6 +40,8 @@ pub enum Motion {
     FourLinks(ImpactLaw),
     /// [`Hinges::Free`]: `[free_hinges]`.
     FreeHinges(RowOptions),
+    /// [`Hinges::Elastic`]: `[elastic_joints]`.
+    ElasticJoints(ElasticTable),
 }
 
 impl Motion {
@@ -46,6 +51,7 @@ impl Motion {
         match self {
             Self::FourLinks(_) => Hinges::Four,
             Self::FreeHinges(_) => Hinges::Free,
+            Self::ElasticJoints(_) => Hinges::Elastic,
         }
     }
 
@@ -55,6 +61,7 @@ impl Motion {
         match self {
             Self::FourLinks(_) => "four links",
             Self::FreeHinges(_) => "free hinges",
+            Self::ElasticJoints(_) => "elastic joints",
         }
     }
 
@@ -62,6 +69,7 @@ impl Motion {
     pub(super) const fn name(&self, structure: &Structure) -> &'static str {
         match self {
             Self::FreeHinges(_) => "free_hinges",
+            Self::ElasticJoints(_) => "elastic_joints",
             Self::FourLinks(_) if structure.thrusts() => "four_links",
             Self::FourLinks(_) => "column",
         }
@@ -75,6 +83,7 @@ impl Motion {
         Ok(match self {
             Self::FourLinks(law) => structure.model(*law)?,
             Self::FreeHinges(options) => Box::new(structure.free_hinges(*options)?),
+            Self::ElasticJoints(joints) => Box::new(joints.model(structure)?),
         })
     }
 
@@ -87,7 +96,7 @@ impl Motion {
         structure: &Structure,
     ) -> Result<Box<dyn Model>, ModelError> {
         match self {
-            Self::FourLinks(_) => self.model(structure),
+            Self::FourLinks(_) | Self::ElasticJoints(_) => self.model(structure),
             Self::FreeHinges(options) => {
                 let row = structure.free_hinges(*options)?;
                 Ok(Box::new(row.for_many_cases()))
@@ -100,7 +109,7 @@ impl Motion {
     pub fn impact(&self) -> ImpactLaw {
         match self {
             Self::FourLinks(law) => *law,
-            Self::FreeHinges(_) => ImpactModel::MaxRestitution.into(),
+            Self::FreeHinges(_) | Self::ElasticJoints(_) => ImpactModel::MaxRestitution.into(),
         }
     }
 
@@ -110,6 +119,7 @@ impl Motion {
         match self {
             Self::FourLinks(_) => None,
             Self::FreeHinges(options) => options.friction_coefficient,
+            Self::ElasticJoints(joints) => joints.friction_coefficient,
         }
     }
 
@@ -121,6 +131,7 @@ impl Motion {
                 let model = structure.free_hinges(*options).ok()?;
                 Some(model.longest_step_s(request))
             }
+            Self::ElasticJoints(joints) => Some(joints.model(structure).ok()?.longest_step_s()),
         }
     }
 
@@ -128,15 +139,46 @@ impl Motion {
     pub(super) fn check(&self, table: &mut Table<'_>, structure: &Structure) -> Reading<()> {
         match self {
             Self::FourLinks(_) => Ok(()),
-            Self::FreeHinges(options) => free_hinges::carries(table, structure, *options),
+            Self::FreeHinges(options) => free_hinges::carries(
+                table,
+                "free_hinges",
+                structure,
+                options.friction_coefficient,
+            ),
+            Self::ElasticJoints(joints) => free_hinges::carries(
+                table,
+                "elastic_joints",
+                structure,
+                joints.friction_coefficient,
+            ),
         }
     }
 
-    /// Its table, by its key.
-    pub(super) fn table(&self) -> (&'static str, Value) {
+    /// The compressive strength of joints that crush, in MPa; `None` where none does.
+    #[must_use]
+    pub const fn compressive_strength_mpa(&self) -> Option<f64> {
         match self {
-            Self::FourLinks(law) => ("impact", impact::to_json(law)),
-            Self::FreeHinges(options) => ("free_hinges", json!(options)),
+            Self::FourLinks(_) | Self::FreeHinges(_) => None,
+            Self::ElasticJoints(joints) => joints.compressive_strength_mpa,
+        }
+    }
+
+    /// The key of its table.
+    #[must_use]
+    pub const fn table_name(&self) -> &'static str {
+        match self {
+            Self::FourLinks(_) => "impact",
+            Self::FreeHinges(_) => "free_hinges",
+            Self::ElasticJoints(_) => "elastic_joints",
+        }
+    }
+
+    /// Its table.
+    pub(super) fn table(&self) -> Value {
+        match self {
+            Self::FourLinks(law) => impact::to_json(law),
+            Self::FreeHinges(options) => json!(options),
+            Self::ElasticJoints(joints) => json!(joints),
         }
     }
 }
@@ -146,13 +188,17 @@ pub(super) struct Tables {
     pub(super) hinges: Hinges,
     asked: bool,
     free_hinges: Reading<Option<RowOptions>>,
+    elastic_joints: Reading<Option<ElasticTable>>,
 }
 
 impl Tables {
     /// Reads which model it is, unless that is `asked` for, and the tables of rows.
     pub(super) fn read(table: &mut Table<'_>, asked: Option<Hinges>) -> Self {
         let free_hinges = table.table("free_hinges", free_hinges::read);
-        let chosen = if table.gives_table("free_hinges") {
+        let elastic_joints = table.table("elastic_joints", ElasticTable::read);
+        let chosen = if table.gives_table("elastic_joints") {
+            Hinges::Elastic
+        } else if table.gives_table("free_hinges") {
             Hinges::Free
         } else {
             Hinges::Four
@@ -161,20 +207,40 @@ impl Tables {
             hinges: asked.unwrap_or(chosen),
             asked: asked.is_some(),
             free_hinges,
+            elastic_joints,
         }
     }
 
     /// Reads what happens at impacts. Returns the model, and whether there is an `[impact]` that does not count.
     pub(super) fn complete(self, table: &mut Table<'_>) -> Reading<(Motion, bool)> {
         let law = table.table_or_defaults("impact", impact::read);
-        if !self.asked && table.gives("free_hinges") && table.gives("impact") {
-            let wrong = "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out";
+        let (elastic, free) = (table.gives("elastic_joints"), table.gives("free_hinges"));
+        if !self.asked && elastic && free {
+            let wrong =
+                "cannot be combined with [elastic_joints]; leave one out, or choose with --hinges";
+            return Err(table.wrong("free_hinges", wrong));
+        }
+        if !self.asked && (elastic || free) && table.gives("impact") {
+            let wrong = if elastic {
+                "cannot be combined with [elastic_joints], which have no impacts; leave one out"
+            } else {
+                "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out"
+            };
             return Err(table.wrong("impact", wrong));
         }
-        let (law, free_hinges) = (law?, self.free_hinges?);
+        let (law, free_hinges, elastic_joints) = (law?, self.free_hinges?, self.elastic_joints?);
         let motion = match self.hinges {
             Hinges::Four => Motion::FourLinks(law),
             Hinges::Free => Motion::FreeHinges(free_hinges.unwrap_or_default()),
+            Hinges::Elastic => match elastic_joints {
+                Some(joints) => Motion::ElasticJoints(joints),
+                None => {
+                    return Err(table.wrong_itself(
+                        "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there; \
+                         docs/elastic-joints.md tells how to choose",
+                    ));
+                }
+            },
         };
         Ok((motion, law != motion.impact()))
     }

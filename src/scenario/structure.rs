@@ -13,6 +13,7 @@ use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Switch, Table};
 use super::unlikely::LIKELY_EMBRACE_DEG;
 use crate::argument::{plain, rounded_up, short};
+use crate::dynamics::elastic_joints::ElasticJointsError;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use crate::dynamics::model::{FourLinkModel, MechanismModel};
 use crate::mechanics::arch::{self, Arch};
@@ -67,6 +68,9 @@ pub enum ModelError {
     /// It makes no row of blocks that stands.
     #[error(transparent)]
     FreeHinges(#[from] FreeHingesError),
+    /// It does not stand on its elastic joints.
+    #[error(transparent)]
+    ElasticJoints(#[from] ElasticJointsError),
 }
 
 impl Structure {

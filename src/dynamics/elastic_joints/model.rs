@@ -251,7 +251,7 @@ impl ElasticJoints {
 
 impl Model for ElasticJoints {
     fn repetitions(&self) -> Vec<Repetition> {
-        let others = [("half steps", 0.5), ("steps half as long again", 1.5)];
+        let others = [("half steps", 0.5), ("steps of two thirds", 2.0 / 3.0)];
         let repetition = |(name, factor): (&'static str, f64)| {
             let model = Box::new(Self {
                 steps_times: factor * self.steps_times,
@@ -276,6 +276,10 @@ impl Model for ElasticJoints {
             slipping: self.properties.friction_coefficient.map_or(0, |_| joints),
             pressing: joints,
         }
+    }
+
+    fn row(&self) -> Option<&Row> {
+        Some(self.rigid.row())
     }
 
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {

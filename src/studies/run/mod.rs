@@ -175,6 +175,8 @@ impl<'a> Run<'a> {
             SNAPSHOTS => !self.wanted.snapshots_s.is_empty(),
             POSES => self.wanted.poses,
             JOINTS => self.model.row().is_some(),
+            // Elastic joints know none.
+            IMPACTS => self.model.shape().pressing == 0,
             OVERLAY => false,
             _ => true,
         };

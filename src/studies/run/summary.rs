@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::Scales;
-use crate::dynamics::history::{Outcome, RowSummary, Summary};
+use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary};
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::spread::{PeakSpread, Spread, SpreadError};
 use crate::mechanics::sway::Sway;
@@ -143,6 +143,27 @@ impl Object {
         Ok(())
     }
 
+    /// What is told of elastic joints.
+    fn elastic(&mut self, elastic: &ElasticSummary) -> Result<(), OutputError> {
+        let largest = &elastic.largest_stress;
+        self.number("largest_compressive_stress_pa", largest.stress_pa)?;
+        self.put("largest_compressive_stress_joint", json!(largest.joint));
+        self.number("largest_compressive_stress_time_s", largest.time_s)?;
+        for (name, value) in [
+            ("elastic_j", elastic.elastic_j),
+            ("damped_j", elastic.damped_j),
+            ("friction_j", elastic.friction_j),
+            ("crushed_j", elastic.crushed_j),
+            ("ground_j", elastic.ground_j),
+            ("rest_eccentricity_ratio", elastic.rest_eccentricity_ratio),
+        ] {
+            self.number(name, value)?;
+        }
+        let joint = elastic.rest_eccentricity_joint;
+        self.put("rest_eccentricity_joint", json!(joint));
+        Ok(())
+    }
+
     /// What is told of a row of blocks.
     fn row(
         &mut self,
@@ -166,8 +187,10 @@ impl Object {
             half_cycles.push(Value::Object(object.0));
         }
         self.put("half_cycles", half_cycles.into());
+        if let Some(elastic) = &row.elastic {
+            self.elastic(elastic)?;
         // None where it was released beyond where it overturns.
-        if history.cost.steps > 0 {
+        } else if history.cost.steps > 0 {
             self.number("least_normal_n", row.least_normal_n)?;
         }
         if let Some(thrust) = &history.thrust {
@@ -175,7 +198,9 @@ impl Object {
             self.number("largest_friction_demand", friction.value)?;
             self.number("largest_friction_demand_time_s", friction.time_s)?;
         }
-        self.number("energy_taken_j", row.energy_taken_j)?;
+        if row.elastic.is_none() {
+            self.number("energy_taken_j", row.energy_taken_j)?;
+        }
         self.number("energy_defect_ratio", history.energy_defect_ratio)?;
         self.number("energy_defect_over_largest", row.energy_error)?;
         self.number("closure_error_m", row.closure_error_m)?;
@@ -187,6 +212,10 @@ impl Object {
             self.number("friction_j", sliding.friction_j)?;
             self.number("friction_bound_error", sliding.bound_error)?;
             self.counts([("unconverged_steps", sliding.unconverged)]);
+        }
+        if row.elastic.is_some() {
+            self.counts([("steps", history.cost.steps)]);
+            return Ok(());
         }
         self.counts([
             ("steps", history.cost.steps),

@@ -90,7 +90,10 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
 
 /// Columns of `joints.csv`, a row per sample: `time_s`, the gaps of all joints at both edges, `gap_0_intrados_m`,
 /// `gap_0_extrados_m` and so on; where joints slip, then `slip_0_m` and so on: the offset of the right face towards the
-/// extrados (of a column: of the upper face to the right).
+/// extrados (of a column: of the upper face to the right). Where joints are elastic, then what each bears: `normal_0_n` (compression is
+/// positive), `shear_0_n` (positive where it keeps the right face from slipping towards the extrados), `eccentricity_0_ratio` (how far
+/// the normal force lies towards the extrados from the middle, over the thickness; empty where nothing presses),
+/// `contact_0_ratio` (the part that presses) and the stresses `stress_0_intrados_pa` and `stress_0_extrados_pa`.
 ///
 /// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
 /// joint is an arc: thickness times relative rotation, plus the smaller gap.
@@ -98,11 +101,34 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     let shape = model.shape();
     let gaps = (0..shape.joints)
         .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
+    let pressures = (0..shape.pressing).flat_map(|joint| {
+        [
+            format!("normal_{joint}_n"),
+            format!("shear_{joint}_n"),
+            format!("eccentricity_{joint}_ratio"),
+            format!("contact_{joint}_ratio"),
+            format!("stress_{joint}_intrados_pa"),
+            format!("stress_{joint}_extrados_pa"),
+        ]
+    });
     let slips = (0..shape.slipping).map(|joint| format!("slip_{joint}_m"));
     vec![
         column("time_s", |sample: &Sample| sample.time_s),
         numbers(gaps, |sample: &Sample| sample.gaps_m.as_flattened()),
         numbers(slips, |sample: &Sample| &sample.offsets_m),
+        several(pressures, |sample: &Sample, cells| {
+            for joint in &sample.pressures {
+                let [intrados_pa, extrados_pa] = joint.edge_stresses_pa;
+                cells.extend([
+                    Cell::from(joint.normal_n),
+                    Cell::from(joint.shear_n),
+                    Cell::from(joint.eccentricity_ratio),
+                    Cell::from(joint.contact_ratio),
+                    Cell::from(intrados_pa),
+                    Cell::from(extrados_pa),
+                ]);
+            }
+        }),
     ]
 }
 

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
-use crate::dynamics::history::{Event, HalfCycle, Impact, Outcome, RowSummary, Sliding, Summary};
+use crate::dynamics::history::{
+    ElasticSummary, Event, HalfCycle, Impact, Outcome, RowSummary, Sliding, Stress, Summary,
+};
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, SpreadError};
 use crate::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
@@ -39,7 +41,12 @@ pub(super) fn words(
     let mut text = outcome(history);
     match (model.as_mechanisms(), &history.row) {
         (Some(model), _) => text += &of_mechanisms(model, history, impacts),
-        (None, Some(row)) => text += &of_row(history, row, impacts),
+        (None, Some(row)) => {
+            text += &of_row(scenario, history, row, impacts);
+            if let Some(elastic) = &row.elastic {
+                text += &of_elastic_joints(scenario, elastic);
+            }
+        }
         (None, None) => {}
     }
     text += &incipient(scenario, model, history);
@@ -122,7 +129,7 @@ fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
 }
 
 /// What is said of the motion of a row.
-fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
+fn of_row(scenario: &Scenario, history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
     let mut text = String::new();
     if let Some((time_s, impact)) = &impacts.first {
         let _ = writeln!(text, "  first impact at {time_s:.4} s: {}", landing(impact));
@@ -167,16 +174,55 @@ fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
             "the potential energy at which its first mechanism overturns",
         );
     }
-    let _ = writeln!(
+    let _ = write!(
         text,
-        "  energy defect {:.1e} of weight times size, {} steps, {} iterations",
-        history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
+        "  energy defect {:.1e} of weight times size, {} steps",
+        history.energy_defect_ratio, history.cost.steps
     );
+    let iterations = history.cost.evaluations;
+    let _ = match row.elastic {
+        None => writeln!(text, ", {iterations} iterations"),
+        Some(_) => writeln!(text),
+    };
     if row.energy_error > DOUBTFUL_ENERGY_ERROR {
         let _ = writeln!(
             text,
-            "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [free_hinges] makes it less",
-            1e2 * row.energy_error
+            "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [{}] makes it less",
+            1e2 * row.energy_error,
+            scenario.motion().table_name()
+        );
+    }
+    text
+}
+
+/// From here on the thrust of a row at rest lies close to the edge of a joint, over its thickness from the middle.
+const NEAR_EDGE_RATIO: f64 = 0.4;
+
+/// What is said of joints that give way.
+fn of_elastic_joints(scenario: &Scenario, elastic: &ElasticSummary) -> String {
+    let Stress {
+        stress_pa,
+        joint,
+        time_s,
+    } = elastic.largest_stress;
+    let mut text = format!(
+        "  largest compressive stress {:.3} MPa, at joint {joint} (at {time_s:.4} s)",
+        1e-6 * stress_pa
+    );
+    if let Some(strength_mpa) = scenario.motion().compressive_strength_mpa() {
+        let _ = write!(text, "; the strength is {strength_mpa:?} MPa");
+    }
+    let _ = writeln!(
+        text,
+        "\n  damping took {:.3} J, friction {:.3} J, crushing {:.3} J",
+        elastic.damped_j, elastic.friction_j, elastic.crushed_j
+    );
+    let ratio = elastic.rest_eccentricity_ratio;
+    if ratio > NEAR_EDGE_RATIO {
+        let joint = elastic.rest_eccentricity_joint;
+        let _ = writeln!(
+            text,
+            "  at rest the thrust lies {ratio:.3} t from the middle of joint {joint}: everything depends on how stiff the joints are"
         );
     }
     text
@@ -219,19 +265,22 @@ pub(super) fn taken_j(impact: &Impact) -> f64 {
 /// How it ended.
 fn outcome(history: &Summary) -> String {
     let time_s = history.outcome_time_s;
+    let elastic = history.row.as_ref().and_then(|row| row.elastic.as_ref());
     let impacts = match history.impacts {
-        0 => "without impact".to_owned(),
-        1 => "after 1 impact".to_owned(),
-        count => format!("after {count} impacts"),
+        // Elastic joints know none.
+        _ if elastic.is_some() => String::new(),
+        0 => " without impact".to_owned(),
+        1 => " after 1 impact".to_owned(),
+        count => format!(" after {count} impacts"),
     };
     match history.outcome {
         Outcome::NeverMoved => "  never moved\n".to_owned(),
-        Outcome::Rest => format!("  came to rest at {time_s:.4} s {impacts}\n"),
+        Outcome::Rest => format!("  came to rest at {time_s:.4} s{impacts}\n"),
         Outcome::Overturned(sway) => {
             let sway = sway.name();
-            format!("  overturned to the {sway} at {time_s:.4} s {impacts}\n")
+            format!("  overturned to the {sway} at {time_s:.4} s{impacts}\n")
         }
-        Outcome::StillRocking => format!("  still rocking at {time_s:.4} s {impacts}\n"),
+        Outcome::StillRocking => format!("  still rocking at {time_s:.4} s{impacts}\n"),
     }
 }
 

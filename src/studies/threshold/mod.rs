@@ -322,7 +322,7 @@ impl Shaking<'_> {
             match sample.verdict() {
                 verdict if verdict == below.verdict() => Ok(false),
                 verdict if verdict == above.verdict() => Ok(true),
-                _ => Err(sample),
+                _ => Err(Box::new(sample)),
             }
         });
         let met = match edge {
@@ -332,7 +332,7 @@ impl Shaking<'_> {
                     edges: vec![edge],
                 };
             }
-            Err(met) => met,
+            Err(met) => *met,
         };
         let mut found = Found::default();
         if met.verdict().is_some() {

@@ -1,0 +1,298 @@
+//! Joints that give way: `[elastic_joints]`.
+
+use std::f64::consts::PI;
+
+use serde::Serialize;
+
+use super::structure::{ModelError, Structure};
+use super::table::{Count, Number, OneOf, Reading, Table};
+use crate::argument::short;
+use crate::dynamics::elastic_joints::{ElasticJoints, ElasticJointsError, ElasticOptions};
+use crate::dynamics::free_hinges::FreeHingesError;
+use crate::mechanics::elastic_joint::{
+    Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
+};
+
+/// A stiffness in GPa/m, and a modulus in GPa, in Pa/m and Pa.
+const GPA: f64 = 1e9;
+/// A strength in MPa, in Pa.
+const MPA: f64 = 1e6;
+
+/// Stiffness against slip over that against penetration, where it is not given: the shear modulus over Young's.
+const SHEAR_RATIO: f64 = 0.4;
+/// Damping time where none is given, in seconds.
+const DAMPING_TIME_S: f64 = 1e-4;
+/// Stiffer joints are as good as rigid.
+const STIFFEST_GPA_M: f64 = 1000.0;
+
+const STIFFNESS_GPA_M: Number = scaled(&ElasticProperties::NORMAL_STIFFNESS_PA_M, GPA);
+const SHEAR_GPA_M: Number = Number::within(&(1e-5..=1e7));
+const MODULUS_GPA: Number = scaled(&ElasticProperties::MODULUS_PA, GPA);
+const MORTAR_M: Number = Number::within(&ElasticProperties::MORTAR_M);
+const COEFFICIENT: Number = Number::within(&ElasticProperties::FRICTION_COEFFICIENT);
+const DAMPING_S: Number = Number::within(&ElasticProperties::DAMPING_TIME_S);
+const DAMPING_RATIO: Number = Number::within(&(0.0..=1.0));
+const FREQUENCY_HZ: Number = Number::within(&(1e-3..=1e6));
+const STRENGTH_MPA: Number = scaled(&ElasticProperties::STRENGTH_PA, MPA);
+const POINTS: Count = Count {
+    range: ElasticProperties::CONTACT_POINTS,
+    why: "one does not hold a block",
+};
+const STEP_S: Number = Number::within(&ElasticOptions::STEP_S);
+
+const fn scaled(range: &std::ops::RangeInclusive<f64>, unit: f64) -> Number {
+    Number(
+        std::ops::Bound::Included(*range.start() / unit),
+        std::ops::Bound::Included(*range.end() / unit),
+    )
+}
+
+/// What `[elastic_joints]` says, in the units of its keys.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ElasticTable {
+    /// Stiffness of a joint per area, against penetration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal_stiffness_gpa_m: Option<f64>,
+    /// The same against slip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shear_stiffness_gpa_m: Option<f64>,
+    /// Young's modulus of the blocks, from which the stiffness follows instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stone_modulus_gpa: Option<f64>,
+    /// That of the mortar.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mortar_modulus_gpa: Option<f64>,
+    /// Its thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mortar_thickness_m: Option<f64>,
+    /// Coulomb's coefficient; without it nothing slips for good.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_coefficient: Option<f64>,
+    /// Damping forces are this times the rates of the elastic ones.
+    pub damping_time_s: f64,
+    /// Stress at which joints crush.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compressive_strength_mpa: Option<f64>,
+    /// Points that bear the stress; without it the whole joint does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_points: Option<usize>,
+    /// The longest step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longest_step_s: Option<f64>,
+}
+
+impl ElasticTable {
+    /// Reads `[elastic_joints]`.
+    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let stiffness = StiffnessKeys::read(table);
+        let friction_coefficient = table.optional("friction_coefficient", &COEFFICIENT);
+        let damping_time_s = read_damping(table);
+        let compressive_strength_mpa = table.optional("compressive_strength_mpa", &STRENGTH_MPA);
+        let contact_points = read_contact(table);
+        let longest_step_s = table.optional("longest_step_s", &STEP_S);
+        let StiffnessKeys {
+            normal_gpa_m,
+            shear_gpa_m,
+            stone_gpa,
+            mortar_gpa,
+            mortar_m,
+        } = stiffness?;
+        Ok(Self {
+            normal_stiffness_gpa_m: normal_gpa_m,
+            shear_stiffness_gpa_m: shear_gpa_m,
+            stone_modulus_gpa: stone_gpa,
+            mortar_modulus_gpa: mortar_gpa,
+            mortar_thickness_m: mortar_m,
+            friction_coefficient: friction_coefficient?,
+            damping_time_s: damping_time_s?,
+            compressive_strength_mpa: compressive_strength_mpa?,
+            contact_points: contact_points?,
+            longest_step_s: longest_step_s?,
+        })
+    }
+
+    /// Joints of a structure of this depth.
+    fn properties(&self, depth_m: f64) -> ElasticProperties {
+        let stiffness = match (self.normal_stiffness_gpa_m, self.stone_modulus_gpa) {
+            (None, Some(stone_gpa)) => Stiffness::Materials(Materials {
+                stone_modulus_pa: GPA * stone_gpa,
+                mortar: self
+                    .mortar_modulus_gpa
+                    .zip(self.mortar_thickness_m)
+                    .map(|(modulus_gpa, thickness_m)| [GPA * modulus_gpa, thickness_m]),
+                shear_ratio: SHEAR_RATIO,
+            }),
+            (normal_gpa_m, _) => {
+                let normal_gpa_m = normal_gpa_m.unwrap_or(STIFFEST_GPA_M);
+                let shear_gpa_m = self
+                    .shear_stiffness_gpa_m
+                    .unwrap_or(SHEAR_RATIO * normal_gpa_m);
+                Stiffness::Uniform(JointStiffness {
+                    normal_pa_m: GPA * normal_gpa_m,
+                    shear_pa_m: GPA * shear_gpa_m,
+                })
+            }
+        };
+        ElasticProperties {
+            stiffness,
+            depth_m,
+            friction_coefficient: self.friction_coefficient,
+            damping_time_s: self.damping_time_s,
+            compressive_strength_pa: self.compressive_strength_mpa.map(|mpa| MPA * mpa),
+            contact: self
+                .contact_points
+                .map_or(Contact::Continuous, Contact::Points),
+        }
+    }
+
+    /// The model of the motion of a structure.
+    ///
+    /// # Errors
+    /// When the structure has no joints, or does not stand on these.
+    pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
+        let row = structure.row().map_err(FreeHingesError::from)?;
+        let (depth_m, _) = structure.depth_and_density();
+        let model = ElasticJoints::new(row, self.properties(depth_m))?;
+        let options = ElasticOptions {
+            longest_step_s: self.longest_step_s,
+        };
+        Ok(model
+            .with_options(options)
+            .map_err(ElasticJointsError::from)?)
+    }
+}
+
+/// The keys that say how stiff joints are.
+struct StiffnessKeys {
+    normal_gpa_m: Option<f64>,
+    shear_gpa_m: Option<f64>,
+    stone_gpa: Option<f64>,
+    mortar_gpa: Option<f64>,
+    mortar_m: Option<f64>,
+}
+
+impl StiffnessKeys {
+    fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let normal_gpa_m = table.optional("normal_stiffness_gpa_m", &STIFFNESS_GPA_M);
+        let shear_gpa_m = table.optional("shear_stiffness_gpa_m", &SHEAR_GPA_M);
+        let stone_gpa = table.optional("stone_modulus_gpa", &MODULUS_GPA);
+        let mortar_gpa = table.optional("mortar_modulus_gpa", &MODULUS_GPA);
+        let mortar_m = table.optional("mortar_thickness_m", &MORTAR_M);
+        let read = Self {
+            normal_gpa_m: normal_gpa_m?,
+            shear_gpa_m: shear_gpa_m?,
+            stone_gpa: stone_gpa?,
+            mortar_gpa: mortar_gpa?,
+            mortar_m: mortar_m?,
+        };
+        read.check(table)?;
+        Ok(read)
+    }
+
+    /// Refuses stiffness that is missing, said twice, or as good as rigid.
+    fn check(&self, table: &mut Table<'_>) -> Reading<()> {
+        match (self.normal_gpa_m, self.stone_gpa) {
+            (None, None) => {
+                return Err(table.wrong_itself(
+                    "lacks a stiffness: give `normal_stiffness_gpa_m`, or `stone_modulus_gpa` from which it follows. \
+                     Published discrete-element models of arches take about 10 GPa/m, tables of rock joints 50; \
+                     docs/elastic-joints.md tells how to choose",
+                ));
+            }
+            (Some(_), Some(_)) => {
+                let wrong = "cannot be combined with `normal_stiffness_gpa_m`; give one of them";
+                return Err(table.wrong("stone_modulus_gpa", wrong));
+            }
+            (Some(normal_gpa_m), None) if normal_gpa_m > STIFFEST_GPA_M => {
+                let wrong = format!(
+                    "is as good as rigid, and takes very many steps; must be at most {}, or use [free_hinges], the limit of \
+                     stiff joints",
+                    short(STIFFEST_GPA_M)
+                );
+                return Err(table.wrong("normal_stiffness_gpa_m", wrong));
+            }
+            _ => {}
+        }
+        if self.stone_gpa.is_some() && self.shear_gpa_m.is_some() {
+            let wrong = "goes with `normal_stiffness_gpa_m`: from moduli both follow; leave it out";
+            return Err(table.wrong("shear_stiffness_gpa_m", wrong));
+        }
+        match (self.mortar_gpa, self.mortar_m) {
+            (Some(_), None) => {
+                Err(table.wrong("mortar_modulus_gpa", "needs `mortar_thickness_m` beside it"))
+            }
+            (None, Some(_)) => {
+                Err(table.wrong("mortar_thickness_m", "needs `mortar_modulus_gpa` beside it"))
+            }
+            (Some(_), Some(_)) if self.stone_gpa.is_none() => Err(table.wrong(
+                "mortar_modulus_gpa",
+                "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out",
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Damping, as a time or as a part of critical at a frequency.
+fn read_damping(table: &mut Table<'_>) -> Reading<f64> {
+    let time_s = table.optional("damping_time_s", &DAMPING_S);
+    let ratio = table.optional("damping_ratio", &DAMPING_RATIO);
+    let frequency_hz = table.optional("damping_frequency_hz", &FREQUENCY_HZ);
+    match (time_s?, ratio?, frequency_hz?) {
+        (time_s, None, None) => Ok(time_s.unwrap_or(DAMPING_TIME_S)),
+        (None, Some(ratio), Some(frequency_hz)) => {
+            let time_s = ratio / (PI * frequency_hz);
+            if time_s > *ElasticProperties::DAMPING_TIME_S.end() {
+                let wrong = format!(
+                    "at {frequency_hz:?} Hz is a damping time of {} s; must be at most {} s",
+                    short(time_s),
+                    short(*ElasticProperties::DAMPING_TIME_S.end())
+                );
+                return Err(table.wrong("damping_ratio", wrong));
+            }
+            Ok(time_s)
+        }
+        (Some(_), _, _) => {
+            let key = if table.gives("damping_ratio") {
+                "damping_ratio"
+            } else {
+                "damping_frequency_hz"
+            };
+            Err(table.wrong(
+                key,
+                "cannot be combined with `damping_time_s`; leave it out",
+            ))
+        }
+        (None, Some(_), None) => Err(table.wrong(
+            "damping_ratio",
+            "is a part of critical damping at a frequency: give `damping_frequency_hz` beside it",
+        )),
+        (None, None, Some(_)) => {
+            Err(table.wrong("damping_frequency_hz", "needs `damping_ratio` beside it"))
+        }
+    }
+}
+
+named! {
+    /// How the stress of a joint is summed.
+    pub enum Summed {
+        /// Exactly.
+        Continuous = "continuous",
+    }
+}
+
+/// The number of contact points; `None` of continuous contact.
+fn read_contact(table: &mut Table<'_>) -> Reading<Option<usize>> {
+    let summed = OneOf {
+        all: Summed::ALL,
+        name: Summed::name,
+    };
+    let contact = table.optional("contact", &summed);
+    let points = table.optional("contact_points", &POINTS);
+    let (contact, points) = (contact?, points?);
+    if contact.is_some() && points.is_some() {
+        let wrong = "cannot be combined with `contact`; give one of them";
+        return Err(table.wrong("contact_points", wrong));
+    }
+    Ok(points)
+}

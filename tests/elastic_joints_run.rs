@@ -1,0 +1,219 @@
+//! `[elastic_joints]`: what is read, what is refused, and what a run writes.
+
+use std::f64::consts::PI;
+use std::fs;
+
+use archrock::scenario::{Hinges, Motion, Scenario};
+
+use crate::common::parsed;
+use crate::program::{printed, refused};
+use crate::results::{Table, json};
+
+/// A block of 2700 kg/m3, 5 m high and 1 m wide, on a joint of 10 GPa/m.
+fn block(keys: &str) -> String {
+    format!(
+        "[column]\nheight_m = 5.0\nwidth_m = 1.0\ndensity_kg_m3 = 2700.0\n[elastic_joints]\n{keys}\n[ground.rectangular]\namplitude_g = -0.3\n\
+         duration_s = 0.3\n[simulation]\nduration_s = 3.0\n"
+    )
+}
+
+#[test]
+fn scenarios_are_written_as_they_are_read() {
+    for keys in [
+        "normal_stiffness_gpa_m = 10.0",
+        "normal_stiffness_gpa_m = 10.0\nshear_stiffness_gpa_m = 3.0\ncontact_points = 3\ncompressive_strength_mpa = 5.0",
+        "stone_modulus_gpa = 20.0\nfriction_coefficient = 0.7\ncontact = \"continuous\"\nlongest_step_s = 1e-5",
+        "stone_modulus_gpa = 20.0\nmortar_modulus_gpa = 1.0\nmortar_thickness_m = 0.01\ndamping_time_s = 0.0",
+    ] {
+        let scenario = parsed(&block(keys));
+        assert_eq!(scenario.motion().hinges(), Hinges::Elastic);
+        assert_eq!(parsed(&scenario.to_toml()), scenario, "{keys}");
+    }
+    // A part of critical damping is a time.
+    let keys = "normal_stiffness_gpa_m = 10.0\ndamping_ratio = 0.05\ndamping_frequency_hz = 1.7";
+    let scenario = parsed(&block(keys));
+    let Motion::ElasticJoints(joints) = scenario.motion() else {
+        panic!("elastic joints")
+    };
+    let due_s = 0.05 / (PI * 1.7);
+    assert!((joints.damping_time_s - due_s).abs() < 1e-15);
+    assert_eq!(parsed(&scenario.to_toml()), scenario);
+}
+
+#[test]
+fn what_is_no_joint_is_refused_with_its_place() {
+    let stiff = "normal_stiffness_gpa_m = 10.0\n";
+    for (keys, place, words) in [
+        ("", "5:1", ["lacks a stiffness", "docs/elastic-joints.md"]),
+        (
+            "normal_stiffness_gpa_m = -1.0",
+            "6:26",
+            ["out of range", "a number from"],
+        ),
+        (
+            "normal_stiffness_gpa_m = 2000.0",
+            "6:26",
+            ["as good as rigid", "[free_hinges]"],
+        ),
+        (
+            &format!("{stiff}stone_modulus_gpa = 20.0"),
+            "7:21",
+            ["cannot be combined", "give one"],
+        ),
+        (
+            &format!("{stiff}contact_points = 1"),
+            "7:18",
+            ["contact_points = 1", "2 (one does not hold a block)"],
+        ),
+        (
+            &format!("{stiff}contact_points = 3\ncontact = \"continuous\""),
+            "7:18",
+            ["cannot be combined", "`contact`"],
+        ),
+        (
+            &format!("{stiff}damping_ratio = 0.05"),
+            "7:17",
+            ["at a frequency", "damping_frequency_hz"],
+        ),
+        (
+            &format!("{stiff}mortar_modulus_gpa = 1.0"),
+            "7:22",
+            ["needs", "mortar_thickness_m"],
+        ),
+        (
+            &format!("{stiff}compressive_strength_mpa = -3.0"),
+            "7:28",
+            ["out of range", "a number from"],
+        ),
+        (
+            &format!("{stiff}[impact]\nmodel = \"mirrored\""),
+            "7:1",
+            ["[elastic_joints]", "leave one out"],
+        ),
+        (
+            &format!("{stiff}[free_hinges]"),
+            "7:1",
+            ["[elastic_joints]", "--hinges"],
+        ),
+    ] {
+        let errors = Scenario::parse(&block(keys), "s.toml")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            errors.starts_with(&format!("s.toml:{place}: ")),
+            "{keys}: {errors}"
+        );
+        for word in words {
+            assert!(errors.contains(word), "{keys}: {errors}");
+        }
+    }
+}
+
+/// At rest a column stands on its weight: `N = m g`, evenly over the base.
+#[test]
+fn a_run_tells_what_joints_bear() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = block(
+        "normal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\ncompressive_strength_mpa = 20.0",
+    );
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let said = printed(folder.path(), &["run", "s.toml", "--out", "o"]);
+    for words in [
+        "still rocking at 3.0000 s\n",
+        "largest compressive stress",
+        "strength is 20.0 MPa",
+        "damping took",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    assert!(!said.contains("impact"), "{said}");
+    let weight_n = 5.0 * 1.0 * 2700.0 * 9.81;
+    let joints = Table::read(&folder.path().join("o/joints.csv"));
+    let first = |name: &str| joints.numbers(name)[0];
+    assert!((first("normal_0_n") / weight_n - 1.0).abs() < 1e-9);
+    assert!(first("shear_0_n").abs() < 1e-9 * weight_n);
+    assert!(first("eccentricity_0_ratio").abs() < 1e-9);
+    for edge in ["intrados", "extrados"] {
+        let stress_pa = first(&format!("stress_0_{edge}_pa"));
+        assert!((stress_pa / weight_n - 1.0).abs() < 1e-9, "{stress_pa}");
+    }
+    let summary = json(&folder.path().join("o/summary.json"));
+    // Rocking, the whole weight and more is on a part of the base.
+    let largest_pa = summary["largest_compressive_stress_pa"].as_f64().unwrap();
+    assert!(largest_pa > 5.0 * weight_n && largest_pa <= 2e7 * (1.0 + 1e-9));
+    // What the ground gave moves still, but for what is taken.
+    let number = |name: &str| summary[name].as_f64().unwrap();
+    let taken_j = number("damped_j") + number("friction_j") + number("crushed_j");
+    assert!(taken_j > 0.0 && taken_j < 0.5 * number("ground_j"));
+}
+
+/// The threshold of a block is that of its table, whichever study asks: a twin with rigid joints stands up to 0.5017 g.
+#[test]
+fn studies_take_elastic_joints() {
+    let folder = tempfile::tempdir().unwrap();
+    let keys = "normal_stiffness_gpa_m = 1.0\nshear_stiffness_gpa_m = 1.0\nfriction_coefficient = 0.7\ndamping_time_s = 0.0";
+    let text = block(keys)
+        .replace("-0.3\n", "-1.0\n")
+        .replace("duration_s = 3.0", "duration_s = 8.0");
+    let map = "[map]\namplitude_g = [-0.46, -0.43]\nduration_s = [0.3]\n";
+    fs::write(folder.path().join("s.toml"), format!("{text}{map}")).unwrap();
+    printed(
+        folder.path(),
+        &[
+            "threshold",
+            "s.toml",
+            "--from",
+            "0.42",
+            "--to",
+            "0.48",
+            "--out",
+            "t",
+        ],
+    );
+    let json = json(&folder.path().join("t/threshold.json"));
+    let edge = json["models"][0]["lowest_factor"].as_f64();
+    let edge = edge.unwrap_or_else(|| panic!("{json}"));
+    assert!((edge / 0.4458 - 1.0).abs() < 0.005, "{edge}");
+    printed(folder.path(), &["map", "s.toml", "--out", "m", "--quiet"]);
+    let cells = Table::read(&folder.path().join("m/map.csv"));
+    let outcomes: Vec<&str> = cells
+        .rows
+        .iter()
+        .map(|row| row["outcome"].as_str())
+        .collect();
+    assert_eq!(outcomes, ["overturned", "still_rocking"]);
+    refused(
+        folder.path(),
+        &["run", "s.toml", "--hinges", "plastic"],
+        &["elastic"],
+    );
+}
+
+#[test]
+fn three_models_in_one_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = block("normal_stiffness_gpa_m = 10.0");
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let said = printed(
+        folder.path(),
+        &[
+            "run",
+            "s.toml",
+            "--hinges",
+            "four,free,elastic",
+            "--out",
+            "o",
+        ],
+    );
+    assert!(said.contains("all in o/overlay.svg"), "{said}");
+    for model in ["four", "free", "elastic"] {
+        assert!(
+            folder
+                .path()
+                .join("o")
+                .join(model)
+                .join("summary.json")
+                .exists()
+        );
+    }
+}
