@@ -128,7 +128,7 @@ fn a_run_tells_what_joints_bear() {
     }
     assert!(!said.contains("impact"), "{said}");
     let weight_n = 5.0 * 1.0 * 2700.0 * 9.81;
-    let joints = Table::read(&folder.path().join("o/joints.csv"));
+    let joints = Table::read(folder.path().join("o/joints.csv"));
     let first = |name: &str| joints.numbers(name)[0];
     assert!((first("normal_0_n") / weight_n - 1.0).abs() < 1e-9);
     assert!(first("shear_0_n").abs() < 1e-9 * weight_n);
@@ -175,7 +175,7 @@ fn studies_take_elastic_joints() {
     let edge = edge.unwrap_or_else(|| panic!("{json}"));
     assert!((edge / 0.4458 - 1.0).abs() < 0.005, "{edge}");
     printed(folder.path(), &["map", "s.toml", "--out", "m", "--quiet"]);
-    let cells = Table::read(&folder.path().join("m/map.csv"));
+    let cells = Table::read(folder.path().join("m/map.csv"));
     let outcomes: Vec<&str> = cells
         .rows
         .iter()
