@@ -717,7 +717,7 @@ fn what_a_model_cannot_do_is_refused() {
     assert!(said.contains("--rotations"), "{said}");
     let said = refusal(SEVEN, &["--hinges", "five"]);
     assert!(
-        said.contains("[possible values: four, free, both]"),
+        said.contains("[possible values: four, free, elastic, both]"),
         "{said}"
     );
 }
