@@ -17,7 +17,7 @@
 //! duration_s = 0.20
 //! ";
 //! let scenario = Scenario::parse(text, "semicircle.toml").expect("a valid scenario");
-//! assert_eq!(scenario.simulation.gravity_m_s2, 9.81);
+//! assert_eq!(scenario.gravity_m_s2(), 9.81);
 //!
 //! let errors = Scenario::parse(&text.replace("-0.30", "-3000.0"), "semicircle.toml").unwrap_err();
 //! assert!(errors.to_string().starts_with("semicircle.toml:8:15: `amplitude_g = -3000.0` is out of"));
