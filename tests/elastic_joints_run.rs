@@ -182,6 +182,21 @@ fn studies_take_elastic_joints() {
         .map(|row| row["outcome"].as_str())
         .collect();
     assert_eq!(outcomes, ["overturned", "still_rocking"]);
+    let record = crate::program::scenarios().join("synthetic.at2");
+    fs::copy(record, folder.path().join("r.at2")).unwrap();
+    let text = text.replace("duration_s = 8.0", "duration_s = 22.0");
+    let suite = "[suite]\nrecords = [\"r.at2\"]\npeaks_g = [0.1, 0.3]\n";
+    fs::write(folder.path().join("u.toml"), format!("{text}{suite}")).unwrap();
+    printed(folder.path(), &["suite", "u.toml", "--out", "u", "--quiet"]);
+    let cases = Table::read(folder.path().join("u/suite.csv"));
+    // Largest rotations in radians, as of every row of blocks.
+    let peaks = cases.numbers("peak_rotation_rad");
+    assert!(peaks.iter().any(|peak| *peak > 1e-3), "{peaks:?}");
+    refused(
+        folder.path(),
+        &["spectrum", "s.toml"],
+        &["leave [elastic_joints] out"],
+    );
     refused(
         folder.path(),
         &["run", "s.toml", "--hinges", "plastic"],

@@ -257,9 +257,12 @@ fn is_plain(own: &Summary) -> bool {
             .row
             .as_ref()
             .is_some_and(|row| row.half_cycles.len() <= 1),
-        Outcome::Rest | Outcome::StillRocking => own
-            .peak_potential_over_barrier
-            .is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING),
+        Outcome::Rest | Outcome::StillRocking => {
+            // What gives way falls before the barrier of rigid joints.
+            let gives_way = own.row.as_ref().is_some_and(|row| row.elastic.is_some());
+            let ratio = own.peak_potential_over_barrier;
+            !gives_way && ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
+        }
     }
 }
 
@@ -345,8 +348,8 @@ impl UntilSafe {
 impl Recorder for UntilSafe {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let half_cycle_s = self.longest_half_cycle_s(sample);
-        // What has slipped stands lower, and its energy says nothing.
-        let slips = !sample.offsets_m.is_empty();
+        // What has slipped stands lower, and what gives way falls before the barrier of rigid joints: their energy says nothing.
+        let slips = !sample.offsets_m.is_empty() || !sample.pressures.is_empty();
         let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
         self.largest_ratio = self.largest_ratio.max(ratio);
         let safe = ratio < SAFE;

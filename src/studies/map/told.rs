@@ -159,10 +159,10 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
         ));
     }
     if map.has_free_hinges() && map.axes()[1].quantity == Quantity::Amplitude {
-        lines.push(
-            "free hinges: without the boundary of overturning without impact, which is of four links"
-                .to_owned(),
-        );
+        let model = map.scenario().motion().words();
+        lines.push(format!(
+            "{model}: without the boundary of overturning without impact, which is of four links"
+        ));
     }
     lines.extend(remarks.uncertain_in_words(SUMMARY));
     lines.extend(remarks.failed_in_words(SUMMARY));

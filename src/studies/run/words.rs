@@ -171,7 +171,12 @@ fn of_row(scenario: &Scenario, history: &Summary, row: &RowSummary, impacts: &No
             history.outcome,
             peak,
             "passed the barrier beyond which it overturns",
-            "the potential energy at which its first mechanism overturns",
+            match row.elastic {
+                None => "the potential energy at which its first mechanism overturns",
+                Some(_) => {
+                    "the potential energy at which its first mechanism overturns with rigid joints"
+                }
+            },
         );
     }
     let _ = write!(

@@ -28,9 +28,9 @@ pub enum NoSpectrum {
     Initial,
     /// Its hinges are free.
     #[error(
-        "a spectrum is of four links or a column, whose motion is similar at all sizes: leave [free_hinges] out"
+        "a spectrum is of four links or a column, whose motion is similar at all sizes: leave [{0}] out"
     )]
-    FreeHinges,
+    Joints(&'static str),
     /// There is no pulse whose duration could vary.
     #[error(
         "a spectrum needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]; only \
@@ -133,7 +133,7 @@ impl<'a> OverturningSpectrum<'a> {
             return Err(NoSpectrum::Initial);
         }
         if scenario.motion().hinges().has_joints() {
-            return Err(NoSpectrum::FreeHinges);
+            return Err(NoSpectrum::Joints(scenario.motion().table_name()));
         }
         let Some(Ground::Pulse(pulse)) = scenario.ground() else {
             return Err(NoSpectrum::NoPulse);

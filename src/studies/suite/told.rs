@@ -90,10 +90,9 @@ impl Heading {
             column("scale", |case: &CaseRow| number(case.scale)),
             column("peak_g", |case: &CaseRow| number(case.peak_g)),
         ];
-        all.extend(columns::columns(
-            self.has_free_hinges(),
-            |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
-        ));
+        all.extend(columns::columns(self.has_joints(), |case: &CaseRow| {
+            case.result.as_ref().map_err(|_| FAILED)
+        }));
         all
     }
 
@@ -121,7 +120,7 @@ impl Heading {
         ];
         let names = ["probability", "probability_low", "probability_high"];
         all.extend(probability(names, |level| level.curve));
-        if self.has_free_hinges() {
+        if self.has_joints() {
             // The number of uncertain cases, and what counts them as overturned.
             all.extend([
                 column("uncertain", |level: &FragilityRow| level.uncertain),
@@ -140,8 +139,11 @@ impl Heading {
         all
     }
 
-    fn has_free_hinges(&self) -> bool {
-        self.scenario.get("free_hinges").is_some()
+    fn has_joints(&self) -> bool {
+        let tables = ["free_hinges", "elastic_joints"];
+        tables
+            .iter()
+            .any(|table| self.scenario.get(*table).is_some())
     }
 
     pub(super) fn title(&self) -> &str {
