@@ -31,6 +31,17 @@ pub(crate) fn middle(low: f64, high: f64) -> f64 {
     0.5 * (low + high)
 }
 
+/// The numbers that [`bisect`] may ask in its next steps, so many of them.
+pub(crate) fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> Vec<f64> {
+    if steps == 0 || width.is_reached(low, high) {
+        return Vec::new();
+    }
+    let middle = middle(low, high);
+    let [below, above] = [(low, middle), (middle, high)]
+        .map(|(low, high)| next_middles(low, high, width, steps - 1));
+    [vec![middle], below, above].concat()
+}
+
 /// Halves the interval from `low`, where a property does not hold yet, to `high`, where it holds, until it is
 /// narrow enough. Returns its ends.
 pub(crate) fn bisect(
@@ -78,6 +89,29 @@ mod tests {
         assert!(low < change && change <= high && high - low <= 1e-3 && high - low > 4e-4);
         let (low, high) = ends(Width::Relative(1e-6));
         assert!(low < change && change <= high && high - low <= 1e-6 * high);
+    }
+
+    #[test]
+    fn what_may_be_asked_next_is_asked() {
+        for change in [1.01, 1.3, 1.77, 1.999] {
+            let (width, mut asked, mut next) = (Width::Relative(1e-3), Vec::new(), Vec::new());
+            let (mut low, mut high) = (1.0, 2.0);
+            let ends = bisect(low, high, width, |x| {
+                if !next.contains(&x) {
+                    next = next_middles(low, high, width, 3);
+                    asked.push(next.len());
+                }
+                assert!(next.contains(&x));
+                *if x >= change { &mut high } else { &mut low } = x;
+                x >= change
+            });
+            assert_eq!(ends, (low, high));
+            // Ten steps.
+            assert!(
+                asked.len() == 4 && asked[..3] == [7, 7, 7] && asked[3] == 1,
+                "{asked:?}"
+            );
+        }
     }
 
     #[test]

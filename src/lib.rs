@@ -86,7 +86,9 @@ pub use dynamics::history::{
     Event, EventKind, History, Impact, MEMORY_BYTES, MemoryError, OpenHinge, Outcome, Sample,
     Samples, Shape, State, Summary,
 };
-pub use dynamics::model::{Initial, MechanismModel, Model, Recorder, Request, SimulationError};
+pub use dynamics::model::{
+    Case, Initial, MechanismModel, Model, Recorder, Request, SimulationError,
+};
 pub use mechanics::arch::Arch;
 pub use mechanics::blocks::Row;
 pub use mechanics::chain::Hinge;

@@ -19,6 +19,7 @@ mod drawing_data;
 mod elastic_joint_mechanics;
 mod elastic_joints;
 mod elastic_joints_run;
+mod elastic_joints_studies;
 mod energy_balance;
 mod equivalent;
 mod figures;

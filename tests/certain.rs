@@ -177,8 +177,9 @@ fn maps_answer_as_runs_do() {
                 std::ops::ControlFlow::Continue(())
             };
             let whole = model.simulate(&ground, &request, Some(&mut watch));
-            let same_steps = Ending::until_safe(&model, &ground, &request);
-            let cell = Ending::until_safe(&of_maps, &ground, &request);
+            let case = [(ground.clone(), request)];
+            let same_steps = Ending::until_safe(&model, &case).remove(0);
+            let cell = Ending::until_safe(&of_maps, &case).remove(0);
             // Ground much stronger than the onset may ask for shorter steps.
             let (Ok(whole), Ok(same_steps), Ok(cell)) = (whole, same_steps, cell) else {
                 continue;

@@ -45,12 +45,9 @@ fn arch(mean_radius_m: f64, thickness_ratio: f64, embrace_deg: f64) -> Arch {
 fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration_s: f64) -> Ending {
     let ground =
         GroundMotion::pulse(Pulse::Rectangular, amplitude_g * 9.81, duration_s, 0.0).unwrap();
-    Ending::until_safe(
-        &row.clone().for_many_cases(),
-        &ground,
-        &map.scenario().request_from_rest(),
-    )
-    .unwrap()
+    let case = [(ground, map.scenario().request_from_rest())];
+    let mut endings = Ending::until_safe(&row.clone().for_many_cases(), &case);
+    endings.remove(0).unwrap()
 }
 
 fn ended(map: &OverturningMap<'_>, index: usize) -> Ending {

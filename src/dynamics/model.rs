@@ -61,13 +61,15 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
+    /// Whether it computes several motions at once, faster than one after the other.
+    fn is_faster_together(&self) -> bool {
+        false
+    }
+
     /// Its motions on several grounds, in their order, as [`Model::simulate`] has them without a recorder. A model that computes several
     /// at once does so here; no result depends on what is beside it.
-    fn simulate_all(
-        &self,
-        cases: &[(GroundMotion, Request)],
-    ) -> Vec<Result<Summary, SimulationError>> {
-        let alone = |(ground, request): &_| self.simulate(ground, request, None);
+    fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
+        let alone = |(ground, request): &Case| self.simulate(ground, request, None);
         cases.iter().map(alone).collect()
     }
 
@@ -117,6 +119,9 @@ pub trait Model: Debug + Send + Sync {
         })
     }
 }
+
+/// A ground motion, and what is asked of the motion on it.
+pub type Case = (GroundMotion, Request);
 
 /// A model beside another one that is computed in another way.
 #[derive(Debug)]

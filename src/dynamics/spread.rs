@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::ground::GroundMotion;
 use super::history::{HalfCycle, Outcome, Sample, State, Summary};
-use super::model::{Model, Recorder, Repetition, Request, SimulationError};
+use super::model::{Case, Model, Recorder, Repetition, Request, SimulationError};
 use crate::mechanics::sway::Sway;
 
 /// To this part of them peaks are called certain.
@@ -227,22 +227,42 @@ pub(crate) fn objection(
     }
 }
 
-/// Why it is uncertain whether a history overturns, which is repeated where that may matter.
-pub(crate) fn doubt(
+/// Why it is uncertain whether histories overturn, which are repeated where that may matter. Those that failed are not.
+pub(crate) fn doubts<E>(
     model: &dyn Model,
-    ground: &GroundMotion,
-    request: &Request,
-    own: &Summary,
-) -> Option<String> {
-    if is_plain(own) {
-        return None;
+    cases: &[Case],
+    own: &[Result<Summary, E>],
+) -> Vec<Option<String>> {
+    let mut doubts = vec![None; cases.len()];
+    let outcome = |index: &usize| own[*index].as_ref().ok().map(|own| own.outcome);
+    let repeated = |own: &Result<Summary, E>| own.as_ref().is_ok_and(|own| !is_plain(own));
+    let mut open: Vec<usize> = (0..cases.len())
+        .filter(|index| repeated(&own[*index]))
+        .collect();
+    if open.is_empty() {
+        return doubts;
     }
-    let repetitions = model.repetitions();
-    repetitions.iter().find_map(|Repetition { name, model }| {
+    for Repetition { name, model } in model.repetitions() {
+        let cases: Vec<Case> = open.iter().map(|index| cases[*index].clone()).collect();
+        let repeated = until_decided(&*model, &cases);
+        for (index, repeated) in open.iter().zip(&repeated) {
+            doubts[*index] = outcome(index).and_then(|own| objection(own, name, repeated));
+        }
+        open.retain(|index| doubts[*index].is_none());
+    }
+    doubts
+}
+
+/// Histories up to where they cannot overturn any more.
+fn until_decided(model: &dyn Model, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
+    if model.is_faster_together() {
+        return model.simulate_all(cases);
+    }
+    let alone = |(ground, request): &Case| {
         let mut until_safe = UntilSafe::new(ground, f64::INFINITY);
-        let repeated = model.simulate(ground, request, Some(&mut until_safe));
-        objection(own.outcome, name, &repeated)
-    })
+        model.simulate(ground, request, Some(&mut until_safe))
+    };
+    cases.iter().map(alone).collect()
 }
 
 /// What survives without ever reaching this part of the energy barrier of its first mechanism is not repeated.
@@ -278,27 +298,27 @@ const DECAYED: f64 = 0.1;
 /// half cycles shorten as those of a block whose impacts leave 0.95 of the energy, or faster.
 const HALF_CYCLES_LEFT: f64 = 40.0;
 
-/// A history as a study of many cases needs it: one that cannot overturn any more, and has ample time to come to rest, is ended there as one that comes to
-/// rest. Returns when it was, in seconds; `None` where the history was followed to its end.
-///
-/// # Errors
-/// Those of [`Model::simulate`].
+/// Histories as a study of many cases needs them: one that cannot overturn any more, and has ample time to come to rest, is ended there
+/// as one that comes to rest. With when each was, in seconds; `None` where the history was followed to its end.
 pub(crate) fn until_safe(
     model: &dyn Model,
-    ground: &GroundMotion,
-    request: &Request,
-) -> Result<(Summary, Option<f64>), SimulationError> {
+    cases: &[Case],
+) -> (Vec<Result<Summary, SimulationError>>, Vec<Option<f64>>) {
     // What does not depend on how it is computed is computed fast.
-    if model.repetitions().is_empty() {
-        return Ok((model.simulate(ground, request, None)?, None));
+    if model.is_faster_together() || model.repetitions().is_empty() {
+        return (model.simulate_all(cases), vec![None; cases.len()]);
     }
-    let mut until_safe = UntilSafe::new(ground, request.end_s);
-    let mut summary = model.simulate(ground, request, Some(&mut until_safe))?;
-    let safe_from_s = until_safe.ended.then_some(summary.end_s);
-    if until_safe.ended {
-        summary.outcome = Outcome::Rest;
-    }
-    Ok((summary, safe_from_s))
+    let alone = |(ground, request): &Case| {
+        let mut until_safe = UntilSafe::new(ground, request.end_s);
+        let mut own = model.simulate(ground, request, Some(&mut until_safe));
+        let ended = own.as_mut().ok().filter(|_| until_safe.ended);
+        let safe_from_s = ended.map(|summary| {
+            summary.outcome = Outcome::Rest;
+            summary.end_s
+        });
+        (own, safe_from_s)
+    };
+    cases.iter().map(alone).unzip()
 }
 
 /// Ends a history that cannot overturn any more.

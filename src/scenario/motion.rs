@@ -55,6 +55,12 @@ impl Motion {
         }
     }
 
+    /// Whether its models compute several motions at once: [`Model::is_faster_together`].
+    #[must_use]
+    pub const fn is_faster_together(&self) -> bool {
+        matches!(self, Self::ElasticJoints(_))
+    }
+
     /// Its name for people.
     #[must_use]
     pub const fn words(&self) -> &'static str {

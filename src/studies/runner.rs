@@ -33,10 +33,11 @@
 //! # Ok::<(), archrock::studies::runner::RunnerError>(())
 //! ```
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -76,6 +77,16 @@ pub trait Study: Sync {
 
     /// Computes the row of a case, below [`Study::count`].
     fn row(&self, index: usize) -> Self::Row;
+
+    /// Of which family a case is: those of one family are computed faster together. `None`: alone.
+    fn family(&self, _index: usize) -> Option<usize> {
+        None
+    }
+
+    /// Computes the rows of some cases of one family, in their order. No row depends on what is beside it.
+    fn rows(&self, indices: &[usize]) -> Vec<Self::Row> {
+        indices.iter().map(|index| self.row(*index)).collect()
+    }
 }
 
 /// How far the work is.
@@ -136,6 +147,10 @@ pub struct Runner {
     pub threads: Option<NonZeroUsize>,
 }
 
+/// How many cases of a family are computed together: at least as many as fit side by side, and not so many that threads wait for
+/// one another.
+const TOGETHER: RangeInclusive<usize> = 8..=32;
+
 /// How often rows are written and progress is reported.
 const TICK: Duration = Duration::from_millis(100);
 
@@ -152,7 +167,9 @@ impl Runner {
         study: &S,
         watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<S::Row>, RunnerError> {
-        self.each(study.count(), |index| study.row(index), watch)
+        let family = |index| study.family(index);
+        let rows_of = |indices: &[usize]| study.rows(indices);
+        self.each_of_families(study.count(), family, rows_of, watch)
     }
 
     /// The same of so many cases that are no study: what is made of each index, in their order.
@@ -165,8 +182,23 @@ impl Runner {
         row: impl Fn(usize) -> R + Sync,
         watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<R>, RunnerError> {
+        let rows_of = |indices: &[usize]| indices.iter().map(|index| row(*index)).collect();
+        self.each_of_families(count, |_| None, rows_of, watch)
+    }
+
+    /// The same of cases in families, as [`Study::family`] and [`Study::rows`].
+    ///
+    /// # Errors
+    /// As [`Runner::rows`].
+    pub fn each_of_families<R: Send>(
+        &self,
+        count: usize,
+        family: impl Fn(usize) -> Option<usize>,
+        rows_of: impl Fn(&[usize]) -> Vec<R> + Sync,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<R>, RunnerError> {
         let mut rows = Rows::new();
-        self.complete(0..count, row, &mut rows, |_| Ok(()), watch)?;
+        self.complete(0..count, family, rows_of, &mut rows, |_| Ok(()), watch)?;
         Ok(rows.into_values().collect())
     }
 
@@ -197,7 +229,9 @@ impl Runner {
         let (mut part, mut rows) = PartFile::open(&path, &header, resume)?;
         let keep = |new: &[_]| part.append(new);
         let cases = shard.cases(study.count());
-        self.complete(cases, |index| study.row(index), &mut rows, keep, watch)?;
+        let family = |index| study.family(index);
+        let rows_of = |indices: &[usize]| study.rows(indices);
+        self.complete(cases, family, rows_of, &mut rows, keep, watch)?;
         Ok(if shard.is_whole() {
             Computed::Whole(rows.into_values().collect(), part)
         } else {
@@ -217,7 +251,8 @@ impl Runner {
     fn complete<R: Send>(
         &self,
         cases: impl Iterator<Item = usize>,
-        row: impl Fn(usize) -> R + Sync,
+        family: impl Fn(usize) -> Option<usize>,
+        rows_of: impl Fn(&[usize]) -> Vec<R> + Sync,
         rows: &mut Rows<R>,
         mut keep: impl FnMut(&[(usize, R)]) -> Result<(), PartError>,
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
@@ -225,17 +260,19 @@ impl Runner {
         let todo: Vec<usize> = cases.filter(|index| !rows.contains_key(index)).collect();
         let all = rows.len() + todo.len();
         let pool = self.pool()?;
+        let todo = in_groups(todo, family, pool.current_num_threads());
         let cancelled = AtomicBool::new(false);
         let (sender, receiver) = mpsc::channel();
         let compute = || {
-            // Cases cost from microseconds to seconds: each is dealt out on its own.
+            // Cases cost from microseconds to seconds: each group is dealt out on its own.
             let todo = todo.par_iter().with_max_len(1);
-            todo.try_for_each_with(sender, |sender, index| {
+            todo.try_for_each_with(sender, |sender, indices| {
                 if cancelled.load(Ordering::Relaxed) {
                     return None;
                 }
+                let mut rows = indices.iter().copied().zip(rows_of(indices));
                 // Sending fails only after the receiver has given up.
-                sender.send((*index, row(*index))).ok()
+                rows.try_for_each(|row| sender.send(row).ok())
             })
         };
         let keeper = thread::current();
@@ -280,4 +317,28 @@ impl Runner {
             Ok(())
         })
     }
+}
+
+/// Cases in the groups in which they are computed: each alone, or with others of its family.
+fn in_groups(
+    cases: Vec<usize>,
+    family: impl Fn(usize) -> Option<usize>,
+    threads: usize,
+) -> Vec<Vec<usize>> {
+    let (least, most) = (*TOGETHER.start(), *TOGETHER.end());
+    let together = (cases.len() / (4 * threads)).clamp(least, most);
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut open: BTreeMap<usize, usize> = BTreeMap::new();
+    for case in cases {
+        let family = family(case);
+        let group = family.and_then(|family| open.get(&family));
+        match group {
+            Some(&group) if groups[group].len() < together => groups[group].push(case),
+            _ => {
+                open.extend(family.map(|family| (family, groups.len())));
+                groups.push(vec![case]);
+            }
+        }
+    }
+    groups
 }

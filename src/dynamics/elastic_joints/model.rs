@@ -7,7 +7,7 @@ use super::stepper::{ElasticStepper, Group, Start};
 use crate::argument::{ArgumentError, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
-use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
+use crate::dynamics::model::{Case, Model, Recorder, Repetition, Request, SimulationError};
 use crate::dynamics::row::course::{self, Clock, Task};
 use crate::dynamics::row::standing::RigidRow;
 use crate::mechanics::blocks::Row;
@@ -300,19 +300,20 @@ impl Model for ElasticJoints {
         self.judged(course::run(stepper)?, &rest)
     }
 
-    fn simulate_all(
-        &self,
-        cases: &[(GroundMotion, Request)],
-    ) -> Vec<Result<Summary, SimulationError>> {
+    fn is_faster_together(&self) -> bool {
+        true
+    }
+
+    fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
         let Some((_, first)) = cases.first() else {
             return Vec::new();
         };
         let gravity_m_s2 = first.gravity_m_s2;
-        let alike = |(_, request): &(GroundMotion, Request)| request.gravity_m_s2 == gravity_m_s2;
+        let alike = |(_, request): &Case| request.gravity_m_s2 == gravity_m_s2;
         let rest = match self.rest(gravity_m_s2) {
             Ok(rest) if cases.len() > 1 && cases.iter().all(alike) => rest,
             _ => {
-                let alone = |(ground, request): &_| self.simulate(ground, request, None);
+                let alone = |(ground, request): &Case| self.simulate(ground, request, None);
                 return cases.iter().map(alone).collect();
             }
         };

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Model, Request, SimulationError};
+use crate::dynamics::model::{Case, Model, Request, SimulationError};
 pub use crate::dynamics::spread::Verdict;
-use crate::dynamics::spread::{doubt, until_safe};
+use crate::dynamics::spread::{doubts, until_safe};
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -137,31 +137,38 @@ impl Ending {
     /// # Errors
     /// Says why there is no history, or none that could be kept.
     pub fn of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Result<Self, String> {
-        let whole = model.simulate(ground, request, None);
-        Self::repeated(whole.map(|own| (own, None)), model, ground, request)
+        Self::of_all(model, &[(ground.clone(), *request)]).remove(0)
+    }
+
+    /// The same of several cases, in their order, with the reasons of those that have no history, or none that could be kept.
+    #[must_use]
+    pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
+        let own = model.simulate_all(cases);
+        Self::repeated(own, vec![None; cases.len()], model, cases)
     }
 
     /// The same, where a history that cannot overturn any more, and has ample time to come to rest, ends there.
-    ///
-    /// # Errors
-    /// Those of [`Ending::of`].
-    pub fn until_safe(
-        model: &dyn Model,
-        ground: &GroundMotion,
-        request: &Request,
-    ) -> Result<Self, String> {
-        Self::repeated(until_safe(model, ground, request), model, ground, request)
+    #[must_use]
+    pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
+        let (own, safe_from_s) = until_safe(model, cases);
+        Self::repeated(own, safe_from_s, model, cases)
     }
 
+    /// What histories came to, repeated where that may matter.
     fn repeated(
-        own: Result<(Summary, Option<f64>), SimulationError>,
+        own: Vec<Result<Summary, SimulationError>>,
+        safe_from_s: Vec<Option<f64>>,
         model: &dyn Model,
-        ground: &GroundMotion,
-        request: &Request,
-    ) -> Result<Self, String> {
-        let (summary, safe_from_s) = own.map_err(|error| error.to_string())?;
-        let doubt = doubt(model, ground, request, &summary);
-        Self::from_summary(&summary, safe_from_s, doubt)
+        cases: &[Case],
+    ) -> Vec<Result<Self, String>> {
+        let doubts = doubts(model, cases, &own);
+        let endings = own.into_iter().zip(safe_from_s).zip(doubts);
+        endings
+            .map(|((own, safe_from_s), doubt)| {
+                let summary = own.map_err(|error| error.to_string())?;
+                Self::from_summary(&summary, safe_from_s, doubt)
+            })
+            .collect()
     }
 
     /// What a history came to, and why that is uncertain, if it is.
@@ -191,6 +198,21 @@ impl Ending {
         check_finite(ending.peak.rad().as_slice())?;
         Ok(ending)
     }
+}
+
+/// Answers to the cases that there are, in the order of all; the others keep their reasons.
+pub(super) fn answered<C, A, E>(
+    cases: impl IntoIterator<Item = Result<C, E>>,
+    answer: impl FnOnce(&[C]) -> Vec<Result<A, E>>,
+) -> Vec<Result<A, E>> {
+    let mut known = Vec::new();
+    let cases = cases.into_iter();
+    let cases: Vec<Result<(), E>> = cases
+        .map(|case| case.map(|case| known.push(case)))
+        .collect();
+    let mut answers = answer(&known).into_iter();
+    let of = |case: Result<(), E>| case.and_then(|()| answers.next().expect("one for each"));
+    cases.into_iter().map(of).collect()
 }
 
 /// Refuses what is not finite, which is a defect of the program.

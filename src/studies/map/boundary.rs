@@ -173,4 +173,23 @@ impl Study for MapWithBoundary<'_> {
             _ => MapRow::Cell(self.map.row(index)),
         }
     }
+
+    fn family(&self, index: usize) -> Option<usize> {
+        (index < self.map.count())
+            .then(|| self.map.family(index))
+            .flatten()
+    }
+
+    fn rows(&self, indices: &[usize]) -> Vec<MapRow> {
+        match indices {
+            // Only cells have a family.
+            [_, _, ..] => self
+                .map
+                .rows(indices)
+                .into_iter()
+                .map(MapRow::Cell)
+                .collect(),
+            alone => alone.iter().map(|index| self.row(*index)).collect(),
+        }
+    }
 }

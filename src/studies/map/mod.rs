@@ -7,17 +7,19 @@ mod told;
 
 pub use told::outcome;
 
+use std::cell::OnceCell;
 use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
-use super::ending::Ending;
+use super::ending::{Ending, answered};
 use super::impact_free::ScalablePulse;
 use super::runner::Study;
 use crate::argument::ArgumentError;
 use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{MechanismModel, Model, Repetition, Request};
+use crate::dynamics::history::Summary;
+use crate::dynamics::model::{Case, MechanismModel, Model, Repetition, Request, SimulationError};
 use crate::dynamics::spread::objection;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -127,9 +129,15 @@ impl<T: Clone> Shared<T> {
         }
     }
 
+    /// Which of them serves a cell; `None` where it serves no other.
+    fn place(&self, place: [usize; 2]) -> Option<usize> {
+        let index = self.axis.map_or(0, |axis| place[axis]);
+        (index < self.values.len()).then_some(index)
+    }
+
     fn get(&self, place: [usize; 2], make: impl FnOnce() -> T) -> T {
-        match self.values.get(self.axis.map_or(0, |axis| place[axis])) {
-            Some(shared) => shared.get_or_init(make).clone(),
+        match self.place(place) {
+            Some(index) => self.values[index].get_or_init(make).clone(),
             None => make(),
         }
     }
@@ -384,46 +392,72 @@ impl<'a> OverturningMap<'a> {
         }
     }
 
-    /// What becomes of a cell, and how many outcomes it has when it is computed in other ways.
-    fn result(&self, index: usize) -> Result<(Ending, Option<Outcomes>), CellResult> {
+    /// What stands in a cell, and what shakes it.
+    fn case(&self, index: usize) -> Result<(Standing, Case), CellResult> {
         let scenario = self.variant(index).map_err(CellResult::Failed)?;
         let standing = self.standing(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(CellResult::Failed)?;
-        let request = scenario.request_from_rest();
-        let (model, request) = (standing.model(), &request);
-        let ended = if self.spread {
-            all_outcomes(model, &ground, request).map(|(ending, all)| (ending, Some(all)))
-        } else {
-            Ending::until_safe(model, &ground, request).map(|ending| (ending, None))
+        Ok((standing, (ground, scenario.request_from_rest())))
+    }
+
+    /// What becomes of cells with the same structure, and how many outcomes each has when it is computed in other ways.
+    fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Ended> {
+        if self.spread {
+            let ended = all_outcomes(model, cases).into_iter();
+            return ended
+                .map(|ended| ended.map(|(ending, all)| (ending, Some(all))))
+                .collect();
+        }
+        let ended = Ending::until_safe(model, cases).into_iter();
+        ended
+            .map(|ended| ended.map(|ending| (ending, None)))
+            .collect()
+    }
+
+    fn cell(&self, index: usize, ended: Result<(Ending, Option<Outcomes>), CellResult>) -> CellRow {
+        let [x, y] = self.coordinates(index);
+        let (result, spread) = match ended {
+            Ok((ending, spread)) => (CellResult::Ended(ending), spread),
+            Err(other) => (other, None),
         };
-        ended.map_err(CellResult::Failed)
+        CellRow {
+            x,
+            y,
+            result,
+            spread,
+        }
     }
 }
+
+/// How the history of a cell ends, and how many outcomes it has where that was asked, or why there is none.
+type Ended = Result<(Ending, Option<Outcomes>), String>;
 
 /// How many outcomes a cell has when it is computed in several ways, or why that is not known.
 type Outcomes = Result<usize, String>;
 
-/// How a history ends, and how many outcomes it has with all its repetitions, none of which is spared or cut short.
-fn all_outcomes(
-    model: &dyn Model,
-    ground: &GroundMotion,
-    request: &Request,
-) -> Result<(Ending, Outcomes), String> {
-    let own = model.simulate(ground, request, None);
-    let own = own.map_err(|error| error.to_string())?;
-    let (mut names, mut doubt, mut failed) = (vec![own.outcome.name()], None, None);
-    for Repetition { name, model } in model.repetitions() {
-        let repeated = model.simulate(ground, request, None);
-        doubt = doubt.or_else(|| objection(own.outcome, name, &repeated));
-        match repeated {
-            Ok(other) => names.push(other.outcome.name()),
-            Err(error) => failed = failed.or(Some(format!("with {name}: {error}"))),
+/// How histories end, and how many outcomes each has with all its repetitions, none of which is spared or cut short.
+fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<(Ending, Outcomes), String>> {
+    let repetitions = model.repetitions().into_iter();
+    let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
+    let repeated: Vec<(_, Vec<_>)> = repeated.collect();
+    let outcomes = |(index, own): (usize, Result<Summary, SimulationError>)| {
+        let own = own.map_err(|error| error.to_string())?;
+        let (mut names, mut doubt, mut failed) = (vec![own.outcome.name()], None, None);
+        for (name, repeated) in &repeated {
+            let repeated = &repeated[index];
+            doubt = doubt.or_else(|| objection(own.outcome, name, repeated));
+            match repeated {
+                Ok(other) => names.push(other.outcome.name()),
+                Err(error) => failed = failed.or(Some(format!("with {name}: {error}"))),
+            }
         }
-    }
-    names.sort_unstable();
-    names.dedup();
-    let outcomes = failed.map_or(Ok(names.len()), Err);
-    Ok((Ending::from_summary(&own, None, doubt)?, outcomes))
+        names.sort_unstable();
+        names.dedup();
+        let outcomes = failed.map_or(Ok(names.len()), Err);
+        Ok((Ending::from_summary(&own, None, doubt)?, outcomes))
+    };
+    let own = model.simulate_all(cases).into_iter();
+    own.enumerate().map(outcomes).collect()
 }
 
 impl Study for OverturningMap<'_> {
@@ -452,16 +486,34 @@ impl Study for OverturningMap<'_> {
     }
 
     fn row(&self, index: usize) -> CellRow {
-        let [x, y] = self.coordinates(index);
-        let (result, spread) = match self.result(index) {
-            Ok((ending, spread)) => (CellResult::Ended(ending), spread),
-            Err(other) => (other, None),
-        };
-        CellRow {
-            x,
-            y,
-            result,
-            spread,
-        }
+        self.rows(&[index]).remove(0)
+    }
+
+    /// Cells with one structure, where its model computes several motions at once.
+    fn family(&self, index: usize) -> Option<usize> {
+        let together = self.scenario.motion().is_faster_together();
+        together.then(|| self.structures.place(self.place(index)))?
+    }
+
+    fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
+        let standing = OnceCell::new();
+        let cases = indices.iter().map(|index| {
+            let (structure, case) = self.case(*index)?;
+            standing.get_or_init(|| structure);
+            Ok(case)
+        });
+        let ended = answered(cases, |cases| {
+            let ended = standing
+                .get()
+                .map(|standing| self.endings(standing.model(), cases));
+            let ended = ended.unwrap_or_default().into_iter();
+            ended
+                .map(|ended| ended.map_err(CellResult::Failed))
+                .collect()
+        });
+        let cells = indices.iter().zip(ended);
+        cells
+            .map(|(index, ended)| self.cell(*index, ended))
+            .collect()
     }
 }

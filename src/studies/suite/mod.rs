@@ -15,7 +15,7 @@ use super::ending::{Ending, Verdict, check_finite};
 use super::runner::Study;
 use super::survival::Survival;
 use crate::dynamics::history::Outcome;
-use crate::dynamics::model::Model;
+use crate::dynamics::model::{Case, Model};
 use crate::scenario::{Measure, ModelError, Scenario, Suite};
 
 /// A record that shakes the structure, and how that ended.
@@ -135,20 +135,44 @@ impl Study for RecordSuite<'_> {
     }
 
     fn row(&self, index: usize) -> CaseRow {
+        self.rows(&[index]).remove(0)
+    }
+
+    fn family(&self, _: usize) -> Option<usize> {
+        self.model.is_faster_together().then_some(0)
+    }
+
+    fn rows(&self, indices: &[usize]) -> Vec<CaseRow> {
+        let request = self.scenario.request_from_rest();
+        let case = |index: &usize| {
+            let (level, record, mirrored) = self.place(*index);
+            let shake = self.suite.shake(record, level, mirrored);
+            (shake.motion(request.gravity_m_s2), request)
+        };
+        let cases: Vec<Case> = indices.iter().map(case).collect();
+        let results = Ending::of_all(&*self.model, &cases);
+        let rows = indices.iter().zip(results);
+        rows.map(|(index, result)| self.case_row(*index, result))
+            .collect()
+    }
+}
+
+impl RecordSuite<'_> {
+    /// The level of a case, its record, and whether that is mirrored.
+    fn place(&self, index: usize) -> (f64, usize, bool) {
         let level = self.levels[index % self.levels.len()];
         let shake = index / self.levels.len();
-        let mirrored = shake % self.signs() == 1;
-        let record = shake / self.signs();
+        (level, shake / self.signs(), shake % self.signs() == 1)
+    }
+
+    fn case_row(&self, index: usize, result: Result<Ending, String>) -> CaseRow {
+        let (level, record, mirrored) = self.place(index);
         let series = &self.suite.records[record];
-        let request = self.scenario.request_from_rest();
-        let own_g = series.peak_g(request.gravity_m_s2);
+        let own_g = series.peak_g(self.scenario.gravity_m_s2());
         let (scale, peak_g) = match self.suite.measure {
             Measure::Scale => (level, level * own_g),
             Measure::PeakG => (level / own_g, level),
         };
-        let shake = self.suite.shake(record, level, mirrored);
-        let ground = shake.motion(request.gravity_m_s2);
-        let result = Ending::of(&*self.model, &ground, &request);
         CaseRow {
             record: series.file.clone(),
             mirrored,

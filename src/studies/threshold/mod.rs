@@ -15,17 +15,21 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use super::ending::{Ending, Verdict};
+use super::ending::{Ending, Verdict, answered};
 use super::runner::{Progress, Runner, RunnerError};
 use crate::argument::{ArgumentError, above, within};
-use crate::bisection::{Width, try_bisect};
+use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::spread::doubt;
+use crate::dynamics::spread::doubts;
 
 /// How closely an edge is enclosed, as a part of its factor: far closer than any motion of the ground is known,
 /// and wide enough that the errors of the integration do not decide.
 pub const EDGE_WIDTH: f64 = 1e-4;
+
+/// Steps of the search for an edge whose histories are computed together, where a model is faster so: seven.
+const STEPS_AHEAD: usize = 3;
 
 /// The factors that are sampled: from the first to the last, each larger than the one before by a stride, or by
 /// less where that reaches the last.
@@ -116,15 +120,29 @@ pub enum NoHistory {
 }
 
 impl FactorSample {
-    fn of(model: &dyn Model, ground: &GroundMotion, request: &Request, factor: f64) -> Self {
-        let summary = ground
-            .scaled(factor)
-            .map_err(SimulationError::from)
-            .and_then(|ground| {
-                let summary = model.simulate(&ground, request, None)?;
-                let doubt = doubt(model, &ground, request, &summary);
-                Ok((summary, doubt))
-            });
+    /// Histories at some factors, in their order.
+    fn all_of(
+        model: &dyn Model,
+        ground: &GroundMotion,
+        request: &Request,
+        factors: &[f64],
+    ) -> Vec<Self> {
+        let cases = factors
+            .iter()
+            .map(|factor| Ok((ground.scaled(*factor)?, *request)));
+        let summaries = answered(cases, |cases| {
+            let own = model.simulate_all(cases);
+            let doubts = doubts(model, cases, &own);
+            let own = own.into_iter().zip(doubts);
+            own.map(|(own, doubt)| Ok((own?, doubt))).collect()
+        });
+        let samples = factors.iter().zip(summaries);
+        samples
+            .map(|(factor, summary)| Self::of(*factor, summary))
+            .collect()
+    }
+
+    fn of(factor: f64, summary: Result<(Summary, Option<String>), SimulationError>) -> Self {
         let peak_rotation_rad = summary.as_ref().ok().map(|(s, _)| s.largest_rotation_rad());
         let result = match summary {
             Ok((summary, doubt)) => {
@@ -261,8 +279,17 @@ pub fn thresholds(
     };
     // Model by model.
     let sampled = models.len() * factors.len();
-    let sample = |index| shaking.sample(index / factors.len(), factors[index % factors.len()]);
-    let samples = runner.each(sampled, sample, &mut watch)?;
+    let model_of = |index: usize| index / factors.len();
+    let family = |index| {
+        let together = models[model_of(index)].1.is_faster_together();
+        together.then_some(model_of(index))
+    };
+    // What has no family comes alone.
+    let samples_of = |indices: &[usize]| {
+        let of_them = indices.iter().map(|index| factors[index % factors.len()]);
+        shaking.samples(model_of(indices[0]), &of_them.collect::<Vec<_>>())
+    };
+    let samples = runner.each_of_families(sampled, family, samples_of, &mut watch)?;
     let samples: Vec<&[FactorSample]> = samples.chunks(factors.len()).collect();
 
     let mut changes: Vec<Change<'_>> = Vec::new();
@@ -309,20 +336,35 @@ struct Shaking<'a> {
 }
 
 impl Shaking<'_> {
-    fn sample(&self, model: usize, factor: f64) -> FactorSample {
-        FactorSample::of(self.models[model].1, self.ground, self.request, factor)
+    fn samples(&self, model: usize, factors: &[f64]) -> Vec<FactorSample> {
+        FactorSample::all_of(self.models[model].1, self.ground, self.request, factors)
     }
 
     /// The edge between neighbours of different verdicts; or the two on both sides of a history of the third verdict that the
     /// search met; or the history at which it failed.
     fn search(&self, (model, below, above): Change<'_>) -> Found {
         let width = Width::Relative(EDGE_WIDTH);
-        let edge = try_bisect(below.factor, above.factor, width, |factor| {
-            let sample = self.sample(model, factor);
-            match sample.verdict() {
-                verdict if verdict == below.verdict() => Ok(false),
-                verdict if verdict == above.verdict() => Ok(true),
-                _ => Err(Box::new(sample)),
+        let together = self.models[model].1.is_faster_together();
+        let steps = if together { STEPS_AHEAD } else { 1 };
+        let (mut low, mut high) = (below.factor, above.factor);
+        let mut ahead: Vec<FactorSample> = Vec::new();
+        let edge = try_bisect(low, high, width, |factor| {
+            let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
+            let place = known(&ahead).unwrap_or_else(|| {
+                ahead = self.samples(model, &next_middles(low, high, width, steps));
+                // It is asked first.
+                0
+            });
+            match ahead[place].verdict() {
+                verdict if verdict == below.verdict() => {
+                    low = factor;
+                    Ok(false)
+                }
+                verdict if verdict == above.verdict() => {
+                    high = factor;
+                    Ok(true)
+                }
+                _ => Err(Box::new(ahead.swap_remove(place))),
             }
         });
         let met = match edge {
