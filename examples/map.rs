@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn symbol(result: &CellResult) -> char {
     match result {
         CellResult::Ended(ending) => match (ending.outcome, ending.impacts) {
-            (Outcome::Overturned(_), 0) => '#',
+            (Outcome::Overturned(_), Some(0)) => '#',
             (Outcome::Overturned(_), _) => '+',
             (Outcome::NeverMoved, _) => ' ',
             _ => '.',

@@ -48,6 +48,7 @@ mod model;
 mod motion;
 mod names;
 mod pictures;
+mod points;
 mod properties;
 mod readme;
 mod records;

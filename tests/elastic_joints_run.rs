@@ -7,7 +7,7 @@ use archrock::scenario::{Hinges, Motion, Scenario};
 
 use crate::common::parsed;
 use crate::program::{printed, refused};
-use crate::results::{Table, json};
+use crate::results::{Table, data_of, json};
 
 /// A block of 2700 kg/m3, 5 m high and 1 m wide, on a joint of 10 GPa/m.
 fn block(keys: &str) -> String {
@@ -231,4 +231,158 @@ fn three_models_in_one_run() {
                 .exists()
         );
     }
+}
+
+/// What the motion of the arch of Lemos hangs on: with three points it stands at 0.15 g, with continuous contact it falls. The other runs
+/// are those of scenarios that say so.
+#[test]
+fn a_run_says_what_it_hangs_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let arch = |joints: &str| {
+        format!(
+            "[arch]\nmean_radius_m = 4.0\nthickness_m = 0.5\nembrace_deg = 180.0\nvoussoirs = 17\ndensity_kg_m3 = 2700.0\n{joints}\n\
+             [ground.half_sine]\namplitude_g = -0.15\nduration_s = 0.25\n[simulation]\nduration_s = 1.5\n"
+        )
+    };
+    let elastic = |stiffness: &str, contact: &str| {
+        arch(&format!(
+            "[elastic_joints]\nnormal_stiffness_gpa_m = {stiffness}\nfriction_coefficient = 0.7\n{contact}"
+        ))
+    };
+    let run = |name: &str, text: &str, options: &[&str]| {
+        let file = format!("{name}.toml");
+        fs::write(folder.path().join(&file), text).unwrap();
+        let arguments = ["run", &file, "--out", name, "--no-report"];
+        let said = printed(folder.path(), &[&arguments[..], options].concat());
+        (said, json(&folder.path().join(name).join("summary.json")))
+    };
+    let points = "contact_points = 3";
+    let (said, own) = run("own", &elastic("10", points), &[]);
+    let variations = own["variations"].as_array().unwrap();
+    let alone = ["--no-spread"];
+    for (with, text) in [
+        ("30 GPa/m", elastic("30", points)),
+        ("continuous contact", elastic("10", "")),
+        (
+            "rigid joints (free hinges)",
+            arch("[free_hinges]\nfriction_coefficient = 0.7"),
+        ),
+    ] {
+        let found = variations.iter().find(|one| one["with"] == with);
+        let found = found.unwrap_or_else(|| panic!("{with}: {variations:?}"));
+        let (_, due) = run("due", &text, &alone);
+        for key in ["outcome", "outcome_time_s", "largest_peak_rotation_rad"] {
+            assert_eq!(found[key], due[key], "{with}: {key}");
+        }
+        assert_eq!(found["first_peak_rad"], due["half_cycles"][0]["peak_rad"]);
+    }
+    assert_eq!(variations.len(), 4, "{variations:?}");
+    assert!(said.contains("  with 3.33 GPa/m: "), "{said}");
+    let falls = "BUT with continuous contact: overturns to the right at 0.3";
+    assert!(said.contains(falls), "{said}");
+    let (said, own) = run("own", &elastic("10", points), &alone);
+    assert!(!said.contains("  with "), "{said}");
+    assert_eq!(own["variations"], serde_json::Value::Null);
+    // Rigid joints point to elastic ones, unless these are beside them.
+    let (said, _) = run("rigid", &arch("[free_hinges]"), &alone);
+    assert!(said.contains("compare with --hinges elastic"), "{said}");
+    let models = ["--hinges", "free,elastic", "--no-spread"];
+    fs::write(folder.path().join("both.toml"), elastic("10", points)).unwrap();
+    let arguments = [
+        &["run", "both.toml", "--out", "both", "--no-report"][..],
+        &models,
+    ]
+    .concat();
+    let said = printed(folder.path(), &arguments);
+    assert!(!said.contains("compare with"), "{said}");
+}
+
+/// The page draws the stresses of `joints.csv`, to the 256th part of the largest.
+#[test]
+fn the_page_draws_what_joints_bear() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("s.toml"),
+        block("normal_stiffness_gpa_m = 10.0").replace("duration_s = 3.0", "duration_s = 1.0"),
+    )
+    .unwrap();
+    printed(
+        folder.path(),
+        &["run", "s.toml", "--out", "o", "--no-spread"],
+    );
+    let page = fs::read_to_string(folder.path().join("o/report.html")).unwrap();
+    let joints = Table::read(folder.path().join("o/joints.csv"));
+    let rows: Vec<_> = (0..joints.rows.len())
+        .map(|row| {
+            let number = |name: &str| joints.rows[row].number(name);
+            serde_json::json!([
+                number("time_s"),
+                number("stress_0_intrados_pa"),
+                number("stress_0_extrados_pa"),
+                number("contact_0_ratio")
+            ])
+        })
+        .collect();
+    let largest_pa = data_of(&page)["frames"]["largest_stress_pa"]
+        .as_f64()
+        .unwrap();
+    let facts = serde_json::json!({ "rows": rows, "largest_pa": largest_pa });
+    let script = "
+        const { times, pressure } = archrock;
+        verify(times.length === data.rows.length, 'every sample is a frame');
+        data.rows.forEach(([time, inner, outer, contact], frame) => {
+          verify(times[frame] === time, `time ${time}`);
+          const { stresses, ends } = pressure(frame, 0);
+          const near = Math.abs(stresses[0] - inner) + Math.abs(stresses[1] - outer) < data.largest_pa / 100;
+          verify(near, `stresses at ${time}: ${stresses}, ${inner} ${outer}`);
+          if (inner === 0 || outer === 0) {
+            verify(Math.abs(ends[1] - ends[0] - contact) < 0.005, `contact at ${time}`);
+            verify(outer > 0 ? ends[1] === 1 : ends[0] === 0, `edge at ${time}`);
+          }
+        });
+        verify(!document.getElementById('stress').hidden, 'the wedges are explained');";
+    let path = folder.path().join("o/report.html");
+    crate::browser::assert_checked(&path, script, &facts.to_string(), &[], 300);
+}
+
+/// A threshold with other properties is the one of a scenario that has them.
+#[test]
+fn a_threshold_says_what_it_hangs_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |stiffness: &str| {
+        let keys = format!("normal_stiffness_gpa_m = {stiffness}\nfriction_coefficient = 0.7");
+        block(&keys)
+            .replace("-0.3\n", "-1.0\n")
+            .replace("duration_s = 3.0", "duration_s = 6.0")
+    };
+    let lowest = |stiffness: &str| {
+        fs::write(folder.path().join("s.toml"), text(stiffness)).unwrap();
+        let arguments = [
+            "threshold",
+            "s.toml",
+            "--from",
+            "0.42",
+            "--to",
+            "0.52",
+            "--stride",
+            "0.1",
+            "--out",
+            "t",
+        ];
+        let said = printed(folder.path(), &arguments);
+        (
+            said,
+            json(&folder.path().join("t/threshold.json"))["models"][0].clone(),
+        )
+    };
+    let (said, own) = lowest("3");
+    let (_, stiffer) = lowest("9");
+    let variations = own["variations"].as_array().unwrap();
+    assert_eq!(variations[1]["with"], "9 GPa/m");
+    let (found, due) = (&variations[1]["factor"], &stiffer["lowest_factor"]);
+    let ratio = found.as_f64().unwrap() / due.as_f64().unwrap();
+    // To half a percent, and the other is enclosed to a hundredth of that.
+    assert!((1.0 - 1e-4..1.0051).contains(&ratio), "{found} {due}");
+    let words = "  with rigid joints (free hinges): from factor 0.50";
+    assert!(said.contains(words), "{said}");
 }

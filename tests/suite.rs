@@ -508,7 +508,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         result: outcome.ok_or("it broke".to_owned()).map(|outcome| Ending {
             outcome,
             outcome_time_s: 1.0,
-            impacts: 0,
+            impacts: Some(0),
             peak: PeakRotation::OverCritical(Some(0.5)),
             energy_defect_ratio: 0.0,
             steps: None,
@@ -540,7 +540,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 result: Ok(Ending {
                     outcome,
                     outcome_time_s: 1.0,
-                    impacts: 0,
+                    impacts: Some(0),
                     peak: PeakRotation::Rad(0.5),
                     energy_defect_ratio: 0.0,
                     steps: Some(Steps {

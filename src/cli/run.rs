@@ -11,6 +11,7 @@ use archrock::scenario::{Hinges, Scenario, shown_lines};
 use archrock::studies::run::overlay::Curves;
 use archrock::studies::run::{FILES, OVERLAY, Run, RunError, RunResults, Wanted, heading, overlay};
 use clap::ValueEnum;
+use nalgebra::Vector2;
 use serde_json::Map;
 
 use self::progress::RunProgress;
@@ -47,7 +48,7 @@ pub struct Arguments {
     /// if the scenario has [elastic_joints] or [free_hinges], else four].
     #[arg(long, value_enum, value_delimiter = ',')]
     hinges: Vec<Models>,
-    /// Do not repeat a run with free hinges with half and with double steps.
+    /// Do not repeat a run with free hinges or elastic joints in other steps, nor elastic joints with other stiffness and contact.
     #[arg(long)]
     no_spread: bool,
     /// Write no report.html.
@@ -63,6 +64,10 @@ pub struct Arguments {
     /// Write position and rotation of every body to poses.csv.
     #[arg(long)]
     poses: bool,
+    /// Tell how far this point moves, the crown say: its place in the undeformed structure in metres. May be given up to three
+    /// times.
+    #[arg(long = "point", value_name = "X,Y", value_parser = point_m, allow_hyphen_values = true)]
+    points_m: Vec<Vector2<f64>>,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -193,12 +198,16 @@ impl Job {
         }
         let in_steps = |one: &Scenario| one.motion().hinges().has_joints();
         if arguments.no_spread && !scenarios.iter().any(in_steps) {
-            let message =
-                "--no-spread goes with free hinges: four links and columns are not repeated";
+            let message = "--no-spread goes with free hinges and elastic joints: four links and columns are not repeated";
             return Err(Failure::Input(message.to_owned()));
         }
         // None is run where another cannot be.
-        let run = |scenario| Run::new(scenario, arguments.wanted(place.to_stdout));
+        let beside = scenarios.iter().map(|one| one.motion().hinges());
+        let wanted = Wanted {
+            beside: beside.collect(),
+            ..arguments.wanted(place.to_stdout)
+        };
+        let run = |scenario| Run::new(scenario, wanted.clone());
         let runs: Result<Vec<_>, String> = scenarios.iter().map(run).collect();
         let runs = runs.map_err(Failure::Input)?;
         let told = if several {
@@ -280,6 +289,8 @@ impl Arguments {
             snapshots_s: self.snapshots.clone(),
             exaggeration: self.exaggerate,
             poses: self.poses,
+            points_m: self.points_m.clone(),
+            ..Wanted::default()
         }
     }
 
@@ -375,6 +386,16 @@ fn time_s(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|time_s| (0.0..=1e9).contains(time_s));
     time_s.ok_or_else(|| "give times in seconds from 0 on, such as 0.2,0.5,1.0".to_owned())
+}
+
+fn point_m(text: &str) -> Result<Vector2<f64>, String> {
+    let mut coordinates = text.split(',').map(|text| text.trim().parse::<f64>());
+    let point_m = match (coordinates.next(), coordinates.next(), coordinates.next()) {
+        (Some(Ok(x)), Some(Ok(y)), None) => Some(Vector2::new(x, y)),
+        _ => None,
+    };
+    let finite = point_m.filter(|point_m| point_m.iter().all(|x| x.abs() < 1e9));
+    finite.ok_or_else(|| "give two coordinates in metres, such as 0,4.2".to_owned())
 }
 
 fn factor(text: &str) -> Result<f64, String> {

@@ -7,7 +7,7 @@ use archrock::dynamics::model::Model;
 use archrock::scenario::Scenario;
 use archrock::studies::results::Results;
 use archrock::studies::threshold::{
-    FILES, Factors, NoHistory, Threshold, ThresholdError, check, tell, thresholds,
+    FILES, Factors, NoHistory, Threshold, ThresholdError, check, tell, thresholds, vary,
 };
 
 use super::figure::FigureOption;
@@ -119,12 +119,18 @@ fn find(
         ControlFlow::Continue(())
     };
     let request = scenario.request();
-    let found = thresholds(&models, ground, &request, factors, &runner, watch)?;
+    let mut found = thresholds(&models, ground, &request, factors, &runner, watch)?;
     if let Some(display) = display {
         display.finish();
     }
     for threshold in &found {
         refuse_if_nothing_is_known(threshold)?;
+    }
+    for (threshold, scenario) in found.iter_mut().zip(scenarios) {
+        let variations = scenario.variations();
+        let variations = variations.map_err(|error| Failure::Work(error.to_string()))?;
+        let watch = |_| ControlFlow::Continue(());
+        threshold.varied = vary(threshold, &variations, ground, &request, &runner, watch)?;
     }
 
     let of_models: Vec<&Scenario> = scenarios.iter().collect();

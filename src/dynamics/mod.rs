@@ -11,3 +11,4 @@ pub mod model;
 mod row;
 pub mod spread;
 pub mod thrust;
+pub mod variation;

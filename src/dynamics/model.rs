@@ -329,7 +329,7 @@ pub enum SimulationError {
 
 impl SimulationError {
     /// For a reason of the model.
-    pub(super) fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
+    pub(crate) fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
         Self::Computation(Arc::new(reason))
     }
 }

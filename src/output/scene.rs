@@ -1,6 +1,8 @@
 //! What of a structure is drawn at an instant: outlines of its bodies, hinges and the line of thrust, all as points of
 //! bodies, so that poses move them.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector2;
 
 use crate::dynamics::history::{OpenHinge, Sample};
@@ -46,6 +48,48 @@ pub struct Section {
     pub across_m: Vector2<f64>,
     /// In an arch that is cut at its hinges: where it is, in radians from the left springing.
     angle_rad: Option<f64>,
+}
+
+/// A point of a structure. Which body it moves with may depend on the hinges that are open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Where it is in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+    part: Part,
+}
+
+/// What a point is part of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Part {
+    /// A block, by its index.
+    Block(usize),
+    /// A section of a ring, in radians from the left springing.
+    Section(f64),
+}
+
+/// The part of a joint that presses, from the intrados to the extrados.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressed {
+    /// Its ends.
+    pub ends: [Mark; 2],
+    /// Compressive stress there, in Pa.
+    pub stresses_pa: [f64; 2],
+    /// Unit vector across the joint, undeformed, into the block after it.
+    pub across: Vector2<f64>,
+}
+
+impl Pressed {
+    /// The stress as a wedge on the joint, so many metres high per Pa.
+    #[must_use]
+    pub fn wedge(&self, metres_per_pa: f64) -> [Mark; 4] {
+        let [first, last] = self.ends;
+        let top = |end: Mark, stress_pa: f64| Mark {
+            at_m: end.at_m + self.across * (stress_pa * metres_per_pa),
+            ..end
+        };
+        let [of_first, of_last] = self.stresses_pa;
+        [first, top(first, of_first), top(last, of_last), last]
+    }
 }
 
 /// A part of a body.
@@ -326,6 +370,55 @@ impl Scene {
         }))
     }
 
+    /// Where the elastic joints of a row press; nothing of joints that are rigid.
+    #[must_use]
+    pub fn pressed(&self, sample: &Sample) -> Vec<Pressed> {
+        let pressures = sample.pressures.iter().enumerate();
+        pressures
+            .filter_map(|(joint, pressure)| {
+                let [intrados_pa, extrados_pa] = pressure.edge_stresses_pa;
+                let [intrados, extrados] = self.joint(joint)?;
+                let along_m = extrados.at_m - intrados.at_m;
+                // The stress is linear over what presses.
+                let [from, to] = match (intrados_pa > 0.0, extrados_pa > 0.0) {
+                    (true, true) => [0.0, 1.0],
+                    (true, false) => [0.0, pressure.contact_ratio],
+                    (false, true) => [1.0 - pressure.contact_ratio, 1.0],
+                    (false, false) => return None,
+                };
+                let at = |part: f64| Mark {
+                    at_m: intrados.at_m + along_m * part,
+                    ..intrados
+                };
+                Some(Pressed {
+                    ends: [at(from), at(to)],
+                    stresses_pa: pressure.edge_stresses_pa,
+                    across: self.across(joint)?,
+                })
+            })
+            .collect()
+    }
+
+    /// Unit vector across a joint of a row, undeformed, into the block after it.
+    #[must_use]
+    pub fn across(&self, joint: usize) -> Option<Vector2<f64>> {
+        let Shape::Row { outlines_m, .. } = &self.shape else {
+            return None;
+        };
+        let Section {
+            middle_m, across_m, ..
+        } = self.sections.get(joint)?;
+        let across = Vector2::new(across_m.y, -across_m.x).normalize();
+        // Away from the block before it, or into the one after it.
+        let (block, into) = match joint.checked_sub(1) {
+            Some(before) => (before, -1.0),
+            None => (joint, 1.0),
+        };
+        let corners = outlines_m.get(block)?.iter();
+        let towards: f64 = corners.map(|corner| across.dot(&(corner - middle_m))).sum();
+        Some(across * (into * towards.signum()))
+    }
+
     /// The body that each of [`Scene::sections`] moves with when these hinges are open.
     #[must_use]
     pub fn bodies_of_sections(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
@@ -343,6 +436,49 @@ impl Scene {
                 },
             })
             .collect()
+    }
+
+    /// The point of the structure at this place, undeformed, in metres. Beside a block it is of that block, as far as rounding and
+    /// curves drawn as straight lines may put it there.
+    ///
+    /// # Errors
+    /// With the nearest place in the structure, where this one is outside.
+    pub fn point(&self, at_m: Vector2<f64>) -> Result<Point, Vector2<f64>> {
+        let pieces = self.pieces(&[]).into_iter().enumerate();
+        let near = pieces.map(|(index, piece)| (index, nearest(&piece.outline_m, at_m)));
+        let away_m = |near_m: &Vector2<f64>| (near_m - at_m).norm();
+        let nearest = near.min_by(|a, b| away_m(&a.1).total_cmp(&away_m(&b.1)));
+        let (index, near_m) = nearest.expect("a structure has bodies");
+        let [low_m, high_m] = self.bounds_m();
+        if away_m(&near_m) > BESIDE_RATIO * (high_m - low_m).amax() {
+            return Err(near_m);
+        }
+        let part = match &self.shape {
+            Shape::Ring { ring, .. } => {
+                let left = ring.radial(0.0);
+                let angle_rad = -left.perp(&at_m).atan2(left.dot(&at_m));
+                // Just below the left springing, and not all around.
+                let before_rad = 0.5 * (ring.embrace_rad() - TAU);
+                let turns = if angle_rad < before_rad { TAU } else { 0.0 };
+                Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad()))
+            }
+            Shape::Block { .. } | Shape::Row { .. } => Part::Block(index),
+        };
+        Ok(Point { at_m, part })
+    }
+
+    /// A point with the body that it moves with while these hinges are open.
+    #[must_use]
+    pub fn mark(&self, point: &Point, hinges: &[OpenHinge]) -> Mark {
+        let body = match (point.part, &self.shape) {
+            (Part::Section(angle_rad), _) => link(&sections_rad(hinges), angle_rad),
+            (Part::Block(block), Shape::Row { linked: true, .. }) => linked_body(hinges, block),
+            (Part::Block(block), _) => Some(block),
+        };
+        Mark {
+            body,
+            at_m: point.at_m,
+        }
     }
 
     /// The line of thrust of a sample, in stretches over sections that are pressed.
@@ -365,6 +501,36 @@ impl Scene {
         stretches.retain(|stretch| stretch.len() > 1);
         stretches
     }
+}
+
+/// A point so near to the structure, over its size, is one of it.
+const BESIDE_RATIO: f64 = 5e-3;
+
+/// The place nearest to another one in what an outline encloses.
+fn nearest(outline_m: &[Vector2<f64>], at_m: Vector2<f64>) -> Vector2<f64> {
+    let sides = || {
+        let next = outline_m.iter().cycle().skip(1);
+        outline_m.iter().zip(next)
+    };
+    // A line to the right crosses the outline an odd number of times.
+    let crossings = sides().filter(|(a, b)| {
+        (a.y > at_m.y) != (b.y > at_m.y)
+            && at_m.x < a.x + (b.x - a.x) * (at_m.y - a.y) / (b.y - a.y)
+    });
+    if crossings.count() % 2 == 1 {
+        return at_m;
+    }
+    let on_side = |(a, b): (&Vector2<f64>, &Vector2<f64>)| {
+        let along = b - a;
+        let part = (at_m - a).dot(&along) / along.norm_squared();
+        // Corners that coincide make no side.
+        a + along * if part > 0.0 { part.min(1.0) } else { 0.0 }
+    };
+    let away_m = |near_m: &Vector2<f64>| (near_m - at_m).norm();
+    let nearest = sides()
+        .map(on_side)
+        .min_by(|a, b| away_m(a).total_cmp(&away_m(b)));
+    nearest.expect("an outline has corners")
 }
 
 /// The link that a block of a row belongs to when hinges are open at these joints.

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::ops::Bound::{Excluded, Included};
 
-use super::Structure;
 use super::table::{Number, OneOf, Reading, Table};
+use super::{Hinges, Structure};
 use crate::argument::{rounded_down, short};
 use crate::dynamics::model::Initial;
 use crate::mechanics::sway::Sway;
@@ -12,7 +12,17 @@ use crate::mechanics::sway::Sway;
 const ROTATION_RAD: Number = Number(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
 
 impl Initial {
-    pub(super) fn read(table: &mut Table<'_>, structure: Option<&Structure>) -> Reading<Self> {
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        structure: Option<&Structure>,
+        hinges: Hinges,
+    ) -> Reading<Self> {
+        if hinges == Hinges::Elastic {
+            return Err(table.wrong_itself(
+                "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
+                 [initial] out",
+            ));
+        }
         let sways = OneOf {
             all: Sway::ALL,
             name: Sway::name,

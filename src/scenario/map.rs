@@ -270,7 +270,7 @@ const SPREAD: &str = "spread";
 fn read_spread(table: &mut Table<'_>, hinges: Hinges) -> Reading<bool> {
     let spread = table.or(SPREAD, &Switch, false)?;
     if spread && !hinges.has_joints() {
-        let wrong = "goes with a table [free_hinges]: four links are integrated to a tolerance, not in steps";
+        let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
         return Err(table.wrong(SPREAD, wrong));
     }
     Ok(spread)

@@ -60,6 +60,7 @@ use serde_json::Value;
 use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
+use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_link::arch::FourLinkError;
 pub use assignment::Assignment;
@@ -259,7 +260,7 @@ impl Scenario {
         };
         let motion = motion.complete(table);
         let initial = table.table("initial", |table| {
-            Initial::read(table, structure.as_ref().ok())
+            Initial::read(table, structure.as_ref().ok(), hinges)
         });
         let map = table.table("map", |table| {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
@@ -336,6 +337,14 @@ impl Scenario {
     /// As [`Motion::model`].
     pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
         self.motion.model(&self.structure)
+    }
+
+    /// Other models of the structure, with what is not known of it otherwise.
+    ///
+    /// # Errors
+    /// As [`Motion::model`].
+    pub fn variations(&self) -> Result<Vec<Variation>, ModelError> {
+        self.motion.variations(&self.structure)
     }
 
     /// The name of that model in results.

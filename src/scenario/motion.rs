@@ -8,6 +8,7 @@ use super::table::{Reading, Table};
 use super::{free_hinges, impact};
 use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::model::{Model, Request};
+use crate::dynamics::variation::Variation;
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 
 named! {
@@ -91,6 +92,29 @@ impl Motion {
             Self::FreeHinges(options) => Box::new(structure.free_hinges(*options)?),
             Self::ElasticJoints(joints) => Box::new(joints.model(structure)?),
         })
+    }
+
+    /// Models of a structure beside its own, with what is not known of it otherwise: of elastic joints also rigid ones.
+    ///
+    /// # Errors
+    /// As [`Motion::model`].
+    pub fn variations(&self, structure: &Structure) -> Result<Vec<Variation>, ModelError> {
+        let Self::ElasticJoints(joints) = self else {
+            return Ok(Vec::new());
+        };
+        let mut variations = joints.model(structure)?.variations();
+        let rigid = structure.free_hinges(RowOptions {
+            friction_coefficient: joints.friction_coefficient,
+            ..RowOptions::default()
+        });
+        variations.push(Variation {
+            name: "rigid joints (free hinges)".to_owned(),
+            model: match rigid {
+                Ok(rigid) => Ok(Box::new(rigid)),
+                Err(error) => Err(error.to_string()),
+            },
+        });
+        Ok(variations)
     }
 
     /// The same for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases).

@@ -257,7 +257,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     }
     if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
         let why = if free_hinges {
-            "with [free_hinges] hinges open at joints"
+            "joints open between blocks"
         } else {
             "piers, fill and loads go with blocks"
         };
@@ -325,7 +325,7 @@ const DRUMS: Count = Count {
     why: "each is a block",
 };
 
-/// Reads `[column]`; drums and a taper go with free hinges only.
+/// Reads `[column]`; drums and a taper go with models of blocks only.
 fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);
@@ -338,8 +338,7 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     if !free_hinges {
         for key in ["drums", "drum_heights_m", "top_width_m"] {
             if table.gives(key) {
-                let wrong =
-                    "needs a table [free_hinges]: Housner's model is a single prismatic block";
+                let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
                 return Err(table.wrong(key, wrong));
             }
         }

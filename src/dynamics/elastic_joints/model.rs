@@ -4,14 +4,17 @@ use std::ops::RangeInclusive;
 
 use super::error::{ElasticJointError, ElasticJointsError};
 use super::stepper::{ElasticStepper, Group, Start};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, short, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
 use crate::dynamics::model::{Case, Model, Recorder, Repetition, Request, SimulationError};
 use crate::dynamics::row::course::{self, Clock, Task};
 use crate::dynamics::row::standing::RigidRow;
+use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
-use crate::mechanics::elastic_joint::{Contact, ElasticProperties, ElasticStructure, Rest};
+use crate::mechanics::elastic_joint::{
+    Contact, ElasticProperties, ElasticStructure, JointStiffness, Rest, Stiffness,
+};
 use crate::mechanics::sway::Sway;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints give way elastically, without tension, slip, and crush.
@@ -146,34 +149,47 @@ impl ElasticJoints {
         self.steps_times * self.options.longest_step_s.unwrap_or_else(default_s)
     }
 
-    /// The same structure with other properties that nobody knows better: what hangs on them. Those with which it does not stand are
-    /// left out.
+    /// The same structure with other properties that are as likely: stiffer, softer, and with the stress summed otherwise.
     #[must_use]
-    pub fn variations(&self) -> Vec<Repetition> {
-        let other_contact = match self.properties.contact {
-            Contact::Continuous => ("three contact points", Contact::Points(3)),
-            Contact::Points(_) => ("continuous contact", Contact::Continuous),
+    pub fn variations(&self) -> Vec<Variation> {
+        let softer = 1.0 / OTHER_STIFFNESS;
+        let stiffness = |factor, words: &str| {
+            let other = self.properties.stiffness_times(factor);
+            let name = match other.stiffness {
+                Stiffness::Uniform(JointStiffness { normal_pa_m, .. }) => {
+                    let stiffness = format!("{:.2e}", 1e-9 * normal_pa_m);
+                    format!("{} GPa/m", short(stiffness.parse().unwrap_or(0.0)))
+                }
+                Stiffness::Materials(_) => words.to_owned(),
+            };
+            (name, other)
         };
-        let stiffness = |factor| self.properties.stiffness_times(factor);
+        let (contact, words) = match self.properties.contact {
+            Contact::Continuous => (Contact::Points(3), "three contact points"),
+            Contact::Points(_) => (Contact::Continuous, "continuous contact"),
+        };
+        let summed_otherwise = ElasticProperties {
+            contact,
+            ..self.properties
+        };
         let others = [
-            ("three times the stiffness", stiffness(OTHER_STIFFNESS)),
-            ("a third of the stiffness", stiffness(1.0 / OTHER_STIFFNESS)),
-            (
-                other_contact.0,
-                ElasticProperties {
-                    contact: other_contact.1,
-                    ..self.properties
-                },
-            ),
+            stiffness(softer, "a third of the stiffness"),
+            stiffness(OTHER_STIFFNESS, "three times the stiffness"),
+            (words.to_owned(), summed_otherwise),
         ];
-        let variation = |(name, properties): (&'static str, ElasticProperties)| {
-            let structure = ElasticStructure::of_row(self.row(), &properties).ok()?;
-            let rigid = self.rigid.clone();
-            let model = Self::standing(rigid, properties, structure, self.rest.0).ok()?;
-            let model = Box::new(model);
-            Some(Repetition { name, model })
+        let variation = |(name, properties): (String, ElasticProperties)| Variation {
+            name,
+            model: match self.varied(properties) {
+                Ok(model) => Ok(Box::new(model)),
+                Err(error) => Err(error.to_string()),
+            },
         };
-        others.into_iter().filter_map(variation).collect()
+        others.into_iter().map(variation).collect()
+    }
+
+    fn varied(&self, properties: ElasticProperties) -> Result<Self, ElasticJointsError> {
+        let structure = ElasticStructure::of_row(self.row(), &properties)?;
+        Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 
     fn clock(&self, request: &Request) -> Result<Clock, ElasticJointError> {

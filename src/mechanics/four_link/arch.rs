@@ -29,12 +29,12 @@ pub enum FourLinkError {
     #[error(transparent)]
     Limit(#[from] LimitError),
     /// It is a free-standing stack.
-    #[error("a stack on one support has no four links: give [free_hinges]")]
+    #[error("a stack on one support has no four links: give [free_hinges] or [elastic_joints]")]
     Stack,
     /// A row of blocks does not start as four links to this side.
     #[error(
-        "to the {side} four links do not describe this row of blocks ({error}); give [free_hinges], which take \
-         any mechanism", side = .sway.name()
+        "to the {side} four links do not describe this row of blocks ({error}); give [free_hinges] or \
+         [elastic_joints], which take any mechanism", side = .sway.name()
     )]
     Row {
         /// To which side.

@@ -50,7 +50,7 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
             let overturned = ended(row)
                 .ok()
                 .filter(|one| one.overturning_sway().is_some());
-            overturned.map(|ending| ending.impacts)
+            overturned.and_then(|ending| ending.impacts)
         }),
         number("outcome_time_s", Ending::known_time_s),
         number("peak_rotation_over_critical", |ending| {

@@ -30,8 +30,9 @@ pub struct Ending {
     /// later, more impacts and the time of rest, is not known. `None` where the history was followed to its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe_from_s: Option<f64>,
-    /// Number of impacts; where the structure overturns, all are before.
-    pub impacts: usize,
+    /// Number of impacts; where the structure overturns, all are before. `None` of elastic joints, which know none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub impacts: Option<usize>,
     /// Largest gap in the energy balance: of a mechanism over its energy barrier, of free hinges over weight times
     /// size.
     pub energy_defect_ratio: f64,
@@ -97,7 +98,7 @@ impl Ending {
     #[must_use]
     pub const fn known_impacts(&self) -> Option<usize> {
         match self.safe_from_s {
-            None => Some(self.impacts),
+            None => self.impacts,
             Some(_) => None,
         }
     }
@@ -106,7 +107,7 @@ impl Ending {
     #[must_use]
     pub const fn impacts_of_all_hinges(&self) -> Option<usize> {
         match self.peak {
-            PeakRotation::OverCritical(_) => Some(self.impacts),
+            PeakRotation::OverCritical(_) => self.impacts,
             PeakRotation::Rad(_) => None,
         }
     }
@@ -180,11 +181,12 @@ impl Ending {
         safe_from_s: Option<f64>,
         uncertain: Option<String>,
     ) -> Result<Self, String> {
+        let gives_way = summary.row.as_ref().and_then(|row| row.elastic.as_ref());
         let ending = Self {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
             safe_from_s,
-            impacts: summary.impacts,
+            impacts: gives_way.is_none().then_some(summary.impacts),
             energy_defect_ratio: summary.energy_defect_ratio,
             peak: PeakRotation::of(summary),
             steps: summary.row.as_ref().map(|row| Steps {

@@ -1,6 +1,6 @@
 //! The frames of a moving picture: a history thinned to what can be seen.
 
-use crate::dynamics::history::{OpenHinge, Sample, State};
+use crate::dynamics::history::{JointPressure, OpenHinge, Sample, State};
 use crate::mechanics::geometry::pose::Pose;
 
 /// What is seen at an instant.
@@ -12,6 +12,7 @@ pub(super) struct Frame {
     pub(super) poses: Vec<Pose>,
     pub(super) hinges: Vec<OpenHinge>,
     pub(super) eccentricity_ratios: Vec<Option<f64>>,
+    pub(super) pressures: Vec<JointPressure>,
 }
 
 impl Frame {
@@ -23,6 +24,7 @@ impl Frame {
             poses: sample.poses.clone(),
             hinges: sample.hinges.clone(),
             eccentricity_ratios: sample.eccentricity_ratios.clone(),
+            pressures: sample.pressures.clone(),
         }
     }
 }

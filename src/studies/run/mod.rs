@@ -3,6 +3,7 @@
 mod film;
 pub mod overlay;
 mod picture;
+mod points;
 pub mod report;
 mod row_picture;
 mod scales;
@@ -15,11 +16,14 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::ops::ControlFlow;
 
+use nalgebra::Vector2;
 use serde_json::Value;
 use thiserror::Error;
 
 use self::overlay::Curves;
 use self::picture::{Picture, Timeline};
+pub use self::points::MOST_POINTS;
+use self::points::Points;
 use self::report::Report;
 use self::row_picture::RowTimeline;
 pub use self::scales::Scales;
@@ -30,11 +34,12 @@ use self::words::{Notable, words};
 use crate::dynamics::history::{Event, Sample, Summary};
 use crate::dynamics::model::{Model, Recorder, SimulationError};
 use crate::dynamics::spread::Repetitions;
+use crate::dynamics::variation::{Variation, Variations};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::table::{Column, TableWriter};
 use crate::output::{Figure, Folder, OutputError, Subject, pretty};
-use crate::scenario::Scenario;
+use crate::scenario::{Hinges, Scenario};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";
@@ -73,6 +78,10 @@ pub struct Wanted {
     pub exaggeration: f64,
     /// Whether there is a table of where every body is.
     pub poses: bool,
+    /// The models of all runs that are told together, with the own one.
+    pub beside: Vec<Hinges>,
+    /// Places in the undeformed structure, in metres, whose displacements are told: at most [`MOST_POINTS`].
+    pub points_m: Vec<Vector2<f64>>,
 }
 
 impl Default for Wanted {
@@ -86,6 +95,8 @@ impl Default for Wanted {
             snapshots_s: Vec::new(),
             exaggeration: 1.0,
             poses: false,
+            beside: Vec::new(),
+            points_m: Vec::new(),
         }
     }
 }
@@ -128,6 +139,7 @@ pub struct Run<'a> {
     model: Box<dyn Model>,
     wanted: Wanted,
     scales: Option<Scales>,
+    points: Points,
 }
 
 impl<'a> Run<'a> {
@@ -152,11 +164,13 @@ impl<'a> Run<'a> {
             }
             None => None,
         };
+        let points = Points::new(scene(scenario, &*model), &wanted.points_m)?;
         Ok(Self {
             scenario,
             model,
             wanted,
             scales,
+            points,
         })
     }
 
@@ -199,6 +213,7 @@ impl<'a> Run<'a> {
         let mut shown = Shown::new(self, folder.is_some());
         let repeats = self.wanted.spread && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
+        let variations = Variations::start(self.variations()?, ground, &request);
         let (history, rows) = {
             let mut recording = Recording {
                 tables: Tables::new(self, folder.as_mut(), rotations)?,
@@ -215,8 +230,23 @@ impl<'a> Run<'a> {
             repetitions.spread(&history)
         });
         let spread = spread.as_ref();
-        let mut text = words(scenario, model, &history, spread, &shown.notable);
+        let varied = variations.ended();
+        let mut text = words(
+            scenario,
+            model,
+            &history,
+            spread,
+            &varied,
+            &shown,
+            &self.wanted.beside,
+        );
         let mut summary = summary(scenario, model, &history, spread)?;
+        if !varied.is_empty() {
+            summary["variations"] = summary::of_variations(&varied)?;
+        }
+        if !self.wanted.points_m.is_empty() {
+            summary["points"] = shown.points.summary()?;
+        }
         let row = history.row.as_ref();
         if let Some(longest_step) = row.and_then(|row| row.longest_step.0) {
             // What a computation takes is told here, and belongs to no result.
@@ -239,6 +269,15 @@ impl<'a> Run<'a> {
             summary,
             curves: shown.curves,
         })
+    }
+
+    /// The same with what is not known of it otherwise, unless nobody wants to know how sure it is.
+    fn variations(&self) -> Result<Vec<Variation>, RunError> {
+        if !self.wanted.spread {
+            return Ok(Vec::new());
+        }
+        let variations = self.scenario.variations();
+        variations.map_err(|error| SimulationError::computation(error).into())
     }
 
     /// What the pictures are of.
@@ -286,6 +325,7 @@ struct Shown {
     report: Option<Report>,
     snapshots: Option<Snapshots>,
     notable: Notable,
+    points: Points,
     curves: Curves,
 }
 
@@ -300,10 +340,12 @@ impl Shown {
                 Some(row) => Box::new(RowTimeline::new(row)),
                 None => Box::new(Timeline::new(&model.bodies())),
             },
-            report: (has_folder && wanted.report).then(|| Report::new(run.scenario, model)),
+            report: (has_folder && wanted.report)
+                .then(|| Report::new(run.scenario, model).watching(run.points.clone())),
             snapshots: snapshots
                 .then(|| Snapshots::new(scene(), &wanted.snapshots_s, wanted.exaggeration)),
             notable: Notable::default(),
+            points: run.points.clone(),
             curves: Curves::new(),
         }
     }
@@ -316,6 +358,7 @@ impl Shown {
         if let Some(snapshots) = &mut self.snapshots {
             snapshots.push(sample);
         }
+        self.points.push(sample);
         self.curves.push(sample);
     }
 
@@ -334,7 +377,9 @@ impl Shown {
     ) -> Result<(), OutputError> {
         let (scenario, figure) = (run.scenario, run.wanted.figure);
         let title = scenario.title().unwrap_or("Rocking history");
-        let picture = self.picture.draw(figure, &run.subject(title), history);
+        let picture = self
+            .picture
+            .draw(figure, &run.subject(title), history, &self.points);
         write(folder, PICTURE, "the picture", &picture)?;
         if let Some(report) = &self.report {
             let page = report.page(scenario, scenario.ground_motion(), said);
@@ -375,7 +420,9 @@ impl<'f> Tables<'f> {
         let model = &*run.model;
         let columns = || {
             let vertical = run.scenario.ground_motion().has_vertical();
-            tables::rotations(model, vertical, run.scales)
+            let mut columns = tables::rotations(model, vertical, run.scales);
+            columns.extend(run.points.columns());
+            columns
         };
         let mut tables = Self {
             of_samples: Vec::new(),

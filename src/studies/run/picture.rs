@@ -1,5 +1,6 @@
 //! `history.svg`: a history at a glance, over a shared time axis.
 
+use super::points::Points;
 use crate::dynamics::history::{Event, Outcome, Sample, State, Summary};
 use crate::mechanics::sway::Sway;
 use crate::output::envelope::Envelope;
@@ -18,7 +19,13 @@ pub(super) trait Picture {
     fn event(&mut self, _event: &Event) {}
 
     /// The picture, with what the history came to.
-    fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String;
+    fn draw(
+        &self,
+        figure: Figure,
+        subject: &Subject<'_>,
+        summary: &Summary,
+        points: &Points,
+    ) -> String;
 }
 
 /// Where the excess of the thrust line is cut off, in parts of the thickness: a structure that falls has
@@ -137,7 +144,13 @@ impl Picture for Timeline {
         }
     }
 
-    fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String {
+    fn draw(
+        &self,
+        figure: Figure,
+        subject: &Subject<'_>,
+        summary: &Summary,
+        points: &Points,
+    ) -> String {
         let mut panels = Panels::new(figure, subject.title, self.end_s);
         let doing = Some(&self.doing);
         panels.ground(130.0, subject, doing);
@@ -170,6 +183,8 @@ impl Picture for Timeline {
             }
         });
 
+        let (names, mut of_points) = (points.names(), Vec::new());
+        points.draw(&mut panels, doing, &names, &mut of_points);
         for (label, name, envelope) in [
             ("Energy / barrier", "energy", &self.energy_ratio),
             ("Thrust outside / t", "excess", &self.excess_ratio),
@@ -199,6 +214,7 @@ impl Picture for Timeline {
         if overturned_s.is_some() {
             keys.push(OVERTURNS);
         }
+        keys.extend(of_points);
         panels.finish(&keys, moved)
     }
 }

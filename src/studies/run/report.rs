@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::film::{Film, Frame};
 use super::picture::LARGEST_EXCESS;
+use super::points::Points;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State};
 use crate::dynamics::model::Model;
@@ -48,6 +49,7 @@ pub struct Report {
     in_barriers: bool,
     excess_ratio: Envelope,
     leaves: bool,
+    points: Option<Points>,
 }
 
 impl Report {
@@ -55,8 +57,9 @@ impl Report {
     #[must_use]
     pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
-        // Rotation and displacement of a body, a section, time, ground and the rest, in base 64.
-        let bytes = 4 * (6 * bodies.len() + 3 * scene.sections().len() + 24) / 3;
+        let pressing = model.shape().pressing;
+        // Rotation and displacement of a body, a section, what presses, time, ground and the rest, in base 64.
+        let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections().len() + pressing) + 24) / 3;
         let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);
         Self {
             scene,
@@ -67,6 +70,15 @@ impl Report {
             in_barriers: false,
             excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
             leaves: false,
+            points: None,
+        }
+    }
+
+    /// The same with these points watched.
+    pub(super) fn watching(self, points: Points) -> Self {
+        Self {
+            points: Some(points),
+            ..self
         }
     }
 
@@ -74,6 +86,9 @@ impl Report {
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.film.push(sample);
+        if let Some(points) = &mut self.points {
+            points.push(sample);
+        }
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
@@ -172,6 +187,8 @@ impl Report {
             let (middle, across) = (section.middle_m, section.across_m);
             json!([middle.x, middle.y, across.x, across.y])
         });
+        let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
+        let across = across.map(|across| json!([across.x, across.y]));
         let supports = self.scene.supports_m();
         let energy_label = if self.in_barriers {
             "Energy (1: gravity alone overturns the mechanism that moves)"
@@ -189,8 +206,10 @@ impl Report {
             "supports": supports.iter().map(|[a, b]| json!([a.x, a.y, b.x, b.y])).collect::<Vec<_>>(),
             "sections": sections.collect::<Vec<_>>(),
             "joints": joints,
+            "across": across.collect::<Vec<_>>(),
             "layouts": written,
             "frames": self.frames(ground, frames, layout_of, joints.len()),
+            "points": self.points.as_ref().map(|points| points.on_page(curve)),
             "energy_label": energy_label,
             "curves": {
                 "ground_g": curve(&curve_g(ground, self.gravity_m_s2, end_s)),
@@ -230,6 +249,9 @@ impl Report {
             "pieces": pieces.collect::<Vec<_>>(),
             "hinges": marks.collect::<Vec<_>>(),
             "section_bodies": bodies.map(body_number).collect::<Vec<_>>(),
+            "point_bodies": self.points.as_ref().map_or_else(Vec::new, |points| {
+                points.bodies(hinges).into_iter().map(body_number).collect()
+            }),
         })
     }
 
@@ -272,6 +294,14 @@ impl Report {
             }
             codes
         });
+        let pressures = || frames.iter().flat_map(|frame| &frame.pressures);
+        let stresses_pa = || pressures().flat_map(|pressure| pressure.edge_stresses_pa);
+        let largest_pa = stresses_pa().fold(0.0, f64::max);
+        let pressed = pressures().flat_map(|pressure| {
+            let [intrados_pa, extrados_pa] = pressure.edge_stresses_pa;
+            let stresses = [intrados_pa, extrados_pa].map(|pa| eighth(pa / largest_pa));
+            [stresses[0], stresses[1], eighth(pressure.contact_ratio)]
+        });
         let states = frames.iter().map(|frame| match frame.state {
             State::Rest => 0,
             State::Rocking(Sway::Right) => 1,
@@ -288,11 +318,24 @@ impl Report {
             "shift_unit_m": shift_unit_m,
             "thrust_unit": (!thrust.is_empty()).then_some(thrust_unit),
             "thrust": encoded(thrust.into_iter().map(i16::to_le_bytes)),
+            "largest_stress_pa": (largest_pa > 0.0).then_some(largest_pa),
+            "pressed": BASE64_STANDARD.encode(pressed.collect::<Vec<u8>>()),
             "joints": BASE64_STANDARD.encode(codes.collect::<Vec<u8>>()),
             "states": BASE64_STANDARD.encode(states.collect::<Vec<u8>>()),
             "layouts": encoded(layout_of.into_iter().map(u16::to_le_bytes)),
         })
     }
+}
+
+/// A part of a whole, in eight bits; what is not nothing is not zero.
+fn eighth(part: f64) -> u8 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "it is clamped"
+    )]
+    let bits = (255.0 * part).ceil().clamp(0.0, 255.0) as u8;
+    bits
 }
 
 /// How a hinge is open; 0 is shut.

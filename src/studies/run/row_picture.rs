@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::picture::{FAR, Picture};
+use super::points::Points;
 use crate::dynamics::history::{Outcome, Sample, State, Summary};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
@@ -79,7 +80,13 @@ impl Picture for RowTimeline {
         self.joints.push(sample);
     }
 
-    fn draw(&self, figure: Figure, subject: &Subject<'_>, summary: &Summary) -> String {
+    fn draw(
+        &self,
+        figure: Figure,
+        subject: &Subject<'_>,
+        summary: &Summary,
+        points: &Points,
+    ) -> String {
         let mut panels = Panels::new(figure, subject.title, self.end_s);
         let doing = doing(summary);
         let doing = Some(&doing);
@@ -147,6 +154,8 @@ impl Picture for RowTimeline {
         if !slips.is_empty() {
             panels.curves("Slip (mm)", 120.0, &slips, doing);
         }
+        let names = points.names();
+        points.draw(&mut panels, doing, &names, &mut keys);
         let energy = Curve::new("energy", self.energy.points(), MAIN);
         if !energy.is_flat() {
             let label = if self.in_barriers {

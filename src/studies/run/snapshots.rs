@@ -1,5 +1,7 @@
 //! `snapshots.svg`: the deformed structure at chosen times, side by side.
 
+use std::fmt::Write as _;
+
 use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
@@ -52,6 +54,21 @@ impl Snapshots {
         times.filter(|time_s| *time_s > self.end_s).collect()
     }
 
+    /// The largest stress of a joint that is drawn, in Pa.
+    fn largest_pa(&self) -> f64 {
+        let samples = self.taken.iter().filter_map(|(_, sample)| sample.as_ref());
+        let pressures = samples.flat_map(|sample| &sample.pressures);
+        let stresses_pa = pressures.flat_map(|pressure| pressure.edge_stresses_pa);
+        stresses_pa.fold(0.0, f64::max)
+    }
+
+    /// That of the thinnest joint, in metres.
+    fn thickness_m(&self) -> f64 {
+        let sections = self.scene.sections().iter();
+        let thicknesses_m = sections.map(|section| section.across_m.norm());
+        thicknesses_m.fold(f64::INFINITY, f64::min)
+    }
+
     /// The picture.
     pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
         let taken = self.taken.iter();
@@ -83,8 +100,16 @@ impl Snapshots {
         } else {
             format!("displacements times {}", self.exaggeration)
         };
-        let caption =
+        let mut caption =
             format!("{exaggeration}; dashed: at rest; circles: open hinges; blue: thrust line");
+        let largest_pa = self.largest_pa();
+        if largest_pa > 0.0 {
+            let _ = write!(
+                caption,
+                "; wedges: compressive stress of what presses, the highest {:.2} MPa",
+                1e-6 * largest_pa
+            );
+        }
         let end = drawing.caption(top, &caption);
         drawing.finish(end + 8.0)
     }
@@ -114,6 +139,14 @@ impl Snapshots {
             drawing.polygon(&name, outline.map(|corner| place.px(corner)), fill, black);
         }
         let moved = |mark: &Mark| place.px(mark.moved(poses, self.exaggeration));
+        for pressed in self.scene.pressed(sample) {
+            let high_m = WEDGE_RATIO * self.thickness_m() / self.largest_pa();
+            let wedge = pressed.wedge(high_m);
+            let stroke = Stroke::new(color::PURPLE, 0.8, "");
+            drawing.polygon("stress", wedge.iter().map(moved), PRESSED, stroke);
+            let ends = pressed.ends.iter().map(moved);
+            drawing.curve("pressed", ends, Stroke::new(color::PURPLE, 2.4, ""));
+        }
         for stretch in self.scene.thrust_line(sample) {
             let points = stretch.iter().map(moved);
             drawing.curve("thrust line", points, Stroke::new(color::BLUE, 1.6, ""));
@@ -132,6 +165,11 @@ impl Snapshots {
         drawing.label(below, Anchor::Middle, 0.0, &text);
     }
 }
+
+/// The highest wedge of stress, over the thickness of the thinnest joint.
+const WEDGE_RATIO: f64 = 0.6;
+/// Its colour.
+const PRESSED: &str = "#e3c3dc";
 
 /// Colours of the bodies of a four-link mechanism.
 const LINKS: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];

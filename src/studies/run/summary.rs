@@ -3,9 +3,11 @@
 use serde_json::{Map, Value, json};
 
 use super::Scales;
+use super::words::first_peak_rad;
 use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary};
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::spread::{PeakSpread, Spread, SpreadError};
+use crate::dynamics::variation::Varied;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::columns;
 use crate::output::{OutputError, finite};
@@ -36,13 +38,7 @@ pub fn summary(
     object.put("program", json!(env!("CARGO_PKG_NAME")));
     object.put("version", json!(env!("CARGO_PKG_VERSION")));
     object.put("scenario", scenario.to_json());
-    object.put("outcome", json!(history.outcome.name()));
-    object.number("outcome_time_s", history.outcome_time_s)?;
-    let sway = match history.outcome {
-        Outcome::Overturned(sway) => Some(sway.name()),
-        _ => None,
-    };
-    object.put("overturning_sway", json!(sway));
+    object.ending(history)?;
     object.put("impacts", json!(history.impacts));
     let peaks = columns(&model.bodies(), "peak_rotation", "rad");
     for (name, peak_rad) in peaks.iter().zip(&history.peak_rotations_rad) {
@@ -88,6 +84,18 @@ impl Object {
         for (name, count) in counts {
             self.put(name, json!(count));
         }
+    }
+
+    /// How it ended.
+    fn ending(&mut self, history: &Summary) -> Result<(), OutputError> {
+        self.put("outcome", json!(history.outcome.name()));
+        self.number("outcome_time_s", history.outcome_time_s)?;
+        let sway = match history.outcome {
+            Outcome::Overturned(sway) => Some(sway.name()),
+            _ => None,
+        };
+        self.put("overturning_sway", json!(sway));
+        Ok(())
     }
 
     /// What starts it.
@@ -227,6 +235,29 @@ impl Object {
         ]);
         Ok(())
     }
+}
+
+/// How its motion ends with other properties: a list of what is different (`with`), `outcome`, `outcome_time_s`, `overturning_sway`,
+/// `first_peak_rad` and `largest_peak_rotation_rad`; or `failed`, with the reason.
+///
+/// # Errors
+/// When a value is not finite.
+pub(super) fn of_variations(varied: &[Varied]) -> Result<Value, OutputError> {
+    let variation = |varied: &Varied| {
+        let mut object = Object::default();
+        object.put("with", json!(varied.name));
+        match &varied.result {
+            Ok(history) => {
+                object.ending(history)?;
+                object.number("first_peak_rad", first_peak_rad(history))?;
+                let largest_rad = history.largest_rotation_rad();
+                object.number("largest_peak_rotation_rad", largest_rad)?;
+            }
+            Err(reason) => object.put("failed", json!(reason)),
+        }
+        Ok(Value::Object(object.0))
+    };
+    varied.iter().map(variation).collect()
 }
 
 fn of_spread(spread: &Spread) -> Result<Value, OutputError> {

@@ -2,18 +2,20 @@
 
 use std::fmt::Write as _;
 
+use super::Shown;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
     ElasticSummary, Event, HalfCycle, Impact, Outcome, RowSummary, Sliding, Stress, Summary,
 };
 use crate::dynamics::model::{MechanismModel, Model};
-use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, SpreadError};
+use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, SpreadError, Verdict};
 use crate::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
+use crate::dynamics::variation::Varied;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::by_body;
-use crate::scenario::{Ground, Scenario, Series, Structure};
+use crate::scenario::{Ground, Hinges, Scenario, Series, Structure};
 
 /// What stands above the words of runs of a scenario: its title, and the records that shake it, a line each.
 #[must_use]
@@ -36,8 +38,11 @@ pub(super) fn words(
     model: &dyn Model,
     history: &Summary,
     spread: Option<&Result<Spread, SpreadError>>,
-    impacts: &Notable,
+    varied: &[Varied],
+    shown: &Shown,
+    beside: &[Hinges],
 ) -> String {
+    let impacts = &shown.notable;
     let mut text = outcome(history);
     match (model.as_mechanisms(), &history.row) {
         (Some(model), _) => text += &of_mechanisms(model, history, impacts),
@@ -49,6 +54,7 @@ pub(super) fn words(
         }
         (None, None) => {}
     }
+    text += &shown.points.words();
     text += &incipient(scenario, model, history);
     text += &cut_short(scenario, history);
     let sliding = history.row.as_ref().and_then(|row| row.sliding.as_ref());
@@ -56,7 +62,7 @@ pub(super) fn words(
         text += &slips(row, sliding, history.outcome);
     } else if let Some(thrust) = &history.thrust {
         let to_be_told = match model.as_mechanisms() {
-            Some(_) => trust(thrust, scenario.structure()),
+            Some(_) => trust(thrust, scenario.structure(), beside),
             None => Some(String::new()),
         };
         if let Some(trust) = to_be_told {
@@ -78,7 +84,50 @@ pub(super) fn words(
         }
         _ => {}
     }
+    text += &variations(history, varied);
+    let compared = beside.contains(&Hinges::Elastic);
+    if scenario.motion().hinges() == Hinges::Free && !compared {
+        text += "  joints that give way make an arch fall before this one does: compare with --hinges elastic\n";
+    }
     text
+}
+
+/// What its motion hangs on: how it ends with other properties.
+fn variations(own: &Summary, varied: &[Varied]) -> String {
+    let mut text = String::new();
+    for Varied { name, result } in varied {
+        let _ = match result {
+            Ok(other) => {
+                let other_verdict = Verdict::from(other.outcome) != Verdict::from(own.outcome);
+                let but = if other_verdict { "BUT " } else { "" };
+                writeln!(text, "  {but}with {name}: {}", ended(other))
+            }
+            Err(reason) => writeln!(text, "  with {name}: {reason}"),
+        };
+    }
+    text
+}
+
+/// How a motion ended, and its first peak.
+fn ended(history: &Summary) -> String {
+    let ends = match history.outcome {
+        Outcome::Overturned(sway) => {
+            let time_s = history.outcome_time_s;
+            return format!("overturns to the {} at {time_s:.4} s", sway.name());
+        }
+        Outcome::NeverMoved => return "never moves".to_owned(),
+        Outcome::Rest | Outcome::StillRocking => "survives",
+    };
+    match first_peak_rad(history) {
+        Some(peak_rad) => format!("{ends}, first peak {peak_rad:.6} rad"),
+        None => ends.to_owned(),
+    }
+}
+
+/// Peak of the first half cycle that rocks.
+pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
+    let mut peaks = history.half_cycles().iter().map(|cycle| cycle.peak_rad);
+    peaks.find(|peak_rad| *peak_rad > STRAIGHT_RAD)
 }
 
 /// What is said of the motion of mechanisms.
@@ -352,7 +401,7 @@ fn cut_short(scenario: &Scenario, history: &Summary) -> String {
 }
 
 /// How far the motion can be trusted to be that of four links, or of a column on its toe; `None` where it did not rock.
-fn trust(thrust: &ThrustRecord, structure: &Structure) -> Option<String> {
+fn trust(thrust: &ThrustRecord, structure: &Structure, beside: &[Hinges]) -> Option<String> {
     let [_, near] = thrust.shares_within()?;
     let Peak { value, time_s } = thrust.largest_excess;
     let [close, most] = EXCESS_LEVELS;
@@ -376,9 +425,15 @@ fn trust(thrust: &ThrustRecord, structure: &Structure) -> Option<String> {
         Some(arch) if arch.voussoirs().is_none() => "give `voussoirs` and ",
         _ => "",
     };
+    // Nobody is told to do what is done.
+    let compare = if beside.contains(&Hinges::Free) {
+        String::new()
+    } else {
+        format!("; {give}compare with --hinges both")
+    };
     Some(format!(
         "  {grade}: the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s),\n    and stays within {most} t \
-         for {:.1} % of the rocking time; {give}compare with --hinges both\n",
+         for {:.1} % of the rocking time{compare}\n",
         100.0 * near
     ))
 }

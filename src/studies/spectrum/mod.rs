@@ -284,7 +284,8 @@ impl Study for OverturningSpectrum<'_> {
                 }) => {
                     row.minimum = Some(Overturning {
                         over_incipient,
-                        impacts,
+                        // Mechanisms count theirs.
+                        impacts: impacts.unwrap_or(0),
                         sway,
                     });
                     break;

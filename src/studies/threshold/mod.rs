@@ -7,9 +7,11 @@
 
 pub mod picture;
 mod told;
+mod varied;
 
 pub(super) use told::rounded;
 pub use told::{FILES, check, outcome, tell};
+pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;
 
@@ -202,6 +204,8 @@ pub struct Threshold {
     pub samples: Vec<FactorSample>,
     /// The ranges of one verdict, ascending.
     pub ranges: Vec<(Verdict, FactorRange)>,
+    /// What its lowest factor hangs on, where that was asked for.
+    pub varied: Vec<VariedThreshold>,
 }
 
 impl Threshold {
@@ -442,6 +446,7 @@ impl Threshold {
             model,
             samples,
             ranges,
+            varied: Vec::new(),
         }
     }
 }

@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::{FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, picture};
+use super::{
+    FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, VariedThreshold, picture,
+};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Outcome;
 use crate::output::table::{column, csv};
@@ -121,7 +123,9 @@ fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
         column("overturning_sway", |row| {
             ending(row).and_then(Ending::overturning_sway)
         }),
-        column("impacts", |row| ending(row).map(|ending| ending.impacts)),
+        column("impacts", |row| {
+            ending(row).and_then(|ending| ending.impacts)
+        }),
         column("outcome_time_s", |row| {
             ending(row).map(|ending| ending.outcome_time_s)
         }),
@@ -168,6 +172,13 @@ fn to_json(
                 remarks.note_steps(ending);
             }
             remarks.add_to(&mut model);
+            if !threshold.varied.is_empty() {
+                model["variations"] = threshold
+                    .varied
+                    .iter()
+                    .map(|one| varied_to_json(one, peak_g))
+                    .collect();
+            }
             model["samples"] = samples.into();
             model
         })
@@ -190,6 +201,15 @@ fn range_to_json(range: &FactorRange, peak_g: f64) -> Value {
         "from_peak_g": range.from * peak_g,
         "to_peak_g": range.to * peak_g,
     })
+}
+
+fn varied_to_json(VariedThreshold { name, factor }: &VariedThreshold, peak_g: f64) -> Value {
+    match factor {
+        Ok(factor) => {
+            json!({ "with": name, "factor": factor, "peak_g": factor.map(|factor| factor * peak_g) })
+        }
+        Err(reason) => json!({ "with": name, "failed": reason }),
+    }
 }
 
 fn sample_to_json(sample: &FactorSample) -> Value {
@@ -240,6 +260,7 @@ fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -
             ranges(&mut text, peak_g, threshold);
         }
         doubts(&mut text, threshold);
+        text += &hangs_on(threshold, peak_g);
     }
     let end_s = scenario.simulation().duration_s;
     if ground.end_s() > end_s {
@@ -264,6 +285,29 @@ impl Factors {
             (1e6 * self.stride()).round() / 1e4,
         )
     }
+}
+
+/// From which factors it overturns with other properties.
+fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
+    let mut text = String::new();
+    for VariedThreshold { name, factor } in &threshold.varied {
+        let _ = match factor {
+            Ok(Some(factor)) => {
+                let peak_g = rounded(factor * peak_g);
+                writeln!(
+                    text,
+                    "  with {name}: from factor {} ({peak_g} g)",
+                    rounded(*factor)
+                )
+            }
+            Ok(None) => writeln!(
+                text,
+                "  with {name}: no threshold within a tenth to ten times that"
+            ),
+            Err(reason) => writeln!(text, "  with {name}: {reason}"),
+        };
+    }
+    text
 }
 
 /// A line for each range.

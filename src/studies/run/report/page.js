@@ -13,6 +13,7 @@
   const groundG = new Float32Array(buffer(frames.ground_g));
   const thrust = new Int16Array(buffer(frames.thrust));
   const joints = new Uint8Array(buffer(frames.joints));
+  const pressed = new Uint8Array(buffer(frames.pressed));
   const states = new Uint8Array(buffer(frames.states));
   const layoutOf = new Uint16Array(buffer(frames.layouts));
   const count = times.length;
@@ -83,7 +84,7 @@
     return power * [1, 2, 5, 10].find((digit) => digit * power >= rough);
   }
 
-  const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
   const groundX = Array.from({ length: count }, (_, i) => groundM[2 * i]);
   // A pulse may leave the ground with a velocity: where it goes far, the eye goes with it.
   find("ride").checked = farthest(groundX) > 0.3 * Math.max(width, height);
@@ -188,6 +189,28 @@
       pen.stroke();
     }
 
+    // Where elastic joints press, and the stress there as a wedge.
+    if (frames.largest_stress_pa) {
+      pen.fillStyle = pen.strokeStyle = css("--press");
+      data.joints.forEach(([body, ix, iy, ex, ey], joint) => {
+        const { stresses, ends } = pressure(at.frame, joint);
+        if (stresses.every((stress) => stress === 0)) return;
+        const high = (0.6 * Math.hypot(ex - ix, ey - iy)) / frames.largest_stress_pa;
+        const [acrossX, acrossY] = data.across[joint];
+        const corner = (end, stress) => {
+          const [part, up] = [ends[end], high * stress];
+          return point([body, ix + part * (ex - ix) + up * acrossX, iy + part * (ey - iy) + up * acrossY]);
+        };
+        path([corner(0, 0), corner(0, stresses[0]), corner(1, stresses[1]), corner(1, 0)], true);
+        pen.globalAlpha = 0.55;
+        pen.fill();
+        pen.globalAlpha = 1;
+        pen.lineWidth = 3;
+        path([corner(0, 0), corner(1, 0)], false);
+        pen.stroke();
+      });
+    }
+
     // The line of thrust, where sections are pressed.
     if (find("thrust").checked && frames.thrust_unit) {
       pen.strokeStyle = css("--thrust");
@@ -228,6 +251,16 @@
       pen.stroke();
     }
 
+    // The points that are watched.
+    pen.strokeStyle = css("--mark");
+    pen.fillStyle = css("--paper");
+    pen.lineWidth = 2;
+    (data.points ?? []).forEach(({ at_m: [x, y] }, i) => {
+      const [px, py] = onScreen(point([layout.point_bodies[i], x, y]));
+      pen.fillRect(px - 4, py - 4, 8, 8);
+      pen.strokeRect(px - 4, py - 4, 8, 8);
+    });
+
     // How the ground accelerates.
     const g = blend(groundG, 1, 0, at);
     const most = farthest(groundG);
@@ -266,6 +299,15 @@
       if (code === EXTRADOS || code === PARTED) open.push([body, ex, ey, code]);
     });
     return open.concat(layouts[layoutOf[frame]].hinges);
+  }
+
+  /** Stresses at the ends of what presses of a joint, in Pa, and where those are, from 0 at the intrados to 1 at the extrados. */
+  function pressure(frame, joint) {
+    const first = 3 * (frame * data.joints.length + joint);
+    const [inner, outer, contact] = Array.from(pressed.subarray(first, first + 3), (part) => part / 255);
+    const stresses = [inner, outer].map((part) => part * frames.largest_stress_pa);
+    const ends = outer === 0 ? [0, contact] : inner === 0 ? [1 - contact, 1] : [0, 1];
+    return { stresses, ends };
   }
 
   function inWords(at, poses) {
@@ -388,6 +430,12 @@
     order.map((body) => ({ ...look(body), values: turns[body] })),
     few,
   );
+  for (const { curves } of data.points ?? []) {
+    // Each is thinned by itself, so that their times differ.
+    const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
+    const look = ({ name }, axis) => ({ name, color: `--curve-${axis + 1}`, dash: dashes[axis], values: values[axis] });
+    addPlot("Displacement (mm)", 150, ts, curves.map(look), true);
+  }
   const [energyT, energyY] = curve(data.curves.energy);
   addPlot(data.energy_label, 150, energyT, [{ name: "energy", color: "--ink", values: energyY }], true);
   if (data.curves.excess) {
@@ -457,6 +505,10 @@
   find("thrust").addEventListener("change", draw);
   find("ride").addEventListener("change", draw);
   find("thrust-choice").hidden = !frames.thrust_unit;
+  find("stress").hidden = !frames.largest_stress_pa;
+  if (frames.largest_stress_pa) {
+    find("largest-stress").textContent = Number((frames.largest_stress_pa / 1e6).toPrecision(3));
+  }
 
   const exaggeration = () => Number(find("exaggeration").value);
   const keys = {
@@ -519,6 +571,7 @@
     play,
     times,
     hingesAt,
+    pressure,
     zoom,
     range: () => plots.map(({ scales }) => [scales.x.min, scales.x.max]),
     shown: () => ({ time, playing, poses: posesAt(moment(time)), state: STATES[states[moment(time).frame]] }),

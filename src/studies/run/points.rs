@@ -1,0 +1,239 @@
+//! Points of blocks that are watched, such as the crown: how far they are displaced.
+
+use std::fmt::Write as _;
+
+use nalgebra::Vector2;
+use serde_json::{Value, json};
+
+use crate::dynamics::history::{OpenHinge, Sample};
+use crate::output::envelope::Envelope;
+use crate::output::mechanisms::columns;
+use crate::output::panels::{Curve, Panels, States};
+use crate::output::scene::{Point, Scene};
+use crate::output::svg::{CURVES, Key, Sign};
+use crate::output::table::{Cell, Column, several};
+use crate::output::{OutputError, finite};
+
+/// The most points that are watched at once: each has two curves in the pictures, of different looks.
+pub const MOST_POINTS: usize = CURVES.len() / 2;
+
+/// Watches points of a structure, and keeps how far they are displaced from where they were in the undeformed structure, relative to
+/// the ground.
+#[derive(Clone, Debug)]
+pub(super) struct Points {
+    scene: Scene,
+    watched: Vec<Watched>,
+}
+
+#[derive(Clone, Debug)]
+struct Watched {
+    point: Point,
+    /// In its columns; empty where there is only one.
+    name: String,
+    /// To the right, and upwards.
+    displacements: [Displacement; 2],
+}
+
+#[derive(Clone, Debug, Default)]
+struct Displacement {
+    millimetres: Envelope,
+    /// The farthest, with its time.
+    farthest_m: f64,
+    time_s: f64,
+}
+
+/// Axes of displacements, in columns and for people: towards the positive and the negative.
+const AXES: [(&str, [&str; 2]); 2] = [
+    ("x", ["to the right", "to the left"]),
+    ("y", ["up", "down"]),
+];
+
+impl Points {
+    /// Points of a structure, by their places when it is undeformed, in metres.
+    ///
+    /// # Errors
+    /// In words, when one is not in the structure, or there are too many.
+    pub(super) fn new(scene: Scene, places_m: &[Vector2<f64>]) -> Result<Self, String> {
+        if places_m.len() > MOST_POINTS {
+            return Err(format!(
+                "--point is given {} times: at most {MOST_POINTS} points are watched at once",
+                places_m.len()
+            ));
+        }
+        let mut watched = Vec::new();
+        for (index, at_m) in places_m.iter().enumerate() {
+            let point = scene.point(*at_m).map_err(|nearest_m| {
+                let [low_m, high_m] = scene.bounds_m();
+                format!(
+                    "--point {} is in no block: the nearest place of one is {}; the structure lies between {} and {} (in metres)",
+                    place(*at_m),
+                    place(nearest_m),
+                    place(low_m),
+                    place(high_m)
+                )
+            })?;
+            watched.push(Watched {
+                point,
+                name: match places_m.len() {
+                    1 => String::new(),
+                    _ => (index + 1).to_string(),
+                },
+                displacements: Default::default(),
+            });
+        }
+        Ok(Self { scene, watched })
+    }
+
+    /// Takes a sample. Samples come in the order of time.
+    pub(super) fn push(&mut self, sample: &Sample) {
+        for watched in &mut self.watched {
+            let displaced_m = displacement_m(&self.scene, &watched.point, sample);
+            for (along, displaced_m) in watched.displacements.iter_mut().zip(displaced_m.iter()) {
+                along.millimetres.push(sample.time_s, 1e3 * displaced_m);
+                if displaced_m.abs() > along.farthest_m.abs() {
+                    (along.farthest_m, along.time_s) = (*displaced_m, sample.time_s);
+                }
+            }
+        }
+    }
+
+    /// Their columns in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; of several
+    /// `point_1_x_m` and so on.
+    pub(super) fn columns(&self) -> Vec<Column<'static, Sample>> {
+        let column = |watched: &Watched| {
+            let (scene, point) = (self.scene.clone(), watched.point);
+            let name = std::slice::from_ref(&watched.name);
+            let names = AXES.map(|(axis, _)| columns(name, "point", &format!("{axis}_m")));
+            several(names.into_iter().flatten(), move |sample, cells| {
+                let displaced_m = displacement_m(&scene, &point, sample);
+                cells.extend(displaced_m.iter().map(|along_m| Cell::from(*along_m)));
+            })
+        };
+        self.watched.iter().map(column).collect()
+    }
+
+    /// How far they came, a line each.
+    pub(super) fn words(&self) -> String {
+        let mut text = String::new();
+        for watched in &self.watched {
+            let axes = AXES.iter().zip(&watched.displacements);
+            let farthest = axes.map(|((_, [positive, negative]), along)| {
+                let to = if along.farthest_m < 0.0 {
+                    negative
+                } else {
+                    positive
+                };
+                let most_mm = 1e3 * along.farthest_m.abs();
+                format!("{most_mm:.3} mm {to} (at {:.4} s)", along.time_s)
+            });
+            let _ = writeln!(
+                text,
+                "  the point {} moves by up to {}",
+                place(watched.point.at_m),
+                farthest.collect::<Vec<_>>().join(" and ")
+            );
+        }
+        text
+    }
+
+    /// The same for programs.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub(super) fn summary(&self) -> Result<Value, OutputError> {
+        let point = |watched: &Watched| {
+            let [x, y] = &watched.displacements;
+            finite("points", &[x.farthest_m, x.time_s, y.farthest_m, y.time_s])?;
+            Ok(json!({
+                "x_m": watched.point.at_m.x,
+                "y_m": watched.point.at_m.y,
+                "peak_x_m": x.farthest_m,
+                "peak_x_time_s": x.time_s,
+                "peak_y_m": y.farthest_m,
+                "peak_y_time_s": y.time_s,
+            }))
+        };
+        self.watched.iter().map(point).collect()
+    }
+
+    /// Adds the panel of their displacements.
+    pub(super) fn draw<'k>(
+        &self,
+        panels: &mut Panels,
+        doing: Option<&States>,
+        names: &'k [[String; 2]],
+        keys: &mut Vec<Key<'k>>,
+    ) {
+        let displacements = self
+            .watched
+            .iter()
+            .flat_map(|watched| &watched.displacements);
+        let named = names.as_flattened().iter().zip(CURVES).zip(displacements);
+        let curves: Vec<Curve> = named
+            .map(|((name, stroke), along)| {
+                Curve::new(name.clone(), along.millimetres.points(), stroke)
+            })
+            .collect();
+        if curves.iter().all(Curve::is_flat) {
+            return;
+        }
+        panels.curves("Displacement (mm)", 150.0, &curves, doing);
+        let strokes = names.as_flattened().iter().zip(CURVES);
+        keys.extend(strokes.map(|(name, stroke)| (name.as_str(), Sign::Line(stroke))));
+    }
+
+    /// Names of their curves, to the right and upwards.
+    pub(super) fn names(&self) -> Vec<[String; 2]> {
+        let named = self.watched.iter().map(|watched| {
+            let place = place(watched.point.at_m);
+            AXES.map(|(_, [positive, _])| format!("point {place}, {positive}"))
+        });
+        named.collect()
+    }
+
+    /// The bodies that they move with while these hinges are open.
+    pub(super) fn bodies(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
+        let watched = self.watched.iter();
+        watched
+            .map(|watched| self.scene.mark(&watched.point, hinges).body)
+            .collect()
+    }
+
+    /// What a page shows of them: places, and named curves in millimetres.
+    pub(super) fn on_page(&self, curve: impl Fn(&[(f64, f64)]) -> String) -> Value {
+        let point = |(watched, names): (&Watched, [String; 2])| {
+            let curves = watched
+                .displacements
+                .iter()
+                .zip(names)
+                .map(|(along, name)| {
+                    let points: Vec<_> = along.millimetres.points().collect();
+                    json!({ "name": name, "curve": curve(&points) })
+                });
+            json!({
+                "at_m": [watched.point.at_m.x, watched.point.at_m.y],
+                "curves": curves.collect::<Vec<_>>(),
+            })
+        };
+        self.watched.iter().zip(self.names()).map(point).collect()
+    }
+}
+
+fn displacement_m(scene: &Scene, point: &Point, sample: &Sample) -> Vector2<f64> {
+    let mark = scene.mark(point, &sample.hinges);
+    mark.moved(&sample.poses, 1.0) - point.at_m
+}
+
+/// A place as it is typed.
+fn place(at_m: Vector2<f64>) -> String {
+    let text = |x: f64| {
+        // To a millimetre, without what that leaves of zeros.
+        let rounded = (1e3 * x).round() / 1e3;
+        if rounded == 0.0 {
+            "0".to_owned()
+        } else {
+            rounded.to_string()
+        }
+    };
+    format!("{},{}", text(at_m.x), text(at_m.y))
+}
