@@ -270,7 +270,7 @@ fn a_block_under_a_step_pair_has_one_band_without_gaps() {
         end_s: 30.0,
         ..Request::default()
     };
-    let factors = Factors::new(0.653, 0.66, 1e-4).unwrap();
+    let factors = Factors::new(0.653, 0.66, 5e-4).unwrap();
     let runner = Runner::default();
     let go_on = |_| ControlFlow::Continue(());
     let found = thresholds(&models, &ground, &request, &factors, &runner, go_on).unwrap();

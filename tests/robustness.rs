@@ -456,3 +456,21 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
     );
     assert_eq!((code, said), (Some(0), String::new()));
 }
+
+#[test]
+fn a_study_shows_its_pace_on_a_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let map = "[column]\nheight_m = 4\nwidth_m = 1\n[ground.one_sine]\namplitude_g = 1\nduration_s = 1\n[map]\n\
+               amplitude_g = { from = 0.3, to = 3, count = 100 }\nduration_s = { from = 0.1, to = 2, count = 100 }\n";
+    fs::write(folder.path().join("map.toml"), map).unwrap();
+    let command = format!("{PROGRAM} map map.toml --out out");
+    let Some(said) = on_a_terminal(folder.path(), &command) else {
+        eprintln!("script is missing: progress is not tested");
+        return;
+    };
+    assert!(said.contains("/10000 cases, "), "{said}");
+    assert!(
+        said.contains(" a second, 0 seconds left") || said.contains(" a second, 1 second left"),
+        "{said}"
+    );
+}

@@ -1,6 +1,5 @@
 //! Long work as the program does it: its options, its progress on the terminal, and Ctrl-C.
 
-use std::fmt;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -15,7 +14,7 @@ use archrock::studies::part::{PartError, PartFile, Shard};
 use archrock::studies::results::Look;
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 use clap::ValueEnum;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::Failure;
 use super::scenario_file::{Input, ScenarioFile};
@@ -216,6 +215,9 @@ pub fn say(text: &str) {
 /// Progress: a bar on a terminal, a line a minute elsewhere.
 pub struct Display {
     bar: ProgressBar,
+    /// What was done before: it says nothing of the pace.
+    before: usize,
+    begun: Instant,
     /// When the last line was printed; `None` when no lines are.
     said: Option<Instant>,
 }
@@ -232,35 +234,34 @@ impl Display {
             ProgressDrawTarget::stderr()
         };
         let bar = ProgressBar::with_draw_target(Some(begin.all as u64), target);
-        let template = "{bar:40} {pos}/{len} cases, {rate} a second, {eta} left";
-        let style = ProgressStyle::with_template(template)
-            .expect("the template is valid")
-            .with_key("rate", |state: &ProgressState, out: &mut dyn fmt::Write| {
-                // A bar that cannot be written does no harm.
-                let _ = write!(out, "{:.0}", state.per_sec());
-            });
+        let style = ProgressStyle::with_template("{bar:40} {pos}/{len} cases, {msg}")
+            .expect("the template is valid");
         bar.set_style(style);
         bar.set_position(begin.done as u64);
-        bar.reset_eta();
         Self {
             bar,
+            before: begin.done,
+            begun: Instant::now(),
             said: (!quiet && !on_terminal).then(Instant::now),
         }
     }
 
     pub fn show(&mut self, progress: Progress) {
+        let pace = pace(
+            progress.done.saturating_sub(self.before),
+            progress.all.saturating_sub(progress.done),
+            self.begun.elapsed(),
+        );
         self.bar.set_length(progress.all as u64);
         self.bar.set_position(progress.done as u64);
+        self.bar.set_message(pace.clone());
         if let Some(said) = &mut self.said
             && said.elapsed() >= MINUTE
         {
             *said = Instant::now();
             say(&format!(
-                "{} of {} cases, {:.0} a second, {} left",
-                progress.done,
-                progress.all,
-                self.bar.per_sec(),
-                HumanDuration(self.bar.eta())
+                "{} of {} cases, {pace}",
+                progress.done, progress.all
             ));
         }
     }
@@ -268,4 +269,19 @@ impl Display {
     pub fn finish(self) {
         self.bar.finish_and_clear();
     }
+}
+
+/// "12 a second, 3 minutes left", by the mean of all so far: a moving one takes a slow case for the end of all speed.
+fn pace(done: usize, left: usize, elapsed: Duration) -> String {
+    if done == 0 {
+        return "none finished yet".to_owned();
+    }
+    let each = elapsed.div_f64(done as f64);
+    let rate = 1.0 / each.as_secs_f64().max(1e-6);
+    let rate = match rate {
+        10.0.. => format!("{rate:.0} a second"),
+        1.0.. => format!("{rate:.1} a second"),
+        _ => format!("one in {:.1} s", each.as_secs_f64()),
+    };
+    format!("{rate}, {} left", HumanDuration(each.mul_f64(left as f64)))
 }
