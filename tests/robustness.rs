@@ -468,9 +468,7 @@ fn a_study_shows_its_pace_on_a_terminal() {
         eprintln!("script is missing: progress is not tested");
         return;
     };
-    assert!(said.contains("/10000 cases, "), "{said}");
-    assert!(
-        said.contains(" a second, 0 seconds left") || said.contains(" a second, 1 second left"),
-        "{said}"
-    );
+    assert!(said.contains(" cases, none finished yet"), "{said}");
+    assert!(said.contains(" a second, "), "{said}");
+    assert!(said.contains(" left"), "{said}");
 }

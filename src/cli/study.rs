@@ -238,6 +238,7 @@ impl Display {
             .expect("the template is valid");
         bar.set_style(style);
         bar.set_position(begin.done as u64);
+        bar.set_message(pace(0, begin.all, Duration::ZERO));
         Self {
             bar,
             before: begin.done,
