@@ -47,6 +47,7 @@ mod map_page;
 mod model;
 mod motion;
 mod names;
+mod one_story;
 mod pictures;
 mod points;
 mod properties;

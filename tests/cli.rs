@@ -512,3 +512,85 @@ fn random_scenarios_run_to_an_outcome() {
     });
     result.unwrap();
 }
+
+#[test]
+fn a_mistyped_command_is_answered_with_the_likely_one() {
+    let folder = tempfile::tempdir().unwrap();
+    for (given, likely) in [
+        ("rnu", "run"),
+        ("limt", "limit"),
+        ("mpa", "map"),
+        ("tresholds", "threshold"),
+    ] {
+        let tip = format!("'{likely}'");
+        refused(folder.path(), &[given, "s.toml"], &[&tip]);
+    }
+    let said = refused(folder.path(), &["frobnicate"], &["unrecognized subcommand"]);
+    assert!(!said.contains("similar"), "{said}");
+}
+
+/// Every command shows examples, and their options are its own.
+#[test]
+fn every_help_has_examples_that_are_right() {
+    let folder = tempfile::tempdir().unwrap();
+    let commands = [
+        "init",
+        "run",
+        "limit",
+        "impact",
+        "capacity",
+        "verify",
+        "chart",
+        "map",
+        "spectrum",
+        "suite",
+        "threshold",
+        "merge",
+        "check",
+        "completions",
+    ];
+    for command in commands {
+        let help = printed(folder.path(), &[command, "--help"]);
+        let (options, examples) = help
+            .split_once("Examples:\n")
+            .unwrap_or_else(|| panic!("{help}"));
+        let lines: Vec<&str> = examples
+            .lines()
+            .filter(|line| !line.trim().is_empty())
+            .collect();
+        assert!(!lines.is_empty(), "{help}");
+        for line in lines {
+            assert!(line.starts_with(&format!("  archrock {command}")), "{line}");
+            for option in line
+                .split_whitespace()
+                .filter(|word| word.starts_with("--"))
+            {
+                assert!(options.contains(option), "{command} has no {option}");
+            }
+        }
+    }
+}
+
+#[test]
+fn studies_and_checks_are_printed_as_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.3\n\
+                [map]\namplitude_g = [0.2, 0.6]\nduration_s = [0.3]\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&printed(folder.path(), arguments)).unwrap()
+    };
+    let told = json(&["map", "s.toml", "--format", "json", "--quiet"]);
+    let file = fs::read_to_string(folder.path().join("results/s/map.json")).unwrap();
+    assert_eq!(
+        told,
+        serde_json::from_str::<serde_json::Value>(&file).unwrap()
+    );
+    let checked = json(&["check", "s.toml", "--format", "json"]);
+    assert_eq!(checked["column"]["height_m"], 4.0);
+    let record = crate::program::scenarios().join("synthetic.at2");
+    let record = record.to_str().unwrap();
+    let both = json(&["check", "s.toml", record, "--format", "json"]);
+    assert_eq!(both[0], checked);
+    assert!(both[1]["peak_acceleration_m_s2"].as_f64().unwrap() > 0.0);
+}

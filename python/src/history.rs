@@ -10,6 +10,7 @@ use archrock::dynamics::history::{Recording, Samples, Summary};
 use archrock::dynamics::spread::Repetitions;
 use archrock::mechanics::chain::Demand;
 use archrock::output::mechanisms;
+use archrock::output::scene::{Point, Scene};
 use archrock::studies::run;
 use archrock::studies::run::report::Report;
 use archrock::{
@@ -92,7 +93,7 @@ impl Recorder for Filming {
 }
 
 /// Columns of samples, by their names.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 17] = [
     "time_s",
     "ground_acceleration_m_s2",
     "vertical_acceleration_m_s2",
@@ -103,6 +104,8 @@ const COLUMNS: [&str; 15] = [
     "poses",
     "gaps_m",
     "offsets_m",
+    "pressures",
+    "point_m",
     "open_hinges",
     "thrust_excess_ratio",
     "friction_demand",
@@ -119,8 +122,10 @@ pub struct History {
     model: Arc<dyn Model>,
     summary: Summary,
     events: Vec<Event>,
-    /// Number of samples, of bodies, of joints with gaps and of joints that slip.
-    counts: [usize; 4],
+    /// Number of samples, of bodies, of joints with gaps, of joints that slip, and of joints that tell what they bear.
+    counts: [usize; 5],
+    /// Displacements of the point that is watched, to the right and upwards, sample by sample.
+    point_m: Mutex<Option<Vec<f64>>>,
     /// What was not yet asked for.
     samples: Mutex<Samples>,
     arrays: [PyOnceLock<Py<PyAny>>; COLUMNS.len()],
@@ -156,6 +161,7 @@ impl History {
         scenario: &Scenario,
         ground: Option<&Ground>,
         memory_bytes: u64,
+        point: Option<[f64; 2]>,
     ) -> PyResult<Self> {
         let inner = &scenario.inner;
         let motion = |ground: &Ground| ground.motion(inner.gravity_m_s2());
@@ -168,6 +174,9 @@ impl History {
             }
         };
         let model = scenario.model(py)?;
+        let scene = run::scene(inner, &**model);
+        let point = point.map(|[x, y]| in_structure(&scene, [x, y]));
+        let point = point.transpose()?;
         let (shape, most_samples) = (model.shape(), inner.request().most_samples());
         let recording = Recording::new(shape, most_samples, memory_bytes).map_err(too_large)?;
         let mut watched = Watched {
@@ -178,6 +187,14 @@ impl History {
             watched.signals.raised.take()
         })?;
         let (samples, events) = watched.recording.finish().map_err(too_large)?;
+        let displaced = |point: &Point| {
+            let moved_m = samples.iter().map(|sample| {
+                let mark = scene.mark(point, &sample.hinges);
+                mark.moved(&sample.poses, 1.0) - point.at_m
+            });
+            moved_m.flat_map(|moved_m| [moved_m.x, moved_m.y]).collect()
+        };
+        let point_m = point.as_ref().map(displaced);
         let count = samples.len();
         let each = |all: usize| all.checked_div(count).unwrap_or(0);
         Ok(Self {
@@ -191,7 +208,9 @@ impl History {
                 each(samples.rotations_rad.len()),
                 each(samples.gaps_m.len()),
                 each(samples.offsets_m.len()),
+                each(samples.pressures.len()),
             ],
+            point_m: Mutex::new(point_m),
             samples: Mutex::new(samples),
             arrays: [const { PyOnceLock::new() }; COLUMNS.len()],
         })
@@ -199,7 +218,7 @@ impl History {
 
     /// Takes a column out of the samples, as an array of its shape.
     fn take<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let [count, bodies, joints, slipping] = self.counts;
+        let [count, bodies, joints, slipping, pressing] = self.counts;
         let taken = |take: &mut dyn FnMut(&mut Samples) -> Vec<f64>, shape: &[usize]| {
             let values = take(&mut self.samples.lock().unwrap_or_else(PoisonError::into_inner));
             array(py, values, shape)
@@ -232,6 +251,30 @@ impl History {
                 &[count, joints, 2],
             ),
             "offsets_m" => taken(&mut |all| mem::take(&mut all.offsets_m), &[count, slipping]),
+            "pressures" => taken(
+                &mut |all| {
+                    let pressures = mem::take(&mut all.pressures).into_iter();
+                    pressures.flat_map(|joint| {
+                        let [intrados_pa, extrados_pa] = joint.edge_stresses_pa;
+                        let eccentricity = joint.eccentricity_ratio.unwrap_or(f64::NAN);
+                        [
+                            joint.normal_n,
+                            joint.shear_n,
+                            eccentricity,
+                            joint.contact_ratio,
+                            intrados_pa,
+                            extrados_pa,
+                        ]
+                    })
+                    .collect()
+                },
+                &[count, pressing, 6],
+            ),
+            "point_m" => {
+                let point_m = self.point_m.lock().unwrap_or_else(PoisonError::into_inner).take();
+                let axes = if point_m.is_some() { 2 } else { 0 };
+                array(py, point_m.unwrap_or_default(), &[count, axes])
+            }
             "energy_j" => taken(&mut |all| mem::take(&mut all.energy_j), &[count]),
             "energy_ratio" => taken(
                 &mut |all| {
@@ -287,6 +330,16 @@ const STATES: [&str; 4] = ["rest", "right", "left", "overturned"];
 fn code(state: State) -> usize {
     let name = state.name();
     STATES.iter().position(|one| *one == name).unwrap_or(0)
+}
+
+/// A point of a structure, by its place when that is undeformed.
+fn in_structure(scene: &Scene, at_m: [f64; 2]) -> PyResult<Point> {
+    scene.point(at_m).map_err(|nearest_m| {
+        refused(format!(
+            "`point = ({:?}, {:?})` is in no block: the nearest place of one is ({:.3}, {:.3})",
+            at_m[0], at_m[1], nearest_m.x, nearest_m.y
+        ))
+    })
 }
 
 /// Values as an array that cannot be written to. It takes them over; nothing is copied.
@@ -428,6 +481,6 @@ impl History {
             &mut filming,
             |filming| filming.signals.raised.take(),
         )?;
-        Ok(py.detach(|| filming.report.page(&scenario, motion, words)))
+        Ok(py.detach(|| filming.report.page(&scenario, motion, &self.summary, words)))
     }
 }

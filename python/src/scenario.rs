@@ -185,9 +185,16 @@ impl Scenario {
         self.inner == other.inner
     }
 
-    /// Simulates it, on other ground than its own if that is given, in so much memory.
-    fn run(&self, py: Python<'_>, ground: Option<&Ground>, memory_bytes: u64) -> PyResult<History> {
-        History::of(py, self, ground, memory_bytes)
+    /// Simulates it, on other ground than its own if that is given, in so much memory, and watches a point of it.
+    #[pyo3(signature = (ground, memory_bytes, point=None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        ground: Option<&Ground>,
+        memory_bytes: u64,
+        point: Option<[f64; 2]>,
+    ) -> PyResult<History> {
+        History::of(py, self, ground, memory_bytes, point)
     }
 
     /// Bytes that the samples of its history take at most.

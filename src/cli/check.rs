@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
 use archrock::output::record as output;
 use archrock::scenario::{Form, Format, Layout, Recorded, Series};
+use serde_json::{Value, json};
 
 use super::figure::FigureOption;
 use super::scenario_file::SetOption;
-use super::{Failure, commands, print};
+use super::{Failure, Format as Printed, commands, print, print_all};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -21,6 +22,9 @@ pub struct Arguments {
     /// Draw the record to this SVG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// How it is printed; as JSON, of several files as an array.
+    #[arg(long, value_enum, default_value_t)]
+    format: Printed,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -33,16 +37,23 @@ pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         let message = "--plot is of one record: check them one by one";
         return Err(Failure::Input(message.to_owned()));
     }
-    let mut texts = Vec::new();
+    let (mut texts, mut told) = (Vec::new(), Vec::new());
     let mut wrong = Vec::new();
     for file in &arguments.files {
         match check_file(file, arguments, quiet) {
-            Ok(text) => texts.push(text),
+            Ok((text, json)) => {
+                texts.push(text);
+                told.push(json);
+            }
             Err(Failure::Input(message)) => wrong.push(message),
             Err(failure) => return Err(failure),
         }
     }
-    print(&texts.join("\n"))?;
+    match arguments.format {
+        Printed::Text => print(&texts.join("\n"))?,
+        Printed::Json if told.is_empty() => {}
+        Printed::Json => print_all(told)?,
+    }
     if wrong.is_empty() {
         Ok(())
     } else {
@@ -50,7 +61,8 @@ pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     }
 }
 
-fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String, Failure> {
+/// What is in a file, for people and as JSON.
+fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String, Value), Failure> {
     if Format::of_file(file).is_some() || is_format_given(arguments) {
         return check_record(file, arguments, quiet);
     }
@@ -62,7 +74,7 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String,
     if !quiet {
         super::warn(&scenario.unlikely());
     }
-    Ok(scenario.to_toml())
+    Ok((scenario.to_toml(), scenario.to_json()))
 }
 
 /// Whether the keys say that the file is a record.
@@ -72,7 +84,11 @@ fn is_format_given(arguments: &Arguments) -> bool {
 }
 
 /// What is in a record file.
-fn check_record(file: &Path, arguments: &Arguments, quiet: bool) -> Result<String, Failure> {
+fn check_record(
+    file: &Path,
+    arguments: &Arguments,
+    quiet: bool,
+) -> Result<(String, Value), Failure> {
     // Of several files, tables may need keys that others do not have.
     let several = arguments.files.len() > 1;
     let is_table = Format::of_file(file).is_none_or(|format| format == Format::Csv);
@@ -101,7 +117,30 @@ fn check_record(file: &Path, arguments: &Arguments, quiet: bool) -> Result<Strin
         );
         commands::write_picture(plot, &picture)?;
     }
-    Ok(record_text(&series, &intensity))
+    Ok((
+        record_text(&series, &intensity),
+        record_json(&series, &intensity),
+    ))
+}
+
+fn record_json(series: &Series, intensity: &Intensity) -> Value {
+    let [from_s, to_s] = intensity.significant_s;
+    json!({
+        "file": series.name(),
+        "format": kind(series),
+        "sampling": series.sampling().to_string(),
+        "peak_acceleration_m_s2": intensity.acceleration_m_s2.value,
+        "peak_acceleration_time_s": intensity.acceleration_m_s2.time_s,
+        "mean_acceleration_g": series.mean_g(GRAVITY_M_S2),
+        "mean_removed": series.layout.remove_mean,
+        "peak_velocity_m_s": intensity.velocity_m_s.value,
+        "peak_velocity_time_s": intensity.velocity_m_s.time_s,
+        "peak_displacement_m": intensity.displacement_m.value,
+        "peak_displacement_time_s": intensity.displacement_m.time_s,
+        "arias_intensity_m_s": intensity.arias_m_s,
+        "significant_from_s": from_s,
+        "significant_to_s": to_s,
+    })
 }
 
 fn record_text(series: &Series, intensity: &Intensity) -> String {

@@ -7,6 +7,7 @@ mod capacity;
 mod chart;
 mod check;
 mod commands;
+mod examples;
 mod figure;
 mod first;
 mod impact;
@@ -26,6 +27,7 @@ use archrock::dynamics::model::SimulationError;
 use archrock::output::{OutputError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
 use archrock::studies::results::Results;
+use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use serde_json::Value;
@@ -48,10 +50,13 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Write a commented scenario to begin with.
+    #[command(after_help = examples::INIT)]
     Init(init::Arguments),
     /// Simulate the time history of a scenario and write it as CSV and JSON.
+    #[command(after_help = examples::RUN)]
     Run(run::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
+    #[command(after_help = examples::LIMIT)]
     Limit {
         #[command(flatten)]
         scenario: ScenarioFile,
@@ -67,27 +72,38 @@ enum Command {
         figure: FigureOption,
     },
     /// Print the mechanisms after successive impacts, their restitution and impulses.
+    #[command(after_help = examples::IMPACT)]
     Impact(impact::Arguments),
     /// Find the quasi-static capacity curve of the first mechanism and its equivalent oscillator.
+    #[command(after_help = examples::CAPACITY)]
     Capacity(capacity::Arguments),
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
+    #[command(after_help = examples::VERIFY)]
     Verify(verify::Arguments),
     /// Chart the incipient acceleration and the restitution against thickness for several embrace angles.
+    #[command(after_help = examples::CHART)]
     Chart(chart::Arguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
+    #[command(after_help = examples::MAP)]
     Map(studies::MapArguments),
     /// Find the weakest pulse that overturns, against size, for a structure and its equivalent column: see
     /// [spectrum] in the scenario.
+    #[command(after_help = examples::SPECTRUM)]
     Spectrum(studies::SpectrumArguments),
     /// Run every record of a suite at every level and fit a fragility curve: see [suite] in the scenario.
+    #[command(after_help = examples::SUITE)]
     Suite(studies::SuiteArguments),
     /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them.
+    #[command(after_help = examples::THRESHOLD)]
     Threshold(threshold::Arguments),
     /// Merge the parts of a study computed with --shard.
+    #[command(after_help = examples::MERGE)]
     Merge(studies::MergeArguments),
     /// Check a scenario and print it with every default written out, or tell what is in a record file.
+    #[command(after_help = examples::CHECK)]
     Check(check::Arguments),
     /// Print a script that completes commands and options in a shell.
+    #[command(after_help = examples::COMPLETIONS)]
     Completions {
         /// The shell.
         #[arg(value_enum)]
@@ -144,7 +160,7 @@ impl From<OutputError> for Failure {
 
 /// Runs the program.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::try_parse().unwrap_or_else(|error| likely(error).exit());
     let result = match arguments.command {
         Command::Init(init) => init::init(&init, arguments.quiet),
         Command::Run(run) => run::run(&run, arguments.quiet),
@@ -180,6 +196,24 @@ pub fn main() -> ExitCode {
     let _ = writeln!(io::stderr(), "error: {}", shown_lines(&message));
     ExitCode::from(code)
 }
+
+/// Names the command that a mistyped one is likely to be: letters that changed places count once.
+fn likely(mut error: clap::Error) -> clap::Error {
+    if let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) {
+        let commands = Arguments::command();
+        let names = commands.get_subcommands().map(clap::Command::get_name);
+        let far = |name: &str| strsim::damerau_levenshtein(name, given);
+        let nearest = names.min_by_key(|name| far(name)).map(str::to_owned);
+        if let Some(name) = nearest.filter(|name| far(name) <= FAR) {
+            let names = ContextValue::Strings(vec![name]);
+            error.insert(ContextKind::SuggestedSubcommand, names);
+        }
+    }
+    error
+}
+
+/// More letters than these are no slip of the finger.
+const FAR: usize = 2;
 
 /// Warns of what is unlikely in a scenario or a record.
 fn warn(unlikely: &[String]) {

@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 
 use archrock::output::Folder;
 use archrock::scenario::{Hinges, Scenario, shown_lines};
-use archrock::studies::run::overlay::Curves;
-use archrock::studies::run::{FILES, OVERLAY, Run, RunError, RunResults, Wanted, heading, overlay};
+use archrock::studies::run::{
+    FILES, OVERLAY, Run, RunError, RunResults, Wanted, compared, heading, overlay,
+};
 use clap::ValueEnum;
 use nalgebra::Vector2;
-use serde_json::Map;
+use serde_json::{Map, Value};
 
 use self::progress::RunProgress;
 use super::figure::FigureOption;
@@ -132,6 +133,12 @@ struct Job {
     place: Place,
 }
 
+/// What the runs of a scenario tell.
+struct Told {
+    words: String,
+    summary: Value,
+}
+
 impl Job {
     /// All that are asked for, or all that is wrong with them.
     fn all(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
@@ -185,7 +192,7 @@ impl Job {
     }
 
     /// Runs it, and says what happened.
-    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<RunResults, Failure> {
+    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
         let (scenarios, place) = (&self.scenarios, &self.place);
         let mut text = heading(&scenarios[0]);
         if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
@@ -213,24 +220,27 @@ impl Job {
         let told = if several {
             self.run_all(&runs, quiet)?
         } else {
-            place.run(&runs[0], &scenarios[0], quiet)?
+            let RunResults { words, summary, .. } = place.run(&runs[0], &scenarios[0], quiet)?;
+            Told { words, summary }
         };
-        Ok(RunResults {
+        Ok(Told {
             words: text + &told.words,
             ..told
         })
     }
 
     /// Runs several models, each in a folder of its own, and draws them in one picture.
-    fn run_all(&self, runs: &[Run<'_>], quiet: bool) -> Result<RunResults, Failure> {
+    fn run_all(&self, runs: &[Run<'_>], quiet: bool) -> Result<Told, Failure> {
         let folder = self.place.open(&[OVERLAY])?;
-        let (mut text, mut summaries, mut curves) = (String::new(), Map::new(), Vec::new());
+        let (mut text, mut summaries) = (String::new(), Map::new());
+        let (mut curves, mut histories) = (Vec::new(), Vec::new());
         for (run, scenario) in runs.iter().zip(&self.scenarios) {
             let name = scenario.motion().hinges().name();
             let told = self.place.within(name).run(run, scenario, quiet)?;
             let _ = write!(text, "{}\n{}", run.name(), told.words);
             summaries.insert(name.to_owned(), told.summary);
             curves.push(told.curves);
+            histories.push(told.history);
         }
         if let Some(mut folder) = folder {
             let picture = overlay(runs, &curves);
@@ -243,10 +253,9 @@ impl Job {
             let all = if runs.len() > 2 { "all" } else { "both" };
             let _ = writeln!(text, "{all} in {}", path.display());
         }
-        Ok(RunResults {
-            words: text,
+        Ok(Told {
+            words: compared(runs, &histories) + &text,
             summary: summaries.into(),
-            curves: Curves::new(),
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use archrock::output::Figure;
+use archrock::output::{Figure, pretty};
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{StudyError, StudyKind, merge as merged};
 use archrock::studies::map::OverturningMap;
@@ -10,10 +10,10 @@ use archrock::studies::map::boundary::MapWithBoundary;
 use archrock::studies::results::{Look, Results};
 use clap::ValueEnum;
 
-use super::Failure;
 use super::figure::FigureOption;
 use super::scenario_file::Destination;
 use super::study::{HingesOption, Options, say};
+use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
 pub struct MapArguments {
@@ -53,6 +53,9 @@ pub struct MergeArguments {
     /// Folder for the results [default: that of the first part].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// How the summary is printed; as JSON, on standard output.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
     #[command(flatten)]
     map: MapOption,
     #[command(flatten)]
@@ -178,13 +181,20 @@ pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
         (StudyKind::Map, Some(scenario)) => arguments.map.look(scenario, figure),
         _ => arguments.map.of_no_map(figure),
     })?;
-    write(&results, &place, quiet)
+    write(&results, &place, arguments.format, quiet)
 }
 
 /// Writes results into their folder, and says what they are.
-pub fn write(results: &Results, place: &Destination, quiet: bool) -> Result<(), Failure> {
+pub fn write(
+    results: &Results,
+    place: &Destination,
+    format: Format,
+    quiet: bool,
+) -> Result<(), Failure> {
     place.write(results, true)?;
-    if !quiet {
+    if let Format::Json = format {
+        print(&pretty(&results.summary))?;
+    } else if !quiet {
         say(&results.words);
         say(&format!("  results in {}", place.holds(results)));
     }

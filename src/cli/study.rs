@@ -16,8 +16,8 @@ use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::Failure;
 use super::scenario_file::{Input, ScenarioFile};
+use super::{Failure, Format};
 
 /// Options of every study.
 #[derive(clap::Args)]
@@ -35,6 +35,9 @@ pub struct Options {
     /// Compute only part I of N, into a file for `archrock merge`.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
+    /// How the summary is printed; as JSON, on standard output.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
 }
 
 /// On how many threads.
@@ -174,7 +177,7 @@ impl Options {
         }
         match done {
             Done::Whole(results, part) => {
-                super::studies::write(&results, &place, quiet)?;
+                super::studies::write(&results, &place, self.format, quiet)?;
                 Ok(part.map_or(Ok(()), PartFile::remove)?)
             }
             Done::Part { part, cases, all } => {

@@ -299,6 +299,17 @@ impl Summary {
         self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
     }
 
+    /// Index of the body that turns most: of several, the last.
+    #[must_use]
+    pub fn largest_body(&self) -> usize {
+        let most_rad = self.largest_rotation_rad();
+        let peaks_rad = self.peak_rotations_rad.iter();
+        peaks_rad
+            .rev()
+            .position(|peak_rad| *peak_rad == most_rad)
+            .map_or(0, |before| self.peak_rotations_rad.len() - 1 - before)
+    }
+
     /// Half cycles of a row of blocks; of others, none.
     #[must_use]
     pub fn half_cycles(&self) -> &[HalfCycle] {

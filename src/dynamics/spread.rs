@@ -202,6 +202,16 @@ impl From<Outcome> for Verdict {
 }
 
 impl Verdict {
+    /// Its name in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Survives => "survives",
+            Self::Uncertain => "uncertain",
+            Self::Overturns => "overturns",
+        }
+    }
+
     const fn words(self) -> &'static str {
         match self {
             Self::Survives => "survives",

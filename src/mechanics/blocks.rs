@@ -59,7 +59,7 @@ pub enum RowError {
     },
     /// No block, or too many.
     #[error(
-        "{0} blocks: a row has 1 to {MAX_BLOCKS}, since steps get longer and shorter with their number"
+        "{0} blocks: a row has 1 to {MAX_BLOCKS}; with more, a step takes longer to compute and must be shorter"
     )]
     Count(usize),
     /// An arch is a ring without joints.

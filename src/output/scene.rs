@@ -443,7 +443,8 @@ impl Scene {
     ///
     /// # Errors
     /// With the nearest place in the structure, where this one is outside.
-    pub fn point(&self, at_m: Vector2<f64>) -> Result<Point, Vector2<f64>> {
+    pub fn point(&self, at_m: impl Into<Vector2<f64>>) -> Result<Point, Vector2<f64>> {
+        let at_m = at_m.into();
         let pieces = self.pieces(&[]).into_iter().enumerate();
         let near = pieces.map(|(index, piece)| (index, nearest(&piece.outline_m, at_m)));
         let away_m = |near_m: &Vector2<f64>| (near_m - at_m).norm();

@@ -172,7 +172,7 @@ impl Runner {
         self.each_of_families(study.count(), family, rows_of, watch)
     }
 
-    /// The same of so many cases that are no study: what is made of each index, in their order.
+    /// Computes `row` for every index below `count` on all threads, and returns the results in order: for work that is no study.
     ///
     /// # Errors
     /// As [`Runner::rows`].

@@ -202,6 +202,40 @@ class History:
         return self._column("offsets_m")
 
     @property
+    def joint_forces(self) -> Floats:
+        """Normal and shear force of elastic joints in N, shape ``(samples, joints, 2)``; compression is positive.
+
+        The shear is positive where it keeps the right face from slipping towards the extrados. No joints with other models.
+        """
+        return self._column("pressures")[:, :, 0:2]
+
+    @property
+    def joint_eccentricities(self) -> Floats:
+        """How far the normal force of elastic joints lies towards the extrados from the middle, over the thickness.
+
+        Shape ``(samples, joints)``; NaN where nothing presses.
+        """
+        return self._column("pressures")[:, :, 2]
+
+    @property
+    def joint_contacts(self) -> Floats:
+        """Part of elastic joints that presses, 0 to 1, shape ``(samples, joints)``."""
+        return self._column("pressures")[:, :, 3]
+
+    @property
+    def joint_stresses(self) -> Floats:
+        """Compressive stress of elastic joints at intrados and extrados in Pa, shape ``(samples, joints, 2)``."""
+        return self._column("pressures")[:, :, 4:6]
+
+    @property
+    def point(self) -> Floats:
+        """Displacement in m, to the right and upwards, of the ``point`` that :func:`simulate` was given.
+
+        Relative to the ground, from the undeformed structure; shape ``(samples, 2)``, or ``(samples, 0)`` where no point was given.
+        """
+        return self._column("point_m")
+
+    @property
     def open_hinges(self) -> Whole:
         """Number of open hinges, shape ``(samples,)``."""
         return self._column("open_hinges")

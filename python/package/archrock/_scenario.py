@@ -243,7 +243,11 @@ def _model(name: object) -> Model:
         return "four_links"
     if name == "free_hinges":
         return "free_hinges"
-    raise ValueError(f"`model = {name!r}` is not one of 'four_links' and 'free_hinges'")
+    if name == "elastic_joints":
+        return "elastic_joints"
+    raise ValueError(
+        f"`model = {name!r}` is not one of 'four_links', 'free_hinges' and 'elastic_joints'"
+    )
 
 
 def _bytes(memory_gb: float) -> int:
@@ -273,11 +277,20 @@ def simulate(
     longest_step_s: float | None = None,
     shortest_step_s: float | None = None,
     friction_coefficient: float | None = None,
+    normal_stiffness_gpa_m: float | None = None,
+    shear_stiffness_gpa_m: float | None = None,
+    stone_modulus_gpa: float | None = None,
+    mortar_modulus_gpa: float | None = None,
+    mortar_thickness_m: float | None = None,
+    damping_time_s: float | None = None,
+    compressive_strength_mpa: float | None = None,
+    contact_points: int | None = None,
     duration_s: float = 10.0,
     output_step_s: float = 0.005,
     relative_tolerance: float = 1e-9,
     rest_energy_ratio: float = 1e-8,
     gravity_m_s2: float = 9.81,
+    point: tuple[float, float] | None = None,
     memory_gb: float = MEMORY_GB,
 ) -> History:
     """The history of a structure on moving ground, to the same bits as of the program.
@@ -289,20 +302,31 @@ def simulate(
     Args:
         structure: what stands.
         ground: how the ground moves; ``None`` for a release from a rotated position.
-        model: ``"four_links"`` (or Housner's column), or ``"free_hinges"``: blocks whose joints open and shut anywhere.
+        model: ``"four_links"`` (or Housner's column), or ``"free_hinges"``: blocks whose joints open and shut anywhere,
+            or ``"elastic_joints"``: blocks whose joints give way; these need a stiffness.
         impact: impact model of four links: ``"max_restitution"``, ``"same_sections"``, ``"mirrored"`` or
             ``"prescribed"``.
         restitution: energy after over before an impact, with ``"prescribed"``.
         initial_sway: side to which it is released from a rotated position, ``"right"`` or ``"left"``.
         initial_rotation_rad: magnitude of that rotation, of the body that carries the coordinate.
-        longest_step_s: longest step, with free hinges.
+        longest_step_s: longest step, with free hinges and elastic joints.
         shortest_step_s: landings within this time are one, with free hinges.
-        friction_coefficient: Coulomb's coefficient at every joint, with free hinges; ``None``: joints do not slip.
+        friction_coefficient: Coulomb's coefficient at every joint, with free hinges and elastic joints; ``None``: joints do not
+            slip.
+        normal_stiffness_gpa_m: stiffness of elastic joints against penetration, per area, in GPa/m.
+        shear_stiffness_gpa_m: the same against slip; ``None``: 0.4 of that.
+        stone_modulus_gpa: Young's modulus of the blocks, from which the stiffness follows instead.
+        mortar_modulus_gpa: that of the mortar, with ``mortar_thickness_m``.
+        mortar_thickness_m: its thickness.
+        damping_time_s: damping forces are this times the rates of the elastic ones; ``None``: that of the program, 1e-4.
+        compressive_strength_mpa: stress at which elastic joints crush; ``None``: they do not.
+        contact_points: points that bear the stress of a joint; ``None``: all of it does.
         duration_s: longest time to simulate.
         output_step_s: time between samples.
         relative_tolerance: error that the integrator of four links may make in a step.
         rest_energy_ratio: energy over energy barrier below which the structure is at rest.
         gravity_m_s2: acceleration of gravity.
+        point: a place in the undeformed structure, ``(x, y)`` in m, whose displacement is told: :attr:`History.point`.
         memory_gb: memory that the history may take, in units of 1e9 bytes.
 
     Returns:
@@ -323,6 +347,14 @@ def simulate(
         longest_step_s,
         shortest_step_s,
         friction_coefficient,
+        normal_stiffness_gpa_m,
+        shear_stiffness_gpa_m,
+        stone_modulus_gpa,
+        mortar_modulus_gpa,
+        mortar_thickness_m,
+        damping_time_s,
+        compressive_strength_mpa,
+        contact_points,
         duration_s,
         output_step_s,
         relative_tolerance,
@@ -338,7 +370,7 @@ def simulate(
         base = structure._base(key)
     memory_bytes = _bytes(memory_gb)
     if ground is None:
-        return History(base.run(None, memory_bytes), structure._files, None)
+        return History(base.run(None, memory_bytes, point), structure._files, None)
     if not isinstance(ground, Ground):
         raise _not_a_ground(ground)
-    return History(base.run(ground._native, memory_bytes), (structure, ground), None)
+    return History(base.run(ground._native, memory_bytes, point), (structure, ground), None)

@@ -18,6 +18,14 @@ class Settings(NamedTuple):
     longest_step_s: float | None = None
     shortest_step_s: float | None = None
     friction_coefficient: float | None = None
+    normal_stiffness_gpa_m: float | None = None
+    shear_stiffness_gpa_m: float | None = None
+    stone_modulus_gpa: float | None = None
+    mortar_modulus_gpa: float | None = None
+    mortar_thickness_m: float | None = None
+    damping_time_s: float | None = None
+    compressive_strength_mpa: float | None = None
+    contact_points: int | None = None
     duration_s: float = 10.0
     output_step_s: float = 0.005
     relative_tolerance: float = 1e-9
@@ -41,21 +49,44 @@ class Settings(NamedTuple):
             tables["initial"] = _given(
                 sway=self.initial_sway, rotation_rad=self.initial_rotation_rad
             )
-        free_hinges = _given(
+        of_blocks = _given(
             longest_step_s=self.longest_step_s,
-            shortest_step_s=self.shortest_step_s,
             friction_coefficient=self.friction_coefficient,
         )
-        if self.model == "free_hinges":
+        free_hinges = _given(shortest_step_s=self.shortest_step_s)
+        elastic_joints = _given(
+            normal_stiffness_gpa_m=self.normal_stiffness_gpa_m,
+            shear_stiffness_gpa_m=self.shear_stiffness_gpa_m,
+            stone_modulus_gpa=self.stone_modulus_gpa,
+            mortar_modulus_gpa=self.mortar_modulus_gpa,
+            mortar_thickness_m=self.mortar_thickness_m,
+            damping_time_s=self.damping_time_s,
+            compressive_strength_mpa=self.compressive_strength_mpa,
+            contact_points=self.contact_points,
+        )
+        own = {"free_hinges": free_hinges, "elastic_joints": elastic_joints}
+        for other, given in own.items():
+            if given and self.model != other:
+                raise ValueError(f"{_names(given)}: of {other.replace('_', ' ')} only; give model=\"{other}\", or leave it out")
+        if self.model == "elastic_joints":
+            if "impact" in tables:
+                raise ValueError("`impact` and `restitution` go with four links: elastic joints have no impacts")
+            tables["elastic_joints"] = {**of_blocks, **elastic_joints}
+        elif self.model == "free_hinges":
             if "impact" in tables:
                 raise ValueError(
                     "`impact` and `restitution` go with four links: with free hinges impacts follow from the blocks"
                 )
-            tables["free_hinges"] = free_hinges
-        elif free_hinges:
-            names = " and ".join(f"`{name}`" for name in free_hinges)
-            raise ValueError(f"{names}: of free hinges only; give model=\"free_hinges\", or leave it out")
+            tables["free_hinges"] = {**of_blocks, **free_hinges}
+        elif of_blocks:
+            raise ValueError(
+                f"{_names(of_blocks)}: of free hinges only, or of elastic joints; give model=\"free_hinges\", or leave it out"
+            )
         return tables
+
+
+def _names(given: Tables) -> str:
+    return " and ".join(f"`{name}`" for name in given)
 
 
 def _given(**values: Any) -> Tables:

@@ -15,7 +15,7 @@ from ._tables import Tables, arguments, plain_table, to_toml
 
 _MOST_BASES = 64
 
-Model = Literal["four_links", "free_hinges"]
+Model = Literal["four_links", "free_hinges", "elastic_joints"]
 
 
 class Structure(Described):

@@ -349,7 +349,7 @@ impl Summit {
     }
 }
 
-/// The side of what is positive to the right.
+/// The side of a quantity that is positive to the right.
 fn towards(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
 }

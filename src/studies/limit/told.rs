@@ -32,7 +32,7 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
         let _ = writeln!(
             text,
             "incipient rocking acceleration A_L to the {side}: {:.8} g = {:.6} m/s2\n\
-             a push to the {side} opens",
+             a push to the {side} opens hinges at",
             onset.acceleration_g,
             onset.acceleration_g * gravity_m_s2,
         );
@@ -121,9 +121,10 @@ fn friction_text(row: &Row, coefficient: f64) -> Result<String, FrictionError> {
         );
         for joint in &onset.yields {
             let open = match joint.opens {
-                [true, true] => Some("opens at both edges"),
-                [true, false] => Some("opens at the intrados"),
-                [false, true] => Some("opens at the extrados"),
+                // Named by the edge that it turns about, as above.
+                [true, true] => Some("parts at both edges"),
+                [true, false] => Some("opens with its hinge at the extrados"),
+                [false, true] => Some("opens with its hinge at the intrados"),
                 [false, false] => None,
             };
             let slips = joint

@@ -1,5 +1,6 @@
 //! A run: one history of a scenario, by its model of motion, in tables, pictures, a page, a summary and words.
 
+mod comparison;
 mod film;
 pub mod overlay;
 mod picture;
@@ -10,6 +11,7 @@ mod scales;
 mod snapshots;
 mod summary;
 mod tables;
+mod verdict;
 mod words;
 
 use std::fmt::Write as _;
@@ -20,6 +22,7 @@ use nalgebra::Vector2;
 use serde_json::Value;
 use thiserror::Error;
 
+pub use self::comparison::compared;
 use self::overlay::Curves;
 use self::picture::{Picture, Timeline};
 pub use self::points::MOST_POINTS;
@@ -29,6 +32,7 @@ use self::row_picture::RowTimeline;
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
 pub use self::summary::summary;
+use self::verdict::Evidence;
 pub use self::words::heading;
 use self::words::{Notable, words};
 use crate::dynamics::history::{Event, Sample, Summary};
@@ -119,6 +123,8 @@ pub struct RunResults {
     pub summary: Value,
     /// For a picture together with other models.
     pub curves: Curves,
+    /// What the motion came to.
+    pub history: Summary,
 }
 
 /// Why a run has no results.
@@ -231,16 +237,15 @@ impl<'a> Run<'a> {
         });
         let spread = spread.as_ref();
         let varied = variations.ended();
-        let mut text = words(
+        let evidence = Evidence {
             scenario,
-            model,
-            &history,
+            history: &history,
             spread,
-            &varied,
-            &shown,
-            &self.wanted.beside,
-        );
+            varied: &varied,
+        };
+        let mut text = words(&evidence, model, &shown, &self.wanted.beside);
         let mut summary = summary(scenario, model, &history, spread)?;
+        summary["verdict"] = evidence.verdict().name().into();
         if !varied.is_empty() {
             summary["variations"] = summary::of_variations(&varied)?;
         }
@@ -268,6 +273,7 @@ impl<'a> Run<'a> {
             words: text,
             summary,
             curves: shown.curves,
+            history,
         })
     }
 
@@ -307,7 +313,8 @@ pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
 }
 
 /// What is drawn of a structure at an instant, as a model moves it.
-fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
+#[must_use]
+pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     match model.row() {
         Some(row) => Scene::of_row(row),
         None => Scene::new(scenario.structure()),
@@ -382,7 +389,7 @@ impl Shown {
             .draw(figure, &run.subject(title), history, &self.points);
         write(folder, PICTURE, "the picture", &picture)?;
         if let Some(report) = &self.report {
-            let page = report.page(scenario, scenario.ground_motion(), said);
+            let page = report.page(scenario, scenario.ground_motion(), history, said);
             write(folder, REPORT, "the report", &page)?;
         }
         if let Some(snapshots) = &self.snapshots {

@@ -44,7 +44,7 @@ struct FarCycle {
     unstable_rad: f64,
 }
 
-/// Part of what gravity alone overturns beyond, of the unstable rotation or the barrier, from which on a motion goes far.
+/// From this part of the unstable rotation on, or of the barrier, that limit is drawn.
 pub(super) const FAR: f64 = 0.25;
 
 /// The look of the unstable rotation of a body: in the colour of its curve.

@@ -11,7 +11,7 @@ use super::film::{Film, Frame};
 use super::picture::LARGEST_EXCESS;
 use super::points::Points;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
-use crate::dynamics::history::{OpenHinge, Sample, State};
+use crate::dynamics::history::{OpenHinge, Sample, State, Summary};
 use crate::dynamics::model::Model;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
@@ -101,7 +101,13 @@ impl Report {
     /// The page of a scenario and what `run` says of it: a first line with the outcome, then others; those that go on from
     /// the one before begin with four spaces.
     #[must_use]
-    pub fn page(&self, scenario: &Scenario, ground: &GroundMotion, said: &str) -> String {
+    pub fn page(
+        &self,
+        scenario: &Scenario,
+        ground: &GroundMotion,
+        history: &Summary,
+        said: &str,
+    ) -> String {
         let title = scenario.title().unwrap_or("Rocking history");
         let mut lines: Vec<String> = Vec::new();
         for line in said.lines() {
@@ -141,13 +147,13 @@ impl Report {
                     "PLOT_LICENCE",
                     include_str!("../../../vendor/uplot/LICENSE"),
                 ),
-                ("DATA", &script_safe(&self.data(ground, &frames))),
+                ("DATA", &script_safe(&self.data(ground, &frames, history))),
             ],
         )
     }
 
     /// Everything that is drawn.
-    fn data(&self, ground: &GroundMotion, frames: &[&Frame]) -> Value {
+    fn data(&self, ground: &GroundMotion, frames: &[&Frame], history: &Summary) -> Value {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
         // Frames with the same hinges share a layout; the joints of a row are written frame by frame.
@@ -191,7 +197,10 @@ impl Report {
         let across = across.map(|across| json!([across.x, across.y]));
         let supports = self.scene.supports_m();
         let energy_label = if self.in_barriers {
-            "Energy (1: gravity alone overturns the mechanism that moves)"
+            match history.row {
+                None => "Energy (1: gravity alone overturns the mechanism that moves)",
+                Some(_) => "Energy (1: gravity alone overturns the first mechanism)",
+            }
         } else {
             "Energy (J)"
         };
@@ -201,6 +210,7 @@ impl Report {
         let end_s = frames.last().map_or(0.0, |frame| frame.time_s);
         json!({
             "bodies": self.bodies,
+            "largest_body": history.largest_body(),
             "unit_m": unit_m,
             "bounds_m": [[low_m.x, low_m.y], [high_m.x, high_m.y]],
             "supports": supports.iter().map(|[a, b]| json!([a.x, a.y, b.x, b.y])).collect::<Vec<_>>(),

@@ -93,7 +93,7 @@ impl Picture for RowTimeline {
         panels.ground(110.0, subject, doing);
 
         // The block that turns most is drawn above the others.
-        let largest = largest_block(&summary.peak_rotations_rad);
+        let largest = summary.largest_body();
         let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
         let rotations: Vec<Curve> = others
             .map(|block| (block, BLOCK))
@@ -203,13 +203,6 @@ fn doing(summary: &Summary) -> States {
 const BARRIER: Stroke = Stroke::new(color::VERMILION, 1.0, "1 3");
 const LARGEST: Stroke = Stroke::new(color::BLUE, 1.8, "");
 const BLOCK: Stroke = Stroke::new(color::BLACK, 0.5, "");
-
-/// Index of the block that turns most.
-fn largest_block(peaks_rad: &[f64]) -> usize {
-    let most = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
-    let largest = peaks_rad.iter().enumerate().max_by(most);
-    largest.map_or(0, |(block, _)| block)
-}
 
 /// How an open joint is drawn: name, colour, and where in its row, from its lower to its upper end.
 #[derive(Clone, Copy)]

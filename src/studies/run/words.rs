@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 
 use super::Shown;
+use super::verdict::Evidence;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
     ElasticSummary, Event, HalfCycle, Impact, Outcome, RowSummary, Sliding, Stress, Summary,
 };
 use crate::dynamics::model::{MechanismModel, Model};
-use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, SpreadError, Verdict};
+use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, Verdict};
 use crate::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use crate::dynamics::variation::Varied;
 use crate::mechanics::blocks::Row;
@@ -32,47 +33,40 @@ pub fn heading(scenario: &Scenario) -> String {
     text
 }
 
-/// What happened.
+/// What a run says: the verdict, what happened, what that compares with, how sure it is, and how it was computed.
 pub(super) fn words(
-    scenario: &Scenario,
+    evidence: &Evidence<'_>,
     model: &dyn Model,
-    history: &Summary,
-    spread: Option<&Result<Spread, SpreadError>>,
-    varied: &[Varied],
     shown: &Shown,
     beside: &[Hinges],
 ) -> String {
+    let Evidence {
+        scenario,
+        history,
+        spread,
+        varied,
+    } = *evidence;
     let impacts = &shown.notable;
-    let mut text = outcome(history);
-    match (model.as_mechanisms(), &history.row) {
-        (Some(model), _) => text += &of_mechanisms(model, history, impacts),
-        (None, Some(row)) => {
-            text += &of_row(scenario, history, row, impacts);
-            if let Some(elastic) = &row.elastic {
-                text += &of_elastic_joints(scenario, elastic);
-            }
-        }
-        (None, None) => {}
+    let row = history.row.as_ref();
+    let sliding = row.and_then(|row| row.sliding.as_ref());
+    let mut text = evidence.in_words();
+    text += &outcome(history);
+    if let Some(model) = model.as_mechanisms() {
+        text += &of_mechanisms(model, history, impacts);
+    } else if let Some(row) = row {
+        text += &of_row(history, row, impacts);
     }
     text += &shown.points.words();
-    text += &incipient(scenario, model, history);
-    text += &cut_short(scenario, history);
-    let sliding = history.row.as_ref().and_then(|row| row.sliding.as_ref());
     if let (Some(row), Some(sliding)) = (model.row(), sliding) {
         text += &slips(row, sliding, history.outcome);
-    } else if let Some(thrust) = &history.thrust {
-        let to_be_told = match model.as_mechanisms() {
-            Some(_) => trust(thrust, scenario.structure(), beside),
-            None => Some(String::new()),
-        };
-        if let Some(trust) = to_be_told {
-            let friction = thrust.largest_friction;
-            let _ = writeln!(
-                text,
-                "{trust}  friction coefficient needed to prevent sliding: {:.3} (at {:.4} s)",
-                friction.value, friction.time_s
-            );
-        }
+    }
+    text += &incipient(scenario, model, history);
+    text += &cut_short(scenario, history);
+    if sliding.is_none() {
+        text += &trusted(scenario, model, history, beside);
+    }
+    if let Some(elastic) = row.and_then(|row| row.elastic.as_ref()) {
+        text += &of_elastic_joints(scenario, elastic);
     }
     match spread {
         Some(Ok(spread)) if history.outcome != Outcome::NeverMoved => text += &sure(spread),
@@ -88,6 +82,93 @@ pub(super) fn words(
     let compared = beside.contains(&Hinges::Elastic);
     if scenario.motion().hinges() == Hinges::Free && !compared {
         text += "  joints that give way make an arch fall before this one does: compare with --hinges elastic\n";
+    }
+    text += &computed(scenario, model, history);
+    text
+}
+
+/// How far the model can be trusted, and the friction that it takes for granted.
+fn trusted(scenario: &Scenario, model: &dyn Model, history: &Summary, beside: &[Hinges]) -> String {
+    let Some(thrust) = &history.thrust else {
+        return String::new();
+    };
+    let trust = match model.as_mechanisms() {
+        Some(_) => trust(thrust, scenario.structure(), beside),
+        None => Some(String::new()),
+    };
+    let Some(trust) = trust else {
+        return String::new();
+    };
+    let Peak { value, time_s } = thrust.largest_friction;
+    let [low, high] = STONE_FRICTION;
+    let compared = if value > low {
+        let slip = match scenario.motion().hinges() {
+            Hinges::Four => "[free_hinges] with `friction_coefficient` lets",
+            Hinges::Free => "`friction_coefficient` in [free_hinges] lets",
+            Hinges::Elastic => "`friction_coefficient` in [elastic_joints] lets",
+        };
+        format!(";\n    stone has {low} to {high}: {slip} joints slip")
+    } else {
+        String::new()
+    };
+    format!(
+        "{trust}  friction coefficient needed to prevent sliding: {value:.3} (at {time_s:.4} s){compared}\n"
+    )
+}
+
+/// Coefficients of friction of stone on stone, from the least to the largest that may be counted on.
+const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
+
+/// The friction that a motion without sliding needs, where stone may not have it.
+pub(super) fn needs(scenario: &Scenario, history: &Summary) -> Option<String> {
+    let slips = scenario.motion().friction_coefficient().is_some();
+    let needed = history
+        .thrust
+        .as_ref()
+        .filter(|_| !slips)?
+        .largest_friction
+        .value;
+    let [low, high] = STONE_FRICTION;
+    if needed > high {
+        return Some(format!(
+            "would slide: needs a friction of {needed:.2}, and stone has {low} to {high}"
+        ));
+    }
+    (needed > low).then(|| format!("needs a friction of {needed:.2}"))
+}
+
+/// A part in percent, rounded down, so that what was not reached is not said to be.
+pub(super) fn in_percent(part: f64) -> f64 {
+    (100.0 * part).floor()
+}
+
+/// How well the motion was computed, and in how many steps.
+fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String {
+    if history.outcome == Outcome::NeverMoved {
+        return String::new();
+    }
+    let (defect, steps) = (history.energy_defect_ratio, history.cost.steps);
+    let evaluations = history.cost.evaluations;
+    let row = match (&history.row, model.as_mechanisms()) {
+        (Some(row), None) => row,
+        _ => {
+            return format!(
+                "  energy defect {defect:.1e} of the first mechanism's barrier, {steps} steps, {evaluations} evaluations\n"
+            );
+        }
+    };
+    let mut text = format!("  energy defect {defect:.1e} of weight times size, {steps} steps");
+    if row.elastic.is_none() {
+        let _ = write!(text, ", {evaluations} iterations");
+    }
+    text.push('\n');
+    if row.energy_error > DOUBTFUL_ENERGY_ERROR {
+        let _ = writeln!(
+            text,
+            "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [{}] makes it less",
+            1e2 * row.energy_error,
+            scenario.motion().table_name()
+        );
     }
     text
 }
@@ -156,15 +237,10 @@ fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notabl
             "the unstable rotation of the mechanism that moved",
         );
     }
-    let _ = writeln!(
-        text,
-        "  energy defect {:.1e} of the first mechanism's barrier, {} steps, {} evaluations",
-        history.energy_defect_ratio, history.cost.steps, history.cost.evaluations
-    );
     text
 }
 
-/// How far it came: that it `passed` what gravity alone overturns beyond, or what part of that.
+/// How far it went: that it `passed` the point from which gravity alone overturns it, or what part of the way.
 fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
     match outcome {
         // How far it fell on until the run ended says nothing; it may have overturned by another mechanism.
@@ -178,7 +254,7 @@ fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
 }
 
 /// What is said of the motion of a row.
-fn of_row(scenario: &Scenario, history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
+fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
     let mut text = String::new();
     if let Some((time_s, impact)) = &impacts.first {
         let _ = writeln!(text, "  first impact at {time_s:.4} s: {}", landing(impact));
@@ -204,15 +280,15 @@ fn of_row(scenario: &Scenario, history: &Summary, row: &RowSummary, impacts: &No
         let cycles = cycles.join(", ");
         let _ = writeln!(text, "  peaks of the first half cycles in rad: {cycles}");
     }
-    let (peak, peaks) = (history.largest_rotation_rad(), &history.peak_rotations_rad);
+    let peak = history.largest_rotation_rad();
     if peak <= STRAIGHT_RAD {
         text += "  slides without rocking\n";
-    } else if let Some(block) = peaks.iter().rposition(|other| *other == peak) {
+    } else {
         let _ = writeln!(
             text,
             "  largest rotation {peak:.6} rad, of block {} of {}",
-            block + 1,
-            peaks.len()
+            history.largest_body() + 1,
+            history.peak_rotations_rad.len()
         );
     }
     if let Some(peak) = history.peak_potential_over_barrier {
@@ -226,24 +302,6 @@ fn of_row(scenario: &Scenario, history: &Summary, row: &RowSummary, impacts: &No
                     "the potential energy at which its first mechanism overturns with rigid joints"
                 }
             },
-        );
-    }
-    let _ = write!(
-        text,
-        "  energy defect {:.1e} of weight times size, {} steps",
-        history.energy_defect_ratio, history.cost.steps
-    );
-    let iterations = history.cost.evaluations;
-    let _ = match row.elastic {
-        None => writeln!(text, ", {iterations} iterations"),
-        Some(_) => writeln!(text),
-    };
-    if row.energy_error > DOUBTFUL_ENERGY_ERROR {
-        let _ = writeln!(
-            text,
-            "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [{}] makes it less",
-            1e2 * row.energy_error,
-            scenario.motion().table_name()
         );
     }
     text
@@ -367,9 +425,16 @@ fn incipient(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Strin
 fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
     let ground = scenario.ground_motion();
     let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.gravity_m_s2();
+    let whole_g = ground.peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2();
+    // A record goes on where a motion ends.
+    let until = match history.outcome {
+        _ if peaks_g.x >= whole_g => "",
+        Outcome::Overturned(_) => " until it overturned",
+        _ => " until the end of the run",
+    };
     let mut reaches = if peaks_g.x > 0.0 {
         format!(
-            "reaches {:.4} g, {:.2} times as much",
+            "reaches {:.4} g{until}, {:.2} times as much",
             peaks_g.x,
             peaks_g.x / incipient_g
         )

@@ -34,6 +34,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
+use crate::argument::plain;
+
 /// What a record did at one intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
@@ -99,7 +101,7 @@ pub enum NoFit {
     NoObservations,
     /// Every case survives.
     #[error(
-        "none of {cases} cases overturns up to the intensity {highest}: add higher intensities"
+        "none of {cases} cases overturns up to the intensity {}: add higher intensities", plain(*.highest)
     )]
     NoneOverturned {
         /// Number of cases.
@@ -108,7 +110,7 @@ pub enum NoFit {
         highest: f64,
     },
     /// No case survives.
-    #[error("all {cases} cases overturn down to the intensity {lowest}: add lower intensities")]
+    #[error("all {cases} cases overturn down to the intensity {}: add lower intensities", plain(*.lowest))]
     AllOverturned {
         /// Number of cases.
         cases: usize,
@@ -117,8 +119,9 @@ pub enum NoFit {
     },
     /// One intensity does not show how the fraction grows.
     #[error(
-        "{overturned} of {cases} cases overturn, but all at the intensity {intensity}: add lower and higher \
-         ones"
+        "{overturned} of {cases} cases overturn, but all at the intensity {}: add lower and higher \
+         ones",
+        plain(*.intensity)
     )]
     OneIntensity {
         /// The intensity.
@@ -131,9 +134,10 @@ pub enum NoFit {
     /// The fraction that overturns jumps from none to all, between two levels or at one: any dispersion is
     /// less likely than a smaller one.
     #[error(
-        "no case overturns below an intensity of {overturned_from} and none survives above \
-         {survived_up_to}: the median is about there, and the dispersion is too small for these levels; add \
-         closer ones there"
+        "no case overturns below an intensity of {} and none survives above {}: the median is about there, and the \
+         dispersion is too small for these levels; add closer ones there",
+        plain(*.overturned_from),
+        plain(*.survived_up_to)
     )]
     Separated {
         /// Highest intensity of a case that survived.
@@ -144,8 +148,10 @@ pub enum NoFit {
     /// The likeliest curve is level or falls.
     #[error(
         "the fraction that overturns does not increase with the intensity: the geometric mean intensity of \
-         cases that overturn is {overturned}, of those that survive {survived}; add intensities at which \
-         few and at which most cases overturn, or more records"
+         cases that overturn is {}, of those that survive {}; add intensities at which few and at which most cases \
+         overturn, or more records",
+        plain(*.overturned),
+        plain(*.survived)
     )]
     NotIncreasing {
         /// Geometric mean intensity of the cases that survived.

@@ -411,7 +411,7 @@
   const turns = data.bodies.map((_, body) =>
     Array.from(times, (_t, i) => rotations[i * bodies + body] * frames.rotation_unit_rad),
   );
-  const most = turns.reduce((best, values, body) => (farthest(values) > farthest(turns[best]) ? body : best), 0);
+  const most = data.largest_body;
   const few = bodies <= 3;
   const dashes = [[], [8, 4], [3, 3]];
   const look = (body) =>

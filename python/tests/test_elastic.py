@@ -1,0 +1,48 @@
+"""Elastic joints and watched points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from archrock import Arch, Column, Pulse, simulate
+
+PULSE = Pulse("rectangular", amplitude_g=-0.3, duration_s=0.2)
+STACK = Column(height_m=4.0, width_m=0.8, drums=4, density_kg_m3=2000.0)
+
+
+def test_joints_bear_the_weight_at_first() -> None:
+    history = simulate(
+        STACK, PULSE, model="elastic_joints", normal_stiffness_gpa_m=10.0, duration_s=1.0
+    )
+    weight_n = 4.0 * 0.8 * 2000.0 * 9.81
+    above = weight_n * np.array([4, 3, 2, 1]) / 4
+    assert history.joint_forces.shape == (len(history), 4, 2)
+    np.testing.assert_allclose(history.joint_forces[0, :, 0], above, rtol=1e-9)
+    np.testing.assert_allclose(history.joint_stresses[0], np.stack([above, above], 1) / 0.8, rtol=1e-6)
+    assert np.all(history.joint_contacts[0] == 1.0)
+    assert np.nanmax(np.abs(history.joint_eccentricities)) > 0.3
+    assert history.joint_contacts.min() < 0.5
+
+
+def test_a_point_moves_with_its_block() -> None:
+    for options in ({}, {"model": "free_hinges"}, {"model": "elastic_joints", "normal_stiffness_gpa_m": 10.0}):
+        stack = STACK if options else Column(height_m=4.0, width_m=0.8)
+        history = simulate(stack, PULSE, duration_s=1.0, point=(0.0, 4.0), **options)  # type: ignore[arg-type]
+        turn, x, y = np.moveaxis(history.poses[:, -1], 1, 0)
+        due = np.stack([x - 4.0 * np.sin(turn), y + 4.0 * np.cos(turn) - 4.0], 1)
+        np.testing.assert_allclose(history.point, due, atol=1e-12)
+        assert np.abs(history.point[:, 0]).max() > 1e-3
+    assert simulate(STACK, PULSE, model="free_hinges", duration_s=0.1).point.shape[1] == 0
+
+
+def test_what_does_not_go_together_is_refused() -> None:
+    arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0, voussoirs=7)
+    with pytest.raises(ValueError, match="is in no block"):
+        simulate(arch, PULSE, point=(0.0, 1.0))
+    with pytest.raises(ValueError, match="lacks a stiffness"):
+        simulate(arch, PULSE, model="elastic_joints")
+    with pytest.raises(ValueError, match="of elastic joints only"):
+        simulate(arch, PULSE, model="free_hinges", contact_points=3)
+    with pytest.raises(ValueError, match="of free hinges only"):
+        simulate(arch, PULSE, model="elastic_joints", normal_stiffness_gpa_m=10.0, shortest_step_s=1e-5)

@@ -1,0 +1,73 @@
+//! Examples below the help of commands.
+
+pub const INIT: &str = "\
+Examples:
+  archrock init arch arch.toml      an arch to begin with
+  archrock init column | less       the same of a column, on standard output";
+
+pub const RUN: &str = "\
+Examples:
+  archrock run arch.toml                                 results in results/arch
+  archrock run arch.toml --hinges four,free              two models of motion, compared
+  archrock run arch.toml --point 0,4.2 --snapshots 0.2,0.5
+  archrock run arch.toml --set ground.rectangular.amplitude_g=-0.4 --out stronger
+  archrock run arch.toml --format json | jq .outcome";
+
+pub const LIMIT: &str = "\
+Examples:
+  archrock limit arch.toml
+  archrock limit arch.toml --plot mechanism.svg
+  archrock limit arch.toml --format json | jq .incipient_acceleration_g";
+
+pub const IMPACT: &str = "\
+Examples:
+  archrock impact arch.toml --count 3       the first three links of the chain
+  archrock impact arch.toml --models        restitution by all impact models";
+
+pub const CAPACITY: &str = "\
+Examples:
+  archrock capacity arch.toml
+  archrock capacity arch.toml --format json";
+
+pub const VERIFY: &str = "\
+Examples:
+  archrock verify arch.toml --out check     verify.html is the page to file";
+
+pub const CHART: &str = "\
+Examples:
+  archrock chart arch.toml
+  archrock chart arch.toml --figure-width 84";
+
+pub const MAP: &str = "\
+Examples:
+  archrock map arch.toml --threads 4
+  archrock map arch.toml --shard 1/3 --out part-1    and 2/3, 3/3 elsewhere; then archrock merge";
+
+pub const SPECTRUM: &str = "\
+Examples:
+  archrock spectrum arch.toml
+  archrock spectrum arch.toml --resume      goes on after Ctrl-C";
+
+pub const SUITE: &str = "\
+Examples:
+  archrock suite arch.toml
+  archrock suite arch.toml --hinges free --format json";
+
+pub const THRESHOLD: &str = "\
+Examples:
+  archrock threshold arch.toml
+  archrock threshold arch.toml --from 0.8 --to 1.5 --stride 0.005 --hinges four,free";
+
+pub const MERGE: &str = "\
+Examples:
+  archrock merge part-*/map-*.part --out map";
+
+pub const CHECK: &str = "\
+Examples:
+  archrock check arch.toml                  the scenario with all defaults
+  archrock check record.at2 --plot record.svg
+  archrock check table.csv --set unit=cm/s2";
+
+pub const COMPLETIONS: &str = "\
+Examples:
+  archrock completions bash > ~/.local/share/bash-completion/completions/archrock";

@@ -1,0 +1,143 @@
+//! The verdict of a run in a line: what happened, how sure that is, and what it hangs on.
+
+use super::words::{in_percent, needs};
+use crate::dynamics::history::{Outcome, Summary};
+use crate::dynamics::spread::{Spread, SpreadError, Verdict};
+use crate::dynamics::thrust::EXCESS_LEVELS;
+use crate::dynamics::variation::Varied;
+use crate::scenario::{Hinges, Scenario};
+
+/// What a run is judged by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Evidence<'a> {
+    pub(super) scenario: &'a Scenario,
+    pub(super) history: &'a Summary,
+    pub(super) spread: Option<&'a Result<Spread, SpreadError>>,
+    pub(super) varied: &'a [Varied],
+}
+
+impl Evidence<'_> {
+    /// Whether it overturns, as far as that is known.
+    pub(super) fn verdict(&self) -> Verdict {
+        let own = Verdict::from(self.history.outcome);
+        let others = self
+            .repeated()
+            .into_iter()
+            .flat_map(|spread| &spread.outcomes);
+        let mut others = others.map(|other| Verdict::from(*other));
+        if others.any(|other| other != own) {
+            return Verdict::Uncertain;
+        }
+        own
+    }
+
+    /// The verdict, as a line.
+    pub(super) fn in_words(&self) -> String {
+        let mut doubts = self.doubts();
+        let sure = self.how_sure();
+        let mut text = self.what_happens();
+        if let Some(sure) = sure {
+            text += ", ";
+            text += &sure;
+        }
+        doubts.insert(0, text);
+        format!("  {}\n", doubts.join("; "))
+    }
+
+    fn repeated(&self) -> Option<&Spread> {
+        self.spread.and_then(|spread| spread.as_ref().ok())
+    }
+
+    fn what_happens(&self) -> String {
+        let history = self.history;
+        if self.verdict() == Verdict::Uncertain {
+            let spread = self.repeated();
+            let names = spread.map_or(&[][..], |spread| &spread.repeated[..]);
+            let own = Verdict::from(history.outcome);
+            let outcomes = spread
+                .into_iter()
+                .flat_map(|spread| spread.outcomes.iter().skip(1));
+            let other = names
+                .iter()
+                .zip(outcomes)
+                .filter(|(_, other)| Verdict::from(**other) != own);
+            let names: Vec<&str> = other.map(|(name, _)| *name).collect();
+            let [does, otherwise] = match own {
+                Verdict::Overturns => ["overturns", "survives"],
+                _ => ["survives", "overturns"],
+            };
+            return format!(
+                "UNCERTAIN: {does}, and {otherwise} with {}",
+                names.join(" and ")
+            );
+        }
+        match history.outcome {
+            Outcome::Overturned(sway) => format!("overturns to the {}", sway.name()),
+            Outcome::NeverMoved => "never moves: the ground is too weak to start it".to_owned(),
+            Outcome::Rest | Outcome::StillRocking => {
+                let (rotation, energy) = (
+                    history.peak_over_critical,
+                    history.peak_potential_over_barrier,
+                );
+                let elastic = self.scenario.motion().hinges() == Hinges::Elastic;
+                match (rotation, energy) {
+                    (Some(part), _) if part < 1.0 => {
+                        format!("survives: peak {} % of overturning", in_percent(part))
+                    }
+                    (None, Some(part)) if part < 1.0 => {
+                        let percent = in_percent(part);
+                        let rigid = if elastic { " with rigid joints" } else { "" };
+                        format!("survives: peak energy {percent} % of overturning{rigid}")
+                    }
+                    _ => "survives".to_owned(),
+                }
+            }
+        }
+    }
+
+    /// What the repetitions say, or the line of thrust of four links.
+    fn how_sure(&self) -> Option<String> {
+        if self.history.outcome == Outcome::NeverMoved {
+            return None;
+        }
+        if self.repeated().is_some() {
+            let known = self.verdict() != Verdict::Uncertain;
+            return known.then(|| "the same with other steps".to_owned());
+        }
+        let is_arch = self.scenario.structure().thrusts();
+        let four = self.scenario.motion().hinges() == Hinges::Four && is_arch;
+        let thrust = self.history.thrust.as_ref().filter(|_| four)?;
+        thrust.shares_within()?;
+        let excess = thrust.largest_excess.value;
+        let grade = if excess <= EXCESS_LEVELS[0] {
+            "and four links suffice"
+        } else if excess <= EXCESS_LEVELS[1] {
+            "and four links are close"
+        } else {
+            "but four links are a rough guide"
+        };
+        Some(grade.to_owned())
+    }
+
+    /// What it hangs on: friction that stone may not have, and properties with which it ends otherwise.
+    fn doubts(&self) -> Vec<String> {
+        let own = Verdict::from(self.history.outcome);
+        let mut doubts = Vec::new();
+        if let Some(needed) = needs(self.scenario, self.history) {
+            doubts.push(needed);
+        }
+        let others = self.varied.iter().filter_map(|Varied { name, result }| {
+            let other = Verdict::from(result.as_ref().ok()?.outcome);
+            (other != own).then_some(name.as_str())
+        });
+        let others: Vec<&str> = others.collect();
+        if !others.is_empty() {
+            let otherwise = match own {
+                Verdict::Overturns => "survives",
+                _ => "overturns",
+            };
+            doubts.push(format!("{otherwise} with {}", others.join(" and with ")));
+        }
+        doubts
+    }
+}

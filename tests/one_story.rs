@@ -1,0 +1,114 @@
+//! Words, page, picture and tables of a run tell the same story: of random scenarios, with every model.
+
+use std::fs;
+
+use crate::common::Random;
+use crate::program::printed;
+use crate::results::{Table, data_of, summary, texts};
+
+/// A random structure on a random pulse, and how many blocks it has; none where links or a whole column move.
+fn scenario(random: &mut Random, model: &str) -> String {
+    let voussoirs = 7 + 2 * random.pick(3);
+    let structure = if random.pick(2) == 0 {
+        let ratio = random.within(0.14, 0.2);
+        format!(
+            "[arch]\nmean_radius_m = {}\nthickness_ratio = {ratio}\nembrace_deg = 180.0\nvoussoirs = {voussoirs}\n",
+            random.within(2.0, 8.0)
+        )
+    } else {
+        let drums = if model.is_empty() { "" } else { "drums = 4\n" };
+        format!(
+            "[column]\nheight_m = {}\nwidth_m = 0.9\n{drums}",
+            random.within(3.0, 6.0)
+        )
+    };
+    let side = if random.pick(2) == 0 { 1.0 } else { -1.0 };
+    format!(
+        "{structure}{model}[ground.half_sine]\namplitude_g = {}\nduration_s = {}\n[simulation]\nduration_s = 1.5\noutput_step_s = 0.002\n",
+        side * random.within(0.2, 0.8),
+        random.within(0.15, 0.5)
+    )
+}
+
+#[test]
+fn words_page_picture_and_tables_agree() {
+    let mut random = Random(26);
+    let elastic = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\n";
+    let (mut overturned, mut stood) = (0, 0);
+    for case in 0..12 {
+        let model = ["", "[free_hinges]\n", elastic][case % 3];
+        let folder = tempfile::tempdir().unwrap();
+        let text = scenario(&mut random, model);
+        fs::write(folder.path().join("s.toml"), &text).unwrap();
+        let mut arguments = vec!["run", "s.toml", "--out", "o"];
+        if !model.is_empty() {
+            arguments.push("--no-spread");
+        }
+        let said = printed(folder.path(), &arguments);
+        let out = folder.path().join("o");
+        let (told, rotations) = (summary(&out), Table::read(out.join("rotations.csv")));
+        let page = fs::read_to_string(out.join("report.html")).unwrap();
+        let verdict = said.lines().next().unwrap().trim();
+        assert!(
+            page.contains(&format!("<p id=\"outcome\">{verdict}</p>")),
+            "{said}"
+        );
+        // What happened, and when.
+        let time_s = told["outcome_time_s"].as_f64().unwrap();
+        let (begins, happens) = match told["outcome"].as_str().unwrap() {
+            "overturned" => {
+                overturned += 1;
+                let sway = told["overturning_sway"].as_str().unwrap();
+                let to = format!("overturned to the {sway} at {time_s:.4} s");
+                (format!("overturns to the {sway}"), to)
+            }
+            "rest" => (
+                "survives".to_owned(),
+                format!("came to rest at {time_s:.4} s"),
+            ),
+            "still_rocking" => (
+                "survives".to_owned(),
+                format!("still rocking at {time_s:.4} s"),
+            ),
+            _ => ("never moves".to_owned(), "never moved".to_owned()),
+        };
+        assert!(
+            verdict.starts_with(&begins) && said.contains(&happens),
+            "{text}{said}"
+        );
+        let is_down = told["verdict"] == "overturns";
+        assert_eq!(is_down, told["outcome"] == "overturned", "{said}");
+        stood += usize::from(!is_down);
+        if model.is_empty() || told["outcome"] == "never_moved" {
+            continue;
+        }
+        // Which block turns most, how far, and when the table has it.
+        let number = |from: &str, to: &str| {
+            let (_, after) = said.split_once(from).unwrap();
+            after.split_once(to).unwrap().0.to_owned()
+        };
+        let peak_rad: f64 = number("largest rotation ", " rad, of block")
+            .parse()
+            .unwrap();
+        let block: usize = number("rad, of block ", " of ").parse().unwrap();
+        let own_rad = told["largest_peak_rotation_rad"].as_f64().unwrap();
+        assert!((own_rad - peak_rad).abs() <= 5.1e-7, "{said}");
+        assert_eq!(
+            told[format!("peak_rotation_{block}_rad")],
+            told["largest_peak_rotation_rad"]
+        );
+        let column = rotations.numbers(&format!("rotation_{block}_rad"));
+        let sampled_rad = column.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
+        // Samples are 2 ms apart, and the peaks of all steps.
+        assert!(
+            sampled_rad <= own_rad * (1.0 + 1e-12) && sampled_rad > 0.97 * own_rad,
+            "{said}"
+        );
+        assert_eq!(data_of(&page)["largest_body"], block - 1);
+        let picture = fs::read_to_string(out.join("history.svg")).unwrap();
+        let picture = roxmltree::Document::parse(&picture).unwrap();
+        let named = format!("block {block}, which turns most");
+        assert!(texts(&picture).contains(&named), "{named}");
+    }
+    assert!(overturned > 1 && stood > 3, "{overturned} {stood}");
+}
