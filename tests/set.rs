@@ -136,6 +136,57 @@ fn a_wrong_assignment_is_refused_like_a_wrong_line() {
     );
 }
 
+/// Keys of the entries of a list, by their numbers, for `--set` and for the axes of a map.
+#[test]
+fn entries_of_lists_are_counted_from_one() {
+    let loads = |masses: [f64; 2]| {
+        let [one, two] = masses.map(|mass| format!("[[load]]\nmass_kg = {mass}\nx_m = 1.0\n"));
+        let arch = TEXT.replace("180.0\n", "180.0\nvoussoirs = 20\n");
+        format!("{arch}{one}{two}")
+    };
+    let text = loads([500.0, 800.0]);
+    let read = |set: &str| {
+        let set = [set.parse().unwrap()];
+        let changes = Changes {
+            hinges: None,
+            set: &set,
+        };
+        Scenario::of(&Source::of_text(&text, "s.toml"), &changes)
+    };
+    let parsed = |text: &str| Scenario::parse(text, "s.toml").unwrap();
+    let set = read("load.2.mass_kg=600").unwrap();
+    assert_eq!(set, parsed(&loads([500.0, 600.0])));
+    let set = read("load.1={mass_kg=600, x_m=1}").unwrap();
+    assert_eq!(set, parsed(&loads([600.0, 800.0])));
+    let varied = parsed(&text).with_values(&[("load.1.mass_kg", 700.0)]);
+    assert_eq!(varied.unwrap(), parsed(&loads([700.0, 800.0])));
+    for (set, message) in [
+        (
+            "load.3.mass_kg=600",
+            "--set load.3.mass_kg=600: `load` is a list, whose entries are `load.1` to `load.2`: `load.3` is none",
+        ),
+        (
+            "load.0.mass_kg=600",
+            "--set load.0.mass_kg=600: `load` is a list",
+        ),
+        (
+            "load.mass_kg=600",
+            "--set load.mass_kg=600: `load` is a list",
+        ),
+        (
+            "load.2.mass_kg=-1",
+            "--set load.2.mass_kg=-1: `mass_kg = -1` is out of range",
+        ),
+        (
+            "load.2.mas_kg=1",
+            "--set load.2.mas_kg=1: unknown key `mas_kg`",
+        ),
+    ] {
+        let errors = read(set).unwrap_err().to_string();
+        assert!(errors.starts_with(message), "{errors}");
+    }
+}
+
 #[test]
 fn what_is_no_assignment_is_said() {
     for wrong in ["", "x", "x=", "=1", "a b=1", "a..b=1", "[arch]=1"] {

@@ -6,13 +6,14 @@ use std::str::FromStr;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::error::Fault;
 use super::toml_text::quoted;
 
 /// A value that takes the place of the one in a scenario's text, or is added to it.
 ///
 /// It is written as in a scenario whose tables are parts of the key, `arch.thickness_ratio=0.12`. What is no TOML
 /// value is a text, so that `impact.model=mirrored` needs no quotation marks. A table between braces replaces the
-/// table of that name as a whole.
+/// table of that name as a whole. Entries of lists are counted from 1: `load.2.mass_kg=800`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
     /// As it was given.
@@ -129,30 +130,66 @@ impl<'a> Appended<'a> {
             .collect()
     }
 
-    /// Puts the values of all assignments into the table.
-    pub(super) fn assign<'i>(table: &mut DeTable<'i>, padded: &'i [(String, usize)]) {
+    /// Puts the values of all assignments into the table, or says which name no entry of a list.
+    pub(super) fn assign<'i>(table: &mut DeTable<'i>, padded: &'i [(String, usize)]) -> Vec<Fault> {
+        let mut faults = Vec::new();
         for (text, depth) in padded {
             let (assignment, _) = DeTable::parse_recoverable(text);
-            put(table, assignment.into_inner(), *depth);
+            if let Err(fault) = put(table, assignment.into_inner(), *depth) {
+                faults.push(fault);
+            }
         }
+        faults
     }
 }
 
 /// Puts the value of the one key of `assignment`, so many tables deep, into the same place of `table`.
-fn put<'i>(table: &mut DeTable<'i>, assignment: DeTable<'i>, depth: usize) {
+fn put<'i>(table: &mut DeTable<'i>, assignment: DeTable<'i>, depth: usize) -> Result<(), Fault> {
     for (key, value) in assignment {
-        let span = value.span();
-        let value = match value.into_inner() {
-            DeValue::Table(inner) if depth > 1 => {
-                if let Some(DeValue::Table(known)) = table.get_mut(&key).map(Spanned::get_mut) {
-                    put(known, inner, depth - 1);
-                    continue;
-                }
-                DeValue::Table(inner)
+        match table.get_mut(&key) {
+            Some(known) => replace(known, key.get_ref(), value, depth)?,
+            None => {
+                table.insert(key, value);
             }
-            value => value,
-        };
-        table.insert(key, Spanned::new(span, value));
+        }
+    }
+    Ok(())
+}
+
+/// Puts a value, or what it has so many tables deep, in the place of the known one. Entries of lists are counted from 1.
+fn replace<'i>(
+    known: &mut Spanned<DeValue<'i>>,
+    name: &str,
+    value: Spanned<DeValue<'i>>,
+    depth: usize,
+) -> Result<(), Fault> {
+    let span = value.span();
+    match (known.get_mut(), value.into_inner()) {
+        (DeValue::Table(known), DeValue::Table(inner)) if depth > 1 => put(known, inner, depth - 1),
+        (DeValue::Array(entries), DeValue::Table(inner)) if depth > 1 => {
+            for (number, value) in inner {
+                let number = number.get_ref();
+                let entry = match number.parse::<usize>() {
+                    Ok(place) if place > 0 => entries.get_mut(place - 1),
+                    _ => None,
+                };
+                let Some(entry) = entry else {
+                    return Err(Fault {
+                        offset: span.start,
+                        message: format!(
+                            "`{name}` is a list, whose entries are `{name}.1` to `{name}.{}`: `{name}.{number}` is none",
+                            entries.len()
+                        ),
+                    });
+                };
+                replace(entry, &format!("{name}.{number}"), value, depth - 1)?;
+            }
+            Ok(())
+        }
+        (_, value) => {
+            *known = Spanned::new(span, value);
+            Ok(())
+        }
     }
 }
 

@@ -40,14 +40,14 @@ pub(super) fn read_text<T>(
     let padded = behind.padded();
     let (root, _) = DeTable::parse_recoverable(&legible.text[..text.len()]);
     let mut root = root.into_inner();
-    Appended::assign(&mut root, &padded);
+    let faults = Appended::assign(&mut root, &padded);
     let mut table = Table {
         name: "the scenario".to_owned(),
         offset: 0,
         entries: &root,
         legible: &legible,
         known: Vec::new(),
-        faults: Vec::new(),
+        faults,
     };
     let value = read(&mut table);
     table.reject_unknown_keys();
