@@ -69,6 +69,7 @@ mod suite;
 mod threshold;
 mod thrust;
 mod tour;
+mod uncertain;
 mod validation;
 mod verify;
 mod verify_formulas;

@@ -17,6 +17,7 @@ mod scenario_file;
 mod studies;
 mod study;
 mod threshold;
+mod uncertain;
 mod verify;
 
 use std::io::{self, Write};

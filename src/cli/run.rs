@@ -18,6 +18,8 @@ use serde_json::{Map, Value};
 use self::progress::RunProgress;
 use super::figure::FigureOption;
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
+use super::study::Work;
+use super::uncertain::{Asked, Telling, words};
 use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
@@ -69,6 +71,9 @@ pub struct Arguments {
     /// times.
     #[arg(long = "point", value_name = "X,Y", value_parser = point_m, allow_hyphen_values = true)]
     points_m: Vec<Vector2<f64>>,
+    /// How the samples of [uncertain] are computed.
+    #[command(flatten)]
+    work: Work,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -193,6 +198,47 @@ impl Job {
 
     /// Runs it, and says what happened.
     fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
+        let samples = Telling {
+            work: arguments.work,
+            figure: arguments.figure.get(),
+            quiet,
+        };
+        let mut told = if samples.is_part(&self.scenarios)? {
+            Told {
+                words: String::new(),
+                summary: Value::Null,
+            }
+        } else {
+            self.run_itself(arguments, quiet)?
+        };
+        self.run_samples(samples, &mut told)?;
+        Ok(told)
+    }
+
+    /// Runs the samples of what is not known, and adds what they tell.
+    fn run_samples(&self, samples: Telling, told: &mut Told) -> Result<(), Failure> {
+        let Some(place) = &self.place.results else {
+            return Ok(());
+        };
+        let several = self.scenarios.len() > 1;
+        for scenario in &self.scenarios {
+            let name = scenario.motion().hinges().name();
+            let place = if several { &place.within(name) } else { place };
+            if let Some(results) = samples.tell(scenario, Asked::Histories, place)? {
+                told.words += &words(&results);
+                let summary = if several {
+                    &mut told.summary[name]
+                } else {
+                    &mut told.summary
+                };
+                summary["uncertain"] = results.summary;
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs the scenario itself.
+    fn run_itself(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
         let (scenarios, place) = (&self.scenarios, &self.place);
         let mut text = heading(&scenarios[0]);
         if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {

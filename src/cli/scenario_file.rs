@@ -28,6 +28,9 @@ pub struct SetOption {
     /// Replace a value of the scenario or add one, such as --set arch.thickness_ratio=0.12; can be repeated.
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     set: Vec<Assignment>,
+    /// Leave out [uncertain]: compute the scenario alone.
+    #[arg(long)]
+    no_uncertain: bool,
 }
 
 impl ScenarioFile {
@@ -54,6 +57,7 @@ impl SetOption {
             path,
             source,
             set: &self.set,
+            no_uncertain: self.no_uncertain,
         })
     }
 }
@@ -103,13 +107,19 @@ pub struct Input<'a> {
     path: &'a Path,
     source: Source,
     set: &'a [Assignment],
+    no_uncertain: bool,
 }
 
 impl Input<'_> {
     /// The scenario with the model of motion that is asked for; `None`: the one that it chooses.
     pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
         let set = self.set;
-        Ok(Scenario::of(&self.source, &Changes { hinges, set })?)
+        let scenario = Scenario::of(&self.source, &Changes { hinges, set })?;
+        Ok(if self.no_uncertain {
+            scenario.without_uncertain()
+        } else {
+            scenario
+        })
     }
 
     /// The failure, prefixed with the name of the scenario file.

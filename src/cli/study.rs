@@ -11,12 +11,12 @@ use std::time::{Duration, Instant};
 use archrock::scenario::{Hinges, Scenario, shown_lines};
 use archrock::studies::catalogue::{Done, StudyError, StudyKind};
 use archrock::studies::part::{PartError, PartFile, Shard};
-use archrock::studies::results::Look;
+use archrock::studies::results::{Look, Results};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::scenario_file::{Input, ScenarioFile};
+use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format};
 
 /// Options of every study.
@@ -28,6 +28,16 @@ pub struct Options {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
+    work: Work,
+    /// How the summary is printed; as JSON, on standard output.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// How long work is done.
+#[derive(clap::Args, Clone, Copy)]
+pub struct Work {
+    #[command(flatten)]
     threads: Threads,
     /// Continue an interrupted run, if there is one.
     #[arg(long)]
@@ -35,9 +45,6 @@ pub struct Options {
     /// Compute only part I of N, into a file for `archrock merge`.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-    /// How the summary is printed; as JSON, on standard output.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
 }
 
 /// On how many threads.
@@ -141,7 +148,46 @@ impl Options {
         quiet: bool,
     ) -> Result<(), Failure> {
         let place = input.results(self.out.as_deref())?;
-        let runner = self.threads.runner();
+        let done = self
+            .work
+            .compute(kind.name(), &place, quiet, |runner, task, watch| {
+                let done = kind.compute(scenario, look, runner, Some(task), watch);
+                done.map_err(|error| match error {
+                    StudyError::Scenario(_) => input.about(error.into()),
+                    error => error.into(),
+                })
+            })?;
+        let Some((results, part)) = done else {
+            return Ok(());
+        };
+        super::studies::write(&results, &place, self.format, quiet)?;
+        Ok(part.map_or(Ok(()), PartFile::remove)?)
+    }
+}
+
+/// What is told of progress; where it breaks, work ends.
+type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
+
+impl Work {
+    /// What computes on its threads.
+    pub fn runner(self) -> Runner {
+        self.threads.runner()
+    }
+
+    /// Whether only a part is asked for.
+    pub const fn is_part(self) -> bool {
+        self.shard.is_some()
+    }
+
+    /// Computes a study of this name for a folder: its results and the file that has its rows until they are written, or `None` of a
+    /// part, which is said.
+    pub fn compute(
+        self,
+        name: &str,
+        place: &Destination,
+        quiet: bool,
+        compute: impl FnOnce(Runner, Task<'_>, Watch<'_>) -> Result<Done, Failure>,
+    ) -> Result<Option<(Results, Option<PartFile>)>, Failure> {
         let task = Task {
             folder: place.path(),
             shard: self.shard.unwrap_or(Shard::WHOLE),
@@ -149,13 +195,13 @@ impl Options {
         };
         listen_to_interrupts();
         let mut display = None;
-        let watch = |progress| {
+        let mut watch = |progress| {
             let display = display.get_or_insert_with(|| Display::new(progress, quiet));
             // All rows so far are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.bar.abandon();
                 let Progress { done, all } = progress;
-                let file = task.folder.join(task.shard.file_name(kind.name()));
+                let file = task.folder.join(task.shard.file_name(name));
                 say(&if file.exists() {
                     format!("interrupted: {done} of {all} cases are done; continue with --resume")
                 } else {
@@ -166,20 +212,12 @@ impl Options {
             display.show(progress);
             ControlFlow::Continue(())
         };
-        let done = kind
-            .compute(scenario, look, runner, Some(task), watch)
-            .map_err(|error| match error {
-                StudyError::Scenario(_) => input.about(error.into()),
-                error => error.into(),
-            })?;
+        let done = compute(self.runner(), task, &mut watch)?;
         if let Some(display) = display {
             display.finish();
         }
         match done {
-            Done::Whole(results, part) => {
-                super::studies::write(&results, &place, self.format, quiet)?;
-                Ok(part.map_or(Ok(()), PartFile::remove)?)
-            }
+            Done::Whole(results, part) => Ok(Some((results, part))),
             Done::Part { part, cases, all } => {
                 if !quiet {
                     let (shard, path) = (task.shard, part.path().display());
@@ -187,7 +225,7 @@ impl Options {
                         "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
                     ));
                 }
-                Ok(())
+                Ok(None)
             }
         }
     }

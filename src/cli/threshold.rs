@@ -13,7 +13,8 @@ use archrock::studies::threshold::{
 use super::figure::FigureOption;
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
-use super::study::{Display, Threads, say};
+use super::study::{Display, Work, say};
+use super::uncertain::{Asked, Telling, words};
 use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
@@ -39,8 +40,9 @@ pub struct Arguments {
     /// Relative step from one factor to the next; narrower bands and gaps may be missed.
     #[arg(long, value_name = "PART", default_value_t = Factors::default().stride())]
     stride: f64,
+    /// How the samples of [uncertain], and all else, are computed.
     #[command(flatten)]
-    threads: Threads,
+    work: Work,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -78,7 +80,27 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         if !quiet {
             super::warn(&scenarios[0].unlikely());
         }
-        found.push(find(scenarios, place, &factors, arguments, quiet)?);
+        let samples = Telling {
+            work: arguments.work,
+            figure: arguments.figure.get(),
+            quiet,
+        };
+        let mut results = if samples.is_part(scenarios)? {
+            Results::default()
+        } else {
+            find(scenarios, place, &factors, arguments, quiet)?
+        };
+        for scenario in scenarios {
+            let name = scenario.motion().hinges().name();
+            let several = scenarios.len() > 1;
+            let place = if several { &place.within(name) } else { place };
+            if let Some(told) = samples.tell(scenario, Asked::FirstEdges(factors), place)? {
+                results.words += &words(&told);
+                let summary = &mut results.summary["uncertain"];
+                *(if several { &mut summary[name] } else { summary }) = told.summary;
+            }
+        }
+        found.push(results);
     }
     match arguments.format {
         Format::Json => print_all(found.into_iter().map(|results| results.summary)),
@@ -111,7 +133,7 @@ fn find(
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let folder = place.open(&FILES)?;
 
-    let runner = arguments.threads.runner();
+    let runner = arguments.work.runner();
     let mut display = None;
     let watch = |progress| {
         let display = display.get_or_insert_with(|| Display::new(progress, quiet));

@@ -47,6 +47,7 @@ mod structure;
 mod suite;
 mod table;
 mod toml_text;
+mod uncertain;
 mod unlikely;
 mod variant;
 mod verify;
@@ -84,6 +85,7 @@ pub use structure::{ModelError, Structure};
 pub use suite::{Measure, Suite};
 use table::{Reading, Table, Text};
 pub(crate) use toml_text::toml_text;
+pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
 pub use verify::{
     BEHAVIOUR_FACTOR, BuildingMode, ByState, CONFIDENCE_FACTOR, CodeDemand, Demand, FreeStanding,
     Height, LimitState, ModeState, PointDemand, Records, Relief, Sides, StateRule, Verify,
@@ -120,6 +122,7 @@ pub struct Scenario {
     suite: Option<Suite>,
     demand: Option<Demand>,
     verify: Option<Verify>,
+    uncertain: Option<Uncertain>,
     /// The motion of `ground`, built when that was read.
     ground_motion: Arc<GroundMotion>,
 }
@@ -190,6 +193,21 @@ impl Scenario {
     #[must_use]
     pub const fn verify(&self) -> Option<&Verify> {
         self.verify.as_ref()
+    }
+
+    /// What of it is not known; `None`: nothing.
+    #[must_use]
+    pub const fn uncertain(&self) -> Option<&Uncertain> {
+        self.uncertain.as_ref()
+    }
+
+    /// The same with nothing uncertain.
+    #[must_use]
+    pub fn without_uncertain(self) -> Self {
+        Self {
+            uncertain: None,
+            ..self
+        }
     }
 
     /// Gravity, in m/s2.
@@ -285,13 +303,14 @@ impl Scenario {
                 verify.as_ref().map(factor).map_err(|reported| *reported),
             )
         });
+        let uncertain = table.table("uncertain", Uncertain::read);
         let (verify, demand) = (verify?, demand?);
         if let Some(verify) = &verify {
             verify.suits(table, demand.as_ref())?;
         }
         let ((motion, ignores_impact), structure) = (motion?, structure?);
         motion.check(table, &structure)?;
-        Ok(Self {
+        let certain = Self {
             title: title?.map(|title| shown(&title)),
             structure,
             motion,
@@ -304,7 +323,13 @@ impl Scenario {
             suite: suite?,
             demand,
             verify,
+            uncertain: None,
             ground_motion: Arc::new(ground_motion),
+        };
+        let uncertain = uncertain?.map(|uncertain| uncertain.check(table, &certain));
+        Ok(Self {
+            uncertain: uncertain.transpose()?,
+            ..certain
         })
     }
 
@@ -320,6 +345,7 @@ impl Scenario {
             map: None,
             spectrum: None,
             suite: None,
+            uncertain: None,
             ground_motion: Arc::new(motion),
             ..self.clone()
         }
@@ -470,6 +496,7 @@ impl Scenario {
             ("suite", json(&self.suite)),
             ("demand", json(&self.demand)),
             ("verify", json(&self.verify)),
+            ("uncertain", json(&self.uncertain)),
         ];
         let tables = tables
             .into_iter()

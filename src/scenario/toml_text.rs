@@ -4,8 +4,8 @@ use serde_json::{Map, Value};
 
 use super::shown::is_hidden;
 
-/// The text of a table and of all that are in it. A range, which is a table with the key `from`, stands in one
-/// line.
+/// The text of a table and of all that are in it. What is spread, a table with the key `from` or `deviation`, stands
+/// in one line.
 pub(crate) fn toml_text(table: &Map<String, Value>) -> String {
     let mut text = String::new();
     write_table(&mut text, "", table);
@@ -13,9 +13,10 @@ pub(crate) fn toml_text(table: &Map<String, Value>) -> String {
 }
 
 fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
-    let (tables, keys): (Vec<_>, Vec<_>) = table
-        .iter()
-        .partition(|(_, value)| value.as_object().is_some_and(|it| !it.contains_key("from")));
+    let (tables, keys): (Vec<_>, Vec<_>) = table.iter().partition(|(_, value)| {
+        let spread = |it: &Map<_, _>| it.contains_key("from") || it.contains_key("deviation");
+        value.as_object().is_some_and(|it| !spread(it))
+    });
     // An empty table says something by being there.
     if !name.is_empty() && (!keys.is_empty() || tables.is_empty()) {
         if !text.is_empty() {

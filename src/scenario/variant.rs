@@ -7,26 +7,34 @@ use super::{Assignment, Changes, Ground, Scenario, Source};
 use std::sync::Arc;
 
 /// Tables whose keys are of a study, not of what it studies.
-const STUDIES: [&str; 3] = ["map", "spectrum", "suite"];
+const STUDIES: [&str; 4] = ["map", "spectrum", "suite", "uncertain"];
+/// Tables of the check, which asks nothing of a history.
+const CHECK: [&str; 2] = ["demand", "verify"];
+/// Before the keys of a record.
+const RECORD: &str = "ground.record.";
 
 impl Scenario {
-    /// The scenario with other numbers for some keys, each as `table.key`, without its studies. A record stays as it is.
+    /// The scenario with other numbers for some keys, each as `table.key`, without its studies and its check. The samples of a
+    /// record stay as they are.
     ///
     /// # Errors
     /// Says what is wrong with the keys or with what the numbers make of the scenario.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
-        let set = values
-            .iter()
-            .map(|(key, value)| assignment(key, *value))
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut table = self.to_json();
         let record = match &self.ground {
-            Some(Ground::Record(record)) => Some(record.clone()),
+            Some(Ground::Record(record)) => Some(record),
             Some(Ground::Pulse(_)) | None => None,
         };
+        let (of_record, others): (Vec<_>, Vec<_>) = values
+            .iter()
+            .partition(|(key, _)| record.is_some() && key.starts_with(RECORD));
+        let set = others
+            .into_iter()
+            .map(|(key, value)| assignment(key, value))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut table = self.to_json();
         if let Value::Object(table) = &mut table {
-            for study in STUDIES {
-                table.shift_remove(study);
+            for left_out in STUDIES.iter().chain(&CHECK) {
+                table.shift_remove(*left_out);
             }
             if record.is_some() {
                 table.shift_remove("ground");
@@ -40,8 +48,14 @@ impl Scenario {
         let mut changed = Self::of(&Source::of_text(&text, ""), &changes)
             .map_err(|errors| errors.as_slice()[0].message.clone())?;
         if let Some(record) = record {
-            changed.ground_motion = Arc::new(record.motion(changed.simulation.gravity_m_s2));
-            changed.ground = Some(Ground::Record(record));
+            let gravity_m_s2 = changed.simulation.gravity_m_s2;
+            let of_record: Vec<_> = of_record
+                .iter()
+                .map(|(key, value)| (&key[RECORD.len()..], *value))
+                .collect();
+            let record = record.with_values(&of_record, gravity_m_s2)?;
+            changed.ground_motion = Arc::new(record.motion(gravity_m_s2));
+            changed.ground = Some(Ground::Record(Box::new(record)));
         }
         Ok(changed)
     }

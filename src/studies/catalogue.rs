@@ -5,6 +5,9 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::ensemble::edges::FirstEdges;
+use super::ensemble::histories::Histories;
+use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::map::boundary::MapWithBoundary;
 use super::part::{self, PartError, PartFile};
@@ -12,6 +15,7 @@ use super::results::{Look, Results};
 use super::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
 use super::spectrum::{OverturningSpectrum, PointRow};
 use super::suite::{Heading, RecordSuite};
+use super::threshold::Factors;
 use crate::output::OutputError;
 use crate::scenario::{Scenario, ScenarioErrors};
 
@@ -24,6 +28,10 @@ named! {
         Spectrum = "spectrum",
         /// What records overturn.
         Suite = "suite",
+        /// How histories end and go, for samples of what is not known.
+        Uncertain = "uncertain",
+        /// From which factor on samples of what is not known overturn.
+        UncertainThreshold = "uncertain_threshold",
     }
 }
 
@@ -101,8 +109,37 @@ impl StudyKind {
                     heading.tell(rows, look.figure)
                 })
             }
+            Self::Uncertain => {
+                let question = Histories::of(scenario).map_err(StudyError::Scenario)?;
+                let study = ensemble(scenario, question)?;
+                complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
+            }
+            Self::UncertainThreshold => {
+                first_edges(scenario, Factors::default(), look, runner, task, watch)
+            }
         }
     }
+}
+
+/// The same of [`StudyKind::UncertainThreshold`], with these factors.
+///
+/// # Errors
+/// As [`StudyKind::compute`].
+pub fn first_edges(
+    scenario: &Scenario,
+    factors: Factors,
+    look: Look,
+    runner: Runner,
+    task: Option<Task<'_>>,
+    watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Done, StudyError> {
+    let question = FirstEdges::of(scenario, factors).map_err(StudyError::Scenario)?;
+    let study = ensemble(scenario, question)?;
+    complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
+}
+
+fn ensemble<Q: Question>(scenario: &Scenario, question: Q) -> Result<Ensemble<'_, Q>, StudyError> {
+    Ensemble::new(scenario, question).map_err(StudyError::Scenario)
 }
 
 /// Computes the cases that are asked for, and tells them if they are all.
@@ -175,6 +212,22 @@ pub fn merge(
                 StudyError::Scenario(message.to_owned())
             })?;
             heading.tell(rows, look.figure)?
+        }
+        StudyKind::Uncertain => {
+            let look = look(kind, None).map_err(StudyError::Scenario)?;
+            let (header, rows) = part::merge(parts)?;
+            let scenario = read(&header.scenario)?;
+            let question = Histories::of(&scenario).map_err(StudyError::Scenario)?;
+            ensemble(&scenario, question)?.tell(&rows, look)?
+        }
+        StudyKind::UncertainThreshold => {
+            let look = look(kind, None).map_err(StudyError::Scenario)?;
+            let (header, rows) = part::merge(parts)?;
+            let scenario = read(&header.scenario)?;
+            // The rows know how far factors went.
+            let question = FirstEdges::of(&scenario, Factors::default());
+            let question = question.map_err(StudyError::Scenario)?;
+            ensemble(&scenario, question)?.tell(&rows, look)?
         }
     };
     Ok((kind, results))

@@ -20,6 +20,7 @@ pub mod capacity;
 pub mod catalogue;
 pub mod chart;
 pub mod ending;
+pub mod ensemble;
 pub mod impact;
 mod impact_free;
 mod kind;

@@ -28,7 +28,7 @@ Progress = Callable[[int, int], object]
 Values = Any
 """Increasing numbers, anything like an array, or a :func:`span`."""
 
-Study = Literal["map", "spectrum", "suite"]
+Study = Literal["map", "spectrum", "suite", "uncertain", "uncertain_threshold"]
 
 
 def span(
@@ -106,6 +106,15 @@ class Results(Files):
 
         table: pandas.DataFrame = pandas.DataFrame(self.columns(file))
         return table
+
+    def to_parquet(self, path: str | os.PathLike[str], file: str | None = None) -> None:
+        """Writes a table of the study, by default its main one, as Parquet. Needs pandas with pyarrow or fastparquet.
+
+        Raises:
+            ImportError: when one of them is not there.
+            OSError: when it cannot be written.
+        """
+        self.to_pandas(file).to_parquet(path)
 
     def _repr_svg_(self) -> str:
         return self.files[self._picture].decode()
@@ -245,6 +254,83 @@ class Threshold(Results):
         return ranges
 
 
+class Ensemble(Results):
+    """What follows from the numbers of a scenario that are uncertain: how the history of every sample ends and goes."""
+
+    __slots__ = ()
+
+    _picture = "bands.svg"
+    _table = "samples.csv"
+    _json = "uncertain.json"
+
+    def _samples(self, name: str) -> npt.NDArray[Any]:
+        """A column without its first row, which is the scenario itself."""
+        column: npt.NDArray[Any] = self.columns()[name][1:]
+        return column
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The uncertain numbers, by their keys."""
+        names = list(self.columns())
+        return tuple(name for name in names if "." in name)
+
+    @property
+    def values(self) -> npt.NDArray[np.float64]:
+        """Their values, shape ``(samples, keys)``."""
+        return np.column_stack([self._samples(key) for key in self.keys])
+
+    @property
+    def what_matters(self) -> dict[str, Any]:
+        """By answer, for each uncertain number its share of the variance and its rank correlation, with intervals."""
+        matters: dict[str, Any] = self.summary["what_matters"]
+        return matters
+
+
+class Histories(Ensemble):
+    """An ensemble of histories."""
+
+    __slots__ = ()
+
+    @property
+    def outcome(self) -> npt.NDArray[np.str_]:
+        """What became of each sample, as in ``samples.csv``."""
+        return self._samples("outcome")
+
+    @property
+    def peak_rotation(self) -> npt.NDArray[np.float64]:
+        """Largest rotation of any body of each sample, in radians; NaN where there is no history."""
+        return self._samples("peak_rotation_rad")
+
+    @property
+    def probability(self) -> dict[str, float]:
+        """The share of samples that overturn, and its interval of 95 %: ``share``, ``low``, ``high``, ``count``, ``of``."""
+        share: dict[str, float] = self.summary["outcomes"]["overturned"]
+        return share
+
+    @property
+    def bands(self) -> dict[str, npt.NDArray[Any]]:
+        """The rotation over time: that of the scenario itself, 5 %, median and 95 %, as in ``bands.csv``."""
+        return self.columns("bands.csv")
+
+
+class FirstFactors(Ensemble):
+    """An ensemble of the first factors on the ground motion that overturn."""
+
+    __slots__ = ()
+
+    _picture = "probability.svg"
+
+    @property
+    def first_factor(self) -> npt.NDArray[np.float64]:
+        """The first factor of each sample; NaN where none overturns."""
+        return self._samples("first_factor")
+
+    @property
+    def probability(self) -> dict[str, npt.NDArray[Any]]:
+        """The probability of overturning over the factor, with its interval of 95 %, as in ``probability.csv``."""
+        return self.columns("probability.csv")
+
+
 class Check(Files):
     """A check by the Circolare 7/2019: numbers and the page to be filed."""
 
@@ -274,7 +360,13 @@ class Check(Files):
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 60em; border: 0"></iframe>'
 
 
-_KINDS: dict[str, type[Results]] = {"map": OverturningMap, "spectrum": Spectrum, "suite": Suite}
+_KINDS: dict[str, type[Results]] = {
+    "map": OverturningMap,
+    "spectrum": Spectrum,
+    "suite": Suite,
+    "uncertain": Histories,
+    "uncertain_threshold": FirstFactors,
+}
 
 
 def _allowed(threads: int | None) -> int | None:
@@ -506,6 +598,30 @@ def threshold(
     return Threshold(_native.threshold(scenario._native, factors, _allowed(threads), progress))
 
 
+def ensemble(
+    scenario: Scenario,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Histories:
+    """What follows from the table ``[uncertain]`` of a scenario: a history for every sample.
+
+    ``compute_part(scenario, "uncertain_threshold", ...)`` and :func:`merge` answer from which factor on samples overturn.
+
+    Args:
+        scenario: a scenario with a table ``[uncertain]``.
+        threads: as of :func:`overturning_map`.
+        progress: as of :func:`overturning_map`, of samples.
+
+    Raises:
+        ValueError: when nothing of it is uncertain, or nothing moves it, in the library's words.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    if not isinstance(scenario, Scenario):
+        raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
+    return Histories(_study("uncertain", scenario, threads, progress))
+
+
 def verify(
     of: Structure | Scenario,
     demand: Mapping[str, Any] | None = None,
@@ -621,7 +737,7 @@ def compute_part(
 
     Args:
         scenario: the scenario with the table of the study.
-        study: ``"map"``, ``"spectrum"`` or ``"suite"``.
+        study: ``"map"``, ``"spectrum"``, ``"suite"``, or of samples ``"uncertain"`` and ``"uncertain_threshold"``.
         shard: which part of how many, from 1: ``(2, 4)``.
         folder: where the file goes; made if need be.
         threads: as of :func:`overturning_map`.
@@ -646,7 +762,7 @@ def compute_part(
 
 def merge(
     parts: Iterable[str | os.PathLike[str]], scenario: Scenario | None = None
-) -> OverturningMap | Spectrum | Suite:
+) -> OverturningMap | Spectrum | Suite | Histories | FirstFactors:
     """Joins all parts of one study.
 
     Args:
@@ -662,5 +778,5 @@ def merge(
     native = None if scenario is None else scenario._native
     study, files = _native.merge(list(parts), native)
     results = _KINDS[study](files)
-    assert isinstance(results, (OverturningMap, Spectrum, Suite))
+    assert isinstance(results, (OverturningMap, Spectrum, Suite, Histories, FirstFactors))
     return results

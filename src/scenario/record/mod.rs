@@ -48,7 +48,7 @@ use super::error::{ScenarioErrors, excerpt};
 use super::ground::{MAX_ACCELERATION_G, free_fall};
 use super::shown;
 use super::source::Source;
-use super::table::{self, Number, OneOf, Reading, Table, Text};
+use super::table::{self, Number, OneOf, Reading, Rule as _, Table, Text};
 use crate::argument::{plain, short};
 use crate::dynamics::ground::GroundMotion;
 
@@ -180,6 +180,43 @@ impl Record {
         };
         rescaled.main.check_strength(gravity_m_s2)?;
         Ok(rescaled.motion(gravity_m_s2))
+    }
+
+    /// The same with other numbers for some of its keys.
+    pub(super) fn with_values(
+        &self,
+        values: &[(&str, f64)],
+        gravity_m_s2: f64,
+    ) -> Result<Self, String> {
+        let mut record = self.clone();
+        for (index, (key, value)) in values.iter().enumerate() {
+            let rule = match *key {
+                "scale" => &SCALE,
+                "peak_g" => &PEAK_G,
+                "start_s" => &START_S,
+                _ => {
+                    return Err(format!(
+                        "of a record `scale`, `peak_g` and `start_s` are numbers, not `{key}`"
+                    ));
+                }
+            };
+            if !rule.contains(*value) {
+                let allowed = rule.allowed();
+                return Err(format!(
+                    "`{key} = {value}` is out of range; must be {allowed}"
+                ));
+            }
+            if *key != "start_s" && values[..index].iter().any(|(other, _)| *other != "start_s") {
+                return Err("`scale` cannot be combined with `peak_g`; give one of them".to_owned());
+            }
+            match *key {
+                "scale" => record.main = record.main.scaled(Scaling::Factor(*value)),
+                "peak_g" => record.main = record.main.scaled(Scaling::PeakG(*value)),
+                _ => record.start_s = *value,
+            }
+        }
+        record.main.check_strength(gravity_m_s2)?;
+        Ok(record)
     }
 
     /// When the last of its records ends.

@@ -1,0 +1,93 @@
+//! What follows from `[uncertain]` of a scenario, beside what a command tells of the scenario itself.
+
+use archrock::output::Figure;
+use archrock::scenario::Scenario;
+use archrock::studies::catalogue::{StudyKind, first_edges};
+use archrock::studies::part::PartFile;
+use archrock::studies::results::{Look, Results};
+use archrock::studies::threshold::Factors;
+
+use super::Failure;
+use super::scenario_file::Destination;
+use super::study::{Work, say};
+
+/// How it is computed and told.
+#[derive(Clone, Copy)]
+pub struct Telling {
+    pub work: Work,
+    pub figure: Figure,
+    pub quiet: bool,
+}
+
+/// What is asked of the samples.
+#[derive(Clone, Copy)]
+pub enum Asked {
+    /// How their histories end and go.
+    Histories,
+    /// From which of these factors on they overturn.
+    FirstEdges(Factors),
+}
+
+impl Telling {
+    /// Whether only a part of the samples is asked for; refused where there are none.
+    pub fn is_part<'s>(
+        self,
+        scenarios: impl IntoIterator<Item = &'s Scenario>,
+    ) -> Result<bool, Failure> {
+        let mut scenarios = scenarios.into_iter();
+        if self.work.is_part() && !scenarios.all(|scenario| scenario.uncertain().is_some()) {
+            let message =
+                "--shard computes a part of the samples of [uncertain], which the scenario lacks";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        Ok(self.work.is_part())
+    }
+
+    /// Computes the samples of a scenario that has `[uncertain]`, and writes what they tell into the folder of its name within `place`. `None` where it
+    /// has not, or of a part.
+    pub fn tell(
+        self,
+        scenario: &Scenario,
+        asked: Asked,
+        place: &Destination,
+    ) -> Result<Option<Results>, Failure> {
+        if scenario.uncertain().is_none() {
+            return Ok(None);
+        }
+        let look = Look::of(self.figure);
+        let kind = match asked {
+            Asked::Histories => StudyKind::Uncertain,
+            Asked::FirstEdges(_) => StudyKind::UncertainThreshold,
+        };
+        let place = place.within(kind.name());
+        let done = self
+            .work
+            .compute(kind.name(), &place, self.quiet, |runner, task, watch| {
+                let task = Some(task);
+                Ok(match asked {
+                    Asked::Histories => kind.compute(scenario, look, runner, task, watch)?,
+                    Asked::FirstEdges(factors) => {
+                        first_edges(scenario, factors, look, runner, task, watch)?
+                    }
+                })
+            })?;
+        let Some((results, part)) = done else {
+            return Ok(None);
+        };
+        place.write(&results, true)?;
+        if !self.quiet {
+            say(&format!("results in {}", place.holds(&results)));
+        }
+        part.map_or(Ok(()), PartFile::remove)?;
+        Ok(Some(results))
+    }
+}
+
+/// The words of the samples, behind those of the scenario itself.
+pub fn words(results: &Results) -> String {
+    let samples = &results.summary["samples"];
+    format!(
+        "of {samples} samples of [uncertain]:\n  {}\n",
+        results.words
+    )
+}

@@ -1,0 +1,434 @@
+//! What is not known: `[uncertain]`.
+//!
+//! ```toml
+//! [uncertain]
+//! samples = 100
+//! seed = 1
+//! "arch.thickness_ratio" = { deviation = 0.003 }
+//! "free_hinges.friction_coefficient" = { from = 0.5, to = 0.8 }
+//! ```
+//!
+//! Every key of another table that is a number may be uncertain. A sample gives a value to each of them, at a point of
+//! a Sobol sequence with the scramble of Owen.
+
+use std::ops::Bound::{Excluded, Included, Unbounded};
+
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
+use serde_json::{Value, json};
+
+use super::Scenario;
+use super::sequence::Spacing;
+use super::table::{Count, Number, OneOf, Reading, Table};
+use crate::argument::{plain, short};
+use crate::bisection::{Width, bisect, middle};
+
+named! {
+    /// How a number deviates from the scenario's value.
+    pub enum Distribution {
+        /// Normal, with that value as its mean.
+        Normal = "normal",
+        /// Lognormal, with that value as its median; the deviation is that of the logarithm.
+        Lognormal = "lognormal",
+    }
+}
+
+/// How a number is spread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spread {
+    /// Equally over a range.
+    Range {
+        /// The least value.
+        from: f64,
+        /// The largest.
+        to: f64,
+        /// Whether the values or their logarithms are spread equally.
+        spacing: Spacing,
+    },
+    /// About the scenario's value, cut off at [`MOST_DEVIATIONS`].
+    About {
+        /// Standard deviation, in the unit of the key; of lognormal ones that of the natural logarithm, without unit.
+        deviation: f64,
+        /// Of which form.
+        distribution: Distribution,
+    },
+}
+
+/// Deviations at which normal distributions are cut off.
+pub const MOST_DEVIATIONS: f64 = 3.0;
+
+/// An uncertain number of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UncertainKey {
+    /// Its key, as `table.key`.
+    pub key: String,
+    /// How it is spread.
+    pub spread: Spread,
+    /// What the scenario itself gives it, if it does.
+    pub own: Option<f64>,
+}
+
+/// The numbers of a scenario that are uncertain, and how many samples are taken of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertain {
+    /// The numbers, at least one, in the order of the file.
+    pub keys: Vec<UncertainKey>,
+    /// How many samples, at least 1.
+    pub samples: usize,
+    /// Which scramble of the sequence.
+    pub seed: u32,
+}
+
+/// As many points as the sequence has.
+const SAMPLES: Count = Count {
+    range: 1..=65_536,
+    why: "one sample",
+};
+const SEED: Count = Count {
+    range: 0..=u32::MAX as usize,
+    why: "the first",
+};
+/// As many dimensions as the sequence has.
+const MAX_KEYS: usize = 256;
+const ANY: Number = Number(Unbounded, Unbounded);
+const DEVIATION: Number = Number(Excluded(0.0), Included(1e12));
+
+impl Spread {
+    fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let spacings = OneOf {
+            all: Spacing::ALL,
+            name: Spacing::name,
+        };
+        let distributions = OneOf {
+            all: Distribution::ALL,
+            name: Distribution::name,
+        };
+        let from = table.optional("from", &ANY);
+        let to = table.optional("to", &ANY);
+        let spacing = table.optional("spacing", &spacings);
+        let deviation = table.optional("deviation", &DEVIATION);
+        let distribution = table.optional("distribution", &distributions);
+        let (from, to, spacing) = (from?, to?, spacing?);
+        let (deviation, distribution) = (deviation?, distribution?);
+        let is_range = from.is_some() || to.is_some() || spacing.is_some();
+        let is_about = deviation.is_some() || distribution.is_some();
+        match (from.zip(to), deviation) {
+            (Some((from, to)), None) if !is_about => {
+                let spacing = spacing.unwrap_or(Spacing::Linear);
+                if to <= from {
+                    let wrong = format!("is not above `from`; must be above {}", short(from));
+                    return Err(table.wrong("to", wrong));
+                }
+                if spacing == Spacing::Logarithmic && from <= 0.0 {
+                    let wrong = "needs numbers above 0; use \"linear\" here";
+                    return Err(table.wrong("spacing", wrong));
+                }
+                Ok(Self::Range { from, to, spacing })
+            }
+            (None, Some(deviation)) if !is_range => Ok(Self::About {
+                deviation,
+                distribution: distribution.unwrap_or(Distribution::Normal),
+            }),
+            _ => Err(table.wrong_itself(
+                "must be a range, such as { from = 0.5, to = 0.8 }, or a deviation from the scenario's value, such as \
+                 { deviation = 0.003 }",
+            )),
+        }
+    }
+
+    /// The value below which a part of all values is, in 0 to 1.
+    fn at(self, part: f64, own: f64) -> f64 {
+        match self {
+            Self::Range {
+                from,
+                to,
+                spacing: Spacing::Linear,
+            } => from * (1.0 - part) + to * part,
+            Self::Range { from, to, .. } => {
+                (from * libm::exp(part * libm::log(to / from))).clamp(from, to)
+            }
+            Self::About {
+                deviation,
+                distribution: Distribution::Normal,
+            } => own + deviation * cut_normal(part),
+            Self::About { deviation, .. } => own * libm::exp(deviation * cut_normal(part)),
+        }
+    }
+}
+
+/// The probability of the standard normal distribution below a deviation.
+fn normal(deviations: f64) -> f64 {
+    0.5 * libm::erfc(-deviations * std::f64::consts::FRAC_1_SQRT_2)
+}
+
+/// The deviation below which a part of a standard normal distribution is that is cut off at [`MOST_DEVIATIONS`].
+fn cut_normal(part: f64) -> f64 {
+    let most = MOST_DEVIATIONS;
+    let below = normal(-most);
+    let wanted = below + part * (1.0 - 2.0 * below);
+    // Ends that are told as bounds are met exactly.
+    if part <= 0.0 || part >= 1.0 {
+        return if part <= 0.0 { -most } else { most };
+    }
+    let (low, high) = bisect(-most, most, Width::Absolute(1e-14), |deviations| {
+        normal(deviations) >= wanted
+    });
+    middle(low, high)
+}
+
+impl Serialize for UncertainKey {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.spread {
+            Spread::Range { from, to, spacing } => {
+                json!({ "from": from, "to": to, "spacing": spacing.name() })
+            }
+            Spread::About {
+                deviation,
+                distribution,
+            } => json!({ "deviation": deviation, "distribution": distribution.name() }),
+        }
+        .serialize(serializer)
+    }
+}
+
+impl Serialize for Uncertain {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("samples", &self.samples)?;
+        map.serialize_entry("seed", &self.seed)?;
+        for key in &self.keys {
+            map.serialize_entry(&key.key, key)?;
+        }
+        map.end()
+    }
+}
+
+const TABLE: &str = "uncertain";
+
+impl Uncertain {
+    /// Reads `[uncertain]`, which is [checked](Uncertain::check) against the rest of the scenario later.
+    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let samples = table.or("samples", &SAMPLES, 100);
+        let seed = table.or("seed", &SEED, 1);
+        let names = table.keys_of_other_tables();
+        let keys: Vec<_> = names
+            .into_iter()
+            .map(|key| {
+                let spread = table.table(&key, Spread::read)?;
+                Ok(spread.map(|spread| UncertainKey {
+                    key,
+                    spread,
+                    own: None,
+                }))
+            })
+            .collect();
+        let keys = keys.into_iter().collect::<Reading<Vec<_>>>()?;
+        let keys: Vec<UncertainKey> = keys.into_iter().flatten().collect();
+        if keys.is_empty() || keys.len() > MAX_KEYS {
+            return Err(table.wrong_itself(format!(
+                "needs 1 to {MAX_KEYS} keys of other tables between quotation marks, such as \
+                 \"arch.thickness_ratio\" = {{ deviation = 0.003 }}"
+            )));
+        }
+        let (samples, seed) = (samples?, seed?);
+        Ok(Self {
+            keys,
+            samples,
+            seed: u32::try_from(seed).unwrap_or(u32::MAX),
+        })
+    }
+
+    /// Completes it with the values of the scenario, and refuses what that does not allow. The faults go to the table
+    /// around `[uncertain]`.
+    pub(super) fn check(mut self, table: &mut Table<'_>, scenario: &Scenario) -> Reading<Self> {
+        let resolved = scenario.to_json();
+        let mut faulty = Ok(());
+        for index in 0..self.keys.len() {
+            if let Err(wrong) = self.check_key(index, &resolved, scenario) {
+                faulty = Err(table.wrong_in(TABLE, &self.keys[index].key, wrong));
+            }
+        }
+        faulty?;
+        // Each alone is allowed; two that say the same are not allowed together.
+        for count in 2..=self.keys.len() {
+            let keys = &self.keys[..count];
+            let values: Vec<_> = keys.iter().map(|key| (&*key.key, key.at(0.5))).collect();
+            if let Err(wrong) = scenario.with_values(&values) {
+                let wrong = format!("contradicts the keys before it: {wrong}");
+                return Err(table.wrong_in(TABLE, &self.keys[count - 1].key, wrong));
+            }
+        }
+        Ok(self)
+    }
+
+    fn check_key(
+        &mut self,
+        index: usize,
+        resolved: &Value,
+        scenario: &Scenario,
+    ) -> Result<(), String> {
+        let (before, [key, ..]) = self.keys.split_at_mut(index) else {
+            return Ok(());
+        };
+        let parts = |key: &str| -> Vec<String> {
+            key.split('.').map(|part| part.trim().to_owned()).collect()
+        };
+        if before
+            .iter()
+            .any(|other| parts(&other.key) == parts(&key.key))
+        {
+            return Err("is the same as a key before it; leave one out".to_owned());
+        }
+        let own = parts(&key.key)
+            .iter()
+            .try_fold(resolved, |table, part| table.get(part));
+        match own {
+            Some(Value::Number(number)) if number.is_f64() => key.own = number.as_f64(),
+            Some(Value::Number(number)) => {
+                return Err(format!(
+                    "is the whole number {number} in the scenario; only numbers that may have a fraction are uncertain"
+                ));
+            }
+            Some(Value::Null) | None => {}
+            Some(_) => {
+                return Err("is no number in the scenario; only numbers are uncertain".to_owned());
+            }
+        }
+        if key.own.is_none() && matches!(key.spread, Spread::About { .. }) {
+            return Err(format!(
+                "has no value in the scenario that it could deviate from, as `archrock check` prints it: give {} there, \
+                 or a range here",
+                key.key
+            ));
+        }
+        // The least, the largest, and one that is no whole number.
+        for part in [0.0, 1.0, 0.381_966] {
+            let value = key.at(part);
+            scenario
+                .with_values(&[(&key.key, value)])
+                .map_err(|wrong| {
+                    format!(
+                        "reaches {}, which the scenario does not allow: {wrong}",
+                        plain(value)
+                    )
+                })?;
+        }
+        Ok(())
+    }
+
+    /// The point of a sample, counted from 0: a number above 0 and below 1 for each key.
+    #[must_use]
+    pub fn point(&self, sample: usize) -> Vec<f64> {
+        // The sequence has numbers of 24 bits: each stands for the middle of what would be rounded down to it.
+        const HALF_BIT: f64 = 0.5 / (1_u32 << 24) as f64;
+        let index = u32::try_from(sample).unwrap_or(u32::MAX);
+        (0..)
+            .zip(&self.keys)
+            .map(|(dimension, _)| {
+                f64::from(sobol_burley::sample(index, dimension, self.seed)) + HALF_BIT
+            })
+            .collect()
+    }
+
+    /// The values of a sample, counted from 0, in the order of the keys.
+    #[must_use]
+    pub fn values(&self, sample: usize) -> Vec<f64> {
+        let parts = self.point(sample).into_iter();
+        parts
+            .zip(&self.keys)
+            .map(|(part, key)| key.at(part))
+            .collect()
+    }
+
+    /// The scenario with other values of the keys, without its studies and with nothing uncertain.
+    ///
+    /// # Errors
+    /// Says what the values make of the scenario that is not allowed.
+    pub fn scenario(&self, scenario: &Scenario, values: &[f64]) -> Result<Scenario, String> {
+        let keys = self.keys.iter().map(|key| key.key.as_str());
+        let values: Vec<_> = keys.zip(values.iter().copied()).collect();
+        scenario.with_values(&values)
+    }
+}
+
+impl UncertainKey {
+    /// The value below which a part of all values is, in 0 to 1.
+    #[must_use]
+    pub fn at(&self, part: f64) -> f64 {
+        self.spread.at(part, self.own.unwrap_or(0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the quantile function of the normal distribution, by integration of its density with Simpson's rule.
+    #[test]
+    fn normal_values_are_cut_off_and_keep_their_shares() {
+        let density = |x: f64| (-0.5 * x * x).exp();
+        let integral = |to: f64| {
+            let steps = 2000;
+            let width = (to + 3.0) / f64::from(steps);
+            let at = |step: i32| density(-3.0 + width * f64::from(step));
+            let inner: f64 = (1..steps)
+                .map(|step| if step % 2 == 0 { 2.0 } else { 4.0 } * at(step))
+                .sum();
+            width / 3.0 * (at(0) + inner + at(steps))
+        };
+        for part in [1e-6, 0.025, 0.3, 0.5, 0.9, 0.999] {
+            let found = integral(cut_normal(part)) / integral(3.0);
+            assert!((found - part).abs() < 1e-10, "{part} {found}");
+        }
+        assert_eq!([cut_normal(0.0), cut_normal(1.0)], [-3.0, 3.0]);
+    }
+
+    /// The first 2^m points of a Sobol sequence, scrambled or not, have one value in each of 2^m equal parts, in every
+    /// dimension, and the first two dimensions one point in each box of that area.
+    #[test]
+    fn points_are_spread_evenly() {
+        let key = |key: &str| UncertainKey {
+            key: key.to_owned(),
+            spread: Spread::Range {
+                from: 0.0,
+                to: 1.0,
+                spacing: Spacing::Linear,
+            },
+            own: None,
+        };
+        for seed in [0, 1, 77] {
+            let uncertain = Uncertain {
+                keys: (0..20).map(|_| key("a.b")).collect(),
+                samples: 256,
+                seed,
+            };
+            let points: Vec<_> = (0..256).map(|sample| uncertain.point(sample)).collect();
+            let part = |value: f64, parts: f64| (value * parts).floor();
+            for dimension in 0..20 {
+                let mut parts: Vec<_> = points
+                    .iter()
+                    .map(|point| part(point[dimension], 256.0))
+                    .collect();
+                parts.sort_by(f64::total_cmp);
+                assert!(
+                    parts
+                        .iter()
+                        .zip(0..)
+                        .all(|(part, index)| *part == f64::from(index))
+                );
+            }
+            for (wide, high) in [(16.0, 16.0), (4.0, 64.0), (128.0, 2.0)] {
+                let mut boxes: Vec<_> = points
+                    .iter()
+                    .map(|point| part(point[0], wide) * high + part(point[1], high))
+                    .collect();
+                boxes.sort_by(f64::total_cmp);
+                assert!(
+                    boxes
+                        .iter()
+                        .zip(0..)
+                        .all(|(part, index)| *part == f64::from(index))
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! From which factor on its ground motion every sample overturns: upwards to the first edge only.
+
+use serde::{Deserialize, Serialize};
+
+use super::statistics::{Share, band};
+use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
+use crate::bisection::{Width, try_bisect};
+use crate::output::OutputError;
+use crate::scenario::Scenario;
+use crate::studies::ending::{Ending, Verdict};
+use crate::studies::results::{Look, Results};
+use crate::studies::threshold::{EDGE_WIDTH, Factors, check};
+
+/// The factors that are tried, upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstEdges {
+    /// Those of a threshold.
+    pub factors: Factors,
+}
+
+/// Where a sample first overturns as its ground motion gets stronger.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FirstEdge {
+    /// The least factor that certainly overturns; `None` where none does.
+    pub factor: Option<f64>,
+    /// The greatest factor that was tried.
+    pub tried_to: f64,
+    /// The least factor at which it is uncertain whether it overturns, where there is one below.
+    pub uncertain_from: Option<f64>,
+}
+
+impl FirstEdge {
+    /// The factor; beyond all where none overturns.
+    #[must_use]
+    pub fn strength(&self) -> f64 {
+        self.factor.unwrap_or(f64::INFINITY)
+    }
+}
+
+impl FirstEdges {
+    /// The factors on the ground motion of a scenario that starts from rest.
+    ///
+    /// # Errors
+    /// In words, what to change.
+    pub fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
+        check(scenario)?;
+        Ok(Self { factors })
+    }
+}
+
+impl Question for FirstEdges {
+    type Answer = FirstEdge;
+
+    const NAME: &'static str = "uncertain_threshold";
+
+    fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
+        let model = scenario
+            .model()
+            .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        let request = scenario.request_from_rest();
+        let verdict = |factor: f64| {
+            let ground = scenario.ground_motion().scaled(factor);
+            let ground = ground.map_err(|error| error.to_string())?;
+            let ending = Ending::of(&*model, &ground, &request);
+            ending.map(|ending| ending.verdict())
+        };
+        let mut edge = FirstEdge {
+            factor: None,
+            tried_to: 0.0,
+            uncertain_from: None,
+        };
+        for factor in self.factors.values() {
+            let found = match verdict(factor) {
+                Ok(found) => found,
+                // A stronger motion may be beyond the model, such as ground that falls.
+                Err(_) if edge.tried_to > 0.0 => break,
+                Err(reason) => return Err(NoAnswer::Failed(reason)),
+            };
+            if found == Verdict::Overturns {
+                edge.factor = Some(match edge.tried_to {
+                    0.0 => factor,
+                    below => {
+                        let width = Width::Relative(EDGE_WIDTH);
+                        let overturns =
+                            |factor| verdict(factor).map(|found| found == Verdict::Overturns);
+                        try_bisect(below, factor, width, overturns)
+                            .map_err(NoAnswer::Failed)?
+                            .1
+                    }
+                });
+                edge.tried_to = factor;
+                break;
+            }
+            edge.tried_to = factor;
+            if found == Verdict::Uncertain {
+                edge.uncertain_from.get_or_insert(factor);
+            }
+        }
+        Ok(edge)
+    }
+
+    fn settings(&self) -> Vec<String> {
+        let (from, to, stride) = (
+            self.factors.first(),
+            self.factors.last(),
+            self.factors.stride(),
+        );
+        vec![format!("factors:{from:?}:{to:?}:{stride:?}")]
+    }
+}
+
+/// The probability of overturning up to a factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProbabilityAt {
+    /// The factor: that at which a sample first overturns.
+    pub factor: f64,
+    /// How many do up to there.
+    pub share: Share,
+}
+
+impl Told<'_, FirstEdge> {
+    /// The distribution over the factors at which samples overturn, ascending.
+    pub(crate) fn probabilities(&self) -> Vec<ProbabilityAt> {
+        let mut factors: Vec<f64> = self
+            .answered()
+            .filter_map(|(_, edge)| edge.factor)
+            .collect();
+        factors.sort_by(f64::total_cmp);
+        let all = self.answered().count();
+        let at = |(index, factor): (usize, &f64)| {
+            let share = Share::of(index + 1, all)?;
+            Some(ProbabilityAt {
+                factor: *factor,
+                share,
+            })
+        };
+        factors.iter().enumerate().filter_map(at).collect()
+    }
+
+    /// The share that overturns at this factor, or below it already.
+    pub(crate) fn share_up_to(&self, factor: f64) -> Option<Share> {
+        let all = self.answered().count();
+        let overturned = self
+            .answered()
+            .filter(|(_, edge)| edge.strength() <= factor);
+        Share::of(overturned.count(), all)
+    }
+
+    /// 5 %, median and 95 % of the factors; infinite where so many do not overturn.
+    pub(crate) fn band(&self) -> Option<[f64; 3]> {
+        band(self.answered().map(|(_, edge)| edge.strength()).collect())
+    }
+}
+
+impl Ensemble<'_, FirstEdges> {
+    /// Files and words of all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn tell(&self, rows: &[SampleRow<FirstEdge>], look: Look) -> Result<Results, OutputError> {
+        let told = Told::new(self.scenario, self.uncertain, rows);
+        told::edges(&told, look.figure)
+    }
+}

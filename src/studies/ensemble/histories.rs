@@ -1,0 +1,239 @@
+//! How the history of every sample ends, how far it goes, and how it goes over time.
+
+use std::ops::ControlFlow;
+
+use serde::{Deserialize, Serialize};
+
+use super::statistics::{Share, band};
+use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
+use crate::dynamics::history::{Outcome, Sample};
+use crate::dynamics::spread::doubt;
+use crate::output::OutputError;
+use crate::scenario::Scenario;
+use crate::studies::ending::{Ending, Verdict};
+use crate::studies::results::{Look, Results};
+
+/// Times of the bands over time, at most.
+const MOST_TIMES: usize = 300;
+
+/// A history, and the times at which its samples are compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Histories {
+    /// The body whose rotation is followed, counted from 0: that which rotates most in the history of the scenario itself.
+    pub body: usize,
+    /// Time between the instants at which it is told.
+    pub step_s: f64,
+    /// How many these are, from time zero on.
+    pub times: usize,
+}
+
+/// How the history of a sample ended and went.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Went {
+    /// How it ended.
+    pub ending: Ending,
+    /// Largest rotation of any body, in radians; of what overturned, on the way to where that was certain.
+    pub peak_rotation_rad: f64,
+    /// Of a row of blocks, its largest potential energy over the barrier, where that is known.
+    pub potential_over_barrier: Option<f64>,
+    /// Rotation of the body at the instants, in radians, until its end: then it stays as it is, or has overturned.
+    pub course_rad: Vec<f32>,
+}
+
+impl Histories {
+    /// For the samples of a scenario: simulates that once, to see what it does.
+    ///
+    /// # Errors
+    /// Says why it has no history.
+    pub fn of(scenario: &Scenario) -> Result<Self, String> {
+        scenario.check_for_run()?;
+        let model = scenario.model().map_err(|error| error.to_string())?;
+        let request = scenario.request();
+        let summary = model
+            .simulate(scenario.ground_motion(), &request, None)
+            .map_err(|error| error.to_string())?;
+        let peaks = summary.peak_rotations_rad.iter().enumerate();
+        let most = peaks.max_by(|a, b| a.1.total_cmp(b.1));
+        let body = most.map_or(0, |(body, _)| body);
+        // What ends early may go on longer in another sample.
+        let end_s = request.end_s.min(2.0 * summary.end_s);
+        let samples = (end_s / request.output_step_s).floor().max(1.0);
+        let stride = (samples / MOST_TIMES as f64).ceil();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "at most some hundred"
+        )]
+        let times = (samples / stride).floor() as usize + 1;
+        Ok(Self {
+            body,
+            step_s: stride * request.output_step_s,
+            times,
+        })
+    }
+}
+
+impl Question for Histories {
+    type Answer = Went;
+
+    const NAME: &'static str = "uncertain";
+
+    fn answer(&self, scenario: &Scenario) -> Result<Went, NoAnswer> {
+        let model = scenario
+            .model()
+            .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        let (ground, mut request) = (scenario.ground_motion(), scenario.request());
+        // Mechanisms go the same way whatever is told of it; of blocks steps may end where samples are.
+        if model.as_mechanisms().is_some() {
+            request.output_step_s = self.step_s;
+        }
+        let mut course_rad: Vec<f32> = Vec::with_capacity(self.times);
+        let mut record = |sample: &Sample| {
+            // Rounding of times is far below half a step of the output.
+            let wanted = self.step_s * course_rad.len() as f64 - 0.5 * request.output_step_s;
+            if sample.time_s >= wanted && course_rad.len() < self.times {
+                let rotation = sample.rotations_rad.get(self.body).copied();
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    reason = "seven digits are enough to draw"
+                )]
+                course_rad.push(rotation.unwrap_or(0.0) as f32);
+            }
+            ControlFlow::Continue(())
+        };
+        let failed = |error: String| NoAnswer::Failed(error);
+        let summary = model
+            .simulate(ground, &request, Some(&mut record))
+            .map_err(|error| failed(error.to_string()))?;
+        let doubt = doubt(&*model, ground, &request, &summary);
+        let ending = Ending::from_summary(&summary, None, doubt).map_err(failed)?;
+        Ok(Went {
+            ending,
+            peak_rotation_rad: summary.largest_rotation_rad(),
+            potential_over_barrier: summary.peak_potential_over_barrier,
+            course_rad,
+        })
+    }
+}
+
+impl Went {
+    /// Whether its own history overturned, certain or not.
+    #[must_use]
+    pub const fn goes_over(&self) -> bool {
+        matches!(self.ending.outcome, Outcome::Overturned(_))
+    }
+
+    /// How far it went; beyond everything if it overturned.
+    #[must_use]
+    pub fn peak_rad(&self) -> f64 {
+        if self.goes_over() {
+            f64::INFINITY
+        } else {
+            self.peak_rotation_rad
+        }
+    }
+
+    /// How much it counts as overturned: half where that is uncertain.
+    #[must_use]
+    pub fn overturned(&self) -> f64 {
+        match self.ending.verdict() {
+            Verdict::Survives => 0.0,
+            Verdict::Uncertain => 0.5,
+            Verdict::Overturns => 1.0,
+        }
+    }
+
+    /// The rotation at an instant: beyond everything, to its side, once it has overturned.
+    fn rotation_rad(&self, time: usize) -> f64 {
+        let last = || {
+            let last = self.course_rad.last().copied().map_or(0.0, f64::from);
+            if self.goes_over() {
+                f64::INFINITY.copysign(last)
+            } else {
+                last
+            }
+        };
+        self.course_rad
+            .get(time)
+            .copied()
+            .map_or_else(last, f64::from)
+    }
+}
+
+/// The rotation at an instant, over all samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandAt {
+    /// When.
+    pub time_s: f64,
+    /// That of the scenario itself; `None` where it has overturned.
+    pub own_rad: Option<f64>,
+    /// 5 %, median and 95 % of the samples; infinite where so many have overturned.
+    pub band_rad: [f64; 3],
+    /// How many have overturned until then.
+    pub overturned: usize,
+}
+
+/// How many samples came to each outcome.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcomes(pub Vec<(&'static str, Share)>);
+
+impl Outcomes {
+    /// The share of an outcome by its name in results.
+    #[must_use]
+    pub fn share(&self, name: &str) -> Option<Share> {
+        let found = self.0.iter().find(|(outcome, _)| *outcome == name);
+        found.map(|(_, share)| *share)
+    }
+}
+
+impl Told<'_, Went> {
+    /// The shares of all outcomes, those that no sample has included.
+    pub(crate) fn outcomes(&self) -> Outcomes {
+        let names = [
+            "overturned",
+            "uncertain",
+            "rest",
+            "never_moved",
+            "still_rocking",
+        ];
+        let all = self.answered().count();
+        let shares = names.into_iter().filter_map(|name| {
+            let of = |went: &&Went| went.ending.outcome_name() == name;
+            let count = self.answered().map(|(_, went)| went).filter(of).count();
+            Some((name, Share::of(count, all)?))
+        });
+        Outcomes(shares.collect())
+    }
+
+    /// The rotation over time.
+    pub(crate) fn bands(&self, asked: &Histories) -> Vec<BandAt> {
+        let at = |time: usize| {
+            let rotations: Vec<f64> = self
+                .answered()
+                .map(|(_, went)| went.rotation_rad(time))
+                .collect();
+            let own = self.own.as_ref().ok().map(|went| went.rotation_rad(time));
+            Some(BandAt {
+                time_s: time as f64 * asked.step_s,
+                own_rad: own.filter(|rotation| rotation.is_finite()),
+                overturned: rotations
+                    .iter()
+                    .filter(|rotation| rotation.is_infinite())
+                    .count(),
+                band_rad: band(rotations)?,
+            })
+        };
+        (0..asked.times).filter_map(at).collect()
+    }
+}
+
+impl Ensemble<'_, Histories> {
+    /// Files and words of all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn tell(&self, rows: &[SampleRow<Went>], look: Look) -> Result<Results, OutputError> {
+        let told = Told::new(self.scenario, self.uncertain, rows);
+        told::histories(&told, &self.question, look.figure)
+    }
+}

@@ -1,0 +1,211 @@
+//! Numbers about samples: shares with intervals, quantiles, and random numbers that are the same everywhere.
+
+use serde::Serialize;
+
+/// Deviations of the normal distribution between which 95 % is.
+const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
+
+/// How many of the samples have a property, and the share of all possible samples that follows from that.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// How many have it.
+    pub count: usize,
+    /// Of how many.
+    pub of: usize,
+    /// The share of the samples.
+    pub share: f64,
+    /// Lower end of the interval of 95 % confidence.
+    pub low: f64,
+    /// Upper end of it.
+    pub high: f64,
+}
+
+impl Share {
+    /// With the interval of Wilson (1927), which holds for independent samples: those of a sequence of low discrepancy are spread
+    /// more evenly, so it is on the safe side. `None` where there are no samples.
+    #[must_use]
+    pub fn of(count: usize, of: usize) -> Option<Self> {
+        if of == 0 {
+            return None;
+        }
+        let (n, z2) = (of as f64, TWO_SIDED_95 * TWO_SIDED_95);
+        let share = count as f64 / n;
+        let middle = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
+        let half = TWO_SIDED_95 / (1.0 + z2 / n)
+            * (share * (1.0 - share) / n + 0.25 * z2 / (n * n)).sqrt();
+        Some(Self {
+            count,
+            of,
+            share,
+            // The ends are met exactly where all or none have it.
+            low: if count == 0 {
+                0.0
+            } else {
+                (middle - half).max(0.0)
+            },
+            high: if count == of {
+                1.0
+            } else {
+                (middle + half).min(1.0)
+            },
+        })
+    }
+}
+
+/// The least of the values that a part of all of them, in 0 to 1, does not exceed; they ascend, and may be infinite. `None` where
+/// there are none.
+#[must_use]
+pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
+    // What is only rounding is no further value.
+    let rank = (part * ascending.len() as f64 - 1e-9).ceil().max(1.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a rank, at least 1"
+    )]
+    ascending.get(rank as usize - 1).copied()
+}
+
+/// The parts of all values that bands tell: from 5 to 95 %, and the median.
+pub const BAND: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// The ends and the median of the band of values in any order.
+#[must_use]
+pub fn band(mut values: Vec<f64>) -> Option<[f64; 3]> {
+    values.sort_by(f64::total_cmp);
+    let [low, median, high] = BAND.map(|part| quantile(&values, part));
+    Some([low?, median?, high?])
+}
+
+/// Ranks from 1; equal values have the mean of theirs.
+#[must_use]
+pub fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut before = 0;
+    for equal in order.chunk_by(|a, b| values[*a] == values[*b]) {
+        let rank = before as f64 + 0.5 * (equal.len() as f64 + 1.0);
+        before += equal.len();
+        for index in equal {
+            ranks[*index] = rank;
+        }
+    }
+    ranks
+}
+
+/// Mean and variance.
+#[must_use]
+pub fn moments(values: &[f64]) -> [f64; 2] {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>()
+        / n;
+    [mean, variance]
+}
+
+/// Pearson's correlation of two lists; `None` where one of them does not vary.
+#[must_use]
+pub fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
+    let n = pairs.clone().count() as f64;
+    let sums = pairs
+        .clone()
+        .fold([0.0; 2], |[a, b], (x, y)| [a + x, b + y]);
+    let [x_mean, y_mean] = sums.map(|sum| sum / n);
+    let [xx, xy, yy] = pairs.fold([0.0; 3], |[xx, xy, yy], (x, y)| {
+        let (x, y) = (x - x_mean, y - y_mean);
+        [xx + x * x, xy + x * y, yy + y * y]
+    });
+    (xx > 0.0 && yy > 0.0).then(|| (xy / (xx * yy).sqrt()).clamp(-1.0, 1.0))
+}
+
+/// How often a bootstrap draws again.
+pub const REPLICATES: usize = 300;
+
+/// Draws as many of so many things again, with replacement, [`REPLICATES`] times; the same on every machine.
+pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
+    let mut state = 0_u64;
+    // SplitMix64 (Steele, Lea and Flood 2014).
+    let mut next = move || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = state;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "below a count")]
+    let mut draw = move || ((u128::from(next()) * count as u128) >> 64) as usize;
+    (0..REPLICATES).map(move |_| (0..count).map(|_| draw()).collect())
+}
+
+/// The ends of the interval of 95 % of bootstrapped values.
+#[must_use]
+pub fn interval(mut values: Vec<f64>) -> Option<[f64; 2]> {
+    values.sort_by(f64::total_cmp);
+    Some([quantile(&values, 0.025)?, quantile(&values, 0.975)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Published: Wilson's interval of 15 of 148 is 0.0624 to 0.1605 (Newcombe 1998, Table I, method 3: 81 of 263 is 0.2553 to 0.3662).
+    #[test]
+    fn shares_have_the_published_intervals() {
+        for (count, of, low, high) in [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605)] {
+            let share = Share::of(count, of).unwrap();
+            assert!(
+                (share.low - low).abs() < 5e-5 && (share.high - high).abs() < 5e-5,
+                "{share:?}"
+            );
+        }
+        // Of none and of all an end is known: 0 of 20 is 0 to 0.1611, 29 of 29 is 0.8830 to 1.
+        let none = Share::of(0, 20).unwrap();
+        assert!(none.low == 0.0 && (none.high - 0.1611).abs() < 5e-5);
+        let all = Share::of(29, 29).unwrap();
+        assert!(all.high == 1.0 && (all.low - 0.8830).abs() < 5e-5);
+        assert_eq!(Share::of(0, 0), None);
+    }
+
+    #[test]
+    fn quantiles_are_values() {
+        let values: Vec<f64> = (1..=20).map(f64::from).collect();
+        let of = |part| quantile(&values, part).unwrap();
+        assert_eq!(
+            [0.0, 0.05, 0.5, 0.95, 0.951, 1.0].map(of),
+            [1.0, 1.0, 10.0, 19.0, 20.0, 20.0]
+        );
+        assert_eq!(quantile(&[], 0.5), None);
+        let [low, median, high] = band(vec![f64::INFINITY, 1.0, 2.0]).unwrap();
+        assert_eq!([low, median, high], [1.0, 2.0, f64::INFINITY]);
+    }
+
+    #[test]
+    fn equal_values_share_their_ranks() {
+        assert_eq!(ranks(&[3.0, 1.0, 3.0, 2.0, 3.0]), [4.0, 1.0, 4.0, 2.0, 4.0]);
+        let squares = (1..9).map(|x| (f64::from(x), f64::from(x * x)));
+        assert!(correlation(squares).unwrap() < 0.98);
+        assert_eq!(correlation([(1.0, 2.0), (2.0, 2.0)].into_iter()), None);
+    }
+
+    /// The mean of so many draws varies as theory says: by the deviation over the root of their number.
+    #[test]
+    fn bootstraps_draw_evenly() {
+        let means: Vec<f64> = bootstrap(100)
+            .map(|drawn| drawn.iter().sum::<usize>() as f64 / 100.0)
+            .collect();
+        let [mean, variance] = moments(&means);
+        // Of 0 to 99: mean 49.5, variance 833.25; bounds at four standard errors.
+        assert!(
+            (mean - 49.5).abs() < 4.0 * (8.3325_f64 / 300.0).sqrt(),
+            "{mean}"
+        );
+        assert!(
+            (variance / 8.3325 - 1.0).abs() < 4.0 * (2.0_f64 / 300.0).sqrt(),
+            "{variance}"
+        );
+    }
+}

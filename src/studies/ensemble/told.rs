@@ -1,0 +1,476 @@
+//! What ensembles tell: their tables, their JSON, their words.
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::edges::{FirstEdge, ProbabilityAt};
+use super::histories::{BandAt, Histories, Went};
+use super::matters::Matters;
+use super::statistics::{Share, band, ranks};
+use super::{NoAnswer, Told, picture};
+use crate::output::table::{Cell, Column, column, csv, several};
+use crate::output::{Figure, OutputError, pretty};
+use crate::scenario::{Uncertain, UncertainKey};
+use crate::studies::ending::columns::{self, UNCERTAIN};
+use crate::studies::results::Results;
+use crate::studies::threshold::rounded;
+
+const SUMMARY: &str = "uncertain.json";
+
+/// A row of the table of samples: its number, from 1, or 0 of the scenario itself; its values; and the answer.
+struct Line<'a, A> {
+    number: usize,
+    values: Vec<Option<f64>>,
+    answer: &'a Result<A, NoAnswer>,
+}
+
+/// The scenario itself, then all samples.
+fn lines<'a, A>(told: &Told<'a, A>) -> Vec<Line<'a, A>> {
+    let own = Line {
+        number: 0,
+        values: told.uncertain.keys.iter().map(|key| key.own).collect(),
+        answer: told.own,
+    };
+    let samples = told.samples.iter().zip(1..).map(|(row, number)| Line {
+        number,
+        values: row.values.iter().copied().map(Some).collect(),
+        answer: &row.answer,
+    });
+    [own].into_iter().chain(samples).collect()
+}
+
+/// The columns of what the samples are.
+fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A>>> {
+    let names: Vec<String> = uncertain.keys.iter().map(|key| key.key.clone()).collect();
+    vec![
+        column("sample", |line: &Line<'_, A>| line.number),
+        several(names, |line: &Line<'_, A>, cells: &mut Vec<Cell<'_>>| {
+            cells.extend(line.values.iter().map(|value| Cell::from(*value)));
+        }),
+    ]
+}
+
+/// What matters for an answer: the numbers by their keys.
+pub(super) struct Decides<'a> {
+    /// Of what, in words that follow "decides 60 % of".
+    pub(super) what: &'static str,
+    /// Its name in JSON.
+    name: &'static str,
+    /// Each number, in the order of the keys; `None` where nothing can be said.
+    pub(super) of: Option<Vec<(&'a UncertainKey, Matters)>>,
+}
+
+impl<'a> Decides<'a> {
+    fn new<A>(told: &Told<'a, A>, [name, what]: [&'static str; 2], numbers: &[f64]) -> Self {
+        let of = told.what_matters(numbers);
+        let keys = &told.uncertain.keys;
+        Self {
+            what,
+            name,
+            of: of.map(|of| keys.iter().zip(of).collect()),
+        }
+    }
+
+    /// `friction coefficient decides 60 % of the first factor that overturns, thickness ratio 25 %`.
+    fn in_words(&self, uncertain: &Uncertain) -> Option<String> {
+        const LEAST: f64 = 0.05;
+        let mut of: Vec<_> = self.of.as_ref()?.iter().collect();
+        of.sort_by(|a, b| b.1.first_order.total_cmp(&a.1.first_order));
+        let known: f64 = of.iter().map(|(_, matters)| matters.first_order).sum();
+        let matter = of
+            .iter()
+            .filter(|(_, matters)| matters.first_order >= LEAST);
+        let mut words = matter.map(|(key, matters)| {
+            let name = spoken(&key.key, uncertain);
+            (name, percent(matters.first_order))
+        });
+        let Some((first, share)) = words.next() else {
+            return Some(format!(
+                "no number alone decides {}: they do together, or by chance as these samples see it",
+                self.what
+            ));
+        };
+        let others: String = words
+            .map(|(name, share)| format!(", {name} {share}"))
+            .collect();
+        let together = if known < 1.0 - LEAST {
+            format!("; {} is decided by several together", percent(1.0 - known))
+        } else {
+            String::new()
+        };
+        Some(format!(
+            "{first} decides {share} of {}{others}{together}",
+            self.what
+        ))
+    }
+
+    fn to_json(&self) -> (&'static str, Value) {
+        #[derive(Serialize)]
+        struct Of<'a> {
+            key: &'a str,
+            #[serde(flatten)]
+            matters: Matters,
+        }
+        let of = self.of.as_ref().map(|of| {
+            let of = of.iter().map(|(key, matters)| {
+                json!(Of {
+                    key: &key.key,
+                    matters: *matters,
+                })
+            });
+            of.collect::<Vec<_>>()
+        });
+        (self.name, json!(of))
+    }
+}
+
+/// A key as people say it: `thickness ratio` of `arch.thickness_ratio`, where no other key ends alike.
+pub(super) fn spoken(key: &str, uncertain: &Uncertain) -> String {
+    const UNITS: [&str; 12] = [
+        "_m_s2", "_kg_m3", "_gpa_m", "_mpa", "_gpa", "_rad", "_deg", "_hz", "_kn", "_m", "_s", "_g",
+    ];
+    let last = |key: &str| -> String {
+        let last = key.rsplit('.').next().unwrap_or(key).trim();
+        let unit = UNITS.iter().find_map(|unit| last.strip_suffix(unit));
+        unit.unwrap_or(last).replace('_', " ")
+    };
+    let own = last(key);
+    let alike = uncertain
+        .keys
+        .iter()
+        .filter(|other| last(&other.key) == own);
+    if alike.count() > 1 {
+        key.to_owned()
+    } else {
+        own
+    }
+}
+
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent > 0.0 && percent < 9.95 || percent > 90.05 && percent < 100.0 {
+        format!("{percent:.1} %")
+    } else {
+        format!("{percent:.0} %")
+    }
+}
+
+fn share_in_words(share: &Share) -> String {
+    let Share {
+        count,
+        of,
+        share,
+        low,
+        high,
+    } = share;
+    format!(
+        "{} (95 %: {} to {}), {count} of {of} samples",
+        percent(*share),
+        percent(*low),
+        percent(*high)
+    )
+}
+
+/// What no sample can tell.
+const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not name, other ground motions, and the model of motion itself";
+
+/// What the JSON of every ensemble begins with.
+fn beginning<A>(told: &Told<'_, A>) -> Value {
+    let reasons = told.samples.iter().zip(1..).filter_map(|(row, sample)| {
+        let reason = row.answer.as_ref().err()?;
+        Some(json!({ "sample": sample, "why": reason.name(), "reason": reason.reason() }))
+    });
+    json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "scenario": told.scenario.to_json(),
+        "samples": told.samples.len(),
+        "answered": told.answered().count(),
+        "invalid": told.without("invalid"),
+        "failed": told.without("failed"),
+        "without_answer": reasons.collect::<Vec<_>>(),
+        "not_considered": NOT_CONSIDERED,
+    })
+}
+
+/// How many samples have no answer, and why the first has none.
+fn without_answer<A>(told: &Told<'_, A>) -> Vec<String> {
+    let all = [
+        ("invalid", "make no structure that stands, and do not count"),
+        ("failed", "could not be computed, and do not count"),
+    ];
+    let words = all.into_iter().filter_map(|(name, what)| {
+        let mut reasons = told
+            .samples
+            .iter()
+            .filter_map(|row| row.answer.as_ref().err());
+        let first = reasons.find(|reason| reason.name() == name)?;
+        let count = told.without(name);
+        Some(format!(
+            "{count} of {} samples {what}; the first: {}",
+            told.samples.len(),
+            first.reason()
+        ))
+    });
+    words.collect()
+}
+
+/// Null in place of what is infinite.
+fn finite(values: [f64; 3]) -> [Option<f64>; 3] {
+    values.map(|value| value.is_finite().then_some(value))
+}
+
+/// Parts of the answers in JSON, by their names.
+fn band_to_json(band: Option<[f64; 3]>) -> Value {
+    let [low, median, high] = band.map_or([None; 3], finite);
+    json!({ "quantile_05": low, "median": median, "quantile_95": high })
+}
+
+/// Files and words of how histories end and go.
+pub(super) fn histories(
+    told: &Told<'_, Went>,
+    asked: &Histories,
+    figure: Figure,
+) -> Result<Results, OutputError> {
+    let bands = told.bands(asked);
+    let outcomes = told.outcomes();
+    let peaks: Vec<f64> = told.answered().map(|(_, went)| went.peak_rad()).collect();
+    let overturned: Vec<f64> = told.answered().map(|(_, went)| went.overturned()).collect();
+    let overturning = Decides::new(told, ["overturning", "whether it overturns"], &overturned);
+    // What overturned has no number for how far it went, but is beyond the others: ranks can tell that.
+    let names = ["peak_rotation_rank", "how far it rocks"];
+    let far = Decides::new(told, names, &ranks(&peaks));
+    let decides = [overturning, far];
+    let mut json = beginning(told);
+    let shares = outcomes
+        .0
+        .iter()
+        .map(|(name, share)| ((*name).to_owned(), json!(share)));
+    json["outcomes"] = Value::Object(shares.collect());
+    json["peak_rotation_rad"] = band_to_json(band(peaks));
+    json["followed_body"] = json!(asked.body);
+    json["what_matters"] = Value::Object(
+        decides
+            .iter()
+            .map(|one| {
+                let (name, of) = one.to_json();
+                (name.to_owned(), of)
+            })
+            .collect(),
+    );
+    let has_joints = told.scenario.motion().hinges().has_joints();
+    let mut all = sample_columns(told.uncertain);
+    all.extend(columns::columns(has_joints, |line: &Line<'_, Went>| {
+        let went = line.answer.as_ref();
+        went.map(|went| &went.ending).map_err(NoAnswer::name)
+    }));
+    if has_joints {
+        all.push(column(
+            "peak_potential_over_barrier",
+            |line: &Line<'_, Went>| {
+                line.answer
+                    .as_ref()
+                    .ok()
+                    .and_then(|went| went.potential_over_barrier)
+            },
+        ));
+    } else {
+        all.push(column("peak_rotation_rad", |line: &Line<'_, Went>| {
+            line.answer.as_ref().ok().map(|went| went.peak_rotation_rad)
+        }));
+    }
+    let mut lines_of_words = vec![first_of_histories(told, &decides)];
+    for (name, share) in &outcomes.0 {
+        if share.count > 0 {
+            lines_of_words.push(format!(
+                "{}: {}",
+                name.replace('_', " "),
+                share_in_words(share)
+            ));
+        }
+    }
+    lines_of_words.push(far_in_words(told));
+    lines_of_words.extend(without_answer(told));
+    Ok(Results {
+        files: vec![
+            (
+                "bands.svg",
+                picture::bands(figure, told, &bands, asked).into_bytes(),
+            ),
+            (
+                "matters.svg",
+                picture::matters(figure, told, &decides).into_bytes(),
+            ),
+            ("bands.csv", csv(band_columns(), &bands)?),
+            ("samples.csv", csv(all, &lines(told))?),
+            (SUMMARY, pretty(&json).into_bytes()),
+        ],
+        words: lines_of_words.join("\n  "),
+        summary: json,
+        ..Results::default()
+    })
+}
+
+fn band_columns() -> Vec<Column<'static, BandAt>> {
+    vec![
+        column("time_s", |at: &BandAt| at.time_s),
+        column("own_rad", |at: &BandAt| at.own_rad),
+        column("quantile_05_rad", |at: &BandAt| finite(at.band_rad)[0]),
+        column("median_rad", |at: &BandAt| finite(at.band_rad)[1]),
+        column("quantile_95_rad", |at: &BandAt| finite(at.band_rad)[2]),
+        column("overturned", |at: &BandAt| at.overturned),
+    ]
+}
+
+/// The sentence that says it all.
+fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> String {
+    let counts = |went: &&Went| went.ending.outcome_name() == "overturned";
+    let overturned = told.answered().map(|(_, went)| went).filter(counts).count();
+    let Some(share) = Share::of(overturned, told.answered().count()) else {
+        return "no sample has an answer".to_owned();
+    };
+    let own = match told.own {
+        Ok(went) => match went.ending.outcome_name() {
+            "overturned" => "overturns".to_owned(),
+            UNCERTAIN => "is uncertain".to_owned(),
+            _ => match went
+                .ending
+                .peak
+                .over_critical()
+                .or(went.potential_over_barrier)
+            {
+                Some(part) => format!("stands, at {} of what it can bear", percent(part)),
+                None => "stands".to_owned(),
+            },
+        },
+        Err(_) => "has no answer".to_owned(),
+    };
+    let [whether, far] = decides;
+    let decided = whether
+        .in_words(told.uncertain)
+        .or_else(|| far.in_words(told.uncertain));
+    let decided = decided.map_or(String::new(), |decided| format!("; {decided}"));
+    format!(
+        "overturns with a probability of {}; the scenario itself {own}{decided}; {NOT_CONSIDERED}",
+        share_in_words(&share)
+    )
+}
+
+/// How far the samples go.
+fn far_in_words(told: &Told<'_, Went>) -> String {
+    let number = |value: f64| {
+        if value.is_finite() {
+            format!("{value:.3e}")
+        } else {
+            "overturning".to_owned()
+        }
+    };
+    let peaks: Vec<f64> = told.answered().map(|(_, went)| went.peak_rad()).collect();
+    match band(peaks) {
+        Some([low, median, high]) => format!(
+            "largest rotation: median {} rad, 5 to 95 %: {} to {} rad",
+            number(median),
+            number(low),
+            number(high)
+        ),
+        None => "largest rotation: not known".to_owned(),
+    }
+}
+
+/// Files and words of the first factors that overturn.
+pub(super) fn edges(told: &Told<'_, FirstEdge>, figure: Figure) -> Result<Results, OutputError> {
+    let probabilities = told.probabilities();
+    // What does not overturn at all is as strong as the strongest that was tried.
+    let strength = |(_, edge): (_, &FirstEdge)| edge.factor.unwrap_or(edge.tried_to);
+    let strengths: Vec<f64> = told.answered().map(strength).collect();
+    let names = ["first_factor", "the first factor that overturns"];
+    let decides = [Decides::new(told, names, &strengths)];
+    let at_one = told.share_up_to(1.0);
+    let mut json = beginning(told);
+    json["first_factor"] = band_to_json(told.band());
+    json["own_first_factor"] = json!(told.own.as_ref().ok().and_then(|edge| edge.factor));
+    json["overturned_up_to_factor_1"] = json!(at_one);
+    let (name, of) = decides[0].to_json();
+    json["what_matters"] = json!({ name: of });
+    let mut all = sample_columns(told.uncertain);
+    type Of = fn(&FirstEdge) -> Option<f64>;
+    let numbers: [(&str, Of); 3] = [
+        ("first_factor", |edge| edge.factor),
+        ("tried_to", |edge| Some(edge.tried_to)),
+        ("uncertain_from", |edge| edge.uncertain_from),
+    ];
+    for (name, of) in numbers {
+        all.push(column(name, move |line: &Line<'_, FirstEdge>| {
+            line.answer.as_ref().ok().and_then(of)
+        }));
+    }
+    all.push(column("why_not", |line: &Line<'_, FirstEdge>| {
+        line.answer.as_ref().err().map(NoAnswer::name)
+    }));
+    let mut words = vec![first_of_edges(told, &decides[0])];
+    words.extend(without_answer(told));
+    Ok(Results {
+        files: vec![
+            (
+                "probability.svg",
+                picture::probability(figure, told, &probabilities).into_bytes(),
+            ),
+            (
+                "matters.svg",
+                picture::matters(figure, told, &decides).into_bytes(),
+            ),
+            (
+                "probability.csv",
+                csv(probability_columns(), &probabilities)?,
+            ),
+            ("samples.csv", csv(all, &lines(told))?),
+            (SUMMARY, pretty(&json).into_bytes()),
+        ],
+        words: words.join("\n  "),
+        summary: json,
+        ..Results::default()
+    })
+}
+
+fn probability_columns() -> Vec<Column<'static, ProbabilityAt>> {
+    vec![
+        column("factor", |at: &ProbabilityAt| at.factor),
+        column("probability", |at: &ProbabilityAt| at.share.share),
+        column("probability_low", |at: &ProbabilityAt| at.share.low),
+        column("probability_high", |at: &ProbabilityAt| at.share.high),
+    ]
+}
+
+fn first_of_edges(told: &Told<'_, FirstEdge>, decides: &Decides<'_>) -> String {
+    let (Some([low, median, high]), Some(at_one)) = (told.band(), told.share_up_to(1.0)) else {
+        return "no sample has an answer".to_owned();
+    };
+    let tried_to = told
+        .answered()
+        .map(|(_, edge)| edge.tried_to)
+        .fold(0.0, f64::max);
+    let factor = |factor: f64| {
+        if factor.is_finite() {
+            rounded(factor)
+        } else {
+            format!("more than {}", rounded(tried_to))
+        }
+    };
+    let own = match told.own {
+        Ok(edge) => match edge.factor {
+            Some(own) => format!("the scenario itself at {}", rounded(own)),
+            None => "the scenario itself at none that was tried".to_owned(),
+        },
+        Err(_) => "the scenario itself has no answer".to_owned(),
+    };
+    let decided = decides.in_words(told.uncertain);
+    let decided = decided.map_or(String::new(), |decided| format!("; {decided}"));
+    format!(
+        "first overturns at a factor of {} (5 to 95 %: {} to {}), {own}; up to the factor 1 with a probability of \
+         {}{decided}; {NOT_CONSIDERED}",
+        factor(median),
+        factor(low),
+        factor(high),
+        share_in_words(&at_one)
+    )
+}

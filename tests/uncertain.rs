@@ -1,0 +1,589 @@
+//! What is not known: its samples, what follows from them, and what matters.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+
+use archrock::Scenario;
+use archrock::studies::ensemble::histories::{Histories, Went};
+use archrock::studies::ensemble::matters::what_matters;
+use archrock::studies::ensemble::statistics::Share;
+use archrock::studies::ensemble::{Ensemble, SampleRow};
+use archrock::studies::runner::Runner;
+
+use crate::common::{ARCH, COLUMN, GRAVITY, parsed};
+use crate::program::{archrock, done, files, names, printed, refused};
+use crate::results::{Table, json};
+
+const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
+
+fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<Went>> {
+    let question = Histories::of(scenario).unwrap();
+    let study = Ensemble::new(scenario, question).unwrap();
+    let runner = Runner {
+        threads: NonZeroUsize::new(threads),
+    };
+    runner.rows(&study, |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// Whether a free-standing block overturns under a push of so many g for so long, by the equation of Housner, integrated by Runge and
+/// Kutta's method with its sines: it does without impact or not at all.
+fn block_overturns(height_m: f64, width_m: f64, push_g: f64, duration_s: f64) -> bool {
+    let radius_m = 0.5 * height_m.hypot(width_m);
+    let alpha = (width_m / height_m).atan();
+    if push_g <= alpha.tan() {
+        return false;
+    }
+    let p2 = 0.75 * GRAVITY / radius_m;
+    let rate = |[angle, speed]: [f64; 2]| {
+        [
+            speed,
+            p2 * (push_g * (alpha - angle).cos() - (alpha - angle).sin()),
+        ]
+    };
+    let steps = 200;
+    let step = duration_s / f64::from(steps);
+    let mut state = [0.0, 0.0];
+    let moved = |[a, b]: [f64; 2], [c, d]: [f64; 2], by: f64| [a + by * c, b + by * d];
+    for _ in 0..steps {
+        let k1 = rate(state);
+        let k2 = rate(moved(state, k1, 0.5 * step));
+        let k3 = rate(moved(state, k2, 0.5 * step));
+        let k4 = rate(moved(state, k3, step));
+        for (index, value) in state.iter_mut().enumerate() {
+            *value += step / 6.0 * (k1[index] + 2.0 * k2[index] + 2.0 * k3[index] + k4[index]);
+        }
+    }
+    // Afterwards energy decides: what is left at the top.
+    let [angle, speed] = state;
+    angle >= alpha || 0.5 * speed * speed > p2 * (1.0 - (alpha - angle).cos())
+}
+
+/// A block of 4 m whose width is normal, 0.8 m with 0.03 m: the share that overturns is that of the widths below the critical one, by
+/// Simpson's rule. It is inside the interval that is told for at least 184 of 200 seeds: 190 are expected of independent
+/// samples, with a deviation of 3.
+#[test]
+fn the_probability_that_a_block_overturns_is_inside_the_interval() {
+    let (push_g, duration_s) = (0.35, 0.45);
+    let (mut low, mut high) = (0.7, 0.9);
+    while high - low > 1e-9 {
+        let middle = 0.5 * (low + high);
+        if block_overturns(4.0, middle, push_g, duration_s) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let density = |deviations: f64| (-0.5 * deviations * deviations).exp();
+    let integral = |to: f64| {
+        let steps = 1000;
+        let width = (to + 3.0) / f64::from(steps);
+        let weight = |step: i32| match step {
+            0 => 1.0,
+            step if step == steps => 1.0,
+            step if step % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        let terms = (0..=steps).map(|step| weight(step) * density(-3.0 + width * f64::from(step)));
+        width / 3.0 * terms.sum::<f64>()
+    };
+    let probability = integral((low - 0.8) / 0.03) / integral(3.0);
+    assert!((0.2..0.8).contains(&probability), "{low} {probability}");
+    let mut inside = 0;
+    for seed in 1..=200 {
+        let scenario = parsed(&format!(
+            "{COLUMN}[ground.rectangular]\namplitude_g = {push_g}\nduration_s = {duration_s}\n\
+             [simulation]\noutput_step_s = 0.1\n\
+             [uncertain]\nsamples = 24\nseed = {seed}\n'column.width_m' = {{ deviation = 0.03 }}\n"
+        ));
+        let rows = histories(&scenario, 2);
+        let overturned = |row: &&SampleRow<Went>| row.answer.as_ref().unwrap().overturned() == 1.0;
+        let share = Share::of(rows[1..].iter().filter(overturned).count(), 24).unwrap();
+        inside += u32::from(share.low <= probability && probability <= share.high);
+        // One uncertain number: samples are spread evenly, so that the share is right to a sample or two.
+        assert!(
+            (share.share - probability).abs() < 2.0 / 24.0,
+            "{seed} {share:?} {probability}"
+        );
+    }
+    assert!(inside >= 184, "{inside} of 200");
+}
+
+/// The function of Ishigami and Homma (1990) with a = 7 and b = 0.1, whose indices are known: 0.3139, 0.4424, 0.
+#[test]
+fn first_order_indices_are_those_of_ishigami() {
+    let known = {
+        let (a, b) = (7.0_f64, 0.1_f64);
+        let first = 0.5 * (1.0 + b * PI.powi(4) / 5.0).powi(2);
+        let second = a * a / 8.0;
+        let all = a * a / 8.0 + b * PI.powi(4) / 5.0 + b * b * PI.powi(8) / 18.0 + 0.5;
+        [first / all, second / all, 0.0]
+    };
+    assert!((known[0] - 0.3139).abs() < 1e-4 && (known[1] - 0.4424).abs() < 1e-4);
+    let mut inside = 0;
+    for seed in 1..=10 {
+        let scenario = parsed(&format!(
+            "{ARCH}{PULSE}[uncertain]\nsamples = 1024\nseed = {seed}\n\
+             'arch.depth_m' = {{ from = 1.0, to = 2.0 }}\n\
+             'arch.thickness_ratio' = {{ from = 0.12, to = 0.2 }}\n\
+             'ground.rectangular.amplitude_g' = {{ from = 0.1, to = 1.0, spacing = 'logarithmic' }}\n"
+        ));
+        let uncertain = scenario.uncertain().unwrap();
+        let points: Vec<Vec<f64>> = (0..1024).map(|sample| uncertain.point(sample)).collect();
+        let ishigami = |point: &Vec<f64>| {
+            let x: Vec<f64> = point.iter().map(|part| PI * (2.0 * part - 1.0)).collect();
+            x[0].sin() + 7.0 * x[1].sin().powi(2) + 0.1 * x[2].powi(4) * x[0].sin()
+        };
+        let answers: Vec<f64> = points.iter().map(ishigami).collect();
+        let values: Vec<Vec<f64>> = (0..1024).map(|sample| uncertain.values(sample)).collect();
+        let matters = what_matters(&values, &answers).unwrap();
+        for (known, matters) in known.iter().zip(&matters) {
+            let error = matters.first_order - known;
+            assert!(error.abs() < 0.05, "seed {seed}: {matters:?} {known}");
+            let [low, high] = matters.first_order_interval;
+            inside += u32::from(low <= *known && *known <= high);
+        }
+        // The first grows with its number in the middle half only; the rank correlation of x0 is that of its sine.
+        assert!(matters[0].rank_correlation > 0.3 && matters[1].rank_correlation.abs() < 0.1);
+    }
+    // 28.5 of 30 are expected of intervals of 95 %, with a deviation of 1.2.
+    assert!(inside >= 25, "{inside} of 30");
+}
+
+/// Of a sum the shares are those of the squares, and ranks go along.
+#[test]
+fn shares_of_a_sum_are_those_of_its_squares() {
+    let scenario = parsed(&format!(
+        "{ARCH}{PULSE}[uncertain]\nsamples = 512\n'arch.depth_m' = {{ from = 1.0, to = 2.0 }}\n\
+         'arch.mean_radius_m' = {{ from = 4.0, to = 5.0 }}\n"
+    ));
+    let uncertain = scenario.uncertain().unwrap();
+    let values: Vec<Vec<f64>> = (0..512).map(|sample| uncertain.values(sample)).collect();
+    let answers: Vec<f64> = values
+        .iter()
+        .map(|values| 2.0 * values[0] - values[1])
+        .collect();
+    let matters = what_matters(&values, &answers).unwrap();
+    assert!((matters[0].first_order - 0.8).abs() < 0.02, "{matters:?}");
+    assert!((matters[1].first_order - 0.2).abs() < 0.02, "{matters:?}");
+    assert!(matters[0].rank_correlation > 0.85 && matters[1].rank_correlation < -0.35);
+    // What does not vary, and what is too little, decides nothing.
+    assert_eq!(what_matters(&values, &vec![1.0; 512]), None);
+    assert_eq!(what_matters(&values[..10], &answers[..10]), None);
+}
+
+fn uncertain_arch(samples: usize, seed: usize) -> String {
+    format!(
+        "{ARCH}{PULSE}[simulation]\noutput_step_s = 0.02\n[uncertain]\nsamples = {samples}\nseed = {seed}\n\
+         'arch.thickness_ratio' = {{ deviation = 0.01 }}\n\
+         'arch.depth_m' = {{ deviation = 0.2, distribution = 'lognormal' }}\n\
+         'ground.rectangular.amplitude_g' = {{ from = 0.2, to = 1.2, spacing = 'logarithmic' }}\n"
+    )
+}
+
+#[test]
+fn samples_are_the_same_on_any_threads_and_continue() {
+    let few = parsed(&uncertain_arch(20, 3));
+    let many = parsed(&uncertain_arch(40, 3));
+    let rows = histories(&few, 1);
+    assert_eq!(rows, histories(&few, 3));
+    assert_eq!(rows.len(), 21);
+    assert_eq!(histories(&many, 2)[..21], rows);
+    let other = parsed(&uncertain_arch(20, 4));
+    let values = |scenario: &Scenario| scenario.uncertain().unwrap().values(0);
+    assert_ne!(values(&few), values(&other));
+    // The same on every machine: these were computed once.
+    let first = values(&few);
+    let known = KNOWN;
+    for (value, known) in first.iter().zip(known) {
+        assert!((value - known).abs() < 1e-12 * known, "{first:?}");
+    }
+    // Samples lie about the scenario's values as they are to.
+    let all: Vec<Vec<f64>> = (0..1024)
+        .map(|sample| few.uncertain().unwrap().values(sample))
+        .collect();
+    let mean = |of: &dyn Fn(&Vec<f64>) -> f64| all.iter().map(of).sum::<f64>() / 1024.0;
+    assert!((mean(&|values| values[0]) - 0.15).abs() < 2e-5);
+    // A normal distribution cut off at three deviations has a variance of 0.9733.
+    let variance = mean(&|values| (values[0] - 0.15).powi(2)) / 1e-4;
+    assert!((variance - 0.9733).abs() < 0.005, "{variance}");
+    assert!(mean(&|values| values[1].ln()).abs() < 1e-3);
+    assert!((mean(&|values| values[2].ln()) - 0.24_f64.sqrt().ln()).abs() < 1e-3);
+    // A scenario that is written reads back as the same.
+    assert_eq!(parsed(&few.to_toml()), few);
+}
+
+const KNOWN: [f64; 3] = [
+    0.130_489_323_862_577_14,
+    0.767_140_159_872_646_4,
+    0.224_341_121_046_628_73,
+];
+
+/// The first of the rows is the scenario itself, and each sample is what `--set` makes of it.
+#[test]
+fn a_sample_is_the_scenario_with_its_values() {
+    let scenario = parsed(&uncertain_arch(3, 1));
+    let rows = histories(&scenario, 1);
+    assert!(rows[0].values.is_empty());
+    for row in &rows[1..] {
+        let [thickness, depth, amplitude] = row.values[..] else {
+            panic!("{row:?}");
+        };
+        let text = format!(
+            "[arch]\nmean_radius_m = 5.0\nthickness_ratio = {thickness:?}\nembrace_deg = 180.0\ndepth_m = {depth:?}\n\
+             [ground.rectangular]\namplitude_g = {amplitude:?}\nduration_s = 0.21\n"
+        );
+        let alone = parsed(&text);
+        let model = alone.model().unwrap();
+        let summary = model
+            .simulate(alone.ground_motion(), &alone.request(), None)
+            .unwrap();
+        let went = row.answer.as_ref().unwrap();
+        assert_eq!(went.ending.outcome, summary.outcome);
+        assert_eq!(went.peak_rotation_rad, summary.largest_rotation_rad());
+    }
+}
+
+#[test]
+fn the_program_tells_what_follows() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("s.toml"), uncertain_arch(64, 1)).unwrap();
+    let said = printed(at, &["run", "s.toml", "--out", "one", "--no-report"]);
+    let (_, samples) = said
+        .split_once("of 64 samples of [uncertain]:\n  ")
+        .unwrap();
+    let first = samples.lines().next().unwrap();
+    for words in [
+        "overturns with a probability of ",
+        "the scenario itself ",
+        "amplitude decides ",
+        "not considered: ",
+    ] {
+        assert!(first.contains(words), "{first}");
+    }
+    let results = at.join("one/uncertain");
+    assert_eq!(
+        names(&results),
+        [
+            "bands.csv",
+            "bands.svg",
+            "matters.svg",
+            "samples.csv",
+            "uncertain.json"
+        ]
+    );
+    let summary = json(&results.join("uncertain.json"));
+    let table = Table::read(results.join("samples.csv"));
+    assert_eq!(table.rows.len(), 65);
+    let overturned = table.rows[1..]
+        .iter()
+        .filter(|row| row["outcome"] == "overturned")
+        .count();
+    assert!((5..60).contains(&overturned), "{overturned}");
+    let share = &summary["outcomes"]["overturned"];
+    assert_eq!(share["count"], overturned);
+    assert!(share["low"].as_f64().unwrap() < overturned as f64 / 64.0);
+    // The bands hold what they are to: at the end as many have overturned as are told.
+    let bands = Table::read(results.join("bands.csv"));
+    let last = bands.rows.last().unwrap();
+    assert_eq!(last.number("overturned"), overturned as f64);
+    let matters = summary["what_matters"]["overturning"].as_array().unwrap();
+    let of = |index: usize| matters[index]["first_order"].as_f64().unwrap();
+    // The depth does not matter for four links.
+    assert!(of(2) > 0.5 && of(1) < 0.1, "{matters:?}");
+
+    // Shards, resuming and more threads give the same files.
+    for part in ["2/2", "1/2"] {
+        done(at, &["run", "s.toml", "--out", "parts", "--shard", part]);
+    }
+    assert_eq!(names(&at.join("parts")), ["uncertain"]);
+    let parts = [
+        "parts/uncertain/uncertain-1-of-2.part",
+        "parts/uncertain/uncertain-2-of-2.part",
+    ];
+    done(at, &["merge", parts[0], parts[1], "--out", "merged"]);
+    assert_eq!(files(&at.join("merged")), files(&results));
+    printed(
+        at,
+        &[
+            "run",
+            "s.toml",
+            "--out",
+            "two",
+            "--threads",
+            "1",
+            "--resume",
+        ],
+    );
+    assert_eq!(files(&at.join("two/uncertain")), files(&results));
+    // Nothing is uncertain where that is left out.
+    let said = printed(at, &["run", "s.toml", "--out", "none", "--no-uncertain"]);
+    assert!(!said.contains("samples of"), "{said}");
+    assert!(!at.join("none/uncertain").exists());
+    let table = archrock(at, &["check", "s.toml", "--no-uncertain"]);
+    assert!(
+        !String::from_utf8(table.stdout)
+            .unwrap()
+            .contains("[uncertain]")
+    );
+    refused(
+        at,
+        &["run", "s.toml", "--no-uncertain", "--shard", "1/2"],
+        &["[uncertain]"],
+    );
+}
+
+/// The first factor of a sample is that of the threshold of its own scenario.
+#[test]
+fn thresholds_have_a_distribution() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("s.toml"), uncertain_arch(16, 2)).unwrap();
+    let strides = ["--from", "0.3", "--to", "4", "--stride", "0.2"];
+    let arguments = [&["threshold", "s.toml", "--out", "all"][..], &strides].concat();
+    let said = printed(at, &arguments);
+    assert!(
+        said.contains("of 16 samples of [uncertain]:\n  first overturns at a factor of "),
+        "{said}"
+    );
+    let results = at.join("all/uncertain_threshold");
+    let table = Table::read(results.join("samples.csv"));
+    for sample in [1, 7, 16] {
+        let row = &table.rows[sample];
+        let keys = [
+            "arch.thickness_ratio",
+            "arch.depth_m",
+            "ground.rectangular.amplitude_g",
+        ];
+        let sets: Vec<String> = keys
+            .iter()
+            .map(|key| format!("{key}={}", row[*key]))
+            .collect();
+        let sets = sets.iter().flat_map(|set| ["--set", set]);
+        let alone = ["threshold", "s.toml", "--out", "alone", "--no-uncertain"].into_iter();
+        let arguments: Vec<&str> = alone.chain(strides).chain(sets).collect();
+        printed(at, &arguments);
+        let alone = json(&at.join("alone/threshold.json"));
+        assert_eq!(
+            alone["models"][0]["lowest_factor"].as_f64(),
+            row["first_factor"].parse().ok()
+        );
+    }
+    // The distribution is a staircase of the samples.
+    let steps = Table::read(results.join("probability.csv"));
+    let found = table.rows[1..]
+        .iter()
+        .filter(|row| !row["first_factor"].is_empty());
+    assert_eq!(found.count(), steps.rows.len());
+    let probabilities = steps.numbers("probability");
+    for (index, probability) in probabilities.iter().enumerate() {
+        assert_eq!(*probability, (index + 1) as f64 / 16.0);
+    }
+}
+
+/// Values that make no structure that stands are counted and told.
+#[test]
+fn samples_that_do_not_stand_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    // A semicircle needs t/R of at least 0.1075, and a thinner one is no error of the range.
+    let text = uncertain_arch(32, 1).replace("{ deviation = 0.01 }", "{ from = 0.10, to = 0.16 }");
+    fs::write(at.join("s.toml"), text).unwrap();
+    let output = archrock(at, &["run", "s.toml", "--out", "r", "--no-report"]);
+    let said =
+        String::from_utf8(output.stderr).unwrap() + &String::from_utf8(output.stdout).unwrap();
+    if output.status.code() == Some(2) {
+        // The reader refuses it already.
+        assert!(
+            said.contains("reaches 0.1, which the scenario does not allow"),
+            "{said}"
+        );
+        return;
+    }
+    assert!(
+        said.contains("make no structure that stands, and do not count; the first: "),
+        "{said}"
+    );
+    let summary = json(&at.join("r/uncertain/uncertain.json"));
+    let count = |name: &str| summary[name].as_u64().unwrap();
+    assert!(count("invalid") > 0);
+    assert_eq!(count("invalid") + count("answered"), 32);
+}
+
+#[test]
+fn what_cannot_be_uncertain_is_refused() {
+    let refusal = |keys: &str| {
+        let text = format!("{ARCH}voussoirs = 7\n{PULSE}[uncertain]\n{keys}\n");
+        let errors = Scenario::parse(&text, "s.toml").unwrap_err();
+        errors.to_string()
+    };
+    for (keys, words) in [
+        // A key that is text, or whole, or no key.
+        (
+            "'impact.model' = { from = 1.0, to = 2.0 }",
+            "is no number in the scenario",
+        ),
+        (
+            "'arch.voussoirs' = { from = 5.5, to = 7.5 }",
+            "is the whole number 7",
+        ),
+        (
+            "'arch.size' = { from = 1.0, to = 2.0 }",
+            "unknown key `size`",
+        ),
+        (
+            "'map.duration_s' = { from = 1.0, to = 2.0 }",
+            "names no number of another table",
+        ),
+        (
+            "arch.depth_m = { from = 1.0, to = 2.0 }",
+            "unknown key `arch` in [uncertain]",
+        ),
+        ("samples = 10", "needs 1 to 256 keys of other tables"),
+        // A range that leaves what is allowed: with the bound.
+        (
+            "'arch.embrace_deg' = { from = 170.0, to = 380.0 }",
+            "reaches 380, which the scenario does not allow: `embrace_deg = 380",
+        ),
+        (
+            "'arch.depth_m' = { from = -1.0, to = 1.0 }",
+            "must be a number",
+        ),
+        (
+            "'arch.thickness_ratio' = { deviation = 0.1 }",
+            "reaches -0.15, which the scenario does not allow",
+        ),
+        // Numbers that are none.
+        (
+            "samples = 0\n'arch.depth_m' = { deviation = 0.1 }",
+            "must be a whole number from 1",
+        ),
+        (
+            "seed = -1\n'arch.depth_m' = { deviation = 0.1 }",
+            "must be a whole number from 0",
+        ),
+        (
+            "'arch.depth_m' = { deviation = 0.0 }",
+            "must be a number above 0",
+        ),
+        (
+            "'arch.depth_m' = { from = 2.0, to = 1.0 }",
+            "is not above `from`",
+        ),
+        (
+            "'arch.depth_m' = { from = 0.0, to = 1.0, spacing = 'logarithmic' }",
+            "needs numbers above 0",
+        ),
+        (
+            "'arch.depth_m' = { from = 0.5, deviation = 0.1 }",
+            "must be a range, such as",
+        ),
+        (
+            "'arch.depth_m' = { from = 0.5 }",
+            "must be a range, such as",
+        ),
+        ("'arch.depth_m' = 3.0", "must be a table"),
+        // Keys that contradict.
+        (
+            "'arch.depth_m' = { deviation = 0.1 }\n'arch . depth_m' = { deviation = 0.2 }",
+            "is the same as a key before it",
+        ),
+        (
+            "'arch.thickness_m' = { deviation = 0.1 }",
+            "has no value in the scenario that it could deviate from",
+        ),
+        (
+            "'arch.thickness_m' = { from = 0.7, to = 0.8 }",
+            "cannot be combined with",
+        ),
+    ] {
+        let said = refusal(keys);
+        assert!(said.contains(words), "{words:?} is not in: {said}");
+        assert!(said.contains("s.toml:"), "{said}");
+    }
+    let nothing = parsed(&format!("{ARCH}{PULSE}"));
+    let question = Histories::of(&nothing).unwrap();
+    assert!(Ensemble::new(&nothing, question).is_err());
+}
+
+/// Every number with a fraction of every kind of structure, ground and model may be uncertain.
+#[test]
+fn all_numbers_may_be_uncertain() {
+    let voussoirs = "thickness_m = 0.5\nvoussoirs = 9\n";
+    let mut tried = 0;
+    for structure in [
+        ARCH.to_owned(),
+        format!(
+            "{ARCH}voussoirs = 9\n[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\n"
+        ),
+        format!(
+            "{ARCH}voussoirs = 9\n[free_hinges]\nlongest_step_s = 3e-4\nfriction_coefficient = 0.7\n"
+        ),
+        format!("{ARCH}[impact]\nmodel = 'prescribed'\nrestitution = 0.8\n"),
+        COLUMN.to_owned(),
+        format!(
+            "{COLUMN}drums = 3\ntop_width_m = 0.7\n[free_hinges]\nlongest_step_s = 3e-4\nshortest_step_s = 1e-5\n"
+        ),
+        format!("[pointed_arch]\nspan_m = 4.0\nrise_m = 3.0\n{voussoirs}[free_hinges]\n"),
+        format!("[elliptic_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
+        format!("[basket_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
+        format!(
+            "[pointed_arch]\nspan_m = 4.0\nrise_m = 3.0\n{voussoirs}[piers]\nheight_m = 2.0\nwidth_m = 1.0\n\
+             [fill]\nabove_crown_m = 0.2\ndensity_kg_m3 = 1500.0\n"
+        ),
+    ] {
+        for ground in [
+            PULSE,
+            "[ground.gabor]\namplitude_g = 0.3\nduration_s = 0.5\n",
+            "[ground.windowed_sine]\namplitude_g = 0.3\nduration_s = 0.5\nstart_s = 0.1\n",
+        ] {
+            // All grounds go with the first structure.
+            if ground != PULSE && structure != ARCH {
+                continue;
+            }
+            let scenario = parsed(&format!("{structure}{ground}"));
+            for (table, keys) in scenario.to_json().as_object().unwrap() {
+                let mut all = Vec::new();
+                numbers(table, keys, &mut all);
+                for (key, value) in all {
+                    // Bounds may be at the value itself: an arch of 180 degrees, a phase of zero.
+                    let [from, to] = if value > 0.0 {
+                        [0.999 * value, value]
+                    } else {
+                        [value, value + 1e-3]
+                    };
+                    let text = format!(
+                        "{structure}{ground}[uncertain]\nsamples = 1\n'{key}' = {{ from = {from:?}, to = {to:?} }}\n"
+                    );
+                    let scenario = Scenario::parse(&text, "s.toml")
+                        .unwrap_or_else(|errors| panic!("{key}: {errors}"));
+                    let uncertain = scenario.uncertain().unwrap();
+                    let changed = uncertain.scenario(&scenario, &uncertain.values(0)).unwrap();
+                    assert_ne!(
+                        changed.to_json(),
+                        scenario.clone().without_uncertain().to_json(),
+                        "{key}"
+                    );
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert!(tried > 100, "{tried}");
+}
+
+fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
+    match value {
+        serde_json::Value::Object(table) => {
+            for (name, value) in table {
+                numbers(&format!("{key}.{name}"), value, all);
+            }
+        }
+        serde_json::Value::Number(number) if number.is_f64() => {
+            all.push((key.to_owned(), number.as_f64().unwrap()));
+        }
+        _ => {}
+    }
+}
