@@ -69,6 +69,7 @@ fn the_reference_has_the_keys_that_are_read() {
         ("simulation", vec!["simulation"]),
         ("suite", vec!["suite"]),
         ("spectrum", vec!["spectrum"]),
+        ("uncertain", vec!["uncertain"]),
     ];
     for (heading, tables) in tables {
         let mut read: BTreeSet<String> = tables.into_iter().flat_map(known).collect();
@@ -87,6 +88,7 @@ fn other_documents_name_all_keys() {
         ("maps.md", &["map"][..]),
         ("records.md", &["ground.record"]),
         ("verify.md", &["demand", "verify"]),
+        ("uncertain.md", &["uncertain"]),
         (
             "shapes.md",
             &[

@@ -329,19 +329,26 @@ fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> Stri
     let Some(share) = Share::of(overturned, told.answered().count()) else {
         return "no sample has an answer".to_owned();
     };
+    // Rounded down, as `run` does: what has not reached the whole is not said to.
+    let down = |part: f64| format!("{:.1} %", (1000.0 * part).floor() / 10.0);
     let own = match told.own {
         Ok(went) => match went.ending.outcome_name() {
             "overturned" => "overturns".to_owned(),
             UNCERTAIN => "is uncertain".to_owned(),
-            _ => match went
-                .ending
-                .peak
-                .over_critical()
-                .or(went.potential_over_barrier)
-            {
-                Some(part) => format!("stands, at {} of what it can bear", percent(part)),
-                None => "stands".to_owned(),
-            },
+            _ => {
+                let margin = went
+                    .ending
+                    .peak
+                    .over_critical()
+                    .map(|part| (part, "rotation"));
+                let margin = margin.or(went.potential_over_barrier.map(|part| (part, "energy")));
+                margin.map_or("stands".to_owned(), |(part, what)| {
+                    format!(
+                        "stands, at {} of the {what} from which it would overturn",
+                        down(part)
+                    )
+                })
+            }
         },
         Err(_) => "has no answer".to_owned(),
     };
