@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::statistics::{Share, band};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::dynamics::history::{Outcome, Sample};
-use crate::dynamics::spread::doubt;
+use crate::dynamics::spread::doubts;
 use crate::output::OutputError;
 use crate::scenario::Scenario;
 use crate::studies::ending::{Ending, Verdict};
@@ -102,10 +102,11 @@ impl Question for Histories {
             ControlFlow::Continue(())
         };
         let failed = |error: String| NoAnswer::Failed(error);
-        let summary = model
-            .simulate(ground, &request, Some(&mut record))
-            .map_err(|error| failed(error.to_string()))?;
-        let doubt = doubt(&*model, ground, &request, &summary);
+        let case = (ground.clone(), request);
+        let own = [model.simulate(ground, &request, Some(&mut record))];
+        let doubt = doubts(&*model, &[case], &own).remove(0);
+        let [summary] = own;
+        let summary = summary.map_err(|error| failed(error.to_string()))?;
         let ending = Ending::from_summary(&summary, None, doubt).map_err(failed)?;
         Ok(Went {
             ending,
