@@ -608,3 +608,90 @@ fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
         _ => {}
     }
 }
+
+/// Records that overturn a column of uncertain width, from which intensity on: those of the scenario itself are between the levels at which
+/// its suite changes, and what decides is the width.
+#[test]
+fn suites_tell_the_parts_of_fragility() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (name, second) in [("a", 0.9), ("b", 0.4), ("c", 0.2)] {
+        let table = format!("0.0,0.0\n0.3,1.0\n0.6,{second}\n0.9,-0.8\n1.2,0.0\n");
+        fs::write(at.join(format!("{name}.csv")), table).unwrap();
+    }
+    let text = format!(
+        "{COLUMN}[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\n\
+         peaks_g = {{ from = 0.15, to = 2.0, count = 12, spacing = 'logarithmic' }}\n\
+         [uncertain]\nsamples = 24\n'column.width_m' = {{ deviation = 0.05 }}\n\
+         'column.depth_m' = {{ from = 1.0, to = 2.0 }}\n"
+    );
+    let text = if Scenario::parse(&text, "s.toml")
+        .is_err_and(|errors| errors.to_string().contains("depth_m"))
+    {
+        text.replace("'column.depth_m'", "'simulation.rest_energy_ratio'")
+            .replace("from = 1.0, to = 2.0", "from = 1e-8, to = 2e-8")
+    } else {
+        text
+    };
+    fs::write(at.join("s.toml"), text).unwrap();
+    let said = done(at, &["suite", "s.toml", "--out", "r"]);
+    assert!(
+        said.contains("of 24 samples of [uncertain]:\n  half of the records and samples overturn"),
+        "{said}"
+    );
+    let results = at.join("r/uncertain_suite");
+    let capacities = Table::read(results.join("capacities.csv"));
+    assert_eq!(capacities.rows.len(), 3 * 25);
+    // The scenario itself, against the histories of its suite.
+    let suite = Table::read(at.join("r/suite.csv"));
+    for record in ["a.csv", "b.csv", "c.csv"] {
+        let own = capacities
+            .rows
+            .iter()
+            .find(|row| row["sample"] == "0" && row["record"] == record);
+        let first = suite
+            .rows
+            .iter()
+            .find(|row| row["record"] == record && row["outcome"] == "overturned");
+        let level = first.map(|row| row.number("peak_g"));
+        let capacity: Option<f64> = own.unwrap()["intensity"].parse().ok();
+        assert_eq!(capacity.is_some(), level.is_some(), "{record}");
+        if let (Some(capacity), Some(level)) = (capacity, level) {
+            assert!(
+                capacity <= level && capacity > level / 1.27,
+                "{record} {capacity} {level}"
+            );
+        }
+    }
+    let summary = json(&results.join("uncertain.json"));
+    let dispersion = |of: &str| summary["fragility"][of]["dispersion"].as_f64().unwrap();
+    // The width, known to 6 %, moves the capacity by more than that, and together they spread more than the records alone do in
+    // three of them; the bound is that of the fractiles of three records.
+    assert!(
+        (0.03..0.3).contains(&dispersion("uncertain_data")),
+        "{summary:#}"
+    );
+    assert!(
+        dispersion("both") > dispersion("uncertain_data"),
+        "{summary:#}"
+    );
+    let matters = summary["what_matters"]["median_intensity"]
+        .as_array()
+        .unwrap();
+    assert!(
+        matters[0]["first_order"].as_f64().unwrap() > 0.8,
+        "{matters:?}"
+    );
+    assert!(
+        matters[0]["rank_correlation"].as_f64().unwrap() > 0.9,
+        "{matters:?}"
+    );
+    // Parts give the same.
+    for part in ["1/2", "2/2"] {
+        done(at, &["suite", "s.toml", "--out", "p", "--shard", part]);
+    }
+    let parts =
+        ["1", "2"].map(|part| format!("p/uncertain_suite/uncertain_suite-{part}-of-2.part"));
+    done(at, &["merge", &parts[0], &parts[1], "--out", "m"]);
+    assert_eq!(files(&at.join("m")), files(&results));
+}

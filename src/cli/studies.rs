@@ -13,6 +13,7 @@ use clap::ValueEnum;
 use super::figure::FigureOption;
 use super::scenario_file::Destination;
 use super::study::{HingesOption, Options, say};
+use super::uncertain::{Asked, Telling, words};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -159,8 +160,24 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let input = options.open()?;
     let scenario = arguments.hinges.read(&input, quiet)?;
-    let look = Look::of(arguments.figure.get());
-    options.study(StudyKind::Suite, &input, &scenario, look, quiet)
+    let samples = Telling {
+        work: options.work(),
+        figure: arguments.figure.get(),
+        quiet,
+    };
+    // A part of a scenario with samples is one of these.
+    if scenario.uncertain().is_none() || !samples.work.is_part() {
+        let look = Look::of(arguments.figure.get());
+        options.study(StudyKind::Suite, &input, &scenario, look, quiet)?;
+    }
+    let place = options.place(&input)?;
+    let told = samples.tell(&scenario, Asked::Suite, &place)?;
+    if let Some(results) = told
+        && !quiet
+    {
+        say(words(&results).trim_end());
+    }
+    Ok(())
 }
 
 pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failure> {

@@ -138,6 +138,16 @@ impl Options {
         self.scenario.open()
     }
 
+    /// How long it is worked on.
+    pub const fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Where results go.
+    pub fn place(&self, input: &Input<'_>) -> Result<Destination, Failure> {
+        input.results(self.out.as_deref())
+    }
+
     /// Computes the study of a scenario, or the part that was asked for, and writes the results if all is there.
     pub fn study(
         &self,
@@ -147,7 +157,7 @@ impl Options {
         look: Look,
         quiet: bool,
     ) -> Result<(), Failure> {
-        let place = input.results(self.out.as_deref())?;
+        let place = self.place(input)?;
         let done = self
             .work
             .compute(kind.name(), &place, quiet, |runner, task, watch| {

@@ -26,6 +26,8 @@ pub enum Asked {
     Histories,
     /// From which of these factors on they overturn.
     FirstEdges(Factors),
+    /// Which records overturn them, and from which intensity on.
+    Suite,
 }
 
 impl Telling {
@@ -58,6 +60,7 @@ impl Telling {
         let kind = match asked {
             Asked::Histories => StudyKind::Uncertain,
             Asked::FirstEdges(_) => StudyKind::UncertainThreshold,
+            Asked::Suite => StudyKind::UncertainSuite,
         };
         let place = place.within(kind.name());
         let done = self
@@ -65,7 +68,9 @@ impl Telling {
             .compute(kind.name(), &place, self.quiet, |runner, task, watch| {
                 let task = Some(task);
                 Ok(match asked {
-                    Asked::Histories => kind.compute(scenario, look, runner, task, watch)?,
+                    Asked::Histories | Asked::Suite => {
+                        kind.compute(scenario, look, runner, task, watch)?
+                    }
                     Asked::FirstEdges(factors) => {
                         first_edges(scenario, factors, look, runner, task, watch)?
                     }

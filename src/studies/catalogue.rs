@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::ensemble::edges::FirstEdges;
 use super::ensemble::histories::Histories;
+use super::ensemble::records::Capacities;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::map::boundary::MapWithBoundary;
@@ -32,6 +33,8 @@ named! {
         Uncertain = "uncertain",
         /// From which factor on samples of what is not known overturn.
         UncertainThreshold = "uncertain_threshold",
+        /// Which records overturn samples of what is not known.
+        UncertainSuite = "uncertain_suite",
     }
 }
 
@@ -116,6 +119,11 @@ impl StudyKind {
             }
             Self::UncertainThreshold => {
                 first_edges(scenario, Factors::default(), look, runner, task, watch)
+            }
+            Self::UncertainSuite => {
+                let question = Capacities::of(scenario).map_err(StudyError::Scenario)?;
+                let study = ensemble(scenario, question)?;
+                complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
             }
         }
     }
@@ -227,6 +235,13 @@ pub fn merge(
             // The rows know how far factors went.
             let question = FirstEdges::of(&scenario, Factors::default());
             let question = question.map_err(StudyError::Scenario)?;
+            ensemble(&scenario, question)?.tell(&rows, look)?
+        }
+        StudyKind::UncertainSuite => {
+            let look = look(kind, None).map_err(StudyError::Scenario)?;
+            let (header, rows) = part::merge(parts)?;
+            let scenario = read(&header.scenario)?;
+            let question = Capacities::of(&scenario).map_err(StudyError::Scenario)?;
             ensemble(&scenario, question)?.tell(&rows, look)?
         }
     };

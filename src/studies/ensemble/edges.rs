@@ -37,6 +37,44 @@ impl FirstEdge {
     }
 }
 
+/// Where a structure first overturns, of strengths that are tried upwards; the edge between two is enclosed by bisection to
+/// that part of it.
+pub(super) fn first_edge(
+    strengths: &[f64],
+    width: f64,
+    verdict: impl Fn(f64) -> Result<Verdict, String>,
+) -> Result<FirstEdge, NoAnswer> {
+    let mut edge = FirstEdge {
+        factor: None,
+        tried_to: 0.0,
+        uncertain_from: None,
+    };
+    for strength in strengths.iter().copied() {
+        let found = match verdict(strength) {
+            Ok(found) => found,
+            // A stronger motion may be beyond the model, such as ground that falls.
+            Err(_) if edge.tried_to > 0.0 => break,
+            Err(reason) => return Err(NoAnswer::Failed(reason)),
+        };
+        if found == Verdict::Overturns {
+            edge.factor = Some(if edge.tried_to > 0.0 {
+                let overturns = |at| verdict(at).map(|found| found == Verdict::Overturns);
+                let ends = try_bisect(edge.tried_to, strength, Width::Relative(width), overturns);
+                ends.map_err(NoAnswer::Failed)?.1
+            } else {
+                strength
+            });
+            edge.tried_to = strength;
+            break;
+        }
+        edge.tried_to = strength;
+        if found == Verdict::Uncertain {
+            edge.uncertain_from.get_or_insert(strength);
+        }
+    }
+    Ok(edge)
+}
+
 impl FirstEdges {
     /// The factors on the ground motion of a scenario that starts from rest.
     ///
@@ -64,39 +102,7 @@ impl Question for FirstEdges {
             let ending = Ending::of(&*model, &ground, &request);
             ending.map(|ending| ending.verdict())
         };
-        let mut edge = FirstEdge {
-            factor: None,
-            tried_to: 0.0,
-            uncertain_from: None,
-        };
-        for factor in self.factors.values() {
-            let found = match verdict(factor) {
-                Ok(found) => found,
-                // A stronger motion may be beyond the model, such as ground that falls.
-                Err(_) if edge.tried_to > 0.0 => break,
-                Err(reason) => return Err(NoAnswer::Failed(reason)),
-            };
-            if found == Verdict::Overturns {
-                edge.factor = Some(match edge.tried_to {
-                    0.0 => factor,
-                    below => {
-                        let width = Width::Relative(EDGE_WIDTH);
-                        let overturns =
-                            |factor| verdict(factor).map(|found| found == Verdict::Overturns);
-                        try_bisect(below, factor, width, overturns)
-                            .map_err(NoAnswer::Failed)?
-                            .1
-                    }
-                });
-                edge.tried_to = factor;
-                break;
-            }
-            edge.tried_to = factor;
-            if found == Verdict::Uncertain {
-                edge.uncertain_from.get_or_insert(factor);
-            }
-        }
-        Ok(edge)
+        first_edge(&self.factors.values(), EDGE_WIDTH, verdict)
     }
 
     fn settings(&self) -> Vec<String> {

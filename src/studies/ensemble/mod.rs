@@ -1,13 +1,14 @@
 //! What follows from what is not known: a question answered for every sample of the uncertain numbers of a scenario.
 //!
 //! An ensemble is a study whose first case is the scenario itself; each other case is a sample of [`Uncertain`]. What is asked of a
-//! case is a [`Question`]: how a history ends and goes ([`histories`]), from which factor on it overturns ([`edges`]), and so on.
+//! case is a [`Question`]: how a history ends and goes ([`histories`]), from which factor on it overturns ([`edges`]), which records do ([`records`]).
 //! The study knows nothing of the question but its answers, so that shards, resuming and threads are the same for all.
 
 pub mod edges;
 pub mod histories;
 pub mod matters;
 mod picture;
+pub mod records;
 pub mod statistics;
 mod told;
 
@@ -120,6 +121,8 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
             _ => None,
         };
         let series = record.into_iter().flat_map(|record| record.series());
+        let suite = self.scenario.suite().into_iter();
+        let series = series.chain(suite.flat_map(|suite| &suite.records));
         series
             .map(|series| format!("{} {:08x}", series.file, series.checksum()))
             .chain(self.question.settings())

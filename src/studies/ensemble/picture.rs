@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use super::Told;
 use super::edges::{FirstEdge, ProbabilityAt};
 use super::histories::{BandAt, Histories, Went};
+use super::records::{Capacities, Capacity};
 use super::told::{Decides, spoken};
 use crate::output::panels::{Curve, MAIN, Panels, Subject, around, draw_curves};
 use crate::output::svg::{Anchor, Axes, Drawing, Figure, Frame, Scale, Sign, Stroke, color};
@@ -140,6 +141,57 @@ pub(super) fn probability(
     if let Some(own) = own {
         let ends = [0.0, 1.0].map(|y| axes.place(own, y));
         drawing.curve("own", ends, OWN);
+    }
+    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+}
+
+/// The share that overturns over the intensity: of the records that shake the scenario itself, of each sample, and of all together.
+pub(super) fn fragility(figure: Figure, told: &Told<'_, Capacity>, asked: &Capacities) -> String {
+    const MOST_FAINT: usize = 20;
+    const FAINT: Stroke = Stroke::new("#b9d3e8", 0.9, "");
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title(title(told, "Fragility with what is not known"));
+    let keys = [
+        ("all samples and records", Sign::Line(MEDIAN)),
+        ("single samples", Sign::Line(FAINT)),
+        (
+            "the scenario itself, from record to record",
+            Sign::Line(OWN),
+        ),
+    ];
+    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
+    let levels = asked.levels();
+    let ends = [levels.first(), levels.last()].map(|level| level.copied().unwrap_or(1.0));
+    let axes = Axes {
+        frame: figure.plot(top, figure.height_px(405.0)),
+        x: Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]),
+        y: Scale::exactly(0.0, 1.0, 5),
+    };
+    let steps = |edges: &mut dyn Iterator<Item = &super::edges::FirstEdge>| -> Vec<Vector2<f64>> {
+        let mut strengths: Vec<f64> = edges.map(super::edges::FirstEdge::strength).collect();
+        strengths.sort_by(f64::total_cmp);
+        let all = strengths.len().max(1) as f64;
+        let mut points = vec![axes.place(axes.x.low, 0.0)];
+        let mut last = 0.0;
+        for (strength, count) in strengths.iter().zip(1..) {
+            if strength.is_finite() {
+                let share = f64::from(count) / all;
+                points.extend([axes.place(*strength, last), axes.place(*strength, share)]);
+                last = share;
+            }
+        }
+        points.push(axes.place(axes.x.high, last));
+        points
+    };
+    let label = asked.measure().column().replace('_', " ");
+    axes.draw(&mut drawing, Some(&label), "share that overturns");
+    for (_, capacity) in told.answered().take(MOST_FAINT) {
+        drawing.curve("sample", steps(&mut capacity.0.iter()), FAINT);
+    }
+    let mut all = told.answered().flat_map(|(_, capacity)| &capacity.0);
+    drawing.curve("both", steps(&mut all), MEDIAN);
+    if let Ok(own) = told.own {
+        drawing.curve("own", steps(&mut own.0.iter()), OWN);
     }
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }

@@ -6,11 +6,12 @@ use serde_json::{Value, json};
 use super::edges::{FirstEdge, ProbabilityAt};
 use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
+use super::records::{AtLevel, Capacities, Capacity};
 use super::statistics::{Share, band, ranks};
 use super::{NoAnswer, Told, picture};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, pretty};
-use crate::scenario::{Uncertain, UncertainKey};
+use crate::scenario::{Uncertain, UncertainKey, shown};
 use crate::studies::ending::columns::{self, UNCERTAIN};
 use crate::studies::results::Results;
 use crate::studies::threshold::rounded;
@@ -480,4 +481,130 @@ fn first_of_edges(told: &Told<'_, FirstEdge>, decides: &Decides<'_>) -> String {
         factor(high),
         share_in_words(&at_one)
     )
+}
+
+/// A row of the table of capacities.
+struct Reached<'a> {
+    sample: usize,
+    record: &'a str,
+    mirrored: bool,
+    edge: &'a FirstEdge,
+}
+
+/// Files and words of the intensities from which on records overturn.
+pub(super) fn capacities(
+    told: &Told<'_, Capacity>,
+    asked: &Capacities,
+    figure: Figure,
+) -> Result<Results, OutputError> {
+    let fragilities = told.fragilities(asked);
+    let levels = told.at_levels(asked);
+    // Of each sample the median over the records; beyond all that were tried where half do not overturn it.
+    let most = asked.levels().last().copied().unwrap_or(1.0);
+    let median = |(_, capacity): (_, &Capacity)| {
+        let strengths = capacity.0.iter().map(FirstEdge::strength).collect();
+        band(strengths).map_or(most, |[_, median, _]| median.min(most))
+    };
+    let medians: Vec<f64> = told.answered().map(median).collect();
+    let names = ["median_intensity", "the median intensity that overturns"];
+    let decides = [Decides::new(told, names, &medians)];
+    let column_name = asked.measure().column();
+    let mut json = beginning(told);
+    json["intensity"] = json!(column_name);
+    json["fragility"] = fragilities.to_json();
+    let (name, of) = decides[0].to_json();
+    json["what_matters"] = json!({ name: of });
+    let reached = lines(told);
+    let reached: Vec<Reached<'_>> = reached
+        .iter()
+        .flat_map(|line| {
+            let edges = line.answer.iter().flat_map(|capacity| &capacity.0);
+            edges
+                .zip(asked.shakes())
+                .map(|(edge, (record, mirrored))| Reached {
+                    sample: line.number,
+                    record,
+                    mirrored,
+                    edge,
+                })
+        })
+        .collect();
+    let of_edges: [Column<'_, Reached<'_>>; 6] = [
+        column("sample", |row: &Reached<'_>| row.sample),
+        column("record", |row: &Reached<'_>| shown(row.record)),
+        column(
+            "sign",
+            |row: &Reached<'_>| if row.mirrored { "-1" } else { "1" },
+        ),
+        column("intensity", |row: &Reached<'_>| row.edge.factor),
+        column("tried_to", |row: &Reached<'_>| row.edge.tried_to),
+        column("uncertain_from", |row: &Reached<'_>| {
+            row.edge.uncertain_from
+        }),
+    ];
+    let at_levels: [Column<'_, AtLevel>; 3] = [
+        column(column_name, |at: &AtLevel| at.intensity),
+        column("record_to_record", |at: &AtLevel| at.records),
+        column("both", |at: &AtLevel| at.both),
+    ];
+    let mut all = sample_columns(told.uncertain);
+    all.push(column("overturned", |line: &Line<'_, Capacity>| {
+        let capacity = line.answer.as_ref().ok();
+        capacity.map(|capacity| {
+            capacity
+                .0
+                .iter()
+                .filter(|edge| edge.factor.is_some())
+                .count()
+        })
+    }));
+    all.push(column("why_not", |line: &Line<'_, Capacity>| {
+        line.answer.as_ref().err().map(NoAnswer::name)
+    }));
+    let rounded_or = |number: Option<f64>| number.map_or("not known".to_owned(), rounded);
+    let interval = |ends: Option<[f64; 2]>| match ends {
+        Some([low, high]) => format!(" ({} to {})", rounded(low), rounded(high)),
+        None => String::new(),
+    };
+    let distributions = fragilities
+        .all()
+        .map(|(_, words, (of, [median, dispersion]))| {
+            format!(
+                "{words}: median {}{}, dispersion {}{}",
+                rounded_or(of.median),
+                interval(*median),
+                rounded_or(of.dispersion),
+                interval(*dispersion)
+            )
+        });
+    let (both, _) = &fragilities.both;
+    let decided = decides[0].in_words(told.uncertain);
+    let decided = decided.map_or(String::new(), |decided| format!("; {decided}"));
+    let mut words = vec![format!(
+        "half of the records and samples overturn up to {column_name} {}, with a dispersion of {}{decided}; {NOT_CONSIDERED}",
+        rounded_or(both.median),
+        rounded_or(both.dispersion)
+    )];
+    words.extend(distributions);
+    words.push("in brackets: 95 % by bootstrap over records".to_owned());
+    words.extend(without_answer(told));
+    Ok(Results {
+        files: vec![
+            (
+                "fragility.svg",
+                picture::fragility(figure, told, asked).into_bytes(),
+            ),
+            (
+                "matters.svg",
+                picture::matters(figure, told, &decides).into_bytes(),
+            ),
+            ("fragility.csv", csv(at_levels, &levels)?),
+            ("capacities.csv", csv(of_edges, &reached)?),
+            ("samples.csv", csv(all, &lines(told))?),
+            (SUMMARY, pretty(&json).into_bytes()),
+        ],
+        words: words.join("\n  "),
+        summary: json,
+        ..Results::default()
+    })
 }

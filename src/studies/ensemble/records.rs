@@ -1,0 +1,313 @@
+//! From which intensity on every record of a suite overturns every sample: fragility of the records, of what is not known, and of both.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::edges::{FirstEdge, first_edge};
+use super::statistics::{bootstrap, interval, quantile};
+use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
+use crate::output::OutputError;
+use crate::scenario::{Measure, Scenario, Suite};
+use crate::studies::ending::Ending;
+use crate::studies::results::{Look, Results};
+
+/// How closely an intensity is enclosed, as a part of it: far closer than records agree.
+const WIDTH: f64 = 2e-3;
+
+/// The records and levels of a suite, upwards.
+#[derive(Clone, Debug)]
+pub struct Capacities {
+    suite: Suite,
+    levels: Vec<f64>,
+}
+
+impl Capacities {
+    /// Those of a scenario that starts from rest.
+    ///
+    /// # Errors
+    /// In words, what to change.
+    pub fn of(scenario: &Scenario) -> Result<Self, String> {
+        scenario.check_from_rest("suite")?;
+        let suite = scenario
+            .suite()
+            .ok_or("the scenario has no [suite], whose records shake the samples")?;
+        Ok(Self {
+            levels: suite.levels.values(),
+            suite: suite.clone(),
+        })
+    }
+
+    /// What the intensities are.
+    #[must_use]
+    pub const fn measure(&self) -> Measure {
+        self.suite.measure
+    }
+
+    /// The levels that are tried, ascending.
+    #[must_use]
+    pub fn levels(&self) -> &[f64] {
+        &self.levels
+    }
+
+    const fn signs(&self) -> usize {
+        if self.suite.both_signs { 2 } else { 1 }
+    }
+
+    /// Each record by its file, and whether it is mirrored, in the order of answers.
+    pub(crate) fn shakes(&self) -> impl Iterator<Item = (&str, bool)> {
+        let records = self.suite.records.iter();
+        records.flat_map(|series| {
+            let signs = [false, true].into_iter().take(self.signs());
+            signs.map(|mirrored| (series.file.as_str(), mirrored))
+        })
+    }
+}
+
+/// From which intensity on each record overturns a sample, each record followed by itself mirrored.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Capacity(pub Vec<FirstEdge>);
+
+impl Question for Capacities {
+    type Answer = Capacity;
+
+    const NAME: &'static str = "uncertain_suite";
+
+    fn answer(&self, scenario: &Scenario) -> Result<Capacity, NoAnswer> {
+        let model = scenario
+            .model()
+            .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        let request = scenario.request_from_rest();
+        let edges = (0..self.suite.records.len() * self.signs()).map(|shake| {
+            let (record, mirrored) = (shake / self.signs(), shake % self.signs() == 1);
+            let verdict = |level: f64| {
+                let shake = self.suite.shake(record, level, mirrored);
+                let ground = shake.motion(request.gravity_m_s2);
+                let ending = Ending::of(&*model, &ground, &request);
+                ending.map(|ending| ending.verdict())
+            };
+            first_edge(&self.levels, WIDTH, verdict)
+        });
+        edges.collect::<Result<_, _>>().map(Capacity)
+    }
+}
+
+/// A distribution of intensities that overturn, by its fractiles of 16, 50 and 84 %: the median, and as dispersion half the logarithm of the ratio of
+/// the others, which is the standard deviation of the logarithm of lognormal ones.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Distribution {
+    /// The median; `None` where half of them do not overturn.
+    pub median: Option<f64>,
+    /// The dispersion; `None` where the upper fractile does not overturn.
+    pub dispersion: Option<f64>,
+}
+
+impl Distribution {
+    /// Of intensities in any order, infinite where nothing overturned.
+    fn of(mut intensities: Vec<f64>) -> Self {
+        intensities.sort_by(f64::total_cmp);
+        let finite = |part| quantile(&intensities, part).filter(|at| at.is_finite());
+        let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
+        Self {
+            median,
+            dispersion: low.zip(high).map(|(low, high)| 0.5 * (high / low).ln()),
+        }
+    }
+}
+
+/// The three distributions, and their intervals of 95 % by bootstrap over records.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fragilities {
+    /// From record to record, of the scenario itself.
+    pub records: (Distribution, [Option<[f64; 2]>; 2]),
+    /// Of what is not known: of the medians over the records of each sample.
+    pub uncertain: (Distribution, [Option<[f64; 2]>; 2]),
+    /// Of both: of all samples under all records.
+    pub both: (Distribution, [Option<[f64; 2]>; 2]),
+}
+
+/// The intensities of some of the records: of a sample, those of every record.
+type Intensities = Vec<Vec<f64>>;
+
+/// The three distributions of these records, of which some may be there more than once.
+fn distributions(
+    own: &[Vec<f64>],
+    samples: &[Intensities],
+    records: &[usize],
+) -> [Distribution; 3] {
+    let chosen = |of: &[Vec<f64>]| -> Vec<f64> {
+        records
+            .iter()
+            .filter_map(|record| of.get(*record))
+            .flatten()
+            .copied()
+            .collect()
+    };
+    let median = |of: &Intensities| {
+        let mut intensities = chosen(of);
+        intensities.sort_by(f64::total_cmp);
+        quantile(&intensities, 0.5)
+    };
+    [
+        Distribution::of(chosen(own)),
+        Distribution::of(samples.iter().filter_map(median).collect()),
+        Distribution::of(samples.iter().flat_map(|of| chosen(of)).collect()),
+    ]
+}
+
+impl Told<'_, Capacity> {
+    fn by_record(asked: &Capacities, capacity: &Capacity) -> Intensities {
+        let records = capacity.0.chunks(asked.signs());
+        records
+            .map(|edges| edges.iter().map(FirstEdge::strength).collect())
+            .collect()
+    }
+
+    /// The fragility of the records, of what is not known, and of both.
+    pub(crate) fn fragilities(&self, asked: &Capacities) -> Fragilities {
+        let own = self
+            .own
+            .as_ref()
+            .map_or_else(|_| Vec::new(), |own| Self::by_record(asked, own));
+        let samples: Vec<Intensities> = self
+            .answered()
+            .map(|(_, capacity)| Self::by_record(asked, capacity))
+            .collect();
+        let count = asked.suite.records.len();
+        let all: Vec<usize> = (0..count).collect();
+        let found = distributions(&own, &samples, &all);
+        let drawn: Vec<[Distribution; 3]> = bootstrap(count)
+            .map(|drawn| distributions(&own, &samples, &drawn))
+            .collect();
+        let with_intervals = |which: usize| {
+            let of = |number: fn(&Distribution) -> Option<f64>| {
+                let numbers: Vec<f64> = drawn
+                    .iter()
+                    .filter_map(|drawn| number(&drawn[which]))
+                    .collect();
+                // Where many draws have none, neither has the interval.
+                (numbers.len() == drawn.len())
+                    .then(|| interval(numbers))
+                    .flatten()
+            };
+            (
+                found[which],
+                [of(|one| one.median), of(|one| one.dispersion)],
+            )
+        };
+        Fragilities {
+            records: with_intervals(0),
+            uncertain: with_intervals(1),
+            both: with_intervals(2),
+        }
+    }
+
+    /// The probability of overturning up to each level: of records, and of both.
+    pub(crate) fn at_levels(&self, asked: &Capacities) -> Vec<AtLevel> {
+        let share = |edges: Vec<&FirstEdge>, level: f64| {
+            let overturned = edges.iter().filter(|edge| edge.strength() <= level).count();
+            (!edges.is_empty()).then(|| overturned as f64 / edges.len() as f64)
+        };
+        let at = |level: &f64| AtLevel {
+            intensity: *level,
+            records: self
+                .own
+                .as_ref()
+                .ok()
+                .and_then(|own| share(own.0.iter().collect(), *level)),
+            both: share(
+                self.answered()
+                    .flat_map(|(_, capacity)| &capacity.0)
+                    .collect(),
+                *level,
+            ),
+        };
+        asked.levels.iter().map(at).collect()
+    }
+}
+
+/// The share that overturns up to an intensity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtLevel {
+    /// The intensity.
+    pub intensity: f64,
+    /// Of the records that shake the scenario itself.
+    pub records: Option<f64>,
+    /// Of all samples under all records.
+    pub both: Option<f64>,
+}
+
+impl Fragilities {
+    /// By their names, and in words.
+    pub(crate) fn all(
+        &self,
+    ) -> [(
+        &'static str,
+        &'static str,
+        &(Distribution, [Option<[f64; 2]>; 2]),
+    ); 3] {
+        [
+            ("record_to_record", "from record to record", &self.records),
+            ("uncertain_data", "of what is not known", &self.uncertain),
+            ("both", "of both together", &self.both),
+        ]
+    }
+
+    pub(crate) fn to_json(&self) -> Value {
+        let all = self.all().map(|(name, _, (of, [median, dispersion]))| {
+            let of = json!({
+                "median": of.median,
+                "median_interval": median,
+                "dispersion": of.dispersion,
+                "dispersion_interval": dispersion,
+            });
+            (name.to_owned(), of)
+        });
+        Value::Object(all.into_iter().collect())
+    }
+}
+
+impl Ensemble<'_, Capacities> {
+    /// Files and words of all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn tell(&self, rows: &[SampleRow<Capacity>], look: Look) -> Result<Results, OutputError> {
+        let told = Told::new(self.scenario, self.uncertain, rows);
+        told::capacities(&told, &self.question, look.figure)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lognormal intensities by their quantiles: the fractiles give back median and dispersion, within the spacing of so many.
+    #[test]
+    fn fractiles_are_those_of_lognormal_intensities() {
+        // Phi(1) = 0.8413: the fractile of 84 % is at 0.9945 deviations.
+        let intensities: Vec<f64> = (0..2000)
+            .map(|index| {
+                let part = (f64::from(index) + 0.5) / 2000.0;
+                let (mut low, mut high) = (-6.0_f64, 6.0_f64);
+                while high - low > 1e-12 {
+                    let middle = 0.5 * (low + high);
+                    let below = 0.5 * libm::erfc(-middle / std::f64::consts::SQRT_2) < part;
+                    if below { low = middle } else { high = middle }
+                }
+                0.7 * (0.4 * low).exp()
+            })
+            .collect();
+        let found = Distribution::of(intensities);
+        assert!(
+            (found.median.unwrap() / 0.7 - 1.0).abs() < 1e-3,
+            "{found:?}"
+        );
+        assert!(
+            (found.dispersion.unwrap() - 0.4 * 0.9945).abs() < 1e-3,
+            "{found:?}"
+        );
+        // What half of the records do not reach is not known.
+        let none = Distribution::of(vec![1.0, f64::INFINITY, f64::INFINITY]);
+        assert_eq!([none.median, none.dispersion], [None, None]);
+    }
+}
