@@ -280,7 +280,11 @@ impl Uncertain {
         }
         let own = parts(&key.key)
             .iter()
-            .try_fold(resolved, |table, part| table.get(part));
+            .try_fold(resolved, |table, part| match table {
+                // Entries of lists are counted from 1.
+                Value::Array(entries) => entries.get(part.parse::<usize>().ok()?.checked_sub(1)?),
+                table => table.get(part),
+            });
         match own {
             Some(Value::Number(number)) if number.is_f64() => key.own = number.as_f64(),
             Some(Value::Number(number)) => {
