@@ -114,15 +114,26 @@ impl Distribution {
     }
 }
 
-/// The three distributions, and their intervals of 95 % by bootstrap over records.
+/// A distribution, and the intervals of 95 % of its median and its dispersion, by bootstrap over records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimated {
+    /// The distribution.
+    pub of: Distribution,
+    /// Ends of the interval of the median, where it is known.
+    pub median: Option<[f64; 2]>,
+    /// The same of the dispersion.
+    pub dispersion: Option<[f64; 2]>,
+}
+
+/// The three distributions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragilities {
     /// From record to record, of the scenario itself.
-    pub records: (Distribution, [Option<[f64; 2]>; 2]),
+    pub records: Estimated,
     /// Of what is not known: of the medians over the records of each sample.
-    pub uncertain: (Distribution, [Option<[f64; 2]>; 2]),
+    pub uncertain: Estimated,
     /// Of both: of all samples under all records.
-    pub both: (Distribution, [Option<[f64; 2]>; 2]),
+    pub both: Estimated,
 }
 
 /// The intensities of some of the records: of a sample, those of every record.
@@ -180,19 +191,18 @@ impl Told<'_, Capacity> {
             .collect();
         let with_intervals = |which: usize| {
             let of = |number: fn(&Distribution) -> Option<f64>| {
-                let numbers: Vec<f64> = drawn
-                    .iter()
-                    .filter_map(|drawn| number(&drawn[which]))
-                    .collect();
-                // Where many draws have none, neither has the interval.
+                let numbers = drawn.iter().filter_map(|drawn| number(&drawn[which]));
+                let numbers: Vec<f64> = numbers.collect();
+                // Where a draw has none, neither has the interval.
                 (numbers.len() == drawn.len())
                     .then(|| interval(numbers))
                     .flatten()
             };
-            (
-                found[which],
-                [of(|one| one.median), of(|one| one.dispersion)],
-            )
+            Estimated {
+                of: found[which],
+                median: of(|one| one.median),
+                dispersion: of(|one| one.dispersion),
+            }
         };
         Fragilities {
             records: with_intervals(0),
@@ -237,28 +247,22 @@ pub struct AtLevel {
 }
 
 impl Fragilities {
-    /// By their names, and in words.
-    pub(crate) fn all(
-        &self,
-    ) -> [(
-        &'static str,
-        &'static str,
-        &(Distribution, [Option<[f64; 2]>; 2]),
-    ); 3] {
+    /// Each with its name in results.
+    pub(crate) const fn all(&self) -> [(&'static str, &Estimated); 3] {
         [
-            ("record_to_record", "from record to record", &self.records),
-            ("uncertain_data", "of what is not known", &self.uncertain),
-            ("both", "of both together", &self.both),
+            ("record_to_record", &self.records),
+            ("uncertain_data", &self.uncertain),
+            ("both", &self.both),
         ]
     }
 
     pub(crate) fn to_json(&self) -> Value {
-        let all = self.all().map(|(name, _, (of, [median, dispersion]))| {
+        let all = self.all().map(|(name, estimated)| {
             let of = json!({
-                "median": of.median,
-                "median_interval": median,
-                "dispersion": of.dispersion,
-                "dispersion_interval": dispersion,
+                "median": estimated.of.median,
+                "median_interval": estimated.median,
+                "dispersion": estimated.of.dispersion,
+                "dispersion_interval": estimated.dispersion,
             });
             (name.to_owned(), of)
         });

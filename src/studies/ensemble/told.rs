@@ -566,18 +566,17 @@ pub(super) fn capacities(
         Some([low, high]) => format!(" ({} to {})", rounded(low), rounded(high)),
         None => String::new(),
     };
-    let distributions = fragilities
-        .all()
-        .map(|(_, words, (of, [median, dispersion]))| {
-            format!(
-                "{words}: median {}{}, dispersion {}{}",
-                rounded_or(of.median),
-                interval(*median),
-                rounded_or(of.dispersion),
-                interval(*dispersion)
-            )
-        });
-    let (both, _) = &fragilities.both;
+    let distributions = fragilities.all().map(|(name, estimated)| {
+        format!(
+            "{}: median {}{}, dispersion {}{}",
+            name.replace('_', " "),
+            rounded_or(estimated.of.median),
+            interval(estimated.median),
+            rounded_or(estimated.of.dispersion),
+            interval(estimated.dispersion)
+        )
+    });
+    let both = &fragilities.both.of;
     let decided = decides[0].in_words(told.uncertain);
     let decided = decided.map_or(String::new(), |decided| format!("; {decided}"));
     let mut words = vec![format!(
