@@ -254,24 +254,29 @@ impl History {
             "pressures" => taken(
                 &mut |all| {
                     let pressures = mem::take(&mut all.pressures).into_iter();
-                    pressures.flat_map(|joint| {
-                        let [intrados_pa, extrados_pa] = joint.edge_stresses_pa;
-                        let eccentricity = joint.eccentricity_ratio.unwrap_or(f64::NAN);
-                        [
-                            joint.normal_n,
-                            joint.shear_n,
-                            eccentricity,
-                            joint.contact_ratio,
-                            intrados_pa,
-                            extrados_pa,
-                        ]
-                    })
-                    .collect()
+                    pressures
+                        .flat_map(|joint| {
+                            let [intrados_pa, extrados_pa] = joint.edge_stresses_pa;
+                            let eccentricity = joint.eccentricity_ratio.unwrap_or(f64::NAN);
+                            [
+                                joint.normal_n,
+                                joint.shear_n,
+                                eccentricity,
+                                joint.contact_ratio,
+                                intrados_pa,
+                                extrados_pa,
+                            ]
+                        })
+                        .collect()
                 },
                 &[count, pressing, 6],
             ),
             "point_m" => {
-                let point_m = self.point_m.lock().unwrap_or_else(PoisonError::into_inner).take();
+                let point_m = self
+                    .point_m
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .take();
                 let axes = if point_m.is_some() { 2 } else { 0 };
                 array(py, point_m.unwrap_or_default(), &[count, axes])
             }

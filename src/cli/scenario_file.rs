@@ -188,7 +188,7 @@ impl Destination {
         Self::of(&self.path.join(name))
     }
 
-    /// Refuses places where several results would be one; each has the name of what it is for.
+    /// Refuses two results in one place; each place has the name of what it is for.
     pub fn check_distinct<'d>(
         places: impl IntoIterator<Item = (&'d str, &'d Self)>,
     ) -> Result<(), Failure> {

@@ -27,7 +27,7 @@ impl Envelope {
         Self::of_columns(COLUMNS)
     }
 
-    /// One that is thinned to so many columns at most.
+    /// An envelope thinned to at most this many columns.
     pub(crate) const fn of_columns(most: usize) -> Self {
         Self {
             most,

@@ -172,7 +172,7 @@ impl Figure {
         }
     }
 
-    /// Text in lines that fit into so many pixels.
+    /// Text broken into lines of at most this width, in pixels.
     fn lines(text: &str, width_px: f64) -> Vec<String> {
         let mut lines = vec![String::new()];
         for word in text.split_whitespace() {

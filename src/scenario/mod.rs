@@ -365,7 +365,7 @@ impl Scenario {
         self.motion.model(&self.structure)
     }
 
-    /// Other models of the structure, with what is not known of it otherwise.
+    /// The structure with other properties that are as likely as its own.
     ///
     /// # Errors
     /// As [`Motion::model`].

@@ -94,7 +94,7 @@ impl Motion {
         })
     }
 
-    /// Models of a structure beside its own, with what is not known of it otherwise: of elastic joints also rigid ones.
+    /// The structure with other properties that are as likely as its own; with elastic joints, also with rigid ones.
     ///
     /// # Errors
     /// As [`Motion::model`].

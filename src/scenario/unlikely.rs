@@ -10,7 +10,7 @@ use crate::mechanics::sway::Sway;
 /// Strongest recorded ground accelerations are a little above 2 g, and weaker ones than the least are not felt: what is
 /// beyond is in another unit.
 const PEAK_G: RangeInclusive<f64> = 1e-3..=3.0;
-/// A pulse of so many times what starts the structure throws it.
+/// A pulse this many times as strong as the one that starts the structure throws it.
 const PEAK_OVER_INCIPIENT: f64 = 20.0;
 /// The largest masonry arches span 140 m.
 const RADIUS_M: f64 = 100.0;

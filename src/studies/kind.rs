@@ -33,7 +33,7 @@ const SURVIVED: [Kind; 6] = [
 ];
 
 impl Kind {
-    /// That of what survived with this largest rotation over the critical one.
+    /// The colour of a case that survived with this largest rotation over the critical one.
     pub(crate) fn survived(peak_over_critical: f64) -> Self {
         let bounds = [0.2, 0.4, 0.6, 0.8, 1.0];
         SURVIVED[bounds.partition_point(|bound| *bound <= peak_over_critical)]

@@ -7,7 +7,7 @@ use super::{LineFault, MAX_SAMPLES, MIN_STEP_S, Recorded, Unit, number, sample};
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
-/// Only so many lines are searched for a header.
+/// Lines that are searched for a header.
 const MAX_HEADER_LINES: usize = 200;
 
 /// What the header says, each with its line from 1.

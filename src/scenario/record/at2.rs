@@ -11,7 +11,7 @@ use crate::scenario::error::excerpt;
 
 /// The header is searched up to this line.
 const MAX_HEADER_LINES: usize = 64;
-/// Only so many characters of each line are searched.
+/// Characters of a line that are searched.
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
 /// Reads the samples; the first is at time zero. `unit` is theirs whatever the header says.

@@ -258,7 +258,7 @@ impl Decimal {
     }
 }
 
-/// Rows of exactly so many numbers, each with its line. A first row without any number holds names.
+/// Rows of exactly this many numbers, each with its line. A first row without any number holds names.
 pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N])>, LineFault> {
     let mut rows = Rows::new(text, Decimal::Point);
     let mut found = Vec::new();

@@ -9,7 +9,7 @@ use super::{LineFault, MAX_SAMPLES, MIN_STEP_S, Unit, number, sample};
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
-/// Only so many lines are searched for a header.
+/// Lines that are searched for a header.
 const MAX_HEADER_LINES: usize = 64;
 
 const FREQUENCY: &str = "Sampling Freq(Hz)";

@@ -66,7 +66,7 @@ pub enum Times {
     /// A column of times in s.
     #[serde(rename = "time_column")]
     Column(TableColumn),
-    /// One row follows another after so many seconds, the first at zero.
+    /// Seconds from one row to the next; the first is at zero.
     #[serde(rename = "dt_s")]
     Step(f64),
 }

@@ -546,7 +546,7 @@ fn read_contents(path: &Path, layout: &Layout) -> Result<Contents, FileFault> {
     layout.parse(&bytes).map_err(FileFault::Line)
 }
 
-/// Rows of so many numbers in a file, each with its line, or what is wrong with it. The first may hold names.
+/// Rows of this many numbers in a file, each with its line, or with its fault. The first may hold names.
 pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f64; N])>, String> {
     let bytes = read_bytes(path)?;
     let numbers = layout::legible(&bytes).and_then(|text| csv::numbers(&text));

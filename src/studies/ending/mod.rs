@@ -217,7 +217,7 @@ pub(super) fn answered<C, A, E>(
     cases.into_iter().map(of).collect()
 }
 
-/// Refuses what is not finite, which is a defect of the program.
+/// Refuses numbers that are not finite: a defect of the program.
 pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

@@ -161,7 +161,7 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
     if map.has_free_hinges() && map.axes()[1].quantity == Quantity::Amplitude {
         let model = map.scenario().motion().words();
         lines.push(format!(
-            "{model}: without the boundary of overturning without impact, which is of four links"
+            "{model}: no boundary of overturning without impact, which only four links have"
         ));
     }
     lines.extend(remarks.uncertain_in_words(SUMMARY));

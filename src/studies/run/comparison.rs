@@ -56,10 +56,8 @@ fn believed(runs: &[Run<'_>], histories: &[Summary]) -> String {
         return String::new();
     };
     let why = match best.scenario.motion().hinges() {
-        Hinges::Elastic => {
-            "its joints give way, as those of stone do, by as much as their stiffness says"
-        }
-        Hinges::Free => "its hinges open at any joint",
+        Hinges::Elastic => "joints of stone give way, by as much as the stiffness says",
+        Hinges::Free => "hinges open at any joint",
         Hinges::Four => "it is the only one",
     };
     let mut text = format!("  believe {}: {why}\n", best.name());

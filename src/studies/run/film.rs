@@ -41,7 +41,7 @@ pub(super) struct Film {
 }
 
 impl Film {
-    /// An empty one, of so many frames at most, and the last.
+    /// An empty film, of at most this many frames and the last one.
     pub(super) const fn new(most: usize) -> Self {
         Self {
             most,

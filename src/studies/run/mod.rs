@@ -277,7 +277,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The same with what is not known of it otherwise, unless nobody wants to know how sure it is.
+    /// The structure with other properties that are as likely, unless nobody asks how sure the run is.
     fn variations(&self) -> Result<Vec<Variation>, RunError> {
         if !self.wanted.spread {
             return Ok(Vec::new());

@@ -337,7 +337,7 @@ impl Report {
     }
 }
 
-/// A part of a whole, in eight bits; what is not nothing is not zero.
+/// A part of a whole in eight bits; only zero becomes zero.
 fn eighth(part: f64) -> u8 {
     #[expect(
         clippy::cast_possible_truncation,

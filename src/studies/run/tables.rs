@@ -277,7 +277,7 @@ fn opened(event: &Event) -> &[Hinge] {
     impact(event).map_or(&[], |impact| &impact.opened)
 }
 
-/// A column of what an event is the impact of.
+/// A column of a quantity of the impact that an event is.
 fn of_impact<C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&Impact) -> C + 'static,
@@ -288,7 +288,7 @@ fn of_impact<C: Into<Cell<'static>>>(
 /// Hinges of a mechanism in the names of columns, from the left.
 const HINGES: [&str; 4] = ["a", "b", "c", "d"];
 
-/// Names of columns, some for each of so many hinges.
+/// Names of columns, some for each of this many hinges.
 fn by_hinge(sections: usize, names: impl Fn(&str) -> Vec<String>) -> Vec<String> {
     let hinges = HINGES.iter().take(sections);
     hinges.flat_map(|hinge| names(hinge)).collect()
@@ -299,7 +299,7 @@ fn sections(model: &dyn MechanismModel) -> usize {
     hinge_cells(&model.hinges_after(0, Sway::Right), 0).len()
 }
 
-/// Columns of so many hinges, place and edge.
+/// Columns of this many hinges, place and edge.
 fn hinges(
     what: &str,
     sections: usize,

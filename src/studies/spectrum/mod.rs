@@ -28,7 +28,7 @@ pub enum NoSpectrum {
     Initial,
     /// Its hinges are free.
     #[error(
-        "a spectrum is of four links or a column, whose motion is similar at all sizes: leave [{0}] out"
+        "a spectrum needs four links or a column, whose motion is similar at all sizes: leave [{0}] out"
     )]
     Joints(&'static str),
     /// There is no pulse whose duration could vary.

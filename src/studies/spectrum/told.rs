@@ -84,7 +84,7 @@ fn words(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], remarks: &Remark
         impacts.filter(|impacts| wanted(*impacts)).count()
     };
     let mut text = format!(
-        "{} points; at {} of them the weakest pulse overturns before any impact, at {} after impacts",
+        "{} points: the weakest pulse overturns before any impact at {}, after impacts at {}",
         rows.len(),
         count(|impacts| impacts == Some(0)),
         count(|impacts| impacts > Some(0)),

@@ -296,7 +296,7 @@ impl From<&Fraction> for LogLevel {
 }
 
 impl LogLevel {
-    /// Of what its cases did, at the linear predictor `eta`.
+    /// Of the outcomes of its cases, at the linear predictor `eta`.
     fn log_probability(&self, eta: f64) -> LogProbability {
         let fall = LogProbability::at(eta);
         let survival = LogProbability::at(-eta);

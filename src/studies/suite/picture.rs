@@ -118,7 +118,7 @@ const POINT: Stroke = Stroke::new(color::VERMILION, 1.8, "");
 const BAND: &str = "#d6e8f4";
 const BETWEEN: &str = "#9cc7e3";
 
-/// So many points make a smooth curve.
+/// This many points make a smooth curve.
 const POINTS: u32 = 200;
 
 /// Values along an axis, above zero.

@@ -170,7 +170,7 @@ impl Rotation {
     }
 }
 
-/// The edges of the bands and of what is uncertain, ascending.
+/// The edges of the bands and of the uncertain ranges, ascending.
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut told = f64::NAN;
     let ranges = threshold.ranges.iter();

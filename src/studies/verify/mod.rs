@@ -131,7 +131,7 @@ impl Spectrum {
         }
     }
 
-    /// Peak acceleration of what carries the mechanism, in g.
+    /// Peak acceleration of the structure that carries the mechanism, in g.
     ///
     /// # Errors
     /// When it is not among the points.

@@ -86,7 +86,7 @@ pub fn today() -> String {
     date_of(since.map_or(0, |since| since.as_secs() / 86_400))
 }
 
-/// The date so many days after the first of January 1970.
+/// The date this many days after 1 January 1970.
 fn date_of(mut days: u64) -> String {
     let leap = |year: u64| {
         year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
