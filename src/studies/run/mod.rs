@@ -245,7 +245,6 @@ impl<'a> Run<'a> {
         };
         let mut text = words(&evidence, model, &shown, &self.wanted.beside);
         let mut summary = summary(scenario, model, &history, spread)?;
-        summary["verdict"] = evidence.verdict().name().into();
         if !varied.is_empty() {
             summary["variations"] = summary::of_variations(&varied)?;
         }

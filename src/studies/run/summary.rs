@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::Scales;
+use super::verdict::Evidence;
 use super::words::first_peak_rad;
 use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary};
 use crate::dynamics::model::{MechanismModel, Model};
@@ -38,6 +39,13 @@ pub fn summary(
     object.put("program", json!(env!("CARGO_PKG_NAME")));
     object.put("version", json!(env!("CARGO_PKG_VERSION")));
     object.put("scenario", scenario.to_json());
+    let evidence = Evidence {
+        scenario,
+        history,
+        spread,
+        varied: &[],
+    };
+    object.put("verdict", json!(evidence.verdict().name()));
     object.ending(history)?;
     object.put("impacts", json!(history.impacts));
     let peaks = columns(&model.bodies(), "peak_rotation", "rad");
