@@ -12,12 +12,14 @@ import pytest
 from archrock import (
     Arch,
     Column,
+    FirstFactors,
     OverturningMap,
     Pulse,
     Record,
     Results,
     Scenario,
     compute_part,
+    ensemble,
     map_scenario,
     merge,
     overturning_map,
@@ -94,6 +96,28 @@ def test_a_spectrum_is_that_of_the_program(program: Program, tmp_path: Path) -> 
     assert spectrum(scenario) == found
     assert_files(found, by_program(program, tmp_path, "spectrum", scenario.to_toml()))
     assert found.columns()["p_t"].tolist() == [1.0, 3.0]
+
+
+def test_an_ensemble_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+    uncertain = {
+        "samples": 40,
+        "column.width_m": {"deviation": 0.04},
+        "ground.one_cosine.amplitude_g": {"from": 0.3, "to": 0.9},
+    }
+    scenario = Scenario.of(Column(4.0, 0.8), COSINE, uncertain=uncertain)
+    found = ensemble(scenario)
+    folder = by_program(program, tmp_path, "run", scenario.to_toml(), "--no-report")
+    assert_files(found, folder / "uncertain")
+    assert found.keys == ("column.width_m", "ground.one_cosine.amplitude_g")
+    assert found.values.shape == (40, 2) and len(found.outcome) == len(found.peak_rotation) == 40
+    overturned = int(np.count_nonzero(found.outcome == "overturned"))
+    share = found.probability
+    assert share["count"] == overturned and share["low"] < overturned / 40 < share["high"]
+    assert len(found.to_pandas()) == 41
+    assert found.bands["time_s"][0] == 0.0
+    part = compute_part(scenario, "uncertain_threshold", (1, 1), tmp_path / "parts")
+    factors = merge([part])
+    assert isinstance(factors, FirstFactors) and len(factors.first_factor) == 40
 
 
 def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> None:

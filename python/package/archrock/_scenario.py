@@ -118,6 +118,7 @@ class Scenario(Described):
         suite: Mapping[str, Any] | None = None,
         demand: Mapping[str, Any] | None = None,
         verify: Mapping[str, Any] | None = None,
+        uncertain: Mapping[str, Any] | None = None,
         files: Mapping[str, bytes] | None = None,
         **settings: Any,
     ) -> Scenario:
@@ -132,6 +133,7 @@ class Scenario(Described):
             suite: table ``[suite]``.
             demand: table ``[demand]``.
             verify: table ``[verify]``.
+            uncertain: table ``[uncertain]``: samples, seed, and for each key such as ``"column.width_m"`` how it is spread.
             files: contents of files that the tables name.
             settings: how it is simulated, as of :func:`simulate`.
 
@@ -149,6 +151,7 @@ class Scenario(Described):
             tables["ground"] = ground._tables
             held.update(ground._files)
         tables.update(map=map, spectrum=spectrum, suite=suite, demand=demand, verify=verify)
+        tables.update(uncertain=uncertain)
         return cls(tables, files=held, model=_model(chosen.model))
 
     def run(self, *, memory_gb: float = MEMORY_GB) -> History:

@@ -28,7 +28,7 @@ Progress = Callable[[int, int], object]
 Values = Any
 """Increasing numbers, anything like an array, or a :func:`span`."""
 
-Study = Literal["map", "spectrum", "suite", "uncertain", "uncertain_threshold"]
+Study = Literal["map", "spectrum", "suite", "uncertain", "uncertain_threshold", "uncertain_suite"]
 
 
 def span(
@@ -331,6 +331,20 @@ class FirstFactors(Ensemble):
         return self.columns("probability.csv")
 
 
+class Fragilities(Ensemble):
+    """An ensemble of the intensities from which on the records of a suite overturn."""
+
+    __slots__ = ()
+
+    _picture = "fragility.svg"
+
+    @property
+    def fragility(self) -> dict[str, dict[str, Any]]:
+        """Median and dispersion with their intervals: ``record_to_record``, ``uncertain_data`` and ``both``."""
+        fragility: dict[str, dict[str, Any]] = self.summary["fragility"]
+        return fragility
+
+
 class Check(Files):
     """A check by the Circolare 7/2019: numbers and the page to be filed."""
 
@@ -366,6 +380,7 @@ _KINDS: dict[str, type[Results]] = {
     "suite": Suite,
     "uncertain": Histories,
     "uncertain_threshold": FirstFactors,
+    "uncertain_suite": Fragilities,
 }
 
 
@@ -606,7 +621,8 @@ def ensemble(
 ) -> Histories:
     """What follows from the table ``[uncertain]`` of a scenario: a history for every sample.
 
-    ``compute_part(scenario, "uncertain_threshold", ...)`` and :func:`merge` answer from which factor on samples overturn.
+    From which factor on samples overturn, and under which records, :func:`compute_part` and :func:`merge` answer, as of the studies
+    ``"uncertain_threshold"`` and ``"uncertain_suite"``.
 
     Args:
         scenario: a scenario with a table ``[uncertain]``.
@@ -737,7 +753,8 @@ def compute_part(
 
     Args:
         scenario: the scenario with the table of the study.
-        study: ``"map"``, ``"spectrum"``, ``"suite"``, or of samples ``"uncertain"`` and ``"uncertain_threshold"``.
+        study: ``"map"``, ``"spectrum"``, ``"suite"``, or of samples ``"uncertain"``, ``"uncertain_threshold"`` and
+            ``"uncertain_suite"``.
         shard: which part of how many, from 1: ``(2, 4)``.
         folder: where the file goes; made if need be.
         threads: as of :func:`overturning_map`.
@@ -762,7 +779,7 @@ def compute_part(
 
 def merge(
     parts: Iterable[str | os.PathLike[str]], scenario: Scenario | None = None
-) -> OverturningMap | Spectrum | Suite | Histories | FirstFactors:
+) -> OverturningMap | Spectrum | Suite | Ensemble:
     """Joins all parts of one study.
 
     Args:
@@ -778,5 +795,5 @@ def merge(
     native = None if scenario is None else scenario._native
     study, files = _native.merge(list(parts), native)
     results = _KINDS[study](files)
-    assert isinstance(results, (OverturningMap, Spectrum, Suite, Histories, FirstFactors))
+    assert isinstance(results, (OverturningMap, Spectrum, Suite, Ensemble))
     return results
