@@ -337,6 +337,8 @@ pub struct RowSummary {
     pub elastic: Option<ElasticSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
+    /// Largest potential energy above rest, in J, with that of elastic joints.
+    pub largest_potential_j: f64,
     /// Energy taken by impacts, in J, without what friction takes.
     pub energy_taken_j: f64,
     /// By how much the energy balance is wrong, over the larger of the largest kinetic energy and the barrier, where that is known.
@@ -385,7 +387,7 @@ pub struct Sliding {
     pub offsets_m: Vec<f64>,
     /// Largest magnitudes of the offsets, in metres.
     pub largest_offsets_m: Vec<f64>,
-    /// Steps whose bounds of friction did not converge.
+    /// Steps whose bounds of friction did not converge; none with elastic joints, whose bounds are known in every step.
     pub unconverged: u64,
     /// The largest error of such a bound, as part of the largest bound.
     pub bound_error: f64,

@@ -61,6 +61,11 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
+    /// Energy in J above that at rest which it must reach to overturn, where joints give way and that is known.
+    fn elastic_barrier_j(&self, _gravity_m_s2: f64) -> Option<f64> {
+        None
+    }
+
     /// Whether it computes several motions at once, faster than one after the other.
     fn is_faster_together(&self) -> bool {
         false

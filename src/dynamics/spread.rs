@@ -245,10 +245,13 @@ pub(crate) fn doubts<E>(
 ) -> Vec<Option<String>> {
     let mut doubts = vec![None; cases.len()];
     let outcome = |index: &usize| own[*index].as_ref().ok().map(|own| own.outcome);
-    let repeated = |own: &Result<Summary, E>| own.as_ref().is_ok_and(|own| !is_plain(own));
-    let mut open: Vec<usize> = (0..cases.len())
-        .filter(|index| repeated(&own[*index]))
-        .collect();
+    let is_open = |index: &usize| {
+        let (_, request) = &cases[*index];
+        own[*index]
+            .as_ref()
+            .is_ok_and(|own| !is_plain(model, request, own))
+    };
+    let mut open: Vec<usize> = (0..cases.len()).filter(is_open).collect();
     if open.is_empty() {
         return doubts;
     }
@@ -275,12 +278,15 @@ fn until_decided(model: &dyn Model, cases: &[Case]) -> Vec<Result<Summary, Simul
     cases.iter().map(alone).collect()
 }
 
+/// Where slip and crushing took more than this part of the barrier of elastic joints, these lie otherwise than it was found.
+const GONE: f64 = 0.01;
+
 /// What survives without ever reaching this part of the energy barrier of its first mechanism is not repeated.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
 
 /// Whether repetitions can be spared: it never moved, it overturned before it changed side, up to which all ways agree, or it
 /// survived far from overturning.
-fn is_plain(own: &Summary) -> bool {
+fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     match own.outcome {
         Outcome::NeverMoved => true,
         Outcome::Overturned(_) => own
@@ -288,10 +294,19 @@ fn is_plain(own: &Summary) -> bool {
             .as_ref()
             .is_some_and(|row| row.half_cycles.len() <= 1),
         Outcome::Rest | Outcome::StillRocking => {
-            // What gives way falls before the barrier of rigid joints.
-            let gives_way = own.row.as_ref().is_some_and(|row| row.elastic.is_some());
-            let ratio = own.peak_potential_over_barrier;
-            !gives_way && ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
+            let row = own.row.as_ref();
+            let elastic = row.and_then(|row| Some((row, row.elastic.as_ref()?)));
+            let ratio = match elastic {
+                None => own.peak_potential_over_barrier,
+                // What gives way falls before the barrier of rigid joints.
+                Some((row, elastic)) => {
+                    let barrier_j = model.elastic_barrier_j(request.gravity_m_s2);
+                    let gone_j = elastic.friction_j + elastic.crushed_j;
+                    let barrier_j = barrier_j.filter(|barrier_j| gone_j < GONE * barrier_j);
+                    barrier_j.map(|barrier_j| row.largest_potential_j / barrier_j)
+                }
+            };
+            ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
         }
     }
 }

@@ -4,13 +4,14 @@ use std::f64::consts::PI;
 
 use serde::Serialize;
 
+use super::simulation::Simulation;
 use super::structure::{ModelError, Structure};
 use super::table::{Count, Number, OneOf, Reading, Table};
 use crate::argument::short;
 use crate::dynamics::elastic_joints::{ElasticJoints, ElasticJointsError, ElasticOptions};
 use crate::dynamics::free_hinges::FreeHingesError;
 use crate::mechanics::elastic_joint::{
-    Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
+    Contact, ElasticProperties, ElasticStructure, JointStiffness, Materials, RestError, Stiffness,
 };
 
 /// A stiffness in GPa/m, and a modulus in GPa, in Pa/m and Pa.
@@ -142,6 +143,55 @@ impl ElasticTable {
             contact: self
                 .contact_points
                 .map_or(Contact::Continuous, Contact::Points),
+        }
+    }
+
+    /// Refuses joints on which a structure does not rest, and steps that are too long or too many.
+    pub(super) fn check(
+        &self,
+        table: &mut Table<'_>,
+        structure: &Structure,
+        simulation: &Simulation,
+    ) -> Reading<()> {
+        let (depth_m, _) = structure.depth_and_density();
+        let properties = self.properties(depth_m);
+        let row = structure.row().ok();
+        // Whatever else is wrong with the row is told where it is used.
+        let Some(joints) = row.and_then(|row| ElasticStructure::of_row(&row, &properties).ok())
+        else {
+            return Ok(());
+        };
+        let mut wrong =
+            |key: &str, wrong: String| Err(table.wrong_in("elastic_joints", key, wrong));
+        if let Err(error) = joints.rest([0.0, -simulation.gravity_m_s2]) {
+            let key = match error {
+                RestError::Friction => "friction_coefficient",
+                RestError::Strength => "compressive_strength_mpa",
+                RestError::Points => "contact_points",
+                RestError::Stiffness if self.stone_modulus_gpa.is_some() => "stone_modulus_gpa",
+                RestError::Stiffness => "normal_stiffness_gpa_m",
+                RestError::NotFound => return Ok(()),
+            };
+            return wrong(key, format!("is not possible here: {error}"));
+        }
+        let stable_s = joints.stable_step_s();
+        match self.longest_step_s {
+            Some(step_s) if step_s > stable_s => {
+                let most = short(0.5 * stable_s);
+                let what = format!(
+                    "is too long: half of what is stable with these joints is {most} s; leave it out, or give that"
+                );
+                wrong("longest_step_s", what)
+            }
+            None if simulation.duration_s > ElasticOptions::MOST_STEPS * stable_s => {
+                let most = format!(
+                    "makes steps of {} s, too many for a motion of {} s: give less damping, or a shorter [simulation] duration_s",
+                    short(stable_s),
+                    short(simulation.duration_s)
+                );
+                wrong("damping_time_s", most)
+            }
+            _ => Ok(()),
         }
     }
 

@@ -309,7 +309,7 @@ impl Scenario {
             verify.suits(table, demand.as_ref())?;
         }
         let ((motion, ignores_impact), structure) = (motion?, structure?);
-        motion.check(table, &structure)?;
+        motion.check(table, &structure, simulation.as_ref().ok())?;
         let certain = Self {
             title: title?.map(|title| shown(&title)),
             structure,

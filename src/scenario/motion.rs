@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::elastic_joints::ElasticTable;
+use super::simulation::Simulation;
 use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
 use super::{free_hinges, impact};
@@ -166,7 +167,12 @@ impl Motion {
     }
 
     /// Refuses options that do not go with a structure.
-    pub(super) fn check(&self, table: &mut Table<'_>, structure: &Structure) -> Reading<()> {
+    pub(super) fn check(
+        &self,
+        table: &mut Table<'_>,
+        structure: &Structure,
+        simulation: Option<&Simulation>,
+    ) -> Reading<()> {
         match self {
             Self::FourLinks(_) => Ok(()),
             Self::FreeHinges(options) => free_hinges::carries(
@@ -175,12 +181,13 @@ impl Motion {
                 structure,
                 options.friction_coefficient,
             ),
-            Self::ElasticJoints(joints) => free_hinges::carries(
-                table,
-                "elastic_joints",
-                structure,
-                joints.friction_coefficient,
-            ),
+            Self::ElasticJoints(joints) => {
+                let coefficient = joints.friction_coefficient;
+                free_hinges::carries(table, "elastic_joints", structure, coefficient)?;
+                simulation.map_or(Ok(()), |simulation| {
+                    joints.check(table, structure, simulation)
+                })
+            }
         }
     }
 

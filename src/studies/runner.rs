@@ -326,7 +326,7 @@ fn in_groups(
     threads: usize,
 ) -> Vec<Vec<usize>> {
     let (least, most) = (*TOGETHER.start(), *TOGETHER.end());
-    let together = (cases.len() / (4 * threads)).clamp(least, most);
+    let together = (cases.len() / (2 * threads)).clamp(least, most);
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut open: BTreeMap<usize, usize> = BTreeMap::new();
     for case in cases {

@@ -1,6 +1,7 @@
 //! A row of blocks with elastic joints as a model of motion.
 
 use std::ops::RangeInclusive;
+use std::sync::{Arc, OnceLock};
 
 use super::error::{ElasticJointError, ElasticJointsError};
 use super::stepper::{ElasticStepper, Group, Start};
@@ -29,6 +30,8 @@ pub struct ElasticJoints {
     structure: ElasticStructure,
     /// A gravity, and where it rests under that.
     rest: (f64, Rest),
+    /// Energy under that gravity beyond which it overturns, once somebody asked.
+    barrier_j: Arc<OnceLock<Option<f64>>>,
     /// By what a repetition multiplies the longest step.
     steps_times: f64,
 }
@@ -43,6 +46,8 @@ pub struct ElasticOptions {
 impl ElasticOptions {
     /// With shorter steps a run takes forever.
     pub(crate) const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
+    /// Steps that a motion may have: some hours of computing.
+    pub(crate) const MOST_STEPS: f64 = 1e9;
 }
 
 /// The longest step over the longest stable one: without damping, and with as much as below. Undamped vibration that opens and shuts
@@ -52,8 +57,6 @@ const STEP_RATIO: [f64; 2] = [0.25, 0.5];
 const DAMPED: f64 = 0.3;
 /// An energy balance that is wrong by more than this part of the largest energy of the motion is an error.
 const LARGEST_ENERGY_ERROR: f64 = 1e-2;
-/// Steps that a motion may have: some hours of computing.
-const MOST_STEPS: f64 = 1e9;
 /// Histories side by side.
 const SIDE_BY_SIDE: usize = 8;
 /// By what the stiffness is multiplied and divided to see what hangs on it.
@@ -85,6 +88,7 @@ impl ElasticJoints {
             options: ElasticOptions::default(),
             structure,
             rest: (gravity_m_s2, rest),
+            barrier_j: Arc::default(),
             steps_times: 1.0,
         })
     }
@@ -198,7 +202,7 @@ impl ElasticJoints {
             return Err(ElasticJointError::Unstable { step_s, longest_s });
         }
         let end_s = request.end_s;
-        if end_s / step_s > MOST_STEPS {
+        if end_s / step_s > ElasticOptions::MOST_STEPS {
             return Err(ElasticJointError::TooLong { step_s, end_s });
         }
         Ok(Clock {
@@ -247,8 +251,22 @@ impl ElasticJoints {
     }
 
     /// Refuses a motion whose energy is not balanced.
-    fn judged(&self, mut summary: Summary, rest: &Rest) -> Result<Summary, SimulationError> {
+    fn judged(
+        &self,
+        mut summary: Summary,
+        rest: &Rest,
+        gravity_m_s2: f64,
+    ) -> Result<Summary, SimulationError> {
         let row = summary.row.as_mut().expect("a row has its summary");
+        // Stacks have no first mechanism of one degree of freedom whose barrier is known; how they are pushed over is.
+        if row.energy_error > LARGEST_ENERGY_ERROR
+            && self.barrier_j(gravity_m_s2).is_none()
+            && let Some(barrier_j) = self.elastic_barrier_j(gravity_m_s2)
+        {
+            let weight_n = self.row().mass_kg() * gravity_m_s2;
+            let defect_j = summary.energy_defect_ratio * weight_n * self.row().size_m();
+            row.energy_error = defect_j / barrier_j.max(row.largest_kinetic_j);
+        }
         if let Some(elastic) = &mut row.elastic {
             let (joint, ratio) = rest.largest_eccentricity(&self.structure);
             elastic.rest_eccentricity_ratio = ratio;
@@ -313,7 +331,19 @@ impl Model for ElasticJoints {
         // One of any lifetime serves for as long as the task.
         let recorder = recorder.map(|recorder| recorder as _);
         let stepper = ElasticStepper::new(task, self.start(&rest), recorder);
-        self.judged(course::run(stepper)?, &rest)
+        self.judged(course::run(stepper)?, &rest, request.gravity_m_s2)
+    }
+
+    fn elastic_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+        let of = |rest: &Rest| {
+            let to = |sense| self.structure.barrier_j(rest, gravity_m_s2, sense);
+            Some(to(1.0)?.min(to(-1.0)?))
+        };
+        let (known_m_s2, rest) = &self.rest;
+        if gravity_m_s2 == *known_m_s2 {
+            return *self.barrier_j.get_or_init(|| of(rest));
+        }
+        of(&self.rest(gravity_m_s2).ok()?)
     }
 
     fn is_faster_together(&self) -> bool {
@@ -343,7 +373,8 @@ impl Model for ElasticJoints {
                     && let Some(ended) = group.go_on(lane)
                 {
                     let ended = ended.map_err(SimulationError::from);
-                    answers[case] = Some(ended.and_then(|summary| self.judged(summary, &rest)));
+                    answers[case] =
+                        Some(ended.and_then(|summary| self.judged(summary, &rest, gravity_m_s2)));
                     *running = None;
                 }
                 while running.is_none()

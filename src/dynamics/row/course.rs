@@ -438,6 +438,7 @@ impl<'a> Course<'a> {
                 sliding: None,
                 elastic: None,
                 largest_kinetic_j: 0.0,
+                largest_potential_j: 0.0,
                 energy_taken_j: 0.0,
                 energy_error: 0.0,
                 least_normal_n: f64::INFINITY,
@@ -634,6 +635,7 @@ impl<'a> Course<'a> {
         of_row.energy_error = summary.energy_defect_ratio * self.energy_unit / largest_j;
         let sliding = of_row.sliding.as_ref();
         let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
+        of_row.largest_potential_j = self.peak_potential;
         summary.outcome = outcome;
         summary.outcome_time_s = outcome_time_s;
         summary.end_s = self.time;

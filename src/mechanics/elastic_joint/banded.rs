@@ -30,8 +30,8 @@ impl Banded {
         self.rows[index] += value;
     }
 
-    /// Solves for a right-hand side, in its place; the matrix is used up. False if it is singular.
-    pub(super) fn solve(&mut self, right: &mut [f64]) -> bool {
+    /// Solves for right-hand sides, in their places; the matrix is used up. False if it is singular.
+    pub(super) fn solve<const K: usize>(&mut self, mut rights: [&mut [f64]; K]) -> bool {
         let (size, width) = (self.size, self.width);
         for column in 0..size {
             let below = (column + width).min(size - 1);
@@ -45,7 +45,9 @@ impl Banded {
                     let (one, two) = (self.index(column, other), self.index(pivot, other));
                     self.rows.swap(one, two);
                 }
-                right.swap(column, pivot);
+                for right in &mut rights {
+                    right.swap(column, pivot);
+                }
             }
             let diagonal = self.rows[self.index(column, column)];
             if diagonal == 0.0 || !diagonal.is_finite() {
@@ -59,16 +61,20 @@ impl Banded {
                         let index = self.index(row, other);
                         self.rows[index] -= factor * above;
                     }
-                    right[row] -= factor * right[column];
+                    for right in &mut rights {
+                        right[row] -= factor * right[column];
+                    }
                 }
             }
         }
-        for row in (0..size).rev() {
-            let last = (row + 2 * width).min(size - 1);
-            let known: f64 = (row + 1..=last)
-                .map(|column| self.rows[self.index(row, column)] * right[column])
-                .sum();
-            right[row] = (right[row] - known) / self.rows[self.index(row, row)];
+        for right in rights {
+            for row in (0..size).rev() {
+                let last = (row + 2 * width).min(size - 1);
+                let known: f64 = (row + 1..=last)
+                    .map(|column| self.rows[self.index(row, column)] * right[column])
+                    .sum();
+                right[row] = (right[row] - known) / self.rows[self.index(row, row)];
+            }
         }
         true
     }
@@ -99,11 +105,13 @@ mod tests {
                 *right += entry(row, column) * due[column];
             }
         }
-        assert!(matrix.solve(&mut right));
-        for (found, due) in right.iter().zip(due) {
+        let mut twice: Vec<f64> = right.iter().map(|right| 2.0 * right).collect();
+        assert!(matrix.solve([&mut right, &mut twice]));
+        for ((found, twice), due) in right.iter().zip(twice).zip(due) {
             assert!((found - due).abs() < 1e-11, "{found} {due}");
+            assert!((0.5 * twice - due).abs() < 1e-11, "{twice} {due}");
         }
         matrix.clear();
-        assert!(!matrix.solve(&mut right));
+        assert!(!matrix.solve([&mut right]));
     }
 }

@@ -153,6 +153,78 @@ impl ElasticStructure {
     }
 }
 
+/// The way along which a structure is pushed over goes in steps of this part of its joints' length at first, ...
+const FIRST_STRIDE: f64 = 2e-3;
+/// ... of ten times as much at most, and is lost where they would be shorter than this part of that.
+const SHORTEST_STRIDE: f64 = 1e-6;
+/// Part of the work on such a way by which the energy of the structure may differ from it.
+const SAME_ENERGY: f64 = 0.03;
+/// Steps of such a way, at most.
+const MOST_STRIDES: usize = 1000;
+/// Unbalanced forces along the way, over the weight.
+const BALANCED_ON_WAY: f64 = 1e-7;
+
+impl ElasticStructure {
+    /// Energy in J that it gains from rest up to where it falls by itself, where it is pushed over slowly to the right (or the left): its
+    /// centre of gravity is led aside, everything else is in equilibrium, and the push does the work. `None` where no such way
+    /// is found, or where something slips or crushes on it.
+    ///
+    /// What moves to a side has to pass all places of its centre of gravity. Of all its shapes with that place those along the way have the least
+    /// energy near by, so what has less than the energy at the top cannot pass it.
+    #[must_use]
+    pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
+        let without_slip = self.without_slip();
+        let search = Search::new(&without_slip, [0.0, -gravity_m_s2]);
+        let mass_kg = self.mass_kg();
+        let first_m = FIRST_STRIDE * search.length_m;
+        let (mut stride_m, mut work_j) = (first_m, 0.0);
+        let mut here = Pushed {
+            moved: rest.moved.clone(),
+            push_m_s2: 0.0,
+            sway_m: search.sway_m(&rest.moved),
+        };
+        let mut before: Option<Pushed> = None;
+        for _ in 0..MOST_STRIDES {
+            let there = search.pushed(before.as_ref(), &here, sense * stride_m);
+            let Some((there, steps)) = there else {
+                stride_m *= 0.5;
+                if stride_m < SHORTEST_STRIDE * first_m {
+                    return None;
+                }
+                continue;
+            };
+            // The last part of the way, up to where no push is needed, is a straight line's.
+            let (from, to) = (sense * here.push_m_s2, sense * there.push_m_s2);
+            let part = if to > 0.0 { 1.0 } else { from / (from - to) };
+            work_j += 0.5 * (from + to.max(0.0)) * part * stride_m * mass_kg;
+            let shape = search.at_rest(there.moved.clone(), 0.0, 0);
+            if shape.fibres.iter().any(|fibre| fibre.crushed_m.0[0] > 0.0) {
+                return None;
+            }
+            if to <= 0.0 {
+                // Where it jumped from one way to another the work is not what the structure gained.
+                let gained_j = search.energy_j(&shape) - search.energy_j(rest);
+                let same = (work_j - gained_j).abs() < SAME_ENERGY * work_j;
+                return same.then_some(work_j.min(gained_j));
+            }
+            if steps <= 4 {
+                stride_m = (1.5 * stride_m).min(10.0 * first_m);
+            }
+            before = Some(std::mem::replace(&mut here, there));
+        }
+        None
+    }
+}
+
+/// A structure that is pushed sideways.
+struct Pushed {
+    moved: Vec<[f64; 3]>,
+    /// To the right, per mass.
+    push_m_s2: f64,
+    /// Displacement of its centre of gravity to the right.
+    sway_m: f64,
+}
+
 /// A search for the equilibrium of a structure.
 struct Search<'a> {
     structure: &'a ElasticStructure,
@@ -268,7 +340,7 @@ impl<'a> Search<'a> {
         let mut forces = vec![0.0; 3 * bodies];
         self.unbalanced(&moved, true, Some(&mut matrix), &mut forces);
         matrix
-            .solve(&mut forces)
+            .solve([&mut forces])
             .then(|| self.stepped(&moved, &forces, 1.0))
     }
 
@@ -291,7 +363,7 @@ impl<'a> Search<'a> {
             steps += 1;
             matrix.clear();
             self.unbalanced(&moved, false, Some(&mut matrix), &mut forces);
-            if !matrix.solve(&mut forces) {
+            if !matrix.solve([&mut forces]) {
                 break;
             }
             let shortened = (0..12)
@@ -308,6 +380,110 @@ impl<'a> Search<'a> {
             (moved, norm) = better;
         }
         (norm < BALANCED).then(|| self.at_rest(moved, norm, steps_before + steps))
+    }
+
+    /// How far the centre of gravity has moved to the right.
+    fn sway_m(&self, moved: &[[f64; 3]]) -> f64 {
+        let bodies = self.structure.bodies().iter().zip(moved);
+        let moments: f64 = bodies.map(|(body, moved)| body.mass_kg * moved[0]).sum();
+        moments / self.structure.mass_kg()
+    }
+
+    /// In equilibrium with its centre of gravity farther to the right, from what it was here and before; with the number of steps.
+    fn pushed(
+        &self,
+        before: Option<&Pushed>,
+        here: &Pushed,
+        stride_m: f64,
+    ) -> Option<(Pushed, usize)> {
+        let bodies = self.structure.bodies();
+        let size = 3 * bodies.len();
+        let sway_m = here.sway_m + stride_m;
+        let (mut moved, mut push_m_s2) = (here.moved.clone(), here.push_m_s2);
+        if let Some(before) = before {
+            let part = stride_m / (here.sway_m - before.sway_m);
+            for (moved, before) in moved.iter_mut().zip(&before.moved) {
+                for (moved, before) in moved.iter_mut().zip(before) {
+                    *moved += part * (*moved - before);
+                }
+            }
+            push_m_s2 += part * (push_m_s2 - before.push_m_s2);
+        }
+        let mut matrix = Banded::new(size, self.width);
+        let (mut forces, mut by_push) = (vec![0.0; size], vec![0.0; size]);
+        let none = vec![[0.0; 3]; bodies.len()];
+        let missing_m = |moved: &[[f64; 3]]| sway_m - self.sway_m(moved);
+        let (mut norm, mut missing) = (f64::INFINITY, missing_m(&moved));
+        for steps in 0..MOST_STEPS {
+            matrix.clear();
+            self.unbalanced(&moved, false, Some(&mut matrix), &mut forces);
+            self.push(push_m_s2, &mut forces);
+            if steps == 0 {
+                norm = self.norm(&forces);
+            }
+            if norm < BALANCED_ON_WAY && missing.abs() < 1e-6 * stride_m.abs() {
+                let there = Pushed {
+                    moved,
+                    push_m_s2,
+                    sway_m,
+                };
+                return Some((there, steps));
+            }
+            by_push.fill(0.0);
+            self.push(1.0, &mut by_push);
+            if !matrix.solve([&mut forces, &mut by_push]) {
+                return None;
+            }
+            let [free_m, pushed_m] =
+                [&forces, &by_push].map(|step| self.sway_m(&self.stepped(&none, step, 1.0)));
+            let more_m_s2 = (missing - free_m) / pushed_m;
+            for (step, by_push) in forces.iter_mut().zip(&by_push) {
+                *step += more_m_s2 * by_push;
+            }
+            let step = forces.clone();
+            let better = (0..8)
+                .map(|halvings| 0.5_f64.powi(halvings))
+                .find_map(|part| {
+                    let there = self.stepped(&moved, &step, part);
+                    let push_m_s2 = push_m_s2 + part * more_m_s2;
+                    self.unbalanced(&there, false, None, &mut forces);
+                    self.push(push_m_s2, &mut forces);
+                    let other = self.norm(&forces);
+                    let closer = other < norm || other < BALANCED_ON_WAY;
+                    closer.then(|| (missing_m(&there), other, there, push_m_s2))
+                });
+            (missing, norm, moved, push_m_s2) = better?;
+        }
+        None
+    }
+
+    /// Adds a push to the right, per mass, to forces.
+    fn push(&self, push_m_s2: f64, forces: &mut [f64]) {
+        for (index, body) in self.structure.bodies().iter().enumerate() {
+            forces[3 * index] += body.mass_kg * push_m_s2;
+        }
+    }
+
+    /// Elastic and potential energy, in J.
+    fn energy_j(&self, rest: &Rest) -> f64 {
+        let bodies = self.structure.bodies().iter().zip(&rest.moved);
+        let lifted: f64 = bodies
+            .map(|(body, moved)| -self.load_m_s2[1] * body.mass_kg * moved[1])
+            .sum();
+        let each = self.structure.fibres();
+        let joints = self
+            .structure
+            .joints()
+            .iter()
+            .zip(&rest.memories)
+            .enumerate();
+        let elastic: f64 = joints
+            .map(|(index, (joint, memory))| {
+                let fibres = &rest.fibres[index * each..(index + 1) * each];
+                self.structure.energy_j(joint, memory, fibres).0[0]
+            })
+            .sum();
+        lifted + elastic
     }
 
     fn at_rest(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Rest {
