@@ -311,7 +311,8 @@
   }
 
   function inWords(at, poses) {
-    let most = 0;
+    // Of several that turn as far, the one that the words name.
+    let most = data.largest_body;
     poses.forEach(({ rotation }, body) => {
       if (Math.abs(rotation) > Math.abs(poses[most].rotation)) most = body;
     });
