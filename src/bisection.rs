@@ -106,10 +106,10 @@ mod tests {
                 x >= change
             });
             assert_eq!(ends, (low, high));
-            // Ten steps.
+            // Ten steps, or nine where a thousandth of the end is twice that of the beginning.
             assert!(
-                asked.len() == 4 && asked[..3] == [7, 7, 7] && asked[3] == 1,
-                "{asked:?}"
+                asked == [7, 7, 7, 1] || asked == [7, 7, 7],
+                "{change}: {asked:?}"
             );
         }
     }

@@ -301,7 +301,7 @@ fn results_do_not_depend_on_threads_and_parts() {
     for words in [
         "6 cells: ",
         "another outcome in a repetition",
-        "without the boundary",
+        "no boundary of overturning",
     ] {
         assert!(said.contains(words), "{said}");
     }
