@@ -28,7 +28,7 @@ def test_joints_bear_the_weight_at_first() -> None:
 def test_a_point_moves_with_its_block() -> None:
     for options in ({}, {"model": "free_hinges"}, {"model": "elastic_joints", "normal_stiffness_gpa_m": 10.0}):
         stack = STACK if options else Column(height_m=4.0, width_m=0.8)
-        history = simulate(stack, PULSE, duration_s=1.0, point=(0.0, 4.0), **options)  # type: ignore[arg-type]
+        history = simulate(stack, PULSE, duration_s=1.0, point=(0.0, 4.0), **options)
         turn, x, y = np.moveaxis(history.poses[:, -1], 1, 0)
         due = np.stack([x - 4.0 * np.sin(turn), y + 4.0 * np.cos(turn) - 4.0], 1)
         np.testing.assert_allclose(history.point, due, atol=1e-12)

@@ -357,9 +357,9 @@ fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> Stri
     let decided = whether
         .in_words(told.uncertain)
         .or_else(|| far.in_words(told.uncertain));
-    let decided = decided.map_or(String::new(), |decided| format!("; {decided}"));
+    let decided = decided.map_or(String::new(), |decided| format!(";\n    {decided}"));
     format!(
-        "overturns with a probability of {}; the scenario itself {own}{decided}; {NOT_CONSIDERED}",
+        "overturns with a probability of {};\n    the scenario itself {own}{decided};\n    {NOT_CONSIDERED}",
         share_in_words(&share)
     )
 }
@@ -368,7 +368,7 @@ fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> Stri
 fn far_in_words(told: &Told<'_, Went>) -> String {
     let number = |value: f64| {
         if value.is_finite() {
-            format!("{value:.3e}")
+            format!("{value:.4} rad")
         } else {
             "overturning".to_owned()
         }
@@ -376,7 +376,7 @@ fn far_in_words(told: &Told<'_, Went>) -> String {
     let peaks: Vec<f64> = told.answered().map(|(_, went)| went.peak_rad()).collect();
     match band(peaks) {
         Some([low, median, high]) => format!(
-            "largest rotation: median {} rad, 5 to 95 %: {} to {} rad",
+            "largest rotation: median {}; 5 to 95 %: {} to {}",
             number(median),
             number(low),
             number(high)
@@ -472,10 +472,10 @@ fn first_of_edges(told: &Told<'_, FirstEdge>, decides: &Decides<'_>) -> String {
         Err(_) => "the scenario itself has no answer".to_owned(),
     };
     let decided = decides.in_words(told.uncertain);
-    let decided = decided.map_or(String::new(), |decided| format!("; {decided}"));
+    let decided = decided.map_or(String::new(), |decided| format!(";\n    {decided}"));
     format!(
         "first overturns at a factor of {} (5 to 95 %: {} to {}), {own}; up to the factor 1 with a probability of \
-         {}{decided}; {NOT_CONSIDERED}",
+         {}{decided};\n    {NOT_CONSIDERED}",
         factor(median),
         factor(low),
         factor(high),
@@ -578,9 +578,9 @@ pub(super) fn capacities(
     });
     let both = &fragilities.both.of;
     let decided = decides[0].in_words(told.uncertain);
-    let decided = decided.map_or(String::new(), |decided| format!("; {decided}"));
+    let decided = decided.map_or(String::new(), |decided| format!(";\n    {decided}"));
     let mut words = vec![format!(
-        "half of the records and samples overturn up to {column_name} {}, with a dispersion of {}{decided}; {NOT_CONSIDERED}",
+        "half of the records and samples overturn up to {column_name} {}, with a dispersion of {}{decided};\n    {NOT_CONSIDERED}",
         rounded_or(both.median),
         rounded_or(both.dispersion)
     )];
