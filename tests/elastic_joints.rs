@@ -595,12 +595,12 @@ fn what_overturns_had_more_energy_than_its_barrier() {
 }
 
 /// Any row on any joints, under pulses or noise, vertical too: what can be computed has a balance of energy that closes, and friction,
-/// damping and crushing create nothing; what does not stand says why. More with `ARCHROCK_CASES`.
+/// damping and crushing create nothing; what does not stand says why, and what needs shorter steps which. More with `ARCHROCK_CASES`.
 #[test]
 fn no_history_fails_silently() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(20, |cases| cases.parse().unwrap());
     let mut random = Random(1);
-    let (mut moved, mut none) = (0, 0);
+    let (mut moved, mut none, mut refused) = (0, 0, 0);
     for case in 0..cases {
         let row = random_row(&mut random, 60);
         let stiffness = 1e9 * 1e3_f64.powf(random.next());
@@ -628,7 +628,11 @@ fn no_history_fails_silently() {
             0.0
         };
         let ground = if random.chance(0.3) {
-            noise(&mut random, [2.0 * strong_g, vertical_g], 0.7 * end_s)
+            noise(
+                &mut random,
+                [2.0 * strong_g, vertical_g],
+                (0.7 * end_s).max(0.1),
+            )
         } else {
             let peak_m_s2 = Vector2::new(strong_g, vertical_g) * 9.81;
             let train = archrock::WaveTrain::default();
@@ -640,9 +644,20 @@ fn no_history_fails_silently() {
             none += 1;
             continue;
         };
-        let summary = model
-            .simulate(&ground, &request(9.81, end_s), None)
-            .unwrap_or_else(|error| panic!("{case}: {error}"));
+        let summary = match model.simulate(&ground, &request(9.81, end_s), None) {
+            Ok(summary) => summary,
+            // A refusal names the step that is short enough.
+            Err(error)
+                if error
+                    .to_string()
+                    .contains("give a longest_step_s of at most") =>
+            {
+                eprintln!("{case}: {error}");
+                refused += 1;
+                continue;
+            }
+            Err(error) => panic!("{case}: {error}"),
+        };
         let row = summary.row.as_ref().unwrap();
         let elastic = row.elastic.unwrap();
         for taken_j in [elastic.friction_j, elastic.damped_j, elastic.crushed_j] {
@@ -651,7 +666,9 @@ fn no_history_fails_silently() {
         assert!(row.energy_error <= 1e-2 && summary.largest_rotation_rad().is_finite());
         moved += 1;
     }
+    eprintln!("{moved} moved, {none} do not stand, {refused} refused");
     assert!(2 * moved > none, "{moved} {none}");
+    assert!(20 * refused <= cases, "{refused}");
 }
 
 /// Ratios of the rates after and before landings, from successive turning points, over Housner's, of a block five times as high as wide:
