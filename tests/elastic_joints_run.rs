@@ -138,6 +138,9 @@ fn a_run_tells_what_joints_bear() {
         assert!((stress_pa / weight_n - 1.0).abs() < 1e-9, "{stress_pa}");
     }
     let summary = json(&folder.path().join("o/summary.json"));
+    // No impact is counted, and friction has bounds that are known.
+    assert!(summary["impacts"].is_null() && summary["friction_j"].is_number());
+    assert!(summary.get("unconverged_steps").is_none());
     // Rocking, the whole weight and more is on a part of the base.
     let largest_pa = summary["largest_compressive_stress_pa"].as_f64().unwrap();
     assert!(largest_pa > 5.0 * weight_n && largest_pa <= 2e7 * (1.0 + 1e-9));

@@ -310,6 +310,19 @@ impl Summary {
             .map_or(0, |before| self.peak_rotations_rad.len() - 1 - before)
     }
 
+    /// Number of impacts; `None` of elastic joints, whose contact lasts.
+    #[must_use]
+    pub fn known_impacts(&self) -> Option<usize> {
+        let gives_way = self.row.as_ref().and_then(|row| row.elastic.as_ref());
+        gives_way.is_none().then_some(self.impacts)
+    }
+
+    /// When it overturned, in seconds; `None` where it did not.
+    #[must_use]
+    pub fn overturned_s(&self) -> Option<f64> {
+        matches!(self.outcome, Outcome::Overturned(_)).then_some(self.outcome_time_s)
+    }
+
     /// Half cycles of a row of blocks; of others, none.
     #[must_use]
     pub fn half_cycles(&self) -> &[HalfCycle] {

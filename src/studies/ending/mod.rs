@@ -181,12 +181,11 @@ impl Ending {
         safe_from_s: Option<f64>,
         uncertain: Option<String>,
     ) -> Result<Self, String> {
-        let gives_way = summary.row.as_ref().and_then(|row| row.elastic.as_ref());
         let ending = Self {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
             safe_from_s,
-            impacts: gives_way.is_none().then_some(summary.impacts),
+            impacts: summary.known_impacts(),
             energy_defect_ratio: summary.energy_defect_ratio,
             peak: PeakRotation::of(summary),
             steps: summary.row.as_ref().map(|row| Steps {

@@ -167,10 +167,7 @@ impl Picture for Timeline {
         let values = rotations.iter().flat_map(|curve| &curve.points);
         let unstable_rad = self.far.iter().map(|cycle| cycle.unstable_rad);
         let y = around(values.map(|point| point.1).chain(unstable_rad), 6);
-        let overturned_s = match summary.outcome {
-            Outcome::Overturned(_) => Some(summary.outcome_time_s),
-            Outcome::NeverMoved | Outcome::Rest | Outcome::StillRocking => None,
-        };
+        let overturned_s = summary.overturned_s();
         panels.panel("Rotation (rad)", 260.0, y, doing, |drawing, axes| {
             draw_curves(drawing, axes, &rotations);
             for cycle in &self.far {

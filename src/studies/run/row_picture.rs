@@ -105,10 +105,7 @@ impl Picture for RowTimeline {
             .collect();
         let values = rotations.iter().flat_map(|curve| &curve.points);
         let y = around(values.map(|point| point.1), 6);
-        let overturned_s = match summary.outcome {
-            Outcome::Overturned(_) => Some(summary.outcome_time_s),
-            Outcome::NeverMoved | Outcome::Rest | Outcome::StillRocking => None,
-        };
+        let overturned_s = summary.overturned_s();
         panels.panel("Rotation (rad)", 240.0, y, doing, |drawing, axes| {
             draw_curves(drawing, axes, &rotations);
             if let Some(time_s) = overturned_s {

@@ -24,8 +24,8 @@ use crate::scenario::{Ground, Scenario};
 /// overturns, where that is known. Normal forces and friction are those outside impacts; `largest_friction_demand` is that of
 /// the samples, as in `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the
 /// diagonal of a column), `energy_defect_over_largest` over the larger of the barrier, where that is known, and the largest
-/// kinetic energy. Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and what
-/// did not converge. `spread` is left out where the run was not repeated; where a repetition failed it says why, as `failed`.
+/// kinetic energy. Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and, with
+/// free hinges, what did not converge. `impacts` is null with elastic joints, whose contact lasts. `spread` is left out where the run was not repeated; where a repetition failed it says why, as `failed`.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -47,7 +47,7 @@ pub fn summary(
     };
     object.put("verdict", json!(evidence.verdict().name()));
     object.ending(history)?;
-    object.put("impacts", json!(history.impacts));
+    object.put("impacts", json!(history.known_impacts()));
     let peaks = columns(&model.bodies(), "peak_rotation", "rad");
     for (name, peak_rad) in peaks.iter().zip(&history.peak_rotations_rad) {
         object.number(name, *peak_rad)?;
@@ -226,12 +226,14 @@ impl Object {
             self.numbers("slips_m", &sliding.offsets_m)?;
             self.numbers("largest_slips_m", &sliding.largest_offsets_m)?;
             self.number("friction_j", sliding.friction_j)?;
-            self.number("friction_bound_error", sliding.bound_error)?;
-            self.counts([("unconverged_steps", sliding.unconverged)]);
         }
         if row.elastic.is_some() {
             self.counts([("steps", history.cost.steps)]);
             return Ok(());
+        }
+        if let Some(sliding) = &row.sliding {
+            self.number("friction_bound_error", sliding.bound_error)?;
+            self.counts([("unconverged_steps", sliding.unconverged)]);
         }
         self.counts([
             ("steps", history.cost.steps),
