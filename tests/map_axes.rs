@@ -136,7 +136,7 @@ fn axes_that_do_not_suit_are_refused() {
     };
     let said = refused(pulse, "amplitude_g = [1, 2]\n'arch.depht_m' = [1, 2]");
     assert!(
-        said.contains("no cell of [map] has a scenario: unknown key `depht_m`"),
+        said.contains("no cell of [map] makes a valid scenario: unknown key `depht_m`"),
         "{said}"
     );
     let said = refused(pulse, "amplitude_g = [1, 2]\n'map.spread' = [1, 2]");

@@ -466,7 +466,11 @@ fn parts_threads_and_interruptions_change_nothing() {
     assert!(said.starts_with("6 points: "), "{said}");
     assert_eq!(results(&folder.join("parts")), whole);
     let no_impact: Vec<_> = merge().chain(["--no-impact"]).collect();
-    refused(folder, &no_impact, &["--no-impact is about maps"]);
+    refused(
+        folder,
+        &no_impact,
+        &["--no-impact is for maps with amplitude_g as an axis"],
+    );
 
     // As if it had been killed within its third row.
     fs::create_dir(folder.join("killed")).unwrap();

@@ -390,7 +390,11 @@ fn parts_make_the_same_files_where_the_records_are_not() {
     assert_eq!(entries.count(), FILES.len());
 
     merge.push("--no-impact");
-    refused(folder, &merge, &["--no-impact is about maps"]);
+    refused(
+        folder,
+        &merge,
+        &["--no-impact is for maps with amplitude_g as an axis"],
+    );
     let damaged = read(&folder.join(&parts[0])).replace("\"mirrored\":false", "\"mirrored\":true");
     write(folder, &parts[0], &damaged);
     merge.pop();
@@ -481,7 +485,7 @@ fn without_a_curve_the_reason_is_said() {
             never.is_some()
         );
         assert_eq!(
-            said.contains("records/wave-1.at2: overturns at 4.000 already, the least tried\n"),
+            said.contains("records/wave-1.at2: overturns at 4.000 already, the smallest tried\n"),
             always.is_some()
         );
         let picture = read(&folder.join("o/suite.svg"));

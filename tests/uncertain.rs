@@ -405,7 +405,7 @@ fn samples_that_do_not_stand_are_told() {
         return;
     }
     assert!(
-        said.contains("make no structure that stands, and do not count; the first: "),
+        said.contains("make no structure that stands, and are left out of the shares; the first: "),
         "{said}"
     );
     let summary = json(&at.join("r/uncertain/uncertain.json"));

@@ -126,13 +126,13 @@ impl MapOption {
             return Err(NO_BOUNDARY.to_owned());
         }
         if self.dimensionless || self.color != Color::Outcome {
-            return Err("--color and --dimensionless are about maps".to_owned());
+            return Err("--color and --dimensionless are for maps only".to_owned());
         }
         Ok(Look::of(figure))
     }
 }
 
-const NO_BOUNDARY: &str = "--no-impact is about maps one of whose axes is amplitude_g";
+const NO_BOUNDARY: &str = "--no-impact is for maps with amplitude_g as an axis";
 
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {

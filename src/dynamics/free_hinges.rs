@@ -305,7 +305,7 @@ fn check(gravity_m_s2: f64, settings: &Settings) -> Result<(), FreeHingeError> {
         ("output step in s", output_step_s),
     ] {
         if settings.end_s / step_s > MOST_STEPS {
-            let allowed = "a motion of more than 1e12 such steps comes to no end";
+            let allowed = "a motion of more than 1e12 such steps would never end";
             return refused(name, step_s, allowed);
         }
     }

@@ -63,7 +63,7 @@ pub enum RowError {
     )]
     Count(usize),
     /// An arch is a ring without joints.
-    #[error("an arch without joints is no row of blocks: give the number of voussoirs")]
+    #[error("an arch without joints is not a row of blocks: give the number of voussoirs")]
     NoVoussoirs,
     /// The number of joints does not fit.
     #[error(

@@ -130,7 +130,7 @@ impl Remarks {
             _ => format!("; all are in {file}"),
         };
         Some(format!(
-            "uncertain is what other steps, or landings merged, answer otherwise; the first: {first}{listed}"
+            "uncertain: with other steps, or with landings merged, they end otherwise; the first: {first}{listed}"
         ))
     }
 }

@@ -77,7 +77,7 @@ pub fn in_words(survival: &Survival, unit: &str) -> String {
             at(survival.tried_to)
         ),
         Some(first) if survival.from_the_first => {
-            format!("overturns at {} already, the least tried", at(first))
+            format!("overturns at {} already, the smallest tried", at(first))
         }
         Some(first) => format!("first overturns at {}", at(first)),
     };
@@ -172,7 +172,7 @@ mod tests {
         );
         assert_eq!(
             in_words(&survival(Some(0.1), &[]), ""),
-            "overturns at 0.1000 already, the least tried"
+            "overturns at 0.1000 already, the smallest tried"
         );
         let uncertain = |from, uncertain: &[[f64; 2]]| Survival {
             uncertain: uncertain.to_vec(),

@@ -55,7 +55,7 @@ pub enum ElasticJointError {
         end_s: f64,
     },
     /// Numbers left their range.
-    #[error("at {time_s} s the motion is no number any more: give a shorter longest_step_s")]
+    #[error("at {time_s} s the motion has grown beyond all numbers: give a shorter longest_step_s")]
     Lost {
         /// When, in seconds.
         time_s: f64,

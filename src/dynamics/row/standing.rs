@@ -140,7 +140,7 @@ impl RigidRow {
             Some(FirstMechanism::Base) => return Ok(vec![-side * initial.rotation_rad; blocks]),
             None => {
                 return Err(refused(
-                    "left out: this row starts as no mechanism that it could be released in"
+                    "left out: this row does not start as a mechanism from which it could be released"
                         .to_owned(),
                 ));
             }

@@ -87,7 +87,7 @@ impl<'a> Decides<'a> {
         });
         let Some((first, share)) = words.next() else {
             return Some(format!(
-                "no number alone decides {}: they do together, or by chance as these samples see it",
+                "no number alone decides {}: several together do, or chance",
                 self.what
             ));
         };
@@ -197,8 +197,14 @@ fn beginning<A>(told: &Told<'_, A>) -> Value {
 /// How many samples have no answer, and why the first has none.
 fn without_answer<A>(told: &Told<'_, A>) -> Vec<String> {
     let all = [
-        ("invalid", "make no structure that stands, and do not count"),
-        ("failed", "could not be computed, and do not count"),
+        (
+            "invalid",
+            "make no structure that stands, and are left out of the shares",
+        ),
+        (
+            "failed",
+            "could not be computed, and are left out of the shares",
+        ),
     ];
     let words = all.into_iter().filter_map(|(name, what)| {
         let mut reasons = told

@@ -110,7 +110,7 @@ fn friction_text(row: &Row, coefficient: f64) -> Result<String, FrictionError> {
             continue;
         };
         let governs = if onset.sliding_governs() {
-            "sliding governs; it takes joints to open as they slip, and is an upper bound"
+            "sliding governs; this is an upper bound, since joints are taken to open as they slip"
         } else {
             "no joint slips"
         };

@@ -159,7 +159,7 @@ impl<'a> OverturningMap<'a> {
         })?;
         match map.fault() {
             None => Ok(map),
-            Some(fault) => Err(format!("no cell of [map] has a scenario: {fault}")),
+            Some(fault) => Err(format!("no cell of [map] makes a valid scenario: {fault}")),
         }
     }
 

@@ -241,7 +241,7 @@ fn legend(
     };
     if shown(|boundary| Some(boundary.incipient_g)) {
         let incipient = if map.moves_vertically() {
-            "incipient acceleration, were there no vertical motion"
+            "incipient acceleration without the vertical motion"
         } else {
             "incipient acceleration"
         };

@@ -154,7 +154,7 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
     let mut lines = vec![format!("{} cells: {counts}", cells.len())];
     if map.has_spread() {
         lines.push(format!(
-            "{} of them have another outcome in a repetition, be it only rest instead of rocking on",
+            "{} of them have another outcome in a repetition, if only rest instead of still rocking",
             doubtful(cells)
         ));
     }

@@ -165,7 +165,7 @@ fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String
     if row.energy_error > DOUBTFUL_ENERGY_ERROR {
         let _ = writeln!(
             text,
-            "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [{}] makes it less",
+            "  that is {:.2} % of the largest energy of the motion: a smaller longest_step_s in [{}] reduces it",
             1e2 * row.energy_error,
             scenario.motion().table_name()
         );
