@@ -413,7 +413,7 @@ fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
 
 /// Says that the masonry falls under its own weight, and what would hold it.
 fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Reported {
-    let shape = masonry.shape.name();
+    let shape = masonry.shape().name();
     let falls = format!(
         "cannot carry its own weight: it opens at joints {joints} (0: the left base or springing)"
     );

@@ -167,7 +167,7 @@ impl Structure {
             Self::Arch(arch) => (arch.depth_m(), arch.density_kg_m3()),
             Self::Column(column) => (column.depth_m(), column.density_kg_m3()),
             Self::Masonry(masonry) => {
-                let material = masonry.shape.material();
+                let material = masonry.shape().material();
                 (material.depth_m, material.density_kg_m3)
             }
         }
@@ -217,7 +217,7 @@ fn four_link_row(
     masonry: &Masonry,
     impact: impl Into<ImpactLaw>,
 ) -> Result<FourLinkRow, FourLinkError> {
-    let depth_m = masonry.shape.material().depth_m;
+    let depth_m = masonry.shape().material().depth_m;
     Ok(FourLinkRow::new(masonry.row(), impact)?.with_depth_m(depth_m)?)
 }
 

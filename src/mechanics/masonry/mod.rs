@@ -188,18 +188,14 @@ impl Shape {
 /// An arch of any shape with what it stands on and what it carries.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Masonry {
-    /// Its shape.
     #[serde(flatten)]
-    pub shape: Shape,
-    /// What its springings stand on.
+    shape: Shape,
     #[serde(skip_serializing_if = "Piers::are_none")]
-    pub piers: Piers,
-    /// What lies on it.
+    piers: Piers,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub fill: Option<Fill>,
-    /// Masses on it.
+    fill: Option<Fill>,
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
-    pub loads: Vec<PlacedLoad>,
+    loads: Vec<PlacedLoad>,
     #[serde(skip)]
     row: Row,
 }
@@ -336,6 +332,30 @@ impl Masonry {
             loads,
             row,
         })
+    }
+
+    /// Its shape.
+    #[must_use]
+    pub const fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// The piers that its springings stand on.
+    #[must_use]
+    pub const fn piers(&self) -> &Piers {
+        &self.piers
+    }
+
+    /// The fill above it.
+    #[must_use]
+    pub const fn fill(&self) -> Option<&Fill> {
+        self.fill.as_ref()
+    }
+
+    /// The masses on its extrados.
+    #[must_use]
+    pub fn loads(&self) -> &[PlacedLoad] {
+        &self.loads
     }
 
     /// Its blocks and joints.
