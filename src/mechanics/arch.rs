@@ -11,8 +11,8 @@ use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::ring::Ring;
 
-/// Lengths in metres and densities in kg/m3: wide enough for any arch, and no product of them leaves the range of
-/// an `f64`.
+/// Range of lengths in metres and of densities in kg/m3: wide enough for any arch, and no product of them leaves
+/// the range of an `f64`.
 pub(crate) const MAGNITUDE: RangeInclusive<f64> = 1e-3..=1e6;
 
 /// A thinner arch is lost in rounding.
@@ -52,8 +52,8 @@ pub struct Arch {
     density_kg_m3: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     voussoirs: Option<usize>,
-    /// Onset of rocking, found when first asked for. It depends on the shape alone, and arches of one shape
-    /// share it.
+    /// Onset of rocking, computed on the first request. It depends on the shape alone, so arches of the
+    /// same shape share it.
     #[serde(skip)]
     incipient: Arc<OnceLock<Result<Incipient, LimitError>>>,
 }
@@ -254,8 +254,8 @@ impl Arch {
             .map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }
 
-    /// Sections at which lines of thrust are told, in radians from the left springing: the joints, or 61 sections of an
-    /// arch that hinges anywhere.
+    /// Sections at which lines of thrust are reported, in radians from the left springing: the joints, or 61 sections
+    /// of an arch that hinges anywhere.
     #[must_use]
     pub fn thrust_sections_rad(&self) -> Vec<f64> {
         let parts = self.voussoirs.unwrap_or(60);

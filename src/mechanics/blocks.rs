@@ -19,7 +19,7 @@ use crate::mechanics::geometry::ring::{Edge, MassMoments, Ring};
 /// impacts, while thresholds hardly change beyond a few dozen voussoirs.
 pub const MAX_BLOCKS: usize = 500;
 
-/// The size of a row is at least this part of its extent.
+/// The size of a row is at least this fraction of its extent.
 const LEAST_SIZE_RATIO: f64 = 1e-6;
 
 /// Why blocks and joints do not make a row.
@@ -47,14 +47,14 @@ pub enum RowError {
         /// Its value.
         value: f64,
     },
-    /// The size has nothing to do with the row.
+    /// The size is negligible beside the row.
     #[error(
         "size in m is {size_m}: it must be at least a millionth of the extent of the row, {extent_m:.3e}, since steps follow it"
     )]
     Size {
         /// The size.
         size_m: f64,
-        /// How far a corner of a joint is from the first one.
+        /// Largest distance of a corner of a joint from the first corner.
         extent_m: f64,
     },
     /// No block, or too many.
@@ -62,7 +62,7 @@ pub enum RowError {
         "{0} blocks: a row has 1 to {MAX_BLOCKS}; with more, a step takes longer to compute and must be shorter"
     )]
     Count(usize),
-    /// An arch is a ring without joints.
+    /// The arch is a ring without joints.
     #[error("an arch without joints is not a row of blocks: give the number of voussoirs")]
     NoVoussoirs,
     /// The number of joints does not fit.
@@ -255,19 +255,19 @@ pub struct Row {
     size_m: f64,
     /// What the blocks look like, from their corners.
     outlines_m: Vec<Vec<Vector2<f64>>>,
-    /// Of a joint with unit vector `e` along the face and normal `n` towards the right block: `e x n`.
+    /// `e x n` of every joint, with `e` the unit vector along the face and `n` the normal towards the right block.
     handedness: f64,
     /// Whether the left and the right support go on beyond their joints.
     supports_go_on: [bool; 2],
 }
 
 impl Row {
-    /// A row of given blocks and joints. `size_m` is the length that energies and steps are measured with: the mean
-    /// radius of an arch, the half diagonal of a stack.
+    /// A row of given blocks and joints. `size_m` is the length that scales energies and steps: the mean radius of an arch, the half
+    /// diagonal of a stack.
     ///
     /// # Errors
-    /// When a number is not finite or not positive where it must be, when the size is nothing beside the row, when joints cross, or when a block is not
-    /// between its joints.
+    /// When a number is not finite, or not positive where it must be, when the size is negligible beside the row, when joints cross, or
+    /// when a block is not between its joints.
     pub fn new(
         blocks: Vec<Block>,
         joints: Vec<Joint>,
@@ -352,7 +352,7 @@ impl Row {
         let outlines_m = (0..count)
             .map(|block| {
                 let (before, centre_m) = (&joints[block], blocks[block].centre_m);
-                // The free top of a stack is seen as its bottom turned about the centre.
+                // The free top of a stack is drawn as its bottom turned about the centre.
                 let after = joints.get(block + 1).copied().unwrap_or(Joint {
                     intrados_m: 2.0 * centre_m - before.extrados_m,
                     extrados_m: 2.0 * centre_m - before.intrados_m,
@@ -386,9 +386,9 @@ impl Row {
         }
     }
 
-    /// The same row on other supports, left and right (of a stack: the base, and none). One that goes on beyond its joint, as the
-    /// ground does beyond a base, carries the block wherever that slides; else the block slides off. Where joints do not slip the two
-    /// are the same.
+    /// The same row, whose left and right supports extend beyond their joints or not (a stack has only the left one, its base). A
+    /// support that extends, as the ground does around a base, carries the block however far it slides; otherwise the block can slide
+    /// off. Where joints do not slip the two are the same.
     #[must_use]
     pub const fn with_supports_that_go_on(mut self, sides: [bool; 2]) -> Self {
         let right = matches!(self.supports, Supports::Both);
@@ -396,7 +396,7 @@ impl Row {
         self
     }
 
-    /// The same row with a body that moves with a block.
+    /// The same row with a body fixed to a block.
     #[must_use]
     pub fn carrying(mut self, block: usize, body: &Block) -> Self {
         if let Some(block) = self.blocks.get_mut(block) {
@@ -405,7 +405,7 @@ impl Row {
         self
     }
 
-    /// The mirror image about the y axis: what was the right support is the left one. `None` for a stack, whose blocks
+    /// The mirror image about the y axis: the right support becomes the left one. `None` for a stack, whose blocks
     /// would keep their order.
     #[must_use]
     pub fn mirrored(&self) -> Option<Self> {
@@ -628,7 +628,7 @@ impl Row {
         self.supports_go_on
     }
 
-    /// The length, in metres, that energies and steps are measured with.
+    /// The length, in metres, that scales energies and steps.
     #[must_use]
     pub const fn size_m(&self) -> f64 {
         self.size_m
@@ -653,7 +653,7 @@ impl Row {
     }
 }
 
-/// False also for what is not a number.
+/// False also for NaN.
 fn positive_side(distance: f64) -> bool {
     distance > 0.0
 }

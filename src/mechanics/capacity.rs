@@ -1,9 +1,9 @@
 //! The quasi-static capacity of a mechanism at finite displacements, and its equivalent oscillator.
 //!
 //! Held at the rotation `q`, the first mechanism is in equilibrium under gravity and the horizontal acceleration
-//! `a(q) = S_y(q) / S_x(q)` (in g): virtual power, as at the onset, where `a(0) = A_L`. It falls to zero at the unstable
-//! equilibrium. Drawn against the horizontal displacement `d` of a control point it is the capacity curve, and `d` at its
-//! end the ultimate displacement.
+//! `a(q) = S_y(q) / S_x(q)` (in g). This follows from virtual power, as at the onset, where `a(0) = A_L`. The acceleration
+//! falls to zero at the unstable equilibrium. Drawn against the horizontal displacement `d` of a control point it is the
+//! capacity curve; `d` at its end is the ultimate displacement.
 //!
 //! The equivalent oscillator is that of the kinematic approach to masonry (reviewed by Casapulla, Giresini and Lourenço,
 //! Rocking and kinematic approaches for rigid block analysis of masonry walls, Buildings 7, 69, 2017), defined
@@ -26,22 +26,22 @@ use super::geometry::pose::Pose;
 use super::sway::Sway;
 use super::virtual_work::{MovingBody, Participation};
 
-/// A structure on the way of its first mechanism.
+/// A structure displaced along its first mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Displaced {
     /// The coordinate of the mechanism, in radians.
     pub q_rad: f64,
-    /// Horizontal acceleration that it is in equilibrium with, in units of gravity, against the sway.
+    /// Horizontal acceleration of the ground, against the sway, that holds it in equilibrium, in units of gravity.
     pub acceleration_g: f64,
     /// Poses of its bodies from left to right, in metres, in the frame of the ground.
     pub poses: Vec<Pose>,
     /// Positions of its hinges from left to right, likewise.
     pub hinges_m: Vec<Vector2<f64>>,
-    /// Friction coefficient without which it would slide there, held at rest by that acceleration.
+    /// Friction coefficient below which it would slide there, held at rest by that acceleration.
     pub friction: f64,
 }
 
-/// The first mechanism to a side, at this part of its way to the unstable equilibrium.
+/// The first mechanism to a side, displaced by this fraction of the way to its unstable equilibrium.
 #[must_use]
 pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Option<Displaced> {
     let link = structure.link_from(sway, 0)?;
@@ -82,7 +82,7 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
 }
 
 /// The rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements for one radian of
-/// its coordinate, in metres; what stands still is none of them.
+/// its coordinate, in metres. Parts that stand still are left out.
 #[must_use]
 pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingBody>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
@@ -128,12 +128,12 @@ impl Carried {
     }
 }
 
-/// The point whose displacement is told: one of the structure, or the common centre of several.
+/// The point whose displacement is reported: a point of the structure, or the common centre of several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {
     /// Where it is in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
-    /// The points with their parts of it, which add up to one.
+    /// The points with their weights, which add up to one.
     points: Vec<(f64, Carried)>,
 }
 
@@ -147,7 +147,7 @@ impl Control {
         }
     }
 
-    /// The common centre of those masses, in kg, that move.
+    /// The common centre of the masses, in kg, that move.
     #[must_use]
     pub fn centre_of(masses: &[(f64, Carried)]) -> Self {
         let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
@@ -180,9 +180,9 @@ pub struct CurvePoint {
     pub oscillator_displacement_m: f64,
     /// Its acceleration `a*`, in g.
     pub oscillator_acceleration_g: f64,
-    /// Its secant period in seconds, 0 at rest; `None` at the unstable equilibrium, where it grows beyond bounds.
+    /// Its secant period in seconds, 0 at rest; `None` at the unstable equilibrium, where it is infinite.
     pub secant_period_s: Option<f64>,
-    /// Friction coefficient without which it would slide there.
+    /// Friction coefficient below which it would slide there.
     pub friction: f64,
 }
 
@@ -195,9 +195,9 @@ pub struct Capacity {
     pub control: Control,
     /// Participating mass `M*` in kg.
     pub participating_mass_kg: f64,
-    /// Its part `e*` of the mass that moves.
+    /// `e*`: the participating mass as a fraction of the mass that moves.
     pub mass_fraction: f64,
-    /// What displacements of the control point are multiplied by to be those of the oscillator.
+    /// Factor from displacements of the control point to those of the oscillator.
     pub to_oscillator: f64,
     /// From rest to the unstable equilibrium, at equal steps of the coordinate.
     pub curve: Vec<CurvePoint>,
@@ -231,13 +231,13 @@ pub enum CapacityError {
 /// Intervals of a capacity curve.
 const INTERVALS: u32 = 100;
 
-/// Part of the way to the unstable equilibrium by which velocities at the start are taken as central differences: they
-/// err by its square.
+/// Step of the central differences that give the velocities at the start, as a fraction of the way to the unstable
+/// equilibrium: their error is its square.
 const START: f64 = 1e-5;
 
 impl Capacity {
-    /// The capacity of a mechanism given by its positions at parts of the way to the unstable equilibrium; `masses` are in
-    /// kg.
+    /// The capacity of a mechanism given by its positions at fractions of the way to the unstable equilibrium; `masses`
+    /// are in kg.
     ///
     /// # Errors
     /// When the control point does not move, or the mechanism locks before its acceleration falls to zero.
@@ -275,7 +275,7 @@ impl Capacity {
             ..
         } = Participation::of(moving);
         let to_oscillator = oscillator_displacement / control_velocity;
-        // At the end of the way it may be no number.
+        // At the end of the way the acceleration may be NaN.
         let [start_g, end_g] = [0.0, 1.0].map(|part| displaced(part).acceleration_g);
         if end_g.is_nan() || end_g.abs() > 1e-6 * start_g {
             return Err(CapacityError::Locks { sway });
@@ -283,7 +283,7 @@ impl Capacity {
         let curve: Vec<CurvePoint> = (0..=INTERVALS)
             .map(|step| {
                 let here = displaced(f64::from(step) / f64::from(INTERVALS));
-                // Rounding may leave either on either side of zero.
+                // Rounding may leave the first displacement and the last acceleration on either side of zero.
                 let (first, last) = (step == 0, step == INTERVALS);
                 let displacement_m = if first {
                     0.0
@@ -334,8 +334,8 @@ impl Capacity {
         self.curve.last().expect("a curve has points")
     }
 
-    /// The acceleration of the oscillator, in g, where it is displaced by this part of `d0*`, between 0 and 1: on straight
-    /// lines between the points of the curve.
+    /// The acceleration of the oscillator, in g, at this fraction of `d0*`, between 0 and 1, interpolated linearly between
+    /// the points of the curve.
     #[must_use]
     pub fn oscillator_acceleration_g(&self, part: f64) -> f64 {
         let wanted_m = part * self.end().oscillator_displacement_m;
@@ -350,7 +350,7 @@ impl Capacity {
             + share * (high.oscillator_acceleration_g - low.oscillator_acceleration_g)
     }
 
-    /// The secant period, in seconds, at this part of the ultimate displacement, between 0 and 1; `None` at its end.
+    /// The secant period, in seconds, at this fraction of the ultimate displacement, between 0 and 1; `None` at its end.
     #[must_use]
     pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
         let wanted_m = part * self.end().oscillator_displacement_m;

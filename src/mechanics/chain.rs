@@ -41,8 +41,8 @@ pub struct Motion {
 /// Thrust excess and friction demand of a structure: see [`crate::mechanics::four_link::thrust`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demand {
-    /// How far the line of thrust leaves the structure, in parts of the thickness; zero inside. The
-    /// largest over its sections.
+    /// How far the line of thrust leaves the structure, over the thickness: the largest value of
+    /// its sections, zero if it stays inside.
     pub excess_ratio: f64,
     /// Friction coefficient needed to prevent sliding, the largest over the sections.
     pub friction: f64,
@@ -71,7 +71,7 @@ pub trait Mechanism {
     fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>);
 }
 
-/// A mechanism in the sequence that impacts lead through.
+/// A mechanism in the sequence that the impacts produce.
 #[derive(Clone, Debug)]
 pub struct Link<M> {
     /// The mechanism at finite rotations.
@@ -120,7 +120,7 @@ impl<M: Mechanism> Link<M> {
         Self::with_critical_rad(mechanism, critical_rad, limit_rad, rate_ratio, restitution)
     }
 
-    /// The same where the unstable equilibrium is known in closed form.
+    /// The same link, of a mechanism whose unstable equilibrium is known in closed form.
     #[must_use]
     pub fn with_critical_rad(
         mechanism: M,
@@ -141,11 +141,11 @@ impl<M: Mechanism> Link<M> {
     }
 }
 
-/// The mechanisms that a structure rocks by under an impact model.
+/// The mechanisms by which a structure rocks under an impact model.
 ///
-/// Which mechanism follows an impact depends on the one that closes, not on how fast it does: from the
-/// mechanism that starts at the incipient acceleration the sequence is fixed. Every implementor is a
-/// [`Model`](crate::dynamics::model::Model).
+/// Which mechanism follows an impact depends on the one that closes, not on how fast it closes. So the
+/// sequence is fixed from the mechanism that starts at the incipient acceleration. Every implementor
+/// is a [`Model`](crate::dynamics::model::Model).
 pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// Its mechanisms.
     type Mechanism: Mechanism + Send + Sync;
@@ -162,7 +162,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
 
     /// Horizontal acceleration at which it starts to rock from rest to a side, in units of gravity.
     fn incipient_towards_g(&self, sway: Sway) -> f64;
-    /// The same to the right; of a structure that is its own mirror image, to either side.
+    /// The same to the right; for a structure that is its own mirror image, to either side.
     fn incipient_g(&self) -> f64 {
         self.incipient_towards_g(Sway::Right)
     }
@@ -170,13 +170,14 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
     /// The same at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
-    /// The line of thrust of one of its mechanisms in motion, where it is known section by section: how far it lies
-    /// outwards from the axis over the thickness, from left to right in the mechanism's frame, or from the base up to the
-    /// right; `None` where a section is not pressed.
+    /// The line of thrust of one of its mechanisms in motion, section by section, where it is known: its outward distance
+    /// from the axis over the thickness, from left to right in the mechanism's frame. In a column the sections go from
+    /// the base up and the distance is to the right. `None` where a section is not pressed.
     fn eccentricity_ratios(&self, _: &Self::Mechanism, _: &Motion) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// That line seen in a mirror: its sections from the other end; of a column, whose sections stay, on the other side.
+    /// The mirror image of that line: its sections from the other end. In a column the sections stay and the distances
+    /// change sign.
     fn mirrored(&self, mut eccentricity_ratios: Vec<Option<f64>>) -> Vec<Option<f64>> {
         eccentricity_ratios.reverse();
         eccentricity_ratios
@@ -188,7 +189,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// The mechanism after a number of impacts and a first sway to this side; `None` when an impact before it stops
     /// the structure.
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Self::Mechanism>>;
-    /// The same after a first sway to the right; of a structure that is its own mirror image, to either side.
+    /// The same after a first sway to the right; for a structure that is its own mirror image, to either side.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>> {
         self.link_from(Sway::Right, impacts)
     }

@@ -10,9 +10,9 @@
 //! `q = pi/2` it lies on its side. With `p^2 = 3 g / (4 R)` the slender column obeys
 //! `q'' = p^2 (q - alpha) - p^2 a_g / g`.
 //!
-//! At an impact it goes from one toe to the other. There is one mechanism that can follow, so the models
-//! that search for it ([`ImpactModel::MaxRestitution`], [`ImpactModel::SameSections`],
-//! [`ImpactModel::Mirrored`]) are the same: Housner's.
+//! At an impact it passes from one toe to the other. Only one mechanism can follow, so the models that
+//! search for it ([`ImpactModel::MaxRestitution`], [`ImpactModel::SameSections`],
+//! [`ImpactModel::Mirrored`]) all reduce to Housner's.
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
@@ -35,8 +35,8 @@ use crate::mechanics::sway::Sway;
 /// The column turning about its right toe; lengths in half diagonals, unit density and depth.
 #[derive(Clone, Copy, Debug)]
 pub struct Tilting {
-    /// Sine and cosine of the slenderness: from the sides, not from the angle, in whose digits a flat
-    /// column has lost its height.
+    /// Sine and cosine of the slenderness, computed from the sides. The angle would not do: for a
+    /// flat column it has lost the height in rounding.
     sin: f64,
     cos: f64,
     mass: f64,
@@ -79,7 +79,7 @@ impl Mechanism for Tilting {
         }
     }
 
-    /// Differences of sines and cosines as products, which keep their digits at small rotations.
+    /// Differences of sines and cosines are written as products, which keep their digits at small rotations.
     fn displacement(&self, q_rad: f64) -> Vector2<f64> {
         let chord = 2.0 * self.mass * (0.5 * q_rad).sin();
         let (sin, cos) = self.sin_cos_from(0.5 * q_rad);
@@ -94,7 +94,7 @@ impl Mechanism for Tilting {
         [-1.0]
     }
 
-    /// From the middle of the base, which is the origin.
+    /// Positions are relative to the middle of the base, the origin.
     fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
         let toe = Vector2::new(self.sin, 0.0);
         poses.clear();
@@ -104,13 +104,13 @@ impl Mechanism for Tilting {
     }
 }
 
-/// Sizes in metres and densities in kg/m3: no product of them leaves the range of an `f64`.
+/// Range of sizes in metres and of densities in kg/m3: no product of them leaves the range of an `f64`.
 const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 
 /// A free-standing column: a rectangular block on rigid ground, which does not slide.
 ///
-/// It may have any proportions. A column wider than `sqrt(2)` times its height stops at its first impact;
-/// and one that starts to rock from rest needs a friction coefficient of its width over its height.
+/// It may have any proportions. A column wider than `sqrt(2)` times its height stops at its first impact. To
+/// rock from rest without sliding, a column needs a friction coefficient of its width over its height.
 ///
 /// It is one block unless it is cut into drums, and prismatic unless it is tapered. Housner's model is a single
 /// prismatic block; the others are simulated with free hinges.
@@ -197,7 +197,8 @@ impl Column {
         })
     }
 
-    /// The same column on a pedestal as wide as its base, off which it falls where it slips too far; else on ground that goes on.
+    /// The same column on a pedestal as wide as its base, off which it falls if it slips too far; if `false`, on ground that
+    /// extends beyond the base.
     #[must_use]
     pub fn on_pedestal(self, pedestal: bool) -> Self {
         Self { pedestal, ..self }
@@ -209,10 +210,11 @@ impl Column {
         self.pedestal
     }
 
-    /// Its drums as a row of blocks, on ground that goes on unless it stands on a pedestal.
+    /// Its drums as a row of blocks, on ground that extends beyond the base unless it stands on a
+    /// pedestal.
     ///
     /// # Errors
-    /// When the drums make no row.
+    /// When the drums do not make a row.
     pub fn row(&self) -> Result<Row, RowError> {
         let row = Row::tapered_stack(
             &self.drum_heights_m(),
@@ -278,7 +280,8 @@ impl Column {
         self.width_m
     }
 
-    /// Sections at which the line of thrust of one block is told, in metres above the base: 21 from there to the top.
+    /// Sections at which the line of thrust of a single block is reported, in metres above the base: 21, from the base to the
+    /// top.
     #[must_use]
     pub fn thrust_sections_m(&self) -> Vec<f64> {
         let parts = thrust_section_parts();
@@ -311,7 +314,7 @@ pub struct RockingColumn {
     mass_unit_kg: f64,
     incipient_g: f64,
     first: Link<Tilting>,
-    /// The link after any number of impacts.
+    /// The link after one or more impacts; `None` if the first impact stops the column.
     next: Option<Link<Tilting>>,
 }
 
@@ -373,13 +376,13 @@ impl RockingColumn {
     }
 }
 
-/// Rate after an impact for a unit rate before it: the projection of the closing motion, a rotation about
-/// one toe, onto the opening motion, the rotation about the other, in the kinetic-energy metric. That is
-/// the conservation of angular momentum about the new toe, and gives `1 - 3/2 sin^2(alpha)`. The arguments are
-/// sine and cosine of the slenderness.
+/// Rate after an impact for a unit rate before it. The closing motion, a rotation about one toe, is projected
+/// in the kinetic-energy metric onto the opening motion, the rotation about the other toe. That conserves
+/// angular momentum about the new toe, and gives `1 - 3/2 sin^2(alpha)`. The arguments are sine and cosine of
+/// the slenderness.
 ///
-/// Not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: so flat a column would go on
-/// turning about the toe that is just leaving the ground, into the ground. It stops.
+/// The rate is not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: so flat a column would
+/// drive the toe that it has turned about into the ground. It stops instead.
 fn rate_ratio(sin: f64, cos: f64) -> f64 {
     // About the middle of the base; the mass cancels.
     let moments = MassMoments {
@@ -392,16 +395,17 @@ fn rate_ratio(sin: f64, cos: f64) -> f64 {
     opening.power(&closing) / opening.power(&opening.momentum(&moments))
 }
 
-/// Sections at which the line of thrust is told, in parts of the height.
+/// Sections at which the line of thrust is reported, as fractions of the height.
 fn thrust_section_parts() -> impl Iterator<Item = f64> {
     (0..=20_u8).map(|section| f64::from(section) / 20.0)
 }
 
 impl Tilting {
-    /// Where the resultant of a load on what is above a section normal to the axis crosses it, to the right over the width,
-    /// section by section from the base up; `None` where the part below would have to pull.
+    /// Where the line of thrust crosses each section normal to the axis, from the base up: the distance to the right over
+    /// the width, for the resultant of the load on the part above. `None` where the part below would have to pull.
     ///
-    /// Nothing is above the last section: there it is the limit, to which the inertia of a turning slice contributes.
+    /// No part lies above the top section. There the value is the limit for a thin slice, to which the inertia of its
+    /// rotation contributes.
     fn eccentricity_ratios(&self, load: &Load) -> Vec<Option<f64>> {
         let (width, height) = (2.0 * self.sin, 2.0 * self.cos);
         let crossing = |part: f64| {
@@ -422,7 +426,7 @@ impl Tilting {
     }
 }
 
-/// What the reaction of the ground, per weight, with its moment about the middle of the base, asks of it.
+/// Demand at the base for a ground reaction per unit weight and its moment about the middle of the base.
 fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Demand {
     let width = 2.0 * mechanism.sin;
     let base = SectionResultant {
@@ -525,8 +529,8 @@ mod tests {
             prop_assert!((link.restitution - housner * housner).abs() < 2e-15);
         }
 
-        /// Positions by the rotation of the diagonal; derivatives by central differences, which err by
-        /// `h^2` and by `1e-16 / h`.
+        /// Positions come from the rotation of the diagonal, derivatives from central differences,
+        /// whose errors are `h^2` and `1e-16 / h`.
         #[test]
         fn coefficients_are_derivatives(slenderness_rad in 0.01_f64..1.5, q in 0.0_f64..FRAC_PI_2) {
             let tilting = column(slenderness_rad, ImpactModel::Mirrored).first.mechanism;
@@ -558,9 +562,9 @@ mod tests {
         assert!((kg_m2 / (kg * (16.0 + 0.64) / 3.0) - 1.0).abs() < 1e-14);
     }
 
-    /// At the release a column falls with `q'' = -3/4 g/R sin(alpha - q)`, like the rod of the textbooks, which
-    /// the ground carries with `1 - 3/4 sin^2` of the weight and pushes with `3/4 sin cos`. At rest it carries
-    /// all of it, and pushes with the ground's acceleration.
+    /// At release a column falls with `q'' = -3/4 g/R sin(alpha - q)`, like the falling rod of the textbooks:
+    /// the ground carries `1 - 3/4 sin^2` of the weight and pushes with `3/4 sin cos` of it. At rest the ground
+    /// carries all of the weight, and pushes with its acceleration.
     #[test]
     fn the_base_carries_what_it_has_to() {
         let column = column(0.3, ImpactModel::MaxRestitution);
@@ -591,8 +595,8 @@ mod tests {
     }
 
     proptest! {
-        /// Forces summed over thin slices of the block, each with the acceleration of its own centre by the second derivative
-        /// of where it is, and with the moment that turns it.
+        /// The reference sums over thin slices of the block. Each has the acceleration of its own centre, by the second
+        /// derivative of its position, and the moment that turns it.
         #[test]
         fn the_line_of_thrust_is_that_of_slices(
             slenderness_rad in 0.05_f64..0.8,
@@ -612,7 +616,7 @@ mod tests {
             let ratios = column.eccentricity_ratios(&mechanism, &motion);
             prop_assert_eq!(ratios.len(), 21);
 
-            // Where a point of the axis is at a time, in the frame of the ground, and its second derivative.
+            // Position of a point of the axis at a given time, in the frame of the ground.
             let axis = |y: f64, time: f64| {
                 let q = q_rad + rate * time + 0.5 * acceleration * time * time;
                 let (sin, cos) = q.sin_cos();
@@ -641,7 +645,7 @@ mod tests {
                     None => prop_assert!(normal < 1e-6),
                 }
             }
-            // About its toe it presses the ground there, whatever else it does.
+            // A column that turns about its toe presses the ground there, whatever else it does.
             if let Some(base) = ratios[0] {
                 prop_assert!((base - 0.5).abs() < 1e-12 / -body_force_g.y.min(-1e-2));
             }
@@ -649,7 +653,7 @@ mod tests {
             prop_assert!(mirrored.iter().zip(&ratios).all(|(a, b)| *a == b.map(|b| -b)));
         }
 
-        /// At rest it is straight, from where the demand has it at the base to the middle of the top.
+        /// At rest the line of thrust is straight, from the point at the base that the demand gives to the middle of the top.
         #[test]
         fn the_line_of_thrust_at_rest_is_straight(slenderness_rad in 0.05_f64..0.8, push_g in -2.0_f64..2.0) {
             let column = column(slenderness_rad, ImpactModel::MaxRestitution);

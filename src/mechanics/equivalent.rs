@@ -13,9 +13,9 @@
 //! - at the unstable equilibrium, where `U' = 0`: `p_c^2 = -U''(q_c) / M(q_c)`, or
 //! - at rest: `p_0^2 = n^2(0) / cos(alpha)`.
 //!
-//! The two agree for a column, whose own `p` and `alpha` they are. For an arch they differ: the mechanism
-//! stiffens or softens on its way. The first describes overturning and near-overturning, the second
-//! small rocking.
+//! For a column the two agree: they are its own `p` and `alpha`. For an arch they differ: the mechanism
+//! stiffens or softens on its way. The first describes overturning and near-overturning, the second small
+//! rocking.
 
 use super::chain::{Link, Mechanism, MechanismChain};
 use super::sway::Sway;
@@ -34,9 +34,10 @@ pub struct Block {
 pub struct Equivalent {
     /// Slenderness `alpha = atan(A_L)` of both, in radians.
     pub slenderness_rad: f64,
-    /// The one that grows as fast from rest; `None` if the structure's own disturbances do not grow there.
+    /// The block whose disturbances grow as fast at rest; `None` if those of the structure do not grow
+    /// there.
     pub at_rest: Option<Block>,
-    /// The one that grows as fast from the unstable equilibrium.
+    /// The block whose disturbances grow as fast at the unstable equilibrium.
     pub at_critical: Option<Block>,
 }
 
@@ -72,8 +73,8 @@ pub fn equivalent_towards<C: MechanismChain>(
 /// `n^2` for unit gravity and length.
 fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
     let rise = |q| link.mechanism.coefficients(q).s_y;
-    // Central difference over five points. Its error is the fourth power of a thousandth, far below what
-    // a mechanism changes over its way to q_c, and as much again by rounding.
+    // Central difference over five points. The step is a thousandth of the way to q_c: the relative
+    // error is its fourth power, and as much again by rounding.
     let step = 1e-3 * link.critical_rad;
     let near = rise(q_rad + step) - rise(q_rad - step);
     let far = rise(q_rad + 2.0 * step) - rise(q_rad - 2.0 * step);
@@ -88,7 +89,7 @@ mod tests {
     use crate::mechanics::column::{Column, RockingColumn};
     use crate::mechanics::four_link::impact::ImpactModel;
 
-    /// Slender and fat; `step^4 = 1e-12` and rounding by `1e-16 / 1e-3` are the errors.
+    /// Slender and fat columns. The errors are `step^4 = 1e-12` and rounding by `1e-16 / 1e-3`.
     #[test]
     fn a_column_is_its_own_equivalent_block() {
         for (height_m, width_m) in [(1e3, 1e-3), (4.0, 0.8), (1.0, 1.0), (1.0, 3.0)] {

@@ -6,9 +6,9 @@
 //! at the mean angle of its faces. A hinge, where that gap is zero, is thus an exact pin at its corner, at any rotation; the larger
 //! gap is the arc `t |delta|`, not the chord.
 //!
-//! Positions follow from the left support to the right. In an arch the blocks behind the last open joint stand
-//! where the right support has them, and the rotation of that joint closes the row; what rounding leaves
-//! between its two faces is the [`Placement::closure_error`].
+//! Positions follow from the left support to the right. In an arch the blocks to the right of the last open joint stand where the
+//! right support holds them, and the rotation of that joint closes the row. What rounding leaves between its two faces is the
+//! [`Placement::closure_error`].
 
 use nalgebra::Vector2;
 
@@ -23,8 +23,8 @@ pub const SHUT_RATIO: f64 = 1e-12;
 /// The line on which the faces of a joint press each other, in its present position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Its intrados corner: midway between the nearer corners of the faces if they are those of the intrados, else
-    /// a thickness away from them along the joint.
+    /// Its intrados corner: midway between the intrados corners of the two faces if these are the nearer ones,
+    /// else one thickness along the joint from the midpoint of the extrados corners.
     pub intrados_m: Vector2<f64>,
     /// Unit vector to the extrados.
     pub along: Vector2<f64>,
@@ -45,7 +45,7 @@ impl Frame {
     }
 }
 
-/// Constants of a joint, so that they are not computed at each step.
+/// Constants of a joint, kept so that they are not computed at each step.
 #[derive(Clone, Copy, Debug)]
 struct Face {
     joint: Joint,
@@ -68,7 +68,7 @@ pub struct Placement {
     closure: Option<Closure>,
 }
 
-/// What is left open between the two parts of an arch.
+/// The mismatch between the two parts of an arch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closure {
     /// The last open joint.
@@ -170,7 +170,8 @@ impl Placement {
         ratios.fold(0.0, f64::max)
     }
 
-    /// Shuts the corners that are open by less than this part of the thickness, and places the blocks anew. False if there is none.
+    /// Shuts the corners that are open by less than this fraction of the thickness, and places the blocks anew. Returns false if
+    /// there are none.
     pub fn shut_below(&mut self, ratio: f64) -> bool {
         let mut found = false;
         for (gaps, face) in self.gaps_m.iter_mut().zip(&self.faces) {
@@ -196,7 +197,7 @@ impl Placement {
         self.closure = other.closure;
     }
 
-    /// Gaps of hinges that turn the blocks by the given rotations in radians; no joint parts altogether.
+    /// Sets the gaps of hinges that turn the blocks by the given rotations in radians; every joint stays shut at one corner.
     pub fn turn(&mut self, rotations_rad: &[f64]) {
         for joint in 0..self.faces.len() {
             let at = |block: Option<usize>| block.and_then(|b| rotations_rad.get(b)).copied();
@@ -280,7 +281,7 @@ impl Placement {
         let start = left.of(face.middle) + normal * (nearer + chord);
         if closing {
             let mut error_m = face.middle - start;
-            // A joint that is parted takes the error across it as a change of its gap.
+            // A joint that is open at both corners takes the error normal to it as a change of its gaps.
             if nearer > 0.0 {
                 let change = normal.dot(&error_m).max(-nearer);
                 self.gaps_m[joint] = gaps.map(|gap| gap + change);
@@ -313,7 +314,7 @@ fn hinged(width_m: f64, nearer_m: f64) -> [f64; 2] {
     [nearer_m + (-width_m).max(0.0), nearer_m + width_m.max(0.0)]
 }
 
-/// Gaps of the last open joint: its rotation is what brings the row back to zero.
+/// Gaps of the last open joint: its rotation brings the rotation of the row back to zero.
 fn closed_gaps(gaps: &[f64; 2], rotation_rad: f64, face: &Face, handedness: f64) -> [f64; 2] {
     let gaps = hinged(
         -handedness * rotation_rad * face.thickness,

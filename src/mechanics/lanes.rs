@@ -1,13 +1,13 @@
-//! Numbers side by side, so that one source computes one motion, several at once, or derivatives.
+//! Numbers side by side, so that the same code computes one motion, several at once, or derivatives.
 //!
-//! What is written for any [`Real`] takes no branch that depends on a value: it selects. Each lane of [`Lanes`] then has the bits that it
-//! would have alone, whatever is beside it.
+//! Code written for any [`Real`] never branches on a value: it selects. So each lane of [`Lanes`] has the bits that it would have alone,
+//! whatever the others hold.
 
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A pair, of an expression with 0 and with 1 for the name. Written out, not mapped: in functions as large as a step the compiler leaves
-/// calls of `map`.
+/// A pair: an expression with 0 and with 1 for the name. It is written out, not mapped: in functions as large as a step the compiler
+/// does not inline `map`.
 macro_rules! both {
     ($index:ident: $value:expr) => {
         [
@@ -24,7 +24,7 @@ macro_rules! both {
 }
 pub(crate) use both;
 
-/// What the mechanics of elastic joints computes with.
+/// The numbers that the mechanics of elastic joints computes with.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -73,7 +73,7 @@ pub trait Real:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const L: usize>(pub [f64; L]);
 
-/// Applies an expression lane by lane. A loop of its own, not a closure: the compiler turns it into vectors wherever it stands.
+/// Applies an expression lane by lane. It is a loop, not a closure, so that the compiler vectorises it wherever it stands.
 macro_rules! by_lane {
     ($lane:ident: $value:expr) => {{
         let mut lanes = [0.0; L];
@@ -170,7 +170,7 @@ impl<const L: usize> Real for Lanes<L> {
         by_lane!(lane: if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] })
     }
 
-    // Infinities differ by no number, so these compare instead of subtracting.
+    // The difference of two infinities is NaN, so these compare instead of subtracting.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         by_lane!(lane: if self.0[lane] > other.0[lane] { self.0[lane] } else { other.0[lane] })
@@ -182,7 +182,7 @@ impl<const L: usize> Real for Lanes<L> {
     }
 }
 
-/// A number with its derivatives by `D` variables.
+/// A number with its derivatives with respect to `D` variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<const D: usize> {
     /// The number.
@@ -199,7 +199,7 @@ impl<const D: usize> Dual<D> {
         Self { value, slope }
     }
 
-    /// A function of this number, by its value and derivative.
+    /// A function of this number, given by its value and derivative.
     #[must_use]
     pub fn chained(self, value: f64, derivative: f64) -> Self {
         let slope = self.slope.map(|slope| slope * derivative);

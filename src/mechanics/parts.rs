@@ -1,4 +1,4 @@
-//! What a structure consists of, and where: the same questions to an arch, a column and a row of blocks.
+//! The parts of a structure and their places: the same interface for an arch, a column and a row of blocks.
 
 use nalgebra::Vector2;
 
@@ -7,14 +7,14 @@ use super::blocks::Row;
 use super::column::Column;
 use super::geometry::ring::Edge;
 
-/// Equal parts that a continuous ring is taken as: the participating mass errs by the square of their size, 1e-6.
+/// Number of equal parts that stand for a continuous ring: the participating mass errs by the square of their size, 1e-6.
 const PARTS: usize = 720;
 
-/// A part of a structure, which no hinge divides.
+/// A part of a structure that no hinge divides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Where its middle is along the structure: an angle from the left springing in radians, or half a joint beyond a number of
-    /// joints.
+    /// Place of its middle along the structure: an angle from the left springing in radians, or the number of the joint before
+    /// it plus one half.
     pub place: f64,
     /// Its mass, in kg.
     pub mass_kg: f64,
@@ -27,13 +27,13 @@ pub trait Parts {
     /// Its parts from left to right, or upwards.
     fn parts(&self) -> Vec<Part>;
 
-    /// What these are, in words.
+    /// The parts in words.
     fn parts_in_words(&self) -> String;
 
     /// Its crown, the highest point: place along the structure, and position in metres.
     fn crown(&self) -> (f64, Vector2<f64>);
 
-    /// Place along the structure of a point in metres; `None` where it is not on it.
+    /// Place along the structure of a point in metres; `None` for a point outside the structure.
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64>;
 }
 

@@ -1,10 +1,11 @@
 //! Whether a row stands, and the push that starts it, by limit analysis with any number of hinges.
 //!
-//! The row gives way under a load per unit mass when the velocities nearest to that load, among those that its
-//! joints allow, are not zero ([`super::contact`]); what they are then is a mechanism, and the load at which
-//! that one just does no work is an upper bound of the strength. Under that load the row either stands, and the
-//! bound is the strength, or another mechanism lowers it. There are finitely many, and the bounds fall fast
-//! (Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967): a few programs are enough.
+//! A row gives way under a load per unit mass if the velocities nearest to that load, among those that its
+//! joints allow, are not zero ([`super::contact`]). These velocities then form a mechanism, and the load at
+//! which it just does no work is an upper bound of the strength. Under that load the row either stands, and the
+//! bound is the strength, or another mechanism lowers the bound. There are finitely many mechanisms, and the
+//! bounds fall fast (Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967): it takes
+//! only a few programs.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -76,7 +77,7 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
     let mut found: Option<RowOnset> = None;
     while let Some(work) = trial.moves(load)? {
         let acceleration_g = work.y / (sway.sign() * work.x);
-        // The bounds fall; below rounding they do not.
+        // The bounds fall until rounding stops them.
         if found
             .as_ref()
             .is_some_and(|found| acceleration_g >= found.acceleration_g * (1.0 - 1e-14))

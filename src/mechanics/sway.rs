@@ -23,7 +23,7 @@ impl Sway {
         }
     }
 
-    /// The side to which it swayed so many impacts before: every impact changes it.
+    /// The side to which it swayed that many impacts earlier: every impact changes the side.
     #[must_use]
     pub const fn before(self, impacts: usize) -> Self {
         if impacts.is_multiple_of(2) {
@@ -33,7 +33,7 @@ impl Sway {
         }
     }
 
-    /// The side to which a horizontal ground acceleration pushes a structure: against it.
+    /// The side to which a horizontal ground acceleration pushes a structure: opposite to the acceleration.
     #[must_use]
     pub fn pushed_by(ground_acceleration: f64) -> Self {
         if ground_acceleration.is_sign_negative() {
@@ -52,8 +52,8 @@ impl Sway {
         }
     }
 
-    /// A section counted from the left springing, from that in the frame in which this sway goes right, or the
-    /// other way round: an angle in radians, or a joint.
+    /// Converts a section counted in the frame in which this sway goes right to one counted from the left
+    /// springing, or the other way round: an angle in radians, or a joint.
     #[must_use]
     pub fn from_left(self, profile: &dyn Profile, section: f64) -> f64 {
         match self {

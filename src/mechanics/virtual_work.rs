@@ -1,6 +1,6 @@
 //! Virtual work of a mechanism of rigid bodies: the load multiplier that starts it, and its participating mass.
 //!
-//! Bodies are lumped at their centres of gravity, with what they carry. Their virtual displacements are those from the
+//! Each body, with what it carries, is lumped at its centre of gravity. Virtual displacements start from the
 //! undeformed position, up to a common factor, which nothing here depends on.
 
 use nalgebra::Vector2;
@@ -14,7 +14,7 @@ pub struct MovingBody {
     pub centre_m: Vector2<f64>,
     /// Virtual displacement of its centre: x in the direction of the sway, y upwards.
     pub displacement: Vector2<f64>,
-    /// Virtual rotation, towards the side of the sway, per metre where displacements have no unit.
+    /// Virtual rotation, towards the side of the sway; per metre if the displacements have no unit.
     pub rotation: f64,
 }
 
@@ -36,15 +36,15 @@ pub struct Participation {
     pub moving_mass_kg: f64,
     /// Participating mass `M* = (sum m delta)^2 / sum m delta^2`, in kg.
     pub participating_mass_kg: f64,
-    /// Its part `e*` of the mass that moves.
+    /// `e*`: the participating mass as a fraction of the mass that moves.
     pub mass_fraction: f64,
-    /// `sum m delta^2 / sum m delta`: over the virtual displacement of the control point, what displacements of that are
-    /// multiplied by to be those of the oscillator.
+    /// `sum m delta^2 / sum m delta`. Divided by the virtual displacement of the control point, it is the factor from
+    /// displacements of the control point to those of the oscillator.
     pub oscillator_displacement: f64,
 }
 
 impl Participation {
-    /// That of masses in kg, each with its horizontal virtual displacement. All of them move.
+    /// The participation of masses in kg, each with its horizontal virtual displacement. All of them move.
     #[must_use]
     pub fn of(masses: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (mut whole, mut first, mut second) = (0.0, 0.0, 0.0);
@@ -62,7 +62,7 @@ impl Participation {
         }
     }
 
-    /// That of rigid bodies.
+    /// The participation of rigid bodies.
     #[must_use]
     pub fn of_bodies(bodies: &[MovingBody]) -> Self {
         let bodies = bodies.iter();
