@@ -1,29 +1,29 @@
 //! Rocking of masonry arches under ground motion.
 //!
 //! A horizontal acceleration of the ground beyond the **incipient acceleration** `A_L` turns a masonry
-//! arch into a four-link mechanism that sways to one side. When it comes back all hinges close at once:
-//! an **impact**, after which the arch sways on to the other side along another mechanism, with less
-//! energy. This crate follows the arch through all its impacts until it rests or overturns.
+//! A horizontal acceleration of the ground beyond the **incipient acceleration** `A_L` turns a masonry
+//! arch into a four-link mechanism that sways to one side. When the arch swings back, all hinges close at
+//! once: an **impact**. It then sways to the other side along another mechanism, with less
 //!
 //! Four links are one model of motion ([`FourLinkArch`], [`FourLinkRow`], and for a column [`RockingColumn`]). Nothing forces an arch
 //! to keep to them: with **free hinges** ([`FreeHinges`]) it is a row of rigid blocks ([`mechanics::blocks`]) any of whose joints may
-//! open, shut, and slip, at any time. That costs more, is computed in steps, and says how far its answer depends on them
-//! ([`Model::repetitions`]). Both are a [`Model`]: a history, a [threshold](studies::threshold) or a [map](studies::map) takes either.
+//! Four links are one model of motion ([`FourLinkArch`], [`FourLinkRow`], and for a column [`RockingColumn`]). A real arch need
+//! not keep to them: with **free hinges** ([`FreeHinges`]) it is a row of rigid blocks ([`mechanics::blocks`]) any of whose joints may
 //!
 //! From the bottom up:
 //!
 //! - [`mechanics`]: pure functions. Shapes and rigid motions of their parts ([`mechanics::geometry`]); the arch
-//!   ([`mechanics::arch`]) and the column ([`mechanics::column`]); arches of other shapes, on piers, with fill and loads
+//! The modules, from the bottom up:
 //!   ([`mechanics::masonry`]), as rows of blocks ([`mechanics::blocks`]); four-link mechanisms
 //!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms that impacts lead
 //!   through, and what certifies it; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
 //! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
 //!   their histories ([`dynamics::history`]); mechanisms with one degree of freedom at a time
-//!   ([`dynamics::hybrid`]), and rows of blocks ([`dynamics::free_hinges`]).
+//!   through, and the certificate of its restitution; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
 //! - [`scenario`]: what to simulate, as a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
-//! The arch of the paper, and the history of `docs/example.md`:
+//! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!
 //! ```
 //! use archrock::{Arch, FourLinkArch, GroundMotion, ImpactModel, Model, Outcome, Pulse, Request};
@@ -64,8 +64,8 @@
 //! SI units begin with [`mechanics::arch`] and [`mechanics::column`], and units of gravity end at [`scenario`].
 //!
 //! # Sources
-//!
-//! "The paper" in this documentation is *Impacts analysis in the rocking of masonry circular arches*; it is
+//! impact. [`mechanics`] works in mean radii, unit density and the frame in which a mechanism sways right;
+//! SI units begin with [`mechanics::arch`] and [`mechanics::column`]. [`scenario`] converts the accelerations that are given in g.
 //! quoted by its equation numbers. Where a result is derived here instead, the documentation says so.
 
 #[macro_use]

@@ -27,7 +27,7 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         let message = "chart is for arches only; the scenario has a column";
         return Err(Failure::Input(message.to_owned()));
     };
-    // An arch without results of its own is refused, with the reason.
+    // An arch that has no results of its own is refused here, with the reason.
     commands::model(&scenario)?;
     let place = input.results(arguments.out.as_deref())?;
     let law = scenario.motion().impact();

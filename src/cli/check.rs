@@ -1,4 +1,4 @@
-//! The command `check`: what a file is, a scenario or a record.
+//! The command `check`: tells what a scenario or a record file holds.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,14 +22,14 @@ pub struct Arguments {
     /// Draw the record to this SVG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// How it is printed; as JSON, of several files as an array.
+    /// Output format; JSON for several files is an array.
     #[arg(long, value_enum, default_value_t)]
     format: Printed,
     #[command(flatten)]
     figure: FigureOption,
 }
 
-/// Gravity where no scenario tells it.
+/// Gravity, when there is no scenario to give it.
 const GRAVITY_M_S2: f64 = 9.81;
 
 pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
@@ -61,7 +61,7 @@ pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     }
 }
 
-/// What is in a file, for people and as JSON.
+/// The contents of a file, as text and as JSON.
 fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String, Value), Failure> {
     if Format::of_file(file).is_some() || is_format_given(arguments) {
         return check_record(file, arguments, quiet);
@@ -77,19 +77,19 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
     Ok((scenario.to_toml(), scenario.to_json()))
 }
 
-/// Whether the keys say that the file is a record.
+/// Whether a key given with `--set` shows that the file is a record.
 fn is_format_given(arguments: &Arguments) -> bool {
     let mut keys = arguments.set.assignments().iter();
     keys.any(|assignment| assignment.key() == "format")
 }
 
-/// What is in a record file.
+/// The contents of a record file, as text and as JSON.
 fn check_record(
     file: &Path,
     arguments: &Arguments,
     quiet: bool,
 ) -> Result<(String, Value), Failure> {
-    // Of several files, tables may need keys that others do not have.
+    // Among several files, the tables may need keys that the other formats do not have.
     let several = arguments.files.len() > 1;
     let is_table = Format::of_file(file).is_none_or(|format| format == Format::Csv);
     let keys = arguments.set.assignments().iter();
@@ -181,7 +181,7 @@ fn record_text(series: &Series, intensity: &Intensity) -> String {
     text
 }
 
-/// Format and unit.
+/// The format and the unit of a record.
 fn kind(series: &Series) -> String {
     let format = match series.layout.form {
         Form::At2 { .. } => "AT2 file (PEER)",

@@ -1,4 +1,4 @@
-//! The command `limit`, and what commands share.
+//! The command `limit`, and functions that several commands share.
 
 use std::fs::File;
 use std::io::{self, Write as _};
@@ -55,7 +55,7 @@ impl From<NoLimit> for Failure {
     }
 }
 
-/// The four links of a scenario; the error for a column begins with `what`, subject and verb.
+/// The four-link model of a scenario; the error for a column begins with `what`, a subject and its verb.
 pub fn four_links(scenario: &Scenario, what: &str) -> Result<Box<dyn FourLinkModel>, Failure> {
     let model = scenario.structure().four_links(scenario.motion().impact());
     model

@@ -3,10 +3,10 @@
 use archrock::mechanics::sway::Sway;
 use clap::ValueEnum;
 
-/// The option of commands that tell of one chain of mechanisms: a structure that is not its own mirror image has two.
+/// The option of commands that describe one chain of mechanisms: an asymmetric structure has two.
 #[derive(clap::Args, Clone, Copy)]
 pub struct FirstOption {
-    /// The side to which the structure sways first, for what is told or drawn of one side.
+    /// The side to which the structure sways first, for results and pictures that show one side only.
     #[arg(long, value_enum, value_name = "SIDE", default_value_t)]
     first: Side,
 }

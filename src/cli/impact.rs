@@ -117,7 +117,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     commands::answer(&answer, arguments.format)
 }
 
-/// Refuses an impact that an earlier one forestalls.
+/// Refuses an impact that never happens because an earlier one stops the arch.
 fn choose(impact: &LinkImpact<'_>) -> Result<(), Failure> {
     if impact.before().is_some() {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The command `init`: a scenario to begin with.
+//! The command `init`: writes a scenario to start from.
 
 use std::fs::File;
 use std::io::{ErrorKind, Write as _};
@@ -12,7 +12,7 @@ use super::{Failure, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// What the scenario is of.
+    /// What the scenario is about.
     #[arg(value_enum, default_value_t)]
     kind: Kind,
     /// The file to write; `-` for standard output [default: <KIND>.toml].
@@ -20,7 +20,7 @@ pub struct Arguments {
     file: Option<PathBuf>,
 }
 
-/// What a scenario is of.
+/// What a scenario is about.
 #[derive(Clone, Copy, Default, ValueEnum)]
 enum Kind {
     /// An arch under a pulse.
@@ -38,7 +38,7 @@ enum Kind {
     Verify,
 }
 
-/// The record that scenarios of records begin with, beside them.
+/// The record file that is written beside scenarios with a record.
 const RECORD: (&str, &str) = ("record.csv", include_str!("init/record.csv"));
 
 impl Kind {
@@ -53,7 +53,7 @@ impl Kind {
         }
     }
 
-    /// Its name, the command that it is for, and whether it has a record.
+    /// The name of the scenario, the command that runs it, and whether it has a record.
     const fn about(self) -> (&'static str, &'static str, bool) {
         match self {
             Self::Arch => ("arch", "run", false),
@@ -79,7 +79,7 @@ pub fn init(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     if has_record {
         let (name, record) = RECORD;
         let path = file.with_file_name(name);
-        // Of two scenarios in one folder, both may have it.
+        // A second scenario in the same folder may share the record that the first one brought.
         if !path.exists() {
             write_new(&path, record)?;
             written += &format!(" and {}", path.display());
@@ -94,7 +94,7 @@ pub fn init(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes a file that was not there before.
+/// Writes a new file; refuses to replace one that exists.
 fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
     let cannot = |error: std::io::Error| match error.kind() {
         ErrorKind::AlreadyExists => Failure::Input(format!(

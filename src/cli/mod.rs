@@ -1,4 +1,4 @@
-//! Commands: from arguments to exit codes.
+//! The commands: from arguments to exit codes.
 //!
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
@@ -50,7 +50,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Write a commented scenario to begin with.
+    /// Write a commented scenario to start from.
     #[command(after_help = examples::INIT)]
     Init(init::Arguments),
     /// Simulate the time history of a scenario and write it as CSV and JSON.
@@ -100,7 +100,7 @@ enum Command {
     /// Merge the parts of a study computed with --shard.
     #[command(after_help = examples::MERGE)]
     Merge(studies::MergeArguments),
-    /// Check a scenario and print it with every default written out, or tell what is in a record file.
+    /// Check a scenario and print it with every default written out, or describe a record file.
     #[command(after_help = examples::CHECK)]
     Check(check::Arguments),
     /// Print a script that completes commands and options in a shell.
@@ -198,7 +198,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Names the command that a mistyped one is likely to be: letters that changed places count once.
+/// Names the command that was probably meant by a mistyped one; two swapped letters count as one mistake.
 fn likely(mut error: clap::Error) -> clap::Error {
     if let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) {
         let commands = Arguments::command();
@@ -213,10 +213,10 @@ fn likely(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// More letters than these are no slip of the finger.
+/// More mistakes than these are no typing error.
 const FAR: usize = 2;
 
-/// Warns of what is unlikely in a scenario or a record.
+/// Warns of unlikely values in a scenario or a record.
 fn warn(unlikely: &[String]) {
     for unlikely in unlikely {
         study::say(&format!("warning: {unlikely}"));
@@ -231,7 +231,7 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     print(&String::from_utf8_lossy(&script))
 }
 
-/// Prints what results tell, their files apart.
+/// Prints the summary of results, without their files.
 fn show(results: &Results, format: Format) -> Result<(), Failure> {
     match format {
         Format::Json => print(&pretty(&results.summary)),
@@ -239,14 +239,14 @@ fn show(results: &Results, format: Format) -> Result<(), Failure> {
     }
 }
 
-/// Prints summaries as JSON: the only one, or an array.
+/// Prints summaries as JSON: one by itself, several as an array.
 fn print_all(summaries: impl IntoIterator<Item = Value>) -> Result<(), Failure> {
     let mut all: Vec<Value> = summaries.into_iter().collect();
     let only = (all.len() == 1).then(|| all.pop()).flatten();
     print(&pretty(&only.unwrap_or(Value::Array(all))))
 }
 
-/// Prints a result on standard output. Names in it may hold what a terminal would obey.
+/// Prints a result on standard output. Names in it may hold control characters that a terminal would obey.
 fn print(text: &str) -> Result<(), Failure> {
     let text = shown_lines(text);
     let mut out = io::stdout().lock();

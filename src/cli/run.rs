@@ -31,23 +31,23 @@ pub struct Arguments {
     set: SetOption,
     #[command(flatten)]
     suite: SuiteOption,
-    /// Folder for the results, or for the folders of several scenarios [default: results/<name of the scenario
+    /// Folder for the results; with several scenarios, for their folders [default: results/<name of the scenario
     /// file>].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Where the rotations go instead of a file: `-` for standard output. No other results are then
+    /// Write the rotations here instead of to a file: `-` for standard output. No other results are then
     /// written unless --out is given.
     #[arg(long, value_name = "-", value_parser = ["-"])]
     rotations: Option<String>,
-    /// How the summary is printed; as JSON, which is that of summary.json, files are written with --out only. Of
-    /// several scenarios it is an array.
+    /// Format of the printed summary. JSON is that of summary.json, an array for several scenarios; files are then
+    /// written with --out only.
     #[arg(long, value_enum, default_value_t, conflicts_with = "rotations")]
     format: Format,
     /// Add dimensionless columns to the rotations: p_t (time), acceleration_over_incipient and
     /// rotation_over_critical. For four links and columns only.
     #[arg(long)]
     dimensionless: bool,
-    /// Models of motion; of several the results are in folders of their names, with a picture of all [default: elastic or free
+    /// Models of motion; several write to a folder each, named after the model, with one picture of all [default: elastic or free
     /// if the scenario has [elastic_joints] or [free_hinges], else four].
     #[arg(long, value_enum, value_delimiter = ',')]
     hinges: Vec<Models>,
@@ -61,14 +61,14 @@ pub struct Arguments {
     /// rotations.
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', value_parser = time_s, allow_negative_numbers = true)]
     snapshots: Vec<f64>,
-    /// Displacements in the snapshots are drawn so many times as large.
+    /// Magnify the displacements in the snapshots by this factor.
     #[arg(long, value_name = "K", default_value_t = 1.0, value_parser = factor, requires = "snapshots", allow_negative_numbers = true)]
     exaggerate: f64,
     /// Write position and rotation of every body to poses.csv.
     #[arg(long)]
     poses: bool,
-    /// Tell how far this point moves, the crown say: its place in the undeformed structure in metres. May be given up to three
-    /// times.
+    /// Also report how far this point moves, for example the crown: its position in the undeformed structure, in metres. May be
+    /// given up to three times.
     #[arg(long = "point", value_name = "X,Y", value_parser = point_m, allow_hyphen_values = true)]
     points_m: Vec<Vector2<f64>>,
     /// How the samples of [uncertain] are computed.
@@ -85,7 +85,7 @@ pub enum Models {
     Four,
     /// Blocks whose joints open and shut anywhere.
     Free,
-    /// Blocks whose joints give way.
+    /// Blocks with elastic joints.
     Elastic,
     /// Four and free.
     Both,
@@ -101,7 +101,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         }
         let told = match job.run(arguments, quiet) {
             Ok(told) => told,
-            // The others are run all the same.
+            // The other scenarios are still run.
             Err(Failure::Work(message)) if jobs.len() > 1 => {
                 failures.push(format!("{}: {message}", job.name));
                 continue;
@@ -111,9 +111,9 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         match arguments.format {
             Format::Json => summaries.push(told.summary),
             Format::Text if quiet => {}
-            // What the rotations are read from gets nothing else.
+            // Standard output carries the rotations and nothing else.
             Format::Text if job.place.to_stdout => {
-                // Nobody is left to be told when standard error fails.
+                // When standard error fails there is nowhere to report it.
                 let _ = io::stderr().write_all(shown_lines(&told.words).as_bytes());
             }
             Format::Text => print(&told.words)?,
@@ -133,19 +133,19 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 struct Job {
     /// Its file.
     name: String,
-    /// Once for each model of motion that is asked for.
+    /// One for each model of motion that was asked for.
     scenarios: Vec<Scenario>,
     place: Place,
 }
 
-/// What the runs of a scenario tell.
+/// The answers of the runs of a scenario.
 struct Told {
     words: String,
     summary: Value,
 }
 
 impl Job {
-    /// All that are asked for, or all that is wrong with them.
+    /// All jobs that were asked for, or everything that is wrong with them.
     fn all(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let mut jobs: Vec<Self> = Vec::new();
         let mut wrong = Vec::new();
@@ -173,7 +173,7 @@ impl Job {
         }
     }
 
-    /// The scenario of a file, or what its records make of it.
+    /// The scenario of a file, or one for each record of its suite.
     fn read(path: &Path, arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let input = arguments.set.open(path)?;
         let models = Models::read(&arguments.hinges, &input)?;
@@ -196,7 +196,7 @@ impl Job {
         jobs.collect()
     }
 
-    /// Runs it, and says what happened.
+    /// Runs the job and reports what happened.
     fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
         let samples = Telling {
             work: arguments.work,
@@ -215,7 +215,7 @@ impl Job {
         Ok(told)
     }
 
-    /// Runs the samples of what is not known, and adds what they tell.
+    /// Runs the samples of `[uncertain]`, and adds their results.
     fn run_samples(&self, samples: Telling, told: &mut Told) -> Result<(), Failure> {
         let Some(place) = &self.place.results else {
             return Ok(());
@@ -254,7 +254,7 @@ impl Job {
             let message = "--no-spread goes with free hinges and elastic joints: four links and columns are not repeated";
             return Err(Failure::Input(message.to_owned()));
         }
-        // None is run where another cannot be.
+        // If one scenario cannot be run, none is.
         let beside = scenarios.iter().map(|one| one.motion().hinges());
         let wanted = Wanted {
             beside: beside.collect(),
@@ -316,7 +316,7 @@ impl Models {
         }
     }
 
-    /// Reads a scenario for each model that is asked for, or for the one that it chooses.
+    /// Reads the scenario once for each model that was asked for, or else with the model that it chooses itself.
     pub fn read(asked: &[Self], input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
         let mut models = Vec::new();
         for hinges in asked.iter().flat_map(|model| model.hinges()) {
@@ -333,7 +333,7 @@ impl Models {
 }
 
 impl Arguments {
-    /// What a run is asked for.
+    /// What a run has to produce.
     fn wanted(&self, to_stdout: bool) -> Wanted {
         Wanted {
             figure: self.figure.get(),
@@ -349,7 +349,7 @@ impl Arguments {
         }
     }
 
-    /// An option that writes a file.
+    /// The name of a given option that writes a file.
     fn of_files(&self) -> Option<&'static str> {
         match (self.snapshots.is_empty(), self.poses) {
             (false, _) => Some("--snapshots"),
@@ -361,11 +361,11 @@ impl Arguments {
 
 /// Where results go.
 struct Place {
-    /// The folder, if there are to be files.
+    /// The folder, if files are written.
     results: Option<Destination>,
     /// Whether the rotations go to standard output.
     to_stdout: bool,
-    /// An option that cannot do without a folder.
+    /// The name of an option that needs a folder.
     of_files: Option<&'static str>,
 }
 
@@ -390,7 +390,7 @@ impl Place {
         })
     }
 
-    /// A folder in that one.
+    /// The same with a folder inside this one.
     fn within(&self, name: &str) -> Self {
         Self {
             results: self.results.as_ref().map(|results| results.within(name)),
@@ -398,7 +398,7 @@ impl Place {
         }
     }
 
-    /// Opens the folder for these files. Others that earlier runs may have left there go when these are complete.
+    /// Opens the folder for these files. Other files that earlier runs left there are removed once these are complete.
     fn open(&self, names: &[&'static str]) -> Result<Option<Folder>, Failure> {
         let Some(results) = &self.results else {
             return Ok(None);
@@ -410,7 +410,7 @@ impl Place {
         Ok(Some(folder))
     }
 
-    /// Runs a scenario to there.
+    /// Runs a scenario and writes its results here.
     fn run(&self, run: &Run<'_>, scenario: &Scenario, quiet: bool) -> Result<RunResults, Failure> {
         if let (None, Some(option)) = (&self.results, self.of_files) {
             let message = format!("{option} writes a file: name a folder for it with --out");

@@ -1,4 +1,4 @@
-//! The commands `map`, `suite` and `spectrum`, and `merge`, which joins their parts.
+//! The commands `map`, `suite` and `spectrum`, and `merge`, which joins the parts of a study.
 
 use std::path::{Path, PathBuf};
 
@@ -54,7 +54,7 @@ pub struct MergeArguments {
     /// Folder for the results [default: that of the first part].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// How the summary is printed; as JSON, on standard output.
+    /// Format of the printed summary; JSON goes to standard output.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     #[command(flatten)]
@@ -63,21 +63,21 @@ pub struct MergeArguments {
     figure: FigureOption,
 }
 
-/// What the results of a map have besides, and how its picture looks.
+/// What else is written for a map, and how its picture looks.
 #[derive(clap::Args, Clone, Copy)]
 pub struct MapOption {
     /// Also write the least amplitude that overturns without impact, as no_impact.csv.
     #[arg(long)]
     no_impact: bool,
-    /// What the cells of a map that survive are coloured by.
+    /// What colours the surviving cells of a map.
     #[arg(long, value_enum, value_name = "WHAT", default_value_t)]
     color: Color,
-    /// Draw a map over p t_p and a / A_L; its axes are duration_s and amplitude_g.
+    /// Draw the map over p t_p and a / A_L; its axes must be duration_s and amplitude_g.
     #[arg(long)]
     dimensionless: bool,
 }
 
-/// What tells survivors apart.
+/// How surviving cells are coloured.
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum Color {
     /// Their outcome.
@@ -120,7 +120,7 @@ impl MapOption {
         })
     }
 
-    /// The look of what is no map.
+    /// The look of a study that is not a map.
     fn of_no_map(self, figure: Figure) -> Result<Look, String> {
         if self.no_impact {
             return Err(NO_BOUNDARY.to_owned());
@@ -165,7 +165,7 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
         figure: arguments.figure.get(),
         quiet,
     };
-    // A part of a scenario with samples is one of these.
+    // In a scenario with samples, a part is a part of those samples.
     if scenario.uncertain().is_none() || !samples.work.is_part() {
         let look = Look::of(arguments.figure.get());
         options.study(StudyKind::Suite, &input, &scenario, look, quiet)?;
@@ -201,7 +201,7 @@ pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
     write(&results, &place, arguments.format, quiet)
 }
 
-/// Writes results into their folder, and says what they are.
+/// Writes results into their folder, and prints their summary.
 pub fn write(
     results: &Results,
     place: &Destination,

@@ -1,4 +1,4 @@
-//! Long work as the program does it: its options, its progress on the terminal, and Ctrl-C.
+//! Long computations at the command line: their options, their progress on the terminal, and Ctrl-C.
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::num::NonZeroUsize;
@@ -29,12 +29,12 @@ pub struct Options {
     out: Option<PathBuf>,
     #[command(flatten)]
     work: Work,
-    /// How the summary is printed; as JSON, on standard output.
+    /// Format of the printed summary; JSON goes to standard output.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
-/// How long work is done.
+/// How a long computation is done.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Work {
     #[command(flatten)]
@@ -47,7 +47,7 @@ pub struct Work {
     shard: Option<Shard>,
 }
 
-/// On how many threads.
+/// The number of threads.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Threads {
     /// Number of threads [default: number of processors].
@@ -56,7 +56,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// What computes on them.
+    /// The runner that computes on these threads.
     pub fn runner(self) -> Runner {
         Runner {
             threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
@@ -64,10 +64,10 @@ impl Threads {
     }
 }
 
-/// Which model of motion is asked for.
+/// The model of motion that is asked for.
 #[derive(clap::Args, Clone, Copy)]
 pub struct HingesOption {
-    /// The model of motion, whatever the scenario chooses.
+    /// The model of motion; overrides the scenario's own choice.
     #[arg(long, value_enum, value_name = "MODEL")]
     hinges: Option<Model>,
 }
@@ -78,7 +78,7 @@ enum Model {
     Four,
     /// A row of blocks whose joints open and shut anywhere.
     Free,
-    /// A row of blocks whose joints give way.
+    /// A row of blocks with elastic joints.
     Elastic,
 }
 
@@ -133,12 +133,12 @@ impl From<RunnerError> for Failure {
 }
 
 impl Options {
-    /// Takes the text of the scenario.
+    /// Reads the text of the scenario.
     pub fn open(&self) -> Result<Input<'_>, Failure> {
         self.scenario.open()
     }
 
-    /// How long it is worked on.
+    /// How the study is computed.
     pub const fn work(&self) -> Work {
         self.work
     }
@@ -148,7 +148,7 @@ impl Options {
         input.results(self.out.as_deref())
     }
 
-    /// Computes the study of a scenario, or the part that was asked for, and writes the results if all is there.
+    /// Computes the study of a scenario, or the part that was asked for, and writes the results once all rows are computed.
     pub fn study(
         &self,
         kind: StudyKind,
@@ -175,11 +175,11 @@ impl Options {
     }
 }
 
-/// What is told of progress; where it breaks, work ends.
+/// Receives the progress; the work stops when it returns a break.
 type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
 
 impl Work {
-    /// What computes on its threads.
+    /// The runner that computes on these threads.
     pub fn runner(self) -> Runner {
         self.threads.runner()
     }
@@ -189,8 +189,8 @@ impl Work {
         self.shard.is_some()
     }
 
-    /// Computes a study of this name for a folder: its results and the file that has its rows until they are written, or `None` of a
-    /// part, which is said.
+    /// Computes the study of this name for a folder. Returns its results and the file that keeps its rows until the results are
+    /// written; or, for a part, prints a message and returns `None`.
     pub fn compute(
         self,
         name: &str,
@@ -266,7 +266,7 @@ pub fn say(text: &str) {
 /// Progress: a bar on a terminal, a line a minute elsewhere.
 pub struct Display {
     bar: ProgressBar,
-    /// What was done before: it says nothing of the pace.
+    /// The number of cases done before this start: they do not count in the pace.
     before: usize,
     begun: Instant,
     /// When the last line was printed; `None` when no lines are.
@@ -323,7 +323,7 @@ impl Display {
     }
 }
 
-/// "12 a second, 3 minutes left", by the mean of all so far: a moving one takes a slow case for the end of all speed.
+/// "12 a second, 3 minutes left", from the mean of all cases so far: a moving mean would let one slow case spoil the estimate.
 fn pace(done: usize, left: usize, elapsed: Duration) -> String {
     if done == 0 {
         return "none finished yet".to_owned();

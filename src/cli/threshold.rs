@@ -40,7 +40,7 @@ pub struct Arguments {
     /// Relative step from one factor to the next; narrower bands and gaps may be missed.
     #[arg(long, value_name = "PART", default_value_t = Factors::default().stride())]
     stride: f64,
-    /// How the samples of [uncertain], and all else, are computed.
+    /// How the samples of [uncertain], and everything else, are computed.
     #[command(flatten)]
     work: Work,
     /// Output format.
@@ -173,7 +173,7 @@ impl From<ThresholdError> for Failure {
     }
 }
 
-/// Where no history could be computed there is no result.
+/// Refuses to report a threshold if not a single history could be computed.
 fn refuse_if_nothing_is_known(threshold: &Threshold) -> Result<(), Failure> {
     let samples = &threshold.samples;
     if samples.iter().any(|sample| sample.result.is_ok()) {

@@ -1,4 +1,4 @@
-//! What follows from `[uncertain]` of a scenario, beside what a command tells of the scenario itself.
+//! The samples of a scenario's `[uncertain]`, computed in addition to the scenario itself.
 
 use archrock::output::Figure;
 use archrock::scenario::Scenario;
@@ -11,7 +11,7 @@ use super::Failure;
 use super::scenario_file::Destination;
 use super::study::{Work, say};
 
-/// How it is computed and told.
+/// How the samples are computed and reported.
 #[derive(Clone, Copy)]
 pub struct Telling {
     pub work: Work,
@@ -22,16 +22,16 @@ pub struct Telling {
 /// What is asked of the samples.
 #[derive(Clone, Copy)]
 pub enum Asked {
-    /// How their histories end and go.
+    /// How their histories end, and how they proceed.
     Histories,
-    /// From which of these factors on they overturn.
+    /// The first of these factors from which they overturn.
     FirstEdges(Factors),
-    /// Which records overturn them, and from which intensity on.
+    /// Which records overturn them, and from which intensity.
     Suite,
 }
 
 impl Telling {
-    /// Whether only a part of the samples is asked for; refused where there are none.
+    /// Whether only a part of the samples is asked for; an error if a scenario has no samples.
     pub fn is_part<'s>(
         self,
         scenarios: impl IntoIterator<Item = &'s Scenario>,
@@ -45,8 +45,8 @@ impl Telling {
         Ok(self.work.is_part())
     }
 
-    /// Computes the samples of a scenario that has `[uncertain]`, and writes what they tell into the folder of its name within `place`. `None` where it
-    /// has not, or of a part.
+    /// Computes the samples of a scenario that has `[uncertain]`, and writes their results into their own folder inside
+    /// `place`. Returns `None` if the scenario has no `[uncertain]`, or if only a part is computed.
     pub fn tell(
         self,
         scenario: &Scenario,
@@ -88,7 +88,7 @@ impl Telling {
     }
 }
 
-/// The words of the samples, behind those of the scenario itself.
+/// The summary of the samples, which follows that of the scenario itself.
 pub fn words(results: &Results) -> String {
     let samples = &results.summary["samples"];
     format!(

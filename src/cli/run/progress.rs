@@ -1,4 +1,4 @@
-//! How far a run is that takes a while, on a terminal.
+//! The progress of a run on the terminal.
 
 use std::fmt;
 use std::io::{self, IsTerminal as _};
@@ -7,17 +7,17 @@ use std::time::{Duration, Instant};
 use archrock::studies::run::Stage;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-/// A run that takes less shows nothing.
+/// A run shorter than this shows no progress.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// The bar counts thousandths of the longest time to simulate.
 const WHOLE: u64 = 1000;
 
-/// A bar that shows the time that was reached. It vanishes with this.
+/// A bar that shows the simulated time reached so far. It vanishes when dropped.
 pub struct RunProgress {
     bar: ProgressBar,
     duration_s: f64,
     begun: Instant,
-    /// Whether there is somebody to look at it.
+    /// Whether progress is wanted and standard error is a terminal.
     wanted: bool,
 }
 
@@ -50,7 +50,7 @@ impl RunProgress {
         }
     }
 
-    /// Shows how far it is.
+    /// Shows how far the run has come.
     pub fn show(&self, stage: Stage) {
         if !self.shows() {
             return;
