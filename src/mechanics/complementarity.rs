@@ -1,16 +1,17 @@
 //! Linear complementarity: `w = M z + q`, `w, z >= 0`, `w . z = 0`, by Lemke's method.
 //!
-//! C. E. Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965. It ends for the
-//! matrices of friction, which are copositive (Stewart and Trinkle, "An implicit time-stepping scheme for rigid body dynamics with
-//! inelastic collisions and Coulomb friction", Int. J. Numer. Methods Eng. 39, 1996), but its work grows with the cube of the size.
+//! C. E. Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965. The method terminates for
+//! the matrices of friction, which are copositive (Stewart and Trinkle, "An implicit time-stepping scheme for rigid body dynamics
+//! with inelastic collisions and Coulomb friction", Int. J. Numer. Methods Eng. 39, 1996), but its work grows with the cube of the
+//! size.
 
 use nalgebra::DMatrix;
 
 /// Pivots per unknown before the method gives up.
 const PIVOTS: usize = 20;
-/// Entries below this are no pivots, in a matrix of unit diagonal.
+/// Entries below this do not serve as pivots, in a matrix of unit diagonal.
 const LEAST_PIVOT: f64 = 1e-11;
-/// The artificial variable is zero below this part of the largest constant.
+/// The artificial variable is zero below this fraction of the largest constant.
 const ROUNDING: f64 = 1e-12;
 
 /// Solves for `z`. `matrix` should be scaled to a unit diagonal where it has one.
@@ -44,14 +45,14 @@ pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
         if left == artificial {
             return Some(values(&table, &basis));
         }
-        // The complement of what left enters.
+        // The complement of the variable that left enters.
         entering = if left < n { left + n } else { left - n };
         let mut least: Option<(f64, usize)> = None;
         for candidate in 0..n {
             let slope = table[(candidate, entering)];
             if slope > LEAST_PIVOT {
                 let ratio = table[(candidate, right)].max(0.0) / slope;
-                // Of equal ratios the artificial variable leaves, or else the larger pivot.
+                // Among equal ratios the artificial variable leaves, or else the row with the larger pivot.
                 let better = least.is_none_or(|(ratio_least, row_least)| {
                     let same = (ratio - ratio_least).abs() <= 1e-12 * ratio_least.abs();
                     if same {
@@ -78,7 +79,7 @@ pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
     None
 }
 
-/// How much of the artificial variable a row takes: not the same in any two, so that ties are rare.
+/// How much of the artificial variable a row takes: no two rows take the same, so that ties are rare.
 fn cover(row: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "few rows")]
     let golden = row as f64 * 0.618_033_988_749_894_9;

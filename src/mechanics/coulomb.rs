@@ -1,19 +1,19 @@
 //! The velocities of a row of blocks whose joints may open and slip: Coulomb's law at every joint, on the whole row at once.
 //!
-//! A joint has three rows: the rates of the gaps at the two ends of its contact, and that of its offset, each with its impulse
-//! `N_I`, `N_E` and `T` ([`crate::mechanics::slip`]). An end is pressed (rate zero, impulse compressive) or free. Along the joint
-//! it sticks (rate zero, `|T| <= mu (N_I + N_E)`), slips (`T = +-mu (N_I + N_E)` against the slip), or, with both ends free, takes
-//! no impulse. Given these modes the impulses solve a block-tridiagonal system with 3x3 blocks. Newton's method goes from modes to
-//! modes, from those of the step before; where it finds modes that confirm themselves, Coulomb's law holds exactly.
+//! A joint has three rows: the rates of the gaps at the two ends of its contact, and the rate of its offset, each with its impulse `N_I`,
+//! `N_E` and `T` ([`crate::mechanics::slip`]). An end is pressed (rate zero, impulse compressive) or free. Along the joint it sticks
+//! (rate zero, `|T| <= mu (N_I + N_E)`), slips (`T = +-mu (N_I + N_E)` against the slip), or, with both ends free, takes no impulse.
+//! Given these modes the impulses solve a block-tridiagonal system with 3x3 blocks. Newton's method goes from modes to modes, starting
+//! from those of the step before. Where it finds modes that confirm themselves, Coulomb's law holds exactly.
 //!
-//! Where it does not, the bounds of friction are held at those of the last impulses (Tresca). That program is convex, and solved by
-//! projected Newton steps on its dual; from its modes Newton's method starts again, else the bounds follow the impulses. Bounds that do
-//! not settle, a case in a hundred thousand but for long rows near the least friction with which they stand, are left to an interior-point
-//! method (`interior`), and beyond that to Lemke's ([`crate::mechanics::complementarity`]).
-//! Whatever comes out never drives a slip and never pulls: an early stop makes a bound wrong, never the sign of the work.
+//! Where it does not, the bounds of friction are held at those of the last impulses (Tresca). That program is convex, and is solved by
+//! projected Newton steps on its dual. Newton's method starts again from its modes; if that fails, the bounds follow the impulses. Bounds
+//! fail to settle in one case in a hundred thousand, and more often in long rows near the least friction with which they stand. These
+//! cases are left to an interior-point method (`interior`), and beyond that to Lemke's ([`crate::mechanics::complementarity`]). In every
+//! result friction never drives a slip and contact never pulls: an early stop makes a bound wrong, never the sign of the work.
 //!
-//! A small proximal term draws the impulses to those of the solution before. It settles them where the row does not, as at rest;
-//! where they jump, as at an impact, it leaves rates, which another solution from these impulses takes away.
+//! A small proximal term draws the impulses to those of the previous solution. It determines them where the row does not, as at rest.
+//! Where they jump, as at an impact, it leaves rates, which another solution from these impulses removes.
 
 mod interior;
 
@@ -23,23 +23,23 @@ use super::blocks::Row;
 use super::complementarity;
 use super::slip::{Contact, Faces, Position};
 
-/// Weight of the proximal term, as part of the diagonal.
+/// Weight of the proximal term, as a fraction of the diagonal.
 const PROXIMAL: f64 = 1e-6;
-/// Newton passes in a row.
+/// Newton passes before the method gives up.
 const PASSES: usize = 8;
 /// Passes that change one mode at a time, after a program with given bounds.
 const SINGLE_PASSES: usize = 12;
 /// Steps of projected Newton on a program with given bounds.
 const BOUNDED_STEPS: usize = 60;
-/// How often bounds follow the impulses: those that do not settle soon swing.
+/// How many times the bounds follow the impulses: bounds that do not settle soon oscillate.
 const BOUND_PASSES: usize = 5;
-/// Bounds that change by less than this part of the largest one are found.
+/// Bounds that change by less than this fraction of the largest one have settled.
 const SAME_BOUND: f64 = 1e-10;
 /// Joints up to which Lemke's method, whose work grows with their cube, is the last resort.
 const COMPLEMENTED: usize = 80;
-/// Part of the slope that a step along it has to achieve.
+/// A step has to achieve this fraction of the descent that the slope predicts.
 const DESCENT: f64 = 1e-4;
-/// The shortest step of the search, as part of Newton's.
+/// The shortest step of the line search, as a fraction of Newton's.
 const LEAST_PART: f64 = 1e-6;
 
 /// What a joint does along itself.
@@ -58,7 +58,7 @@ pub enum Along {
 pub struct Mode {
     /// Whether its ends are pressed, intrados and extrados.
     pub pressed: [bool; 2],
-    /// Along the joint.
+    /// What it does along itself.
     pub along: Along,
 }
 
@@ -69,7 +69,7 @@ impl Mode {
         along: Along::Stick,
     };
 
-    /// No contact requires no friction, and contact that had none sticks first.
+    /// A joint without contact has no friction; one whose contact is new sticks first.
     fn settled(mut self) -> Self {
         if self.pressed == [false; 2] {
             self.along = Along::Free;
@@ -85,9 +85,9 @@ impl Mode {
 pub struct Solution {
     /// Systems solved.
     pub passes: usize,
-    /// Whether a mode differs from that of the solution before.
+    /// Whether a mode differs from that of the previous solution.
     pub changed: bool,
-    /// Largest error of a bound of friction, as part of the largest bound; zero where Coulomb's law holds.
+    /// Largest error of a bound of friction, as a fraction of the largest bound; zero where Coulomb's law holds.
     pub bound_error: f64,
     /// Largest rate in m/s that the proximal term leaves.
     pub drawn_m_s: f64,
@@ -100,12 +100,12 @@ enum Equation {
     Still,
     /// Its impulse is given.
     Given(f64),
-    /// Its impulse is so many times that at both ends.
+    /// Its impulse is this many times the sum of those at both ends.
     Friction(f64),
 }
 
-/// The equations of a joint: what its own impulses, those of the joint before and of the next one are multiplied by, and what
-/// comes out.
+/// The equations of a joint: the matrices of its own impulses, of those of the joint before and of the next one, and the
+/// right side.
 struct Balance {
     matrix: Matrix3<f64>,
     coupling: Matrix3<f64>,
@@ -239,7 +239,7 @@ impl Program {
         }
     }
 
-    /// Rates of the coordinates of a joint when its blocks move so (scaled velocities).
+    /// Rates of the coordinates of a joint for these scaled velocities of the blocks.
     fn rate(&self, joint: usize, velocities: &[Vector3<f64>]) -> Vector3<f64> {
         let mut rate = Vector3::zeros();
         if let Some(left) = joint.checked_sub(1) {
@@ -328,7 +328,7 @@ impl Program {
         false
     }
 
-    /// Changes the modes that the impulses and rates refute. True when there is none.
+    /// Changes the modes that the impulses and rates contradict. True when there are none.
     fn mend(&mut self, one: bool, tolerance: f64) -> bool {
         let mut right = true;
         let mut worst = (0.0, 0, Mode::WHOLE);
@@ -462,7 +462,7 @@ impl Program {
         }
     }
 
-    /// Rates of a joint that the impulses alone give.
+    /// Rates of a joint due to the impulses alone.
     fn response(&self, joint: usize, impulses: &[Vector3<f64>]) -> Vector3<f64> {
         let mut rate = self.own[joint] * impulses[joint];
         if let Some(before) = joint.checked_sub(1) {
@@ -474,13 +474,13 @@ impl Program {
         rate
     }
 
-    /// Rates of a joint by the proximal term.
+    /// Rates of a joint due to the proximal term.
     fn drawn(&self, joint: usize) -> Vector3<f64> {
         let drawn = self.impulses[joint] - self.before[joint];
         self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL
     }
 
-    /// Goes over programs with given bounds to modes that hold, or to bounds that agree with the impulses.
+    /// Solves programs with given bounds until the modes confirm themselves, or the bounds agree with the impulses.
     fn bounded(&mut self, tolerance: f64, solution: &mut Solution) {
         self.impulses.copy_from_slice(&self.before);
         for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
@@ -529,15 +529,16 @@ impl Program {
         }
         let modes = self.modes.clone();
         if !self.newton(PASSES, false, tolerance, passes) {
-            // Modes on the edge to others do not confirm themselves, but the impulses are right.
+            // Modes on the verge of others do not confirm themselves, but the impulses are right.
             self.impulses.copy_from_slice(&self.kept);
             self.modes = modes;
         }
         true
     }
 
-    /// Modes from Coulomb's law as a complementarity problem: `N` against the rates of the ends, friction to either side against
-    /// the rate along the joint less a speed `g`, and `g` against what is left of the bound. False when Lemke's method fails.
+    /// Modes from Coulomb's law as a complementarity problem. `N` is complementary to the rates of the ends, friction to either
+    /// side to a speed `g` plus or minus the rate along the joint, and `g` to what is left of the bound. False when Lemke's
+    /// method fails.
     fn complement(&mut self) -> bool {
         const SIZE: usize = 5;
         let joints = self.own.len();
@@ -607,7 +608,7 @@ impl Program {
         true
     }
 
-    /// Largest difference of a bound from what the impulses allow, as part of the largest bound.
+    /// Largest difference of a bound from what the impulses allow, as a fraction of the largest bound.
     fn bound_error(&self) -> f64 {
         let (mut largest, mut error) = (f64::MIN_POSITIVE, 0.0_f64);
         for (bound, impulse) in self.bounds.iter().zip(&self.impulses) {
@@ -653,7 +654,7 @@ impl Program {
         }
         let mut height = self.height();
         for _ in 0..BOUNDED_STEPS {
-            // `height` has left the rates at the impulses.
+            // `height` has set the rates for these impulses.
             let mut open = 0.0_f64;
             for joint in 0..self.impulses.len() {
                 for row in 0..3 {
@@ -697,7 +698,7 @@ impl Program {
         }
     }
 
-    /// What the program with given bounds makes least, in J; leaves the rates.
+    /// The function that the program with given bounds minimises, in J; sets the rates.
     fn height(&mut self) -> f64 {
         self.find_rates();
         let mut twice = 0.0;

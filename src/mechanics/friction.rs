@@ -1,10 +1,9 @@
 //! Limit analysis of a row whose joints slip by Coulomb's law.
 //!
 //! A joint carries compression at its two corners, `N_I, N_E >= 0`, and `|T| <= mu (N_I + N_E)` along itself. The largest push under
-//! which such forces balance the row is a linear programme. Its multipliers are the mechanism: which joints open about which
-//! edge, and which slip. They obey the associated flow rule, by which a joint that slips also opens, by `mu` times the slip. Stone
-//! does not do that, and the push is an upper bound of what the row bears; it is the answer where no joint of the
-//! mechanism slips.
+//! which such forces balance the row is a linear programme. Its multipliers are the mechanism: which joints open, about which edge,
+//! and which slip. They obey the associated flow rule: a joint that slips also opens, by `mu` times the slip. Stone joints do not,
+//! so the push is an upper bound of what the row bears. It is exact where no joint of the mechanism slips.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -18,13 +17,13 @@ use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
-/// Rates below this part of the largest one count as none.
+/// Rates below this fraction of the largest one count as zero.
 const LEAST_RATE: f64 = 1e-4;
 /// The least coefficient is found to within this.
 const COEFFICIENT_TOLERANCE: f64 = 1e-7;
-/// Coefficients beyond this one are as good as no sliding.
+/// Coefficients beyond this one are taken to prevent all sliding.
 const LARGEST_COEFFICIENT: f64 = 100.0;
-/// Friction that is short of so many times the weight at every joint is not short.
+/// A shortage of friction below this many times the weight at every joint counts as none.
 const LEAST_SHORTAGE: f64 = 1e-8;
 
 /// What a joint does in a mechanism.
@@ -73,8 +72,8 @@ pub enum FrictionError {
     NotSolved(SolverStatus),
 }
 
-/// The largest horizontal push towards a side that a row bears, and the mechanism in which it then gives way; `None` where it
-/// bears any.
+/// The largest horizontal push towards a side that a row bears, and the mechanism in which it then gives way; `None` if it
+/// bears any push.
 ///
 /// # Errors
 /// When the row does not stand with this coefficient, or the programme is not solved.
@@ -89,7 +88,7 @@ pub fn onset(
     onset_of_standing(row, coefficient, sway)
 }
 
-/// The same of a row that is known to stand with this coefficient.
+/// The same for a row that is known to stand with this coefficient.
 pub(crate) fn onset_of_standing(
     row: &Row,
     coefficient: f64,
@@ -109,7 +108,7 @@ pub(crate) fn onset_of_standing(
 /// Whether a row carries its own weight with this coefficient.
 ///
 /// # Errors
-/// When it falls with any, or the programme is not solved.
+/// When it falls with any coefficient, or the programme is not solved.
 pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
     match Program::new(row, coefficient, Goal::Shortage).solve(1.0)? {
         Answer::Found(solution) => Ok(solution.goal <= LEAST_SHORTAGE),
@@ -121,7 +120,7 @@ pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
 /// The least coefficient of friction with which a row carries its own weight, to within 1e-7.
 ///
 /// # Errors
-/// When the row falls with any, or a programme is not solved.
+/// When the row falls with any coefficient, or a programme is not solved.
 pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
     if !stands(row, LARGEST_COEFFICIENT)? {
         return Err(FrictionError::NeverStands);
@@ -133,7 +132,7 @@ pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
     Ok(least)
 }
 
-/// What a programme asks for.
+/// The goal of a programme.
 #[derive(Clone, Copy, PartialEq)]
 enum Goal {
     /// The largest push, in units of gravity.
@@ -227,7 +226,7 @@ impl Program {
         }
     }
 
-    /// Makes so many times the goal least.
+    /// Minimises `factor` times the goal.
     fn solve(&self, factor: f64) -> Result<Answer, FrictionError> {
         let width = 1 + 3 * self.joints;
         let mut objective = vec![0.0; width];
@@ -266,7 +265,7 @@ impl Program {
         let yields = rates.chunks(4).enumerate().map(|(joint, rates)| Yield {
             joint,
             opens: [moves(rates[0]), moves(rates[1])],
-            // Friction along the joint is bounded against the slip.
+            // The friction that reaches its bound acts against the slip.
             slips: match (moves(rates[2]), moves(rates[3])) {
                 (true, false) => Some(Edge::Intrados),
                 (false, true) => Some(Edge::Extrados),

@@ -1,15 +1,15 @@
-//! Where the blocks of a row are when joints may slip: the position of each block, and the coordinates of the joint between two.
+//! Positions of the blocks of a row whose joints may slip, and the coordinates of the joint between two blocks.
 //!
-//! The faces of a joint have turned against each other by `phi` and slid along each other. With `e` the unit vector from
-//! intrados to extrados at the mean angle of the faces, `n = s k x e` the normal towards the right block (`s` the handedness of
-//! the row) and `d` from the left face's intrados corner to that of the right face, the offset is `d . e`, and the gap at the
-//! place `x` along the joint is `d . n + 2 s tan(phi/2) x`. Faces that are offset touch at the ends of their overlap. The gaps
-//! there and the offset are the three coordinates; their gradients are exact, so that a solution for their rates needs no other
-//! correction than the curvature of the motion.
+//! The faces of a joint have turned against each other by `phi` and slid along each other. Let `e` be the unit vector from intrados to
+//! extrados at the mean angle of the faces, `n = s k x e` the normal towards the right block (`s` the handedness of the row) and `d`
+//! the vector from the intrados corner of the left face to that of the right face. Then the offset is `d . e`, and the gap at the place
+//! `x` along the joint is `d . n + 2 s tan(phi/2) x`. Faces that are offset touch at the ends of their overlap. The gaps there and the
+//! offset are the three coordinates. Their gradients are exact, so a solution for their rates needs no correction other than for the
+//! curvature of the motion.
 //!
-//! A support that goes on beyond its joint, as the ground does, is a straight line without ends. There the corners that touch are those
-//! of the block's face, wherever it has slid; gaps and offset are measured normal to the line and along it, and the offset is that of
-//! the corner that is nearer to it.
+//! A support that extends beyond its joint, as the ground does, is a straight line without ends. There the corners that touch are those
+//! of the block's face, wherever it has slid. Gaps are measured normal to the line and the offset along it; the offset is that of the
+//! corner nearer to the line.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -18,8 +18,9 @@ use super::geometry::field::turned;
 use super::geometry::pose::{Pose, product, unit};
 use super::geometry::ring::Edge;
 
-/// The position of a block, as joints that slip need it: by its centre, whose velocity the motion steps, and by half its rotation,
-/// which adds up to the mean angle of two faces. It is no [`Pose`]: turning by the half twice is not, to the last bit, turning once.
+/// The position of a block in the form that slipping joints need. It holds the centre, whose velocity the motion steps, and half the
+/// rotation: the halves of two blocks add up to the mean angle of their faces. It is not a [`Pose`]: turning by the half twice is
+/// not, to the last bit, turning once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
     /// Its centre of gravity in metres.
@@ -31,7 +32,7 @@ pub struct Position {
 }
 
 impl Position {
-    /// Of a support, whose faces are given in the undeformed row.
+    /// The position of a support, whose faces are given in the undeformed row.
     pub const HELD: Self = Self {
         centre_m: Vector2::new(0.0, 0.0),
         rotation_rad: 0.0,
@@ -48,20 +49,20 @@ impl Position {
         }
     }
 
-    /// The same, relative to the undeformed row in which the centre of gravity is at `undeformed_m`.
+    /// The pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
     #[must_use]
     pub fn pose(&self, undeformed_m: Vector2<f64>) -> Pose {
         Pose::about(undeformed_m, self.centre_m, self.rotation_rad)
     }
 
-    /// Where the point is that has this arm from the centre in the undeformed row.
+    /// Present position of the point that has this arm from the centre in the undeformed row.
     #[must_use]
     pub fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
         self.centre_m + product(product(self.half, self.half), arm_m)
     }
 }
 
-/// A joint as it belongs to its two blocks.
+/// A joint, given relative to its two blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Faces {
     /// From the centres of the left and the right block to the intrados corner.
@@ -70,7 +71,7 @@ pub struct Faces {
     /// Length of the faces in metres.
     pub thickness_m: f64,
     handedness: f64,
-    /// The side of the block (left 0, right 1), where the support on the other side goes on beyond the joint.
+    /// Side of the block (left 0, right 1), if the support on the other side extends beyond the joint.
     on_support: Option<usize>,
 }
 
@@ -128,10 +129,10 @@ impl Faces {
         }
     }
 
-    /// The joint between a block, on the given side, and a support that goes on.
+    /// The joint between a block, on the given side, and a support that extends beyond it.
     fn contact_with_support(&self, block: &Position, side: usize) -> Contact {
         let (along, normal) = (self.along, turned(self.along) * self.handedness);
-        // What moves is the right face, or the left one the other way.
+        // Coordinates are those of the right face; if the block is on the left, its face counts with the opposite sign.
         let sign = if side == 1 { 1.0 } else { -1.0 };
         let intrados_m = block.of_arm(self.arms_m[side]);
         let face = product(product(block.half, block.half), along) * self.thickness_m;
@@ -158,13 +159,13 @@ impl Faces {
 /// A joint in the present position of its blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
-    /// Midway between the intrados corners of the faces; on a support that goes on, the corner nearer to it.
+    /// Midway between the intrados corners of the faces; on a support that extends beyond the joint, the corner nearer to it.
     pub middle_m: Vector2<f64>,
-    /// Unit vector from intrados to extrados, at the mean angle of the faces; that of a support that goes on.
+    /// Unit vector from intrados to extrados, at the mean angle of the faces; along the support if that extends beyond the joint.
     pub along: Vector2<f64>,
     /// Unit normal towards the right block.
     pub normal: Vector2<f64>,
-    /// Cosine and sine of half the angle between the faces, by which forces on faces that are offset lean.
+    /// Cosine and sine of half the angle between the faces. Forces on offset faces lean by it.
     half: Vector2<f64>,
     /// Where the overlap of the faces begins and ends, along the joint from `middle_m`, in metres.
     pub ends_m: [f64; 2],
@@ -193,8 +194,8 @@ impl Contact {
         }
     }
 
-    /// Gradients of the three coordinates, a row each, in the velocities (x, y) and the rate of rotation of the right block,
-    /// and those in the motion of the left block, with the centres of the blocks.
+    /// Gradients of the three coordinates, one row each, with respect to the velocity (x, y) and the rate of rotation of a
+    /// block: first of the left block, then of the right one. The centres of the blocks are given.
     #[must_use]
     pub fn gradients(
         &self,
@@ -235,7 +236,7 @@ mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// Between two blocks, and between a block and a support to either side that goes on.
+    /// Joints between two blocks, and between a block and a support on either side that extends beyond the joint.
     #[test]
     fn gradients_are_those_of_the_coordinates() {
         let ring = Ring::new(0.2, 2.5).unwrap();

@@ -1,42 +1,42 @@
 //! Coulomb's law at every joint by an interior-point method.
 //!
-//! The unknowns of a joint are `N_I`, `N_E`, friction `T+` and `T-` to either side, and a speed `g`; each is complementary to what
-//! stands beside it: the rates of the two ends, `g + u_T` and `g - u_T`, and what is left of the bound, `mu (N_I + N_E) - T+ - T-`. All
-//! are kept positive, and Newton's method brings their products down together, to a target that shrinks with the errors of the
-//! equations. Slip and speed are eliminated by hand, so that a step costs one elimination along the row. On the way the modes that the
-//! numbers point to are tried: where they confirm themselves, the law holds exactly, and rounding, which the equations magnify more and
-//! more, has no say.
+//! The unknowns of a joint are `N_I`, `N_E`, friction `T+` and `T-` to either side, and a speed `g`. They are complementary, in this
+//! order, to the rates of the two ends, `g + u_T` and `g - u_T`, and what is left of the bound, `mu (N_I + N_E) - T+ - T-`. All are
+//! kept positive. Newton's method brings their products down together, to a target that shrinks with the errors of the equations. Slip
+//! and speed are eliminated by hand, so that a step costs one elimination along the row. On the way the modes that the numbers point to
+//! are tried. Where they confirm themselves the law holds exactly, and rounding, which the equations magnify more and more, no longer
+//! matters.
 //!
-//! The problem is not monotone, and the method has no proof; it solved what the bounds did not, in 20 to 40 steps.
+//! The problem is not monotone, and convergence is not proved. The method solved what the bounds did not, in 20 to 40 steps.
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
 use super::{Along, Balance, Mode, PASSES, Program};
 
 const STEPS: usize = 60;
-/// Parts of the first products from which the modes are tried.
+/// The modes are tried when the products have fallen to these fractions of the first ones.
 const TRIED: [f64; 3] = [1e-4, 1e-7, 1e-10];
-/// Impulses to start from, over the expected ones: one after the other.
+/// Impulses to start from, over the expected ones, tried one after the other.
 const STARTS: [f64; 3] = [1.0, 3.0, 10.0];
-/// Rates to start from, over the largest without a change of the impulses.
+/// Rates to start from, over the largest rate with the impulses unchanged.
 const START_RATE: f64 = 0.1;
-/// Part of the way to where the first number vanishes that a step goes.
+/// A step goes this fraction of the way to where the first number vanishes.
 const REACH: f64 = 0.99;
-/// Products do not shrink below this part of what the errors of the equations have shrunk to.
+/// Products do not shrink below this fraction of what the errors of the equations have shrunk to.
 const FLOOR: f64 = 0.3;
-/// Products are zero below this part of tolerance times impulse, ...
+/// Products are zero below this fraction of tolerance times impulse, ...
 const ZERO_PRODUCT: f64 = 1e-2;
-/// ... and what is left of a bound agrees to within this part of the impulse.
+/// ... and what is left of a bound agrees to within this fraction of the impulse.
 const SAME_BOUND: f64 = 1e-10;
 
-/// Numbers of a joint that stay positive, and those that they are complementary to.
+/// Numbers of a joint that stay positive, and their complements.
 #[derive(Clone, Copy)]
 struct Pairs {
     own: [f64; 5],
     other: [f64; 5],
 }
 
-/// A step of the unknowns of a joint that slip has been eliminated from.
+/// A step of the unknowns of a joint from which slip and speed have been eliminated.
 #[derive(Clone, Copy, Default)]
 struct Eliminated {
     /// Changes of the friction to either side, and of the speed, without a change of the rate and the pressure.
@@ -67,8 +67,8 @@ impl Pairs {
             .map(|(own, other)| own * other)
     }
 
-    /// Newton's equations for the three impulses of the joint, to be added to its compliance: matrix, right side, and what brings
-    /// back the rest.
+    /// Newton's equations for the three impulses of the joint, to be added to its compliance: matrix, right side, and what
+    /// recovers the eliminated unknowns.
     fn eliminated(
         &self,
         errors: &[f64; 5],
@@ -152,7 +152,7 @@ impl Pairs {
         Vector3::new(self.own[0], self.own[1], self.own[2] - self.own[3])
     }
 
-    /// What the joint does; impulses are compared with rates by its compliance.
+    /// What the joint does; its compliance converts impulses to rates, to compare the two.
     fn mode(&self, compliance: &Vector3<f64>) -> Mode {
         let (own, other) = (self.own, self.other);
         let pressed = [0, 1].map(|end| own[end] * compliance[end] > other[end]);
@@ -202,7 +202,7 @@ impl Program {
         let mut errors = vec![[0.0; 5]; joints];
         let mut rests = vec![Eliminated::default(); joints];
         let mut changes = pairs.clone();
-        // Of the products, and of the errors, at the start.
+        // Mean of the products, and the errors, at the start.
         let mut first: Option<[f64; 2]> = None;
         let mut centring = 0.5;
         let mut tried = TRIED.iter().peekable();
@@ -234,7 +234,7 @@ impl Program {
                 }
             }
             if found {
-                // Modes on the edge to others do not confirm themselves, but the impulses are right.
+                // Modes on the verge of others do not confirm themselves, but the impulses are right.
                 self.take_interior(&pairs);
                 self.impulses.copy_from_slice(&self.kept);
                 return true;
@@ -264,7 +264,7 @@ impl Program {
             let mut part = 1.0_f64;
             for joint in 0..joints {
                 let change = &self.target[joint];
-                // From the changes themselves: the difference of two rates is rounding in the end.
+                // Computed from the changes themselves: the difference of two rates is only rounding in the end.
                 let slip =
                     self.response(joint, &self.target).z + self.proximal(joint, 2) * change.z;
                 let along = (change, slip);
@@ -285,7 +285,7 @@ impl Program {
         false
     }
 
-    /// Takes the modes, and impulses that they allow.
+    /// Takes over the modes, and impulses that they allow.
     fn take_interior(&mut self, pairs: &[Pairs]) {
         for (joint, pairs) in pairs.iter().enumerate() {
             let mode = pairs.mode(&self.own[joint].diagonal());
@@ -327,7 +327,7 @@ mod tests {
                 (-impulse).max(-rate[end]).max(impulse.min(rate[end]))
             };
             let left = program.coefficient * (impulse.x + impulse.y) - impulse.z.abs();
-            // Friction drives no slip, and there is none that it could stop.
+            // Friction must not drive a slip, and may leave none that it could stop.
             let driven = (rate.z * impulse.z.signum()).min(impulse.z.abs() * scale.z);
             let slip = driven.max((left * scale.z).min(rate.z.abs()));
             end(0).max(end(1)).max(-left * scale.z).max(slip)
@@ -335,9 +335,9 @@ mod tests {
         breaches.fold(0.0, f64::max)
     }
 
-    /// An arch at rest that is hit: its blocks get velocities of about 1 m/s that do not go together. What is found obeys the law, and
-    /// Lemke's method, another one, finds the same velocities, to within what its rounding and the proximal term, 1e-6, make of them; but where
-    /// the law has several solutions, as friction may, and each method finds one.
+    /// An arch at rest is hit: its blocks get velocities of about 1 m/s that do not fit together. The solution obeys the law. Lemke's
+    /// method, an independent one, finds the same velocities, to within its rounding and the proximal term, 1e-6. The exception is where
+    /// the law has several solutions, as it may with friction, and each method finds one.
     #[test]
     fn it_finds_what_lemkes_method_finds() {
         let mut state = 1_u64;
