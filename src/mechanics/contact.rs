@@ -1,20 +1,20 @@
 //! The velocities of a row of blocks whose joints may open but neither close further nor slide.
 //!
-//! Given the velocities that the blocks would have without each other, the row takes the nearest ones, in the metric
-//! of the kinetic energy, among those that open no joint backwards: a convex quadratic program, with one solution. Its multipliers
-//! are the impulses at the corners of the joints. Both are compressive where a joint stays shut, that is, the
-//! thrust line passes between them; where it reaches a corner the joint opens about that corner. So the
-//! active constraints are the shut joints (both corners active), the hinges (one), and the parted joints (none).
+//! Given the velocities that the blocks would have without each other, the row takes the nearest ones, in the metric of the kinetic
+//! energy, among those that close no joint further: a convex quadratic program, with one solution. Its multipliers are the impulses
+//! at the corners of the joints. Both are compressive where a joint stays shut: the thrust line then passes between them. Where it
+//! reaches a corner, the joint opens about that corner. So the active constraints are the shut joints (both corners active), the
+//! hinges (one), and the parted joints (none).
 //!
-//! Shut joints make rigid bodies of the blocks between open joints. The impulses at open joints solve a
-//! block-tridiagonal system of 2x2 blocks, one per open joint; those at the shut joints follow by one running sum of
-//! the changes of momentum. The active set is found from the last one by exchanges of many corners at once, which nearly always
-//! get there. What they leave is for the dual method of Goldfarb and Idnani ("A numerically stable dual
-//! method for solving strictly convex quadratic programs", Math. Programming 27, 1983): corners that
-//! pull are released, then the corner that closes fastest is stopped. Rows that depend on others never become active, so that rest,
-//! where the impulses are not unique, is no special case.
+//! Shut joints make rigid bodies of the blocks between open joints. The impulses at open joints solve a block-tridiagonal system of
+//! 2x2 blocks, one per open joint; those at the shut joints follow by one running sum of the changes of momentum. The active set is
+//! found from the last one by exchanges of many corners at once, which nearly always succeed. What they leave is left to the dual
+//! method of Goldfarb and Idnani ("A numerically stable dual method for solving strictly convex quadratic programs", Math.
+//! Programming 27, 1983): corners that pull are released, then the corner that closes fastest is stopped. Rows that depend on
+//! others never become active, so rest, where the impulses are not unique, is no special case.
 //!
-//! What does not depend on the motion, bodies and pivots from the left up to where corners change, is kept from solution to solution.
+//! Bodies and pivots do not depend on the motion: those to the left of the first change of corners are kept from solution to
+//! solution.
 
 mod answer;
 mod dual;
@@ -33,12 +33,12 @@ use answer::Answer;
 use exchange::Wrong;
 use factor::Factor;
 
-/// Corner impulses pull when they are more negative than this part of all momentum, for rows that nothing presses together.
+/// Corner impulses pull when they are more negative than this fraction of all momentum, for rows that nothing presses together.
 const MOMENTUM_TOLERANCE: f64 = 1e-14;
-/// Corners close when they do so faster than this part of the largest velocity.
+/// Corners count as closing when they do so faster than this fraction of the largest velocity.
 const RATE_TOLERANCE: f64 = 1e-11;
-/// A corner that a unit impulse accelerates less than this part of what it does to free bodies depends on
-/// the active ones.
+/// A corner depends on the active ones if a unit impulse accelerates it by less than this fraction of what
+/// it does to free bodies.
 const DEPENDENCE: f64 = 1e-10;
 
 /// The program was not solved within its number of iterations, at the loosest tolerance.
@@ -52,7 +52,7 @@ pub struct ContactError {
     pub iterations: usize,
 }
 
-/// What a solution has cost.
+/// The cost of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
     /// Systems of pin forces solved.
@@ -64,12 +64,12 @@ pub struct Effort {
 /// Which corners of a joint, intrados and extrados, are concerned.
 pub type Corners = [bool; 2];
 
-/// What a program is about, besides the positions.
+/// The data of a program, besides the positions.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<'a> {
     /// Motion of every block without the others (m/s at the origin, rad/s).
     pub free: &'a [Twist],
-    /// Motion of the right block of every joint against its left one that counts as standing still.
+    /// Motion of the right block of every joint relative to its left one that counts as standing still.
     pub jumps: &'a [Twist],
     /// Corners that may not close further.
     pub touching: &'a [Corners],
@@ -81,7 +81,7 @@ pub struct Program {
     active: Vec<Corners>,
     factor: Factor,
     answer: Answer,
-    /// To a unit impulse at one corner.
+    /// Response to a unit impulse at one corner.
     response: Answer,
     velocities: Vec<Twist>,
     force_floor: f64,
@@ -116,7 +116,7 @@ impl Program {
         self.factor.place(placement);
     }
 
-    /// Goes back to the active set of the beginning.
+    /// Goes back to the initial active set.
     pub fn reset(&mut self) {
         self.active.fill([true; 2]);
         if self.factor.row.supports == Supports::Both {
@@ -251,17 +251,17 @@ impl Program {
     }
 }
 
-/// False also for a pivot that is not a number.
+/// False also for a pivot that is NaN.
 fn exceeds(pivot: f64, least: f64) -> bool {
     pivot > least
 }
 
-/// The lower of two numbers, or what is not a number.
+/// The lower of two numbers; the second one if either is NaN.
 fn lower(one: f64, other: f64) -> f64 {
     if one <= other { one } else { other }
 }
 
-/// The higher of two numbers, or the first one.
+/// The higher of two numbers; the first one if either is NaN.
 fn higher(one: f64, other: f64) -> f64 {
     if other > one { other } else { one }
 }
@@ -273,8 +273,8 @@ mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// Whatever the blocks do, exchanges of many corners lead to the same velocities as the dual method alone, from the corners
-    /// of the beginning; and nearly always they do so without its help, in a few dozen rounds.
+    /// Whatever the motion of the blocks, exchanges of many corners lead to the same velocities as the dual method alone, which
+    /// starts from the initial corners. Nearly always they do so without its help, in a few dozen rounds.
     #[test]
     fn the_dual_method_alone_has_the_same_solution() {
         let mut state = 7_u64;
@@ -339,7 +339,7 @@ mod tests {
                 }
             }
         }
-        // Measured: 153 of 160 in at most 39 rounds; in the others corners depend on each other, which is for the dual method.
+        // Measured: 153 of 160 in at most 39 rounds; in the others corners depend on each other, and the dual method is needed.
         let counts = [settled, programs, most];
         assert!(20 * settled >= 19 * programs && most <= 60, "{counts:?}");
     }

@@ -1,10 +1,11 @@
-//! Joints that give way: an interface of finite stiffness between two rigid bodies, without tension, with Coulomb friction, damping
-//! and crushing.
+//! Elastic joints: interfaces of finite stiffness between two rigid bodies, without tension, with Coulomb friction, damping and
+//! crushing.
 //!
-//! `kinematics` says how far the faces of a joint penetrate each other and slip, exactly at any rotation; `contact` what stress that
-//! makes, summed over the joint; `structure` collects bodies and the joints between them, and `statics` finds where they rest.
+//! `kinematics` says how far the faces of a joint penetrate each other and slip, exactly at any rotation. `contact` gives the stress
+//! that results, summed over the joint. `structure` collects bodies and the joints between them, and `statics` finds where they
+//! rest.
 //!
-//! All is written once for any [`Real`](super::lanes::Real): a motion alone, several side by side, or derivatives.
+//! The code is written once for any [`Real`](super::lanes::Real): a motion alone, several side by side, or derivatives.
 
 mod banded;
 mod contact;

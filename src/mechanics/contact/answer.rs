@@ -1,4 +1,4 @@
-//! What the impulses between bodies are under a load, and how the bodies then move.
+//! The impulses between bodies under a load, and the motion of the bodies that results.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -10,7 +10,7 @@ use crate::mechanics::joints::Closure;
 
 const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
 
-/// Motion of a body by the velocity of its centre.
+/// Motion of a body, given by the velocity of its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     centre: Vector2<f64>,
@@ -19,7 +19,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Of a body with a momentum.
+    /// The motion of a body with this momentum.
     fn with(body: &Body, momentum: &Momentum) -> Self {
         Self {
             centre: body.centre,
@@ -28,7 +28,7 @@ impl Motion {
         }
     }
 
-    /// Of a body that a support holds.
+    /// The motion of a body that a support holds.
     fn held(twist: Twist) -> Self {
         Self {
             centre: Vector2::zeros(),
@@ -102,13 +102,13 @@ impl Answer {
         }
     }
 
-    /// Under the load and an impulse at one corner.
+    /// Solves for the load and an impulse at one corner.
     pub fn take_load(&mut self, factor: &Factor, press: Option<Press>) {
         self.free_motions(factor);
         self.complete(factor, press, None, true);
     }
 
-    /// Under a unit impulse at one corner alone.
+    /// Solves for a unit impulse at one corner alone.
     pub fn take_unit(&mut self, factor: &Factor, pin: usize, edge: usize) {
         self.motions.clear();
         let still = |body: &Body| Motion::with(body, &Momentum::ZERO);
@@ -117,7 +117,7 @@ impl Answer {
         self.complete(factor, Some(Press { pin, edge, impulse }), None, false);
     }
 
-    /// Under the load and the closure error of an arch.
+    /// Solves for the load and the closure error of an arch.
     pub fn take_closure(&mut self, factor: &Factor, closure: &Closure) {
         self.free_motions(factor);
         self.complete(factor, None, Some(closure), true);
@@ -140,7 +140,7 @@ impl Answer {
         }
     }
 
-    /// From motions without impulses between the bodies to those with them.
+    /// Completes motions without impulses between the bodies to those with them.
     fn complete(
         &mut self,
         factor: &Factor,
@@ -160,7 +160,7 @@ impl Answer {
         self.press_corners(factor, press, loaded);
     }
 
-    /// Impulses at the pins that leave their bodies together.
+    /// Impulses at the pins that hold their bodies together.
     fn solve_pins(&mut self, factor: &Factor, closure: Option<&Closure>) {
         self.pins.clear();
         let mut carried = Vector2::zeros();
@@ -183,7 +183,7 @@ impl Answer {
         }
     }
 
-    /// Each body takes the impulses of the pins to both its sides.
+    /// Each body takes the impulses of the pins on both its sides.
     fn move_bodies(&mut self, factor: &Factor) {
         let mut left: Option<(&Pin, Vector2<f64>)> = None;
         for (index, (body, motion)) in factor.bodies.iter().zip(&mut self.motions).enumerate() {
@@ -249,8 +249,8 @@ impl Answer {
         }
     }
 
-    /// The resultant impulse at some joint of a body plus the change of momentum before it: what is constant along
-    /// the body. It is taken at a hinge, or at the free end.
+    /// The resultant impulse at a joint of a body plus the change of momentum before it: this sum is constant
+    /// along the body. It is taken at a hinge, or at the free end.
     fn start(&self, factor: &Factor, body: usize, press: Option<Press>, loaded: bool) -> Momentum {
         let row = &factor.row;
         let twist = self.motions[body].twist();

@@ -3,14 +3,15 @@
 use super::answer::Press;
 use super::{ContactError, Corners, DEPENDENCE, Effort, Program, RATE_TOLERANCE, exceeds};
 
-/// To this it is relaxed, tenfold at a time, before a program counts as unsolved.
+/// The tolerance of rates is relaxed to this, tenfold at a time, before a program counts as unsolved.
 const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
-/// A corner whose impulse falls by less than this part of a unit impulse elsewhere keeps it.
+/// A corner whose impulse falls by less than this fraction of a unit impulse elsewhere keeps it.
 const LEAST_SLOPE: f64 = 1e-12;
 
 impl Program {
-    /// Releases what pulls, and stops one corner after the other. False when that takes too many
-    /// iterations, or a corner depends on others none of which gives way: its closing is rounding.
+    /// Releases the corners that pull, and stops closing corners one after the other. False when that takes
+    /// too many iterations, or when a corner depends on others of which none gives way: its closing is
+    /// rounding.
     fn exchange_singly(
         &mut self,
         touching: &[Corners],
@@ -38,7 +39,7 @@ impl Program {
         false
     }
 
-    /// The dual method, with tolerances that are relaxed where it does not come to an end.
+    /// The dual method, with tolerances that are relaxed where it does not terminate.
     pub(super) fn exchange_tolerantly(
         &mut self,
         touching: &[Corners],
@@ -113,7 +114,7 @@ impl Program {
                     *iterations += 1;
                     return true;
                 }
-                // It depends on the others all the same.
+                // It depends on the others after all.
                 self.active[joint][edge] = false;
                 self.factor.update(&self.active);
             }

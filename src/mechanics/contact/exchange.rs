@@ -4,7 +4,7 @@ use super::{Corners, DEPENDENCE, Program, exceeds, higher};
 
 /// Rounds of exchanging many corners without progress after which the dual method takes over.
 const EXCHANGE_PATIENCE: usize = 30;
-/// Corner impulses pull when they are more negative than this part of the largest one.
+/// Corner impulses pull when they are more negative than this fraction of the largest one.
 const FORCE_TOLERANCE: f64 = 1e-9;
 
 /// A corner that pulls or closes, and the run of joints whose corners change with it.
@@ -31,10 +31,10 @@ impl Wrong {
 }
 
 impl Program {
-    /// Releases the corner that pulls most in each run of neighbours that do, because that often lets the others press again, and
-    /// stops all that close, again and again while that leaves fewer of them; then only the one of each run that closes fastest. It
-    /// solves impacts at which many corners change in a few rounds, but may go in circles: what it leaves is for
-    /// the dual method. True if that is nothing.
+    /// In each run of neighbours that pull, releases the corner that pulls most, because that often lets the others press again.
+    /// Stops all corners that close. It repeats this while that leaves fewer wrong corners; then it stops only the corner of each
+    /// run that closes fastest. It solves impacts at which many corners change in a few rounds, but may go in circles: the dual
+    /// method takes over what it leaves. True if nothing is left.
     pub(super) fn exchange(
         &mut self,
         touching: &[Corners],
@@ -95,7 +95,7 @@ impl Program {
         }
     }
 
-    /// Adds the corners at an edge whose impulses are below a limit; those that are not active have none.
+    /// Adds the corners at an edge whose impulses are below a limit; inactive corners have no impulse.
     pub(super) fn find_pulling(&mut self, edge: usize, limit: f64) {
         for (joint, impulses) in self.answer.corners.iter().enumerate() {
             if impulses[edge] < limit {
@@ -121,8 +121,8 @@ impl Program {
         });
     }
 
-    /// Openings and closings travel along the row from joint to joint: takes as many joints more as the last exchange changed
-    /// next to a corner in the same way.
+    /// Openings and closings travel along the row from joint to joint: extends each run by as many joints as the last
+    /// exchange changed next to its corner in the same way.
     fn go_on(&mut self, touching: &[Corners]) {
         let (active, earlier) = (&self.active, &self.earlier);
         for wrong in &mut self.wrong {
@@ -149,7 +149,7 @@ impl Program {
         }
     }
 
-    /// Impulses below this pull.
+    /// Impulses below this limit pull.
     pub(super) fn pull_limit(&self) -> f64 {
         // Edge by edge, so that one comparison does not wait for the other.
         let corners = self.answer.corners.iter();

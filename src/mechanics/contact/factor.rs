@@ -1,5 +1,5 @@
-//! Bodies between open joints, and the block-tridiagonal system of the impulses between them, factored from left to right. What
-//! the joints before the first change of corners have made of them stays.
+//! Bodies between open joints, and the block-tridiagonal system of the impulses between them, factored from left to right. The
+//! part to the left of the first change of corners is kept.
 
 use std::ops::Range;
 
@@ -62,12 +62,12 @@ pub(super) struct Pin {
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     pub row: Placed,
-    /// The active set that bodies and pins are of, at the joints before `factored`.
+    /// The active set for which bodies and pins were computed, at the joints before `factored`.
     pub active: Vec<Corners>,
     factored: usize,
     pub bodies: Vec<Body>,
     pub pins: Vec<Pin>,
-    /// The least pivot up to each pin, over what it would be without the other rows.
+    /// The least pivot up to each pin, over its value without the other rows.
     least: Vec<f64>,
 }
 
@@ -90,8 +90,8 @@ impl Factor {
         self.factored = 0;
     }
 
-    /// Bodies, pins and pivots of the active set. Returns the least pivot over what it would be without the other rows: zero
-    /// when rows depend on each other.
+    /// Computes bodies, pins and pivots of the active set. Returns the least pivot over its value without the other rows:
+    /// zero when rows depend on each other.
     pub fn update(&mut self, active: &[Corners]) -> f64 {
         let known = active.iter().zip(&self.active);
         let same = known.take_while(|(now, then)| now == then).count();
@@ -133,7 +133,7 @@ impl Factor {
             (Supports::Left, Some(first)) => self.body(first, self.row.own.len()),
             (Supports::Left, None) | (Supports::Both, _) => Body::HELD,
         });
-        // The pivot of a pin depends on the bodies to both sides.
+        // The pivot of a pin depends on the bodies on both sides.
         self.eliminate(kept.saturating_sub(1));
         self.least_pivot()
     }
@@ -142,7 +142,7 @@ impl Factor {
         match (self.least.last(), self.row.supports) {
             (Some(least), _) => *least,
             (None, Supports::Left) => 1.0,
-            // An arch without any hinge is held twice.
+            // An arch without any hinge is held at both ends.
             (None, Supports::Both) => 0.0,
         }
     }

@@ -1,4 +1,5 @@
-//! A row where it stands and what acts on it, as sums over its blocks from the left: those over any run of blocks are differences.
+//! A row in its present position and its load, as sums over its blocks from the left: the sum over any run of blocks is a
+//! difference of two.
 
 use nalgebra::Vector2;
 
@@ -67,7 +68,7 @@ impl Placed {
         }
     }
 
-    /// Takes the load; returns the largest velocity, and all momentum.
+    /// Takes the load; returns the largest velocity, and the sum of all momenta in magnitude.
     pub fn load(&mut self, load: &Load) -> (f64, f64) {
         let (mut momentum, mut datum) = (Momentum::ZERO, Twist::ZERO);
         let (mut largest, mut total) = (0.0_f64, 0.0);
@@ -90,7 +91,7 @@ impl Placed {
         (largest, total)
     }
 
-    /// Change of momentum of the blocks before a joint, did they all move so.
+    /// Change of momentum of the blocks before a joint if they all moved with this twist.
     pub fn change(&self, twist: &Twist, joint: usize, loaded: bool) -> Momentum {
         let change = twist.momentum(&self.moments[joint]);
         if loaded {

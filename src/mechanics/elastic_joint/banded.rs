@@ -4,7 +4,8 @@
 pub(super) struct Banded {
     size: usize,
     width: usize,
-    /// Row by row, each from `width` before the diagonal to `2 width` behind it, where exchanges of rows put numbers.
+    /// Row by row, each from `width` before the diagonal to `2 width` after it: exchanges of rows fill the additional
+    /// width.
     rows: Vec<f64>,
 }
 
@@ -30,7 +31,7 @@ impl Banded {
         self.rows[index] += value;
     }
 
-    /// Solves for right-hand sides, in their places; the matrix is used up. False if it is singular.
+    /// Solves for right-hand sides, in place; the matrix is overwritten. False if it is singular.
     pub(super) fn solve<const K: usize>(&mut self, mut rights: [&mut [f64]; K]) -> bool {
         let (size, width) = (self.size, self.width);
         for column in 0..size {
@@ -84,7 +85,7 @@ impl Banded {
 mod tests {
     use super::*;
 
-    /// Against the matrix times a known answer; diagonals of zero need exchanges of rows.
+    /// Checked against the matrix times a known answer; zeros on the diagonal need exchanges of rows.
     #[test]
     fn equations_with_a_band_are_solved() {
         let (size, width) = (30, 4);

@@ -1,6 +1,7 @@
-//! What stress a joint bears, summed over its length.
+//! The stress that a joint bears, summed over its length.
 //!
-//! Forces are per stiffness of the whole joint (N per N/m: metres), until the end. The penetration changes linearly from edge to edge,
+//! Forces are divided by the stiffness of the whole joint (N per N/m: metres), until the end. The penetration changes linearly from
+//! edge to edge,
 //! so the part that presses is an interval, found without branches, and Simpson's rule is exact for forces, moments and energies.
 
 use std::f64::consts::PI;
@@ -15,11 +16,11 @@ pub enum Contact {
     /// Exactly, over the part that presses.
     #[default]
     Continuous,
-    /// By points, evenly spread with two on the edges (2 to 100): those on the edges stand for half as much as the others.
+    /// At points, evenly spaced with two on the edges (2 to 100): those on the edges count half as much as the others.
     Points(usize),
 }
 
-/// Parts of a joint that may crush, each with linear stress: they are crowded at the edges, where stress is.
+/// Cells of a joint that may crush, each with linear stress: they are narrower near the edges, where the stress is.
 const CELLS: usize = 12;
 
 /// Where along a joint its stress is known.
@@ -27,7 +28,7 @@ const CELLS: usize = 12;
 pub(super) enum Section {
     /// At the edges, and so everywhere.
     Whole,
-    /// At nodes, from edge 0 to edge 1, and between two of them; as parts of the length.
+    /// At nodes, from edge 0 to edge 1, as fractions of the length; linear between two of them.
     Cells(Vec<f64>),
     /// At points, each with its share of the joint.
     Points(Vec<[f64; 2]>),
@@ -62,7 +63,7 @@ impl Section {
         }
     }
 
-    /// Rotational stiffness of the closed joint over that of all its stiffness at its ends' distance: a twelfth where continuous.
+    /// Rotational stiffness of the closed joint, over its stiffness times its length squared: a twelfth where continuous.
     pub(super) fn second_moment(&self) -> f64 {
         match self {
             Self::Whole | Self::Cells(_) => 1.0 / 12.0,
@@ -114,7 +115,7 @@ pub struct Memory<R> {
     pub slip_m: R,
     /// Elastic shear force, in N.
     pub shear_n: R,
-    /// By how much it has slipped for good, in m.
+    /// Permanent slip, in m.
     pub slipped_m: R,
     /// Forces of damping at the edges, in N.
     viscous_n: [R; 2],
@@ -228,7 +229,7 @@ impl<R: Real> Fibre<R> {
     }
 }
 
-/// Energy that a joint took in a step, in J, by the trapezoidal rule.
+/// Energy that a joint dissipated in a step, in J, by the trapezoidal rule.
 #[derive(Clone, Copy, Debug)]
 pub struct Work<R> {
     /// By slip.
@@ -242,11 +243,11 @@ pub struct Work<R> {
 /// What a joint bears.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressure<R> {
-    /// Forces at the edges that amount to the stress, in N.
+    /// Forces at the edges that are equivalent to the stress, in N.
     pub edges_n: [R; 2],
     /// Shear force, in N.
     pub shear_n: R,
-    /// What the step took.
+    /// Energy dissipated in the step.
     pub work: Work<R>,
 }
 
@@ -255,12 +256,12 @@ pub struct Pressure<R> {
 pub(super) struct Law {
     pub section: Section,
     pub crushes: bool,
-    /// Coefficient of friction, and what is added to its bound: infinity where nothing slips.
+    /// Coefficient of friction, and what is added to the bound: infinity where nothing slips.
     pub friction: [f64; 2],
 }
 
 impl Law {
-    /// The stress of a joint; it remembers. `damping` is the damping time over the length of the step.
+    /// The stress of a joint, whose memory is updated. `damping` is the damping time over the length of the step.
     #[inline(always)]
     pub fn press<R: Real>(
         &self,
@@ -358,7 +359,8 @@ struct Sums<R> {
     crushed: R,
 }
 
-/// The stress of one place, this part of the way along: what is elastic, and with damping; by how much it crushes now.
+/// At one place, this fraction of the length along: the elastic stress, the stress with damping, and by how much the place
+/// crushes now.
 #[inline(always)]
 fn fibre<R: Real>(
     at: f64,
@@ -429,7 +431,7 @@ fn in_cells<R: Real>(
         crushed: zero,
     };
     let mut before = (0.0, (zero, zero, zero));
-    // The force at the node before that the cell before it makes.
+    // The force at the previous node due to the cell before it.
     let mut carried = zero;
     let mut index = 0;
     while index <= nodes.len() {
@@ -472,7 +474,7 @@ fn in_cells<R: Real>(
     sums
 }
 
-/// Where what is linear between two ends is positive, as parts of the way; nowhere, an empty part.
+/// Where a function that is linear between two ends is positive, as fractions of the length; an empty interval if nowhere.
 #[inline(always)]
 fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     let (zero, one) = (R::of(0.0), R::of(1.0));
@@ -483,7 +485,7 @@ fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     ]
 }
 
-/// Forces at the ends that amount to a stress that is linear over a part of the way, from and to these values.
+/// Forces at the ends equivalent to a stress that is linear over a part of the length, between these values.
 #[inline(always)]
 fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
     let part = to - from;
@@ -492,14 +494,14 @@ fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
     [whole - at_one, at_one]
 }
 
-/// Forces at the ends where what is linear between them presses, and nothing pulls.
+/// Forces at the ends due to a stress that is linear between them, where it presses; nothing pulls.
 #[inline(always)]
 fn pressed<R: Real>(ends: [R; 2]) -> [R; 2] {
     let zero = R::of(0.0);
     amount(positive_part(ends), both!(end: ends[end].max(zero)))
 }
 
-/// The same of another linear function, where both press.
+/// The same for another linear function, over the part where both press.
 #[inline(always)]
 fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     let (touching, pressing) = (positive_part(ends), positive_part(stress));
@@ -513,7 +515,7 @@ fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     )
 }
 
-/// Energy of what presses.
+/// Energy of the part that presses.
 #[inline(always)]
 fn energy<R: Real>(ends: [R; 2]) -> R {
     let [from, to] = positive_part(ends);

@@ -1,4 +1,4 @@
-//! How the two faces of a joint lie to each other.
+//! The relative position of the two faces of a joint.
 
 use crate::mechanics::lanes::{Real, both};
 
@@ -22,7 +22,7 @@ impl<R: Real> Place<R> {
         }
     }
 
-    /// By what turning moves the end of an arm that starts at the centre.
+    /// How far rotation moves the end of an arm that starts at the centre.
     #[inline(always)]
     fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {
         let [cos, sin] = self.turn;
@@ -31,7 +31,7 @@ impl<R: Real> Place<R> {
     }
 }
 
-/// What a joint joins, undeformed. `L` counts its bodies: the first one is before it, the second behind.
+/// What a joint joins, undeformed: the first body is before the joint, the second one after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
     /// The indices of the two bodies.
@@ -46,7 +46,7 @@ pub struct Link {
     pub length_m: f64,
 }
 
-/// How the faces of a joint lie.
+/// The relative position of the faces of a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap<R> {
     /// By how much they penetrate each other at edge 0 and edge 1, in m; in between it changes linearly.
@@ -57,13 +57,13 @@ pub struct Gap<R> {
     along: [R; 2],
     /// Normal of that, towards the second body.
     normal: [R; 2],
-    /// Cosine of half the angle between the faces.
+    /// Cosine of half the angle between the faces, times the handedness and half the length.
     half_cos: R,
     /// From the centres of the bodies to midway between the middles of the faces.
     levers_m: [[R; 2]; 2],
 }
 
-/// What a joint does to its second body at that body's centre, and, in the opposite direction, to the first one.
+/// The action of a joint on its two bodies, at their centres.
 #[derive(Clone, Copy, Debug)]
 pub struct Action<R> {
     /// Force on the second body, in N; the first one feels its opposite.
@@ -73,10 +73,10 @@ pub struct Action<R> {
 }
 
 impl Link {
-    /// How the faces lie with the bodies at these places.
+    /// The relative position of the faces with the bodies at these places.
     ///
     /// With `e_a`, `e_b` the directions of the faces, `e` the mean direction and `n` its normal, `e_b - e_a` is along `n` whatever the
-    /// angle: the gap is linear along the joint, the slip the same everywhere.
+    /// angle. So the gap is linear along the joint, and the slip the same everywhere.
     #[inline(always)]
     pub fn gap<R: Real>(&self, first: &Place<R>, second: &Place<R>) -> Gap<R> {
         let swings = [first.swing(self.arms_m[0]), second.swing(self.arms_m[1])];
@@ -112,15 +112,15 @@ impl Link {
 }
 
 impl<R: Real> Gap<R> {
-    /// What the joint does with these forces at its edges, which press, and this shear force, which resists slip: the work of the
-    /// action is theirs at the penetrations and the slip.
+    /// The action of the joint for these pressing forces at its edges and this shear force, which resists slip. The work of the
+    /// action equals theirs on the penetrations and the slip.
     ///
-    /// The force acts midway between the middles of the faces, since what turns with the mean direction is shared by both bodies.
+    /// The force acts midway between the middles of the faces, since both bodies share in turning the mean direction.
     #[inline(always)]
     pub fn action(&self, edges_n: [R; 2], shear_n: R) -> Action<R> {
         let pressing = edges_n[0] + edges_n[1];
         let force_n = both!(i: self.normal[i] * pressing - self.along[i] * shear_n);
-        // With the handedness and half the length in it.
+        // `half_cos` includes the handedness and half the length.
         let couple = (edges_n[1] - edges_n[0]) * self.half_cos;
         Action {
             force_n,

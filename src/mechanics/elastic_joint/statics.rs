@@ -1,4 +1,4 @@
-//! Where a structure with elastic joints rests: Newton's method with exact tangents.
+//! Equilibrium of a structure with elastic joints at rest: Newton's method with exact tangents.
 
 use thiserror::Error;
 
@@ -8,7 +8,7 @@ use super::kinematics::Place;
 use super::structure::ElasticStructure;
 use crate::mechanics::lanes::{Dual, Lanes};
 
-/// What a joint knows alone.
+/// The number type of a single motion.
 type Alone = Lanes<1>;
 
 /// A structure at rest.
@@ -56,15 +56,15 @@ pub enum RestError {
     NotFound,
 }
 
-/// Forces that are unbalanced by less than this part of the weight are rounding.
+/// Forces that are unbalanced by less than this fraction of the weight are rounding.
 const ROUNDING: f64 = 1e-12;
-/// What is left of the weight at rest, at most.
+/// Largest unbalanced force at rest, over the weight.
 const BALANCED: f64 = 1e-8;
-/// Newton's steps at one stiffness.
+/// Steps of Newton's method at one stiffness, at most.
 const MOST_STEPS: usize = 80;
-/// Stiffness is raised by this from one equilibrium to the next.
+/// Factor by which stiffness is raised from one equilibrium to the next.
 const RAISED: f64 = 3.162_277_660_168_379_5;
-/// Stiffnesses from which it is raised, where the full one fails at once.
+/// Stiffnesses from which it is raised, over the full one, where that fails at once.
 const FIRST_STIFFNESS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 impl Rest {
@@ -96,11 +96,11 @@ impl Rest {
 }
 
 impl ElasticStructure {
-    /// Where it rests under a load per unit mass, in m/s2, to the right and upwards: from the undeformed structure, first with joints
-    /// that pull.
+    /// Its equilibrium under a load per unit mass, in m/s2, to the right and upwards. The search starts from the undeformed
+    /// structure, first with joints that can pull.
     ///
     /// # Errors
-    /// When it does not, with the reason.
+    /// When it does not rest, with the reason.
     pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Rest, RestError> {
         if let Some(rest) = self.balanced(load_m_s2) {
             return Ok(rest);
@@ -153,24 +153,24 @@ impl ElasticStructure {
     }
 }
 
-/// The way along which a structure is pushed over goes in steps of this part of its joints' length at first, ...
+/// The path along which a structure is pushed over is followed in steps of this fraction of its joints' length at first, ...
 const FIRST_STRIDE: f64 = 2e-3;
-/// ... of ten times as much at most, and is lost where they would be shorter than this part of that.
+/// ... and of ten times as much at most. It is lost where they would be shorter than this fraction of the first one.
 const SHORTEST_STRIDE: f64 = 1e-6;
-/// Part of the work on such a way by which the energy of the structure may differ from it.
+/// The energy of the structure may differ from the work on such a path by this fraction of it.
 const SAME_ENERGY: f64 = 0.03;
-/// Steps of such a way, at most.
+/// Steps of such a path, at most.
 const MOST_STRIDES: usize = 1000;
-/// Unbalanced forces along the way, over the weight.
+/// Largest unbalanced force along the path, over the weight.
 const BALANCED_ON_WAY: f64 = 1e-7;
 
 impl ElasticStructure {
-    /// Energy in J that it gains from rest up to where it falls by itself, where it is pushed over slowly to the right (or the left): its
-    /// centre of gravity is led aside, everything else is in equilibrium, and the push does the work. `None` where no such way
-    /// is found, or where something slips or crushes on it.
+    /// Energy in J that it gains from rest up to where it falls by itself, when it is pushed over slowly to the right (or the left). Its
+    /// centre of gravity is led aside, everything else is in equilibrium, and the push does the work. `None` if no such path is found, or
+    /// if something slips or crushes on it.
     ///
-    /// What moves to a side has to pass all places of its centre of gravity. Of all its shapes with that place those along the way have the least
-    /// energy near by, so what has less than the energy at the top cannot pass it.
+    /// A structure that moves to a side has to pass through all positions of its centre of gravity. Of all nearby shapes with the same
+    /// position, those along the path have the least energy. So a structure with less than the energy at the top cannot pass it.
     #[must_use]
     pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
         let without_slip = self.without_slip();
@@ -193,7 +193,7 @@ impl ElasticStructure {
                 }
                 continue;
             };
-            // The last part of the way, up to where no push is needed, is a straight line's.
+            // On the last stride the push falls to zero on a straight line.
             let (from, to) = (sense * here.push_m_s2, sense * there.push_m_s2);
             let part = if to > 0.0 { 1.0 } else { from / (from - to) };
             work_j += 0.5 * (from + to.max(0.0)) * part * stride_m * mass_kg;
@@ -202,7 +202,7 @@ impl ElasticStructure {
                 return None;
             }
             if to <= 0.0 {
-                // Where it jumped from one way to another the work is not what the structure gained.
+                // If the search jumped from one path to another, the work is not what the structure gained.
                 let gained_j = search.energy_j(&shape) - search.energy_j(rest);
                 let same = (work_j - gained_j).abs() < SAME_ENERGY * work_j;
                 return same.then_some(work_j.min(gained_j));
@@ -219,7 +219,7 @@ impl ElasticStructure {
 /// A structure that is pushed sideways.
 struct Pushed {
     moved: Vec<[f64; 3]>,
-    /// To the right, per mass.
+    /// Push to the right, per mass.
     push_m_s2: f64,
     /// Displacement of its centre of gravity to the right.
     sway_m: f64,
@@ -230,7 +230,7 @@ struct Search<'a> {
     structure: &'a ElasticStructure,
     load_m_s2: [f64; 2],
     weight_n: f64,
-    /// Rotations and moments are measured with this length.
+    /// Rotations and moments are scaled with this length.
     length_m: f64,
     width: usize,
 }
@@ -253,7 +253,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Unbalanced forces (moments over the length); with a matrix, minus their derivatives by the coordinates.
+    /// Unbalanced forces (moments over the length); with a matrix, minus their derivatives with respect to the coordinates.
     fn unbalanced(
         &self,
         moved: &[[f64; 3]],
@@ -332,7 +332,7 @@ impl<'a> Search<'a> {
         forces.iter().map(|force| force * force).sum::<f64>().sqrt() / self.weight_n
     }
 
-    /// Displacements with joints that pull as well.
+    /// Displacements with joints that can pull as well.
     fn bonded(&self) -> Option<Vec<[f64; 3]>> {
         let bodies = self.structure.bodies().len();
         let moved = vec![[0.0; 3]; bodies];
@@ -389,7 +389,8 @@ impl<'a> Search<'a> {
         moments / self.structure.mass_kg()
     }
 
-    /// In equilibrium with its centre of gravity farther to the right, from what it was here and before; with the number of steps.
+    /// The equilibrium with the centre of gravity a stride farther to the right, extrapolated from this one and the one before;
+    /// with the number of steps.
     fn pushed(
         &self,
         before: Option<&Pushed>,

@@ -19,7 +19,7 @@ pub struct JointStiffness {
     pub shear_pa_m: f64,
 }
 
-/// What the stiffness of joints follows from.
+/// Materials that determine the stiffness of joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Materials {
     /// Young's modulus of the blocks, in Pa.
@@ -33,32 +33,32 @@ pub struct Materials {
 /// The stiffness of the joints of a structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stiffness {
-    /// All alike.
+    /// The same for all.
     Uniform(JointStiffness),
     /// Blocks and mortar in series: `1/kn = t_m/E_m + L/E_b`, with the distance `L` between the centres of the two blocks across the
     /// joint; at a support, from the centre of the block to the joint.
     Materials(Materials),
 }
 
-/// What elastic joints are like.
+/// Properties of elastic joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticProperties {
-    /// How stiff.
+    /// Their stiffness.
     pub stiffness: Stiffness,
     /// Width of the structure out of its plane, in m.
     pub depth_m: f64,
-    /// Coulomb's coefficient of friction; without it nothing slips for good.
+    /// Coulomb's coefficient of friction; if `None`, nothing slips permanently.
     pub friction_coefficient: Option<f64>,
     /// Damping time in s: damping forces are this times the rates of the elastic ones.
     pub damping_time_s: f64,
-    /// Stress at which joints crush, in Pa; without it they do not.
+    /// Stress at which joints crush, in Pa; if `None`, they do not.
     pub compressive_strength_pa: Option<f64>,
     /// How the stress is summed.
     pub contact: Contact,
 }
 
 impl ElasticProperties {
-    /// Beyond the upper end explicit steps are too many, and joints as good as rigid; below the lower one nothing stands.
+    /// Above this range explicit steps are too many, and joints as good as rigid; below it nothing stands.
     pub(crate) const NORMAL_STIFFNESS_PA_M: RangeInclusive<f64> = 1e6..=1e14;
     /// Stiffness against slip over that against penetration.
     pub(crate) const SHEAR_RATIO: RangeInclusive<f64> = 1e-2..=1e2;
@@ -92,7 +92,7 @@ impl ElasticProperties {
         }
     }
 
-    /// Refuses what is no joint.
+    /// Refuses properties out of range.
     fn check(&self) -> Result<(), ArgumentError> {
         match self.stiffness {
             Stiffness::Uniform(stiffness) => check_stiffness(stiffness)?,
@@ -184,7 +184,7 @@ pub struct ElasticJoint {
     pub area_m2: f64,
 }
 
-/// Rigid bodies with elastic joints between them. Whatever joints name beyond the last body is a support, which does not move.
+/// Rigid bodies with elastic joints between them. An index beyond the last body stands for a support, which does not move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticStructure {
     bodies: Vec<Body>,
@@ -246,7 +246,7 @@ impl ElasticStructure {
         Ok(Self::new(bodies.collect(), joints?, properties))
     }
 
-    /// Any bodies and joints.
+    /// A structure of any bodies and joints.
     #[must_use]
     pub fn new(
         bodies: Vec<Body>,
@@ -300,7 +300,7 @@ impl ElasticStructure {
         self.bodies.iter().map(|body| body.mass_kg).sum()
     }
 
-    /// Places along each joint that remember what was crushed.
+    /// Number of places along each joint that remember crushing.
     #[must_use]
     pub fn fibres(&self) -> usize {
         self.law.section.fibres()
@@ -342,8 +342,8 @@ impl ElasticStructure {
         &self.law
     }
 
-    /// What a joint does with its bodies at these places, and what it bears; it remembers. `damping` is the damping time over the
-    /// length of the step.
+    /// The action of a joint on its bodies at these places, and the stress that it bears; its memory is updated. `damping` is the
+    /// damping time over the length of the step.
     #[inline(always)]
     pub fn act<R: Real>(
         &self,
@@ -391,9 +391,9 @@ impl ElasticStructure {
 
     /// A bound of the highest angular frequency, in rad/s, with any joints closed.
     ///
-    /// Every joint is given a part of the mass of its bodies, in proportion to its stiffness. The highest frequency of a joint with its
-    /// part is then not below that of the whole, by Rayleigh's quotient (Irons and Treharne, "A bound theorem in eigenvalues and its
-    /// practical applications", 1971), and joints that are open in part are softer than closed ones.
+    /// Every joint is given a part of the mass of its bodies, in proportion to its stiffness. By Rayleigh's quotient the highest
+    /// frequency of a joint with its part is then not below that of the whole (Irons and Treharne, "A bound theorem in eigenvalues and
+    /// its practical applications", 1971). Joints that are partly open are softer than closed ones.
     #[must_use]
     pub fn frequency_bound_rad_s(&self) -> f64 {
         let mut held_n_m = vec![0.0; self.bodies.len()];
@@ -415,7 +415,7 @@ impl ElasticStructure {
                 };
                 let part = joint.normal_n_m / held_n_m[body];
                 let arm = Vector2::from(arm_m);
-                // Gap, slip and angle by the motion of the body: both senses are the same squared.
+                // Gap, slip and angle due to the motion of the body; signs drop out when squared.
                 let by_x = Vector3::new(normal.x, along.x, 0.0);
                 let by_y = Vector3::new(normal.y, along.y, 0.0);
                 let by_turn = Vector3::new(arm.perp(&normal), arm.perp(&along), 1.0);
@@ -435,19 +435,19 @@ impl ElasticStructure {
         squares.fold(0.0, f64::max).sqrt()
     }
 
-    /// The longest step, in s, with which central differences with damping that lags by half a step are stable.
+    /// The longest step, in s, for which central differences are stable, with damping that lags by half a step.
     ///
-    /// With frequency `w` and `z = beta w/2` that is `2/w (sqrt(1 + z^2) - z)`, by the criterion of Jury; it falls with `w`.
+    /// With frequency `w` and `z = beta w/2` that is `2/w (sqrt(1 + z^2) - z)`, by Jury's criterion; it falls with `w`.
     #[must_use]
     pub fn stable_step_s(&self) -> f64 {
         let frequency = self.frequency_bound_rad_s();
         let z = 0.5 * self.damping_time_s * frequency;
-        // The difference, without cancelling.
+        // The difference, written without cancellation.
         2.0 / frequency / (1.0_f64.hypot(z) + z)
     }
 }
 
-/// Stiffness of mortar and of a length of stone, one after the other.
+/// Stiffness of mortar and of a length of stone, in series.
 fn in_series(materials: &Materials, length_m: f64) -> JointStiffness {
     let mortar = materials
         .mortar
