@@ -1,4 +1,4 @@
-//! The scenario of a command: where it is read from, what changes it, and where its results go.
+//! The scenario of a command: where it is read from, which options change it, and where its results go.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -22,7 +22,7 @@ pub struct ScenarioFile {
     set: SetOption,
 }
 
-/// What changes a scenario.
+/// The options that change a scenario.
 #[derive(clap::Args)]
 pub struct SetOption {
     /// Replace a value of the scenario or add one, such as --set arch.thickness_ratio=0.12; can be repeated.
@@ -34,19 +34,19 @@ pub struct SetOption {
 }
 
 impl ScenarioFile {
-    /// Takes its text.
+    /// Reads its text.
     pub fn open(&self) -> Result<Input<'_>, Failure> {
         self.set.open(&self.scenario)
     }
 }
 
 impl SetOption {
-    /// What was given.
+    /// The assignments given with `--set`.
     pub fn assignments(&self) -> &[Assignment] {
         &self.set
     }
 
-    /// Takes the text of a scenario file.
+    /// Reads the text of a scenario file.
     pub fn open<'a>(&'a self, path: &'a Path) -> Result<Input<'a>, Failure> {
         let source = if is_stdin(path) {
             Source::of_reader(io::stdin().lock(), "<stdin>")?
@@ -62,20 +62,20 @@ impl SetOption {
     }
 }
 
-/// Whether the records of a suite are meant.
+/// Whether the records of the suite are to shake the scenario.
 #[derive(clap::Args, Clone, Copy)]
 pub struct SuiteOption {
-    /// For each record of [suite] as it is in its file, instead of [ground]; results in a folder each.
+    /// Run once for each record of [suite], unscaled, instead of [ground]; results go to a folder each.
     #[arg(long)]
     suite: bool,
 }
 
-/// Scenarios that differ in their models of motion, and the record of the suite that shakes them, if one does.
+/// Scenarios that differ only in their model of motion, and the record of the suite that shakes them, if any.
 pub type Shaken = (Option<String>, Vec<Scenario>);
 
 impl SuiteOption {
-    /// The scenarios, which differ in their models of motion, or the same once for each record of their suite, if that
-    /// is asked for.
+    /// Returns the scenarios, which differ in their model of motion, once as they are; or, with `--suite`, once for each
+    /// record of the suite.
     pub fn choose(self, models: Vec<Scenario>) -> Result<Vec<Shaken>, Failure> {
         if !self.suite {
             return Ok(vec![(None, models)]);
@@ -97,12 +97,12 @@ impl SuiteOption {
     }
 }
 
-/// Whether this stands for standard input.
+/// Whether this path stands for standard input.
 pub fn is_stdin(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// The text of a scenario, and what changes it.
+/// The text of a scenario, and the options that change it.
 pub struct Input<'a> {
     path: &'a Path,
     source: Source,
@@ -111,7 +111,7 @@ pub struct Input<'a> {
 }
 
 impl Input<'_> {
-    /// The scenario with the model of motion that is asked for; `None`: the one that it chooses.
+    /// The scenario with the model of motion that was asked for; with `None`, the one that it chooses itself.
     pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
         let set = self.set;
         let scenario = Scenario::of(&self.source, &Changes { hinges, set })?;
@@ -122,7 +122,7 @@ impl Input<'_> {
         })
     }
 
-    /// The failure, prefixed with the name of the scenario file.
+    /// The failure, with the name of the scenario file in front.
     pub fn about(&self, failure: Failure) -> Failure {
         match failure {
             Failure::Input(message) => Failure::Input(format!("{}: {message}", self.source.name())),
@@ -130,7 +130,7 @@ impl Input<'_> {
         }
     }
 
-    /// Name of the folder for its results.
+    /// Name of the folder for the results.
     pub fn stem(&self) -> &Path {
         if is_stdin(self.path) {
             return Path::new("stdin");
@@ -138,8 +138,8 @@ impl Input<'_> {
         Path::new(self.path.file_stem().unwrap_or_default())
     }
 
-    /// Where its results go: to `out`, or else to a folder that has its name. The latter is refused where it holds
-    /// results of a scenario file elsewhere that has the same name.
+    /// Where the results go: to `out`, or else to a folder named after the scenario file. That folder is refused if it holds
+    /// results of another scenario file of the same name.
     pub fn results(&self, out: Option<&Path>) -> Result<Destination, Failure> {
         if let Some(out) = out {
             return Ok(Destination::of(out));
@@ -150,10 +150,10 @@ impl Input<'_> {
     }
 }
 
-/// A hidden file that tells which scenario file the results beside it are of.
+/// A hidden file that names the scenario file to which the results beside it belong.
 const ORIGIN: &str = ".scenario";
 
-/// A scenario file by its path from the current folder, if it is below that, or else from the root.
+/// The path of a scenario file, from the current folder if the file is below it, otherwise from the root.
 fn origin(path: &Path) -> String {
     let own = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let here = env::current_dir().and_then(|here| here.canonicalize());
@@ -165,12 +165,12 @@ fn origin(path: &Path) -> String {
 #[derive(Clone)]
 pub struct Destination {
     path: PathBuf,
-    /// The scenario file that the folder has its name from.
+    /// The scenario file after which the folder is named.
     origin: Option<String>,
 }
 
 impl Destination {
-    /// A folder that was asked for.
+    /// A folder that was given with `--out`.
     pub fn of(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
@@ -183,12 +183,12 @@ impl Destination {
         &self.path
     }
 
-    /// A folder in that one.
+    /// A folder inside this one.
     pub fn within(&self, name: impl AsRef<Path>) -> Self {
         Self::of(&self.path.join(name))
     }
 
-    /// Refuses two results in one place; each place has the name of what it is for.
+    /// Refuses two results in one place; each place comes with the name of its scenario.
     pub fn check_distinct<'d>(
         places: impl IntoIterator<Item = (&'d str, &'d Self)>,
     ) -> Result<(), Failure> {
@@ -209,7 +209,7 @@ impl Destination {
         }
     }
 
-    /// The folder in that one for what a record of the scenario's suite does.
+    /// The folder inside this one for the results of one record of the suite.
     pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
         let name = Path::new(record).file_name().unwrap_or_default();
         Self::checked(self.path.join(name), self.origin.clone())
@@ -218,7 +218,7 @@ impl Destination {
     /// The folder, unless it holds the results of another scenario file.
     fn checked(path: PathBuf, origin: Option<String>) -> Result<Self, Failure> {
         let told = path.join(ORIGIN);
-        // Of a pipe nobody would ever read the end.
+        // Reading a pipe of that name would never end.
         if told.is_file()
             && let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(told))
             && ours != theirs.trim_end()
@@ -232,7 +232,7 @@ impl Destination {
         Ok(Self { path, origin })
     }
 
-    /// Writes results there, and says so.
+    /// Writes results into the folder, and reports it.
     pub fn write(&self, results: &Results, quiet: bool) -> Result<(), Failure> {
         results.write(self.open(&results.names())?)?;
         if !quiet {
@@ -241,7 +241,7 @@ impl Destination {
         Ok(())
     }
 
-    /// The folder and the files of results in it.
+    /// The folder and the names of the result files in it.
     pub fn holds(&self, results: &Results) -> String {
         format!("{}: {}", self.path.display(), results.names().join(", "))
     }

@@ -1,4 +1,4 @@
-//! A value given beside the text of a scenario: `table.key=value`.
+//! A value given in addition to the text of a scenario: `table.key=value`.
 
 use std::ops::Range;
 use std::str::FromStr;
@@ -9,11 +9,11 @@ use toml::de::{DeTable, DeValue};
 use super::error::Fault;
 use super::toml_text::quoted;
 
-/// A value that takes the place of the one in a scenario's text, or is added to it.
+/// A value that replaces the one in a scenario's text, or is added to it.
 ///
-/// It is written as in a scenario whose tables are parts of the key, `arch.thickness_ratio=0.12`. What is no TOML
-/// value is a text, so that `impact.model=mirrored` needs no quotation marks. A table between braces replaces the
-/// table of that name as a whole. Entries of lists are counted from 1: `load.2.mass_kg=800`.
+/// The names of the tables are parts of the key, as in TOML: `arch.thickness_ratio=0.12`. A value that is not valid TOML
+/// is taken as a string, so that `impact.model=mirrored` needs no quotation marks. A table in braces replaces the whole
+/// table of that name. Entries of lists are counted from 1: `load.2.mass_kg=800`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
     /// As it was given.
@@ -59,7 +59,7 @@ impl FromStr for Assignment {
     }
 }
 
-/// Number of parts of a key; `None` where it is none.
+/// Number of parts of a key; `None` if the text is not a key.
 fn depth(key: &str) -> Option<usize> {
     let text = format!("{key} = 0");
     let table = DeTable::parse(&text).ok()?;
@@ -78,8 +78,8 @@ fn only<'a, 'i>(table: &'a DeTable<'i>) -> Option<&'a DeValue<'i>> {
     values.next().is_none().then(|| value.get_ref())
 }
 
-/// Assignments behind a text of that length, each on a line of its own: where they are told apart from the text, and
-/// from one another, by their offsets.
+/// Assignments that follow a text of that length, each on a line of its own. Their offsets tell them apart from the text
+/// and from one another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Appended<'a> {
     length: usize,
@@ -94,7 +94,7 @@ impl<'a> Appended<'a> {
         }
     }
 
-    /// The assignments with the offsets of their texts.
+    /// The assignments, each with the range of its text.
     fn places(self) -> impl Iterator<Item = (Range<usize>, &'a Assignment)> {
         self.assignments
             .iter()
@@ -105,14 +105,14 @@ impl<'a> Appended<'a> {
             })
     }
 
-    /// The assignment, as it was given, that has something at this offset.
+    /// The assignment at this offset, as it was given.
     pub(super) fn at(self, offset: usize) -> Option<&'a str> {
         let mut places = self.places();
         let found = places.find(|(place, _)| place.start <= offset && offset <= place.end);
         found.map(|(_, assignment)| assignment.given.as_str())
     }
 
-    /// What follows the text.
+    /// The text that is appended.
     pub(super) fn text(self) -> String {
         let lines = self.assignments.iter();
         lines
@@ -120,7 +120,7 @@ impl<'a> Appended<'a> {
             .collect()
     }
 
-    /// Texts with each assignment at its offset, to be read for [`Appended::assign`].
+    /// The text of each assignment, padded with blanks up to its offset, as [`Appended::assign`] needs it.
     pub(super) fn padded(self) -> Vec<(String, usize)> {
         self.places()
             .map(|(place, assignment)| {
@@ -130,7 +130,7 @@ impl<'a> Appended<'a> {
             .collect()
     }
 
-    /// Puts the values of all assignments into the table, or says which name no entry of a list.
+    /// Puts the values of all assignments into the table, or reports the names that are not entries of a list.
     pub(super) fn assign<'i>(table: &mut DeTable<'i>, padded: &'i [(String, usize)]) -> Vec<Fault> {
         let mut faults = Vec::new();
         for (text, depth) in padded {
@@ -143,7 +143,7 @@ impl<'a> Appended<'a> {
     }
 }
 
-/// Puts the value of the one key of `assignment`, so many tables deep, into the same place of `table`.
+/// Puts the value of the only key of `assignment`, which lies `depth` tables deep, at the same place in `table`.
 fn put<'i>(table: &mut DeTable<'i>, assignment: DeTable<'i>, depth: usize) -> Result<(), Fault> {
     for (key, value) in assignment {
         match table.get_mut(&key) {
@@ -156,7 +156,7 @@ fn put<'i>(table: &mut DeTable<'i>, assignment: DeTable<'i>, depth: usize) -> Re
     Ok(())
 }
 
-/// Puts a value, or what it has so many tables deep, in the place of the known one. Entries of lists are counted from 1.
+/// Replaces the known value by a new one, `depth` tables deep. Entries of lists are counted from 1.
 fn replace<'i>(
     known: &mut Spanned<DeValue<'i>>,
     name: &str,

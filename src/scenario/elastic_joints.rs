@@ -1,4 +1,4 @@
-//! Joints that give way: `[elastic_joints]`.
+//! Elastic joints: `[elastic_joints]`.
 
 use std::f64::consts::PI;
 
@@ -14,16 +14,16 @@ use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, ElasticStructure, JointStiffness, Materials, RestError, Stiffness,
 };
 
-/// A stiffness in GPa/m, and a modulus in GPa, in Pa/m and Pa.
+/// Converts a stiffness in GPa/m to Pa/m, and a modulus in GPa to Pa.
 const GPA: f64 = 1e9;
-/// A strength in MPa, in Pa.
+/// Converts a strength in MPa to Pa.
 const MPA: f64 = 1e6;
 
-/// Stiffness against slip over that against penetration, where it is not given: the shear modulus over Young's.
+/// Default ratio of the stiffness against slip to that against penetration: the shear modulus over Young's.
 const SHEAR_RATIO: f64 = 0.4;
-/// Damping time where none is given, in seconds.
+/// Default damping time, in seconds.
 const DAMPING_TIME_S: f64 = 1e-4;
-/// Stiffer joints are as good as rigid.
+/// Joints stiffer than this are as good as rigid.
 const STIFFEST_GPA_M: f64 = 1000.0;
 
 const STIFFNESS_GPA_M: Number = scaled(&ElasticProperties::NORMAL_STIFFNESS_PA_M, GPA);
@@ -48,7 +48,7 @@ const fn scaled(range: &std::ops::RangeInclusive<f64>, unit: f64) -> Number {
     )
 }
 
-/// What `[elastic_joints]` says, in the units of its keys.
+/// The contents of `[elastic_joints]`, in the units of its keys.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ElasticTable {
     /// Stiffness of a joint per area, against penetration.
@@ -57,27 +57,27 @@ pub struct ElasticTable {
     /// The same against slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear_stiffness_gpa_m: Option<f64>,
-    /// Young's modulus of the blocks, from which the stiffness follows instead.
+    /// Young's modulus of the blocks, from which the stiffness can be derived instead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stone_modulus_gpa: Option<f64>,
-    /// That of the mortar.
+    /// Young's modulus of the mortar.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mortar_modulus_gpa: Option<f64>,
-    /// Its thickness.
+    /// Thickness of the mortar.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mortar_thickness_m: Option<f64>,
-    /// Coulomb's coefficient; without it nothing slips for good.
+    /// Coulomb's coefficient; without it joints never slip permanently.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
-    /// Damping forces are this times the rates of the elastic ones.
+    /// Damping forces are this time multiplied by the rates of the elastic forces.
     pub damping_time_s: f64,
     /// Stress at which joints crush.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub compressive_strength_mpa: Option<f64>,
-    /// Points that bear the stress; without it the whole joint does.
+    /// Number of points that carry the stress; without it the whole joint does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_points: Option<usize>,
-    /// The longest step.
+    /// The longest time step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
 }
@@ -112,7 +112,7 @@ impl ElasticTable {
         })
     }
 
-    /// Joints of a structure of this depth.
+    /// The joints of a structure of this depth.
     fn properties(&self, depth_m: f64) -> ElasticProperties {
         let stiffness = match (self.normal_stiffness_gpa_m, self.stone_modulus_gpa) {
             (None, Some(stone_gpa)) => Stiffness::Materials(Materials {
@@ -146,7 +146,7 @@ impl ElasticTable {
         }
     }
 
-    /// Refuses joints on which a structure does not rest, and steps that are too long or too many.
+    /// Refuses joints on which the structure does not stand, and steps that are too long or too many.
     pub(super) fn check(
         &self,
         table: &mut Table<'_>,
@@ -156,7 +156,7 @@ impl ElasticTable {
         let (depth_m, _) = structure.depth_and_density();
         let properties = self.properties(depth_m);
         let row = structure.row().ok();
-        // Whatever else is wrong with the row is told where it is used.
+        // Anything else that is wrong with the row is reported where the row is used.
         let Some(joints) = row.and_then(|row| ElasticStructure::of_row(&row, &properties).ok())
         else {
             return Ok(());
@@ -198,7 +198,7 @@ impl ElasticTable {
     /// The model of the motion of a structure.
     ///
     /// # Errors
-    /// When the structure has no joints, or does not stand on these.
+    /// When the structure has no joints, or does not stand on joints like these.
     pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
         let row = structure.row().map_err(FreeHingesError::from)?;
         let (depth_m, _) = structure.depth_and_density();
@@ -212,7 +212,7 @@ impl ElasticTable {
     }
 }
 
-/// The keys that say how stiff joints are.
+/// The keys that give the stiffness of the joints.
 struct StiffnessKeys {
     normal_gpa_m: Option<f64>,
     shear_gpa_m: Option<f64>,
@@ -239,7 +239,7 @@ impl StiffnessKeys {
         Ok(read)
     }
 
-    /// Refuses stiffness that is missing, said twice, or as good as rigid.
+    /// Refuses a stiffness that is missing, given twice, or as good as rigid.
     fn check(&self, table: &mut Table<'_>) -> Reading<()> {
         match (self.normal_gpa_m, self.stone_gpa) {
             (None, None) => {
@@ -283,7 +283,7 @@ impl StiffnessKeys {
     }
 }
 
-/// Damping, as a time or as a part of critical at a frequency.
+/// Reads the damping: a time, or a fraction of critical damping at a frequency.
 fn read_damping(table: &mut Table<'_>) -> Reading<f64> {
     let time_s = table.optional("damping_time_s", &DAMPING_S);
     let ratio = table.optional("damping_ratio", &DAMPING_RATIO);
@@ -324,14 +324,14 @@ fn read_damping(table: &mut Table<'_>) -> Reading<f64> {
 }
 
 named! {
-    /// How the stress of a joint is summed.
+    /// How the stress over a joint is integrated.
     pub enum Summed {
         /// Exactly.
         Continuous = "continuous",
     }
 }
 
-/// The number of contact points; `None` of continuous contact.
+/// The number of contact points; `None` for continuous contact.
 fn read_contact(table: &mut Table<'_>) -> Reading<Option<usize>> {
     let summed = OneOf {
         all: Summed::ALL,

@@ -11,7 +11,7 @@ use super::source::Source;
 pub struct ScenarioError {
     /// Name of the file, as the caller gave it, or the assignment after `--set`.
     pub file: String,
-    /// Where in the file; `None` when it could not be read at all, and of an assignment.
+    /// Where in the file; `None` if the file could not be read, and for an assignment.
     pub place: Option<Place>,
     /// The offending key and value, and what is allowed instead.
     pub message: String,
@@ -61,7 +61,7 @@ impl ScenarioErrors {
         }])
     }
 
-    /// The same errors without their places, of a text that nobody has written.
+    /// The same errors without their places, for a text that no user wrote.
     pub(super) fn without_places(mut self) -> Self {
         for error in &mut self.0 {
             error.place = None;
@@ -69,9 +69,9 @@ impl ScenarioErrors {
         self
     }
 
-    /// Gives the faults found in `text` their lines and columns.
+    /// Gives each fault found in `text` its line and column.
     ///
-    /// A fault in an assignment has the assignment for its file, and no place.
+    /// For a fault in an assignment, the assignment stands in place of the file, and there is no place.
     pub(super) fn placed(source: &Source, set: &[Assignment], mut faults: Vec<Fault>) -> Self {
         let text = &source.text;
         let behind = Appended::new(text, set);
@@ -123,18 +123,18 @@ impl fmt::Display for ScenarioErrors {
 
 impl std::error::Error for ScenarioErrors {}
 
-/// An error as it is found: at a byte of the text.
+/// An error as it is found, with its byte offset in the text.
 #[derive(Debug)]
 pub(super) struct Fault {
     pub(super) offset: usize,
     pub(super) message: String,
 }
 
-/// A piece of the file for a message: its first line, cut when long.
+/// An excerpt of the file for a message: its first line, shortened if it is long.
 pub(super) fn excerpt(text: &str) -> String {
     const MAX_CHARS: usize = 50;
     let line = text.trim().lines().next().unwrap_or_default();
-    // What is escaped is longer.
+    // Escaping makes the text longer.
     let whole = shown(&line.chars().take(MAX_CHARS + 1).collect::<String>());
     let mut short: String = whole.chars().take(MAX_CHARS).collect();
     if short.len() < whole.len() {

@@ -1,4 +1,4 @@
-//! Joints that open and shut anywhere, and may slip: `[free_hinges]`.
+//! Free hinges, joints that may open, shut and slip anywhere: `[free_hinges]`.
 
 use super::structure::Structure;
 use super::table::{Number, Reading, Table};
@@ -24,7 +24,7 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
 }
 
-/// Refuses friction that does not carry the weight of the structure, in the table of that name.
+/// Refuses friction that cannot carry the weight of the structure; `name` is the table in which it is given.
 pub(super) fn carries(
     table: &mut Table<'_>,
     name: &str,
@@ -34,7 +34,7 @@ pub(super) fn carries(
     let Some(coefficient) = coefficient else {
         return Ok(());
     };
-    // Whatever else is wrong with the row is told where it is used.
+    // Anything else that is wrong with the row is reported where the row is used.
     let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());
     };

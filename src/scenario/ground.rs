@@ -18,13 +18,13 @@ pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
 pub(super) const AMPLITUDE_G: Number =
     Number(Included(-MAX_ACCELERATION_G), Included(MAX_ACCELERATION_G));
 pub(super) const DURATION_S: Number = Number(Included(1e-6), Included(1e6));
-/// Inverses of durations.
+/// The range of frequencies: inverses of durations.
 pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
 /// At 1 the envelope of the velocity pulse is one period long; at 100 it is no longer a pulse.
 const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
 const CYCLES: Number = Number(Included(1.0), Included(100.0));
 const PHASE_DEG: Number = Number(Included(-360.0), Included(360.0));
-/// Why a checked pulse cannot fail.
+/// Why a pulse that was checked is always valid.
 const IN_RANGE: &str = "the ranges of the keys are those of a ground motion";
 /// The kind of ground motion that is read from files.
 const RECORD: &str = "record";
@@ -33,18 +33,18 @@ const START_S: Number = Number(Included(0.0), Included(1e6));
 /// How the ground moves.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ground {
-    /// As a single pulse.
+    /// A single pulse.
     Pulse(PulseGround),
-    /// As recorded, from `[ground.record]`.
+    /// A record, from `[ground.record]`.
     Record(Box<Record>),
 }
 
 impl Ground {
-    /// Reads a ground motion by itself: a text with the table `[ground.<kind>]` of a scenario, and nothing else.
-    /// Whether it is too strong is judged under this gravity.
+    /// Reads a ground motion on its own: a text that holds the table `[ground.<kind>]` of a scenario, and nothing else.
+    /// This gravity decides whether the motion is too strong.
     ///
     /// # Errors
-    /// All that is wrong with the text and with its records.
+    /// Everything that is wrong with the text and with its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
         table::read_text(&source.text, &[], |table| {
             let ground = table.table("ground", |table| {
@@ -69,7 +69,7 @@ impl Ground {
         Ok(self.motion_under(gravity_m_s2))
     }
 
-    /// The same, under the gravity of a scenario.
+    /// The same for the gravity of a scenario, which is known to be in range.
     pub(super) fn motion_under(&self, gravity_m_s2: f64) -> GroundMotion {
         match self {
             Self::Pulse(pulse) => pulse.motion(gravity_m_s2),
@@ -77,8 +77,8 @@ impl Ground {
         }
     }
 
-    /// Reads `[ground]`, which holds one table, named by its kind (an inner key for the kind would not keep the
-    /// keys of different kinds apart), and builds the motion.
+    /// Reads `[ground]` and builds the motion. `[ground]` holds one table, named after its kind; a key for the kind would not
+    /// keep the keys of different kinds apart.
     pub(super) fn read(
         table: &mut Table<'_>,
         folder: &Path,
@@ -102,7 +102,7 @@ impl Ground {
         table.exactly_one("tables", kinds)
     }
 
-    /// Refuses the table of a study of pulses when `[ground]` has no pulse; `None`: `[ground]` is faulty.
+    /// Refuses the table of a study of pulses if `[ground]` has no pulse. `None` means that `[ground]` is faulty.
     pub(super) fn check_pulse(table: &mut Table<'_>, ground: Option<&Option<Self>>) -> Reading<()> {
         match ground {
             Some(None | Some(Self::Record(_))) => Err(table.wrong_itself(
@@ -114,7 +114,7 @@ impl Ground {
 }
 
 impl Serialize for Ground {
-    /// A table named by the kind.
+    /// Writes a table named after the kind.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(1))?;
         match self {
@@ -125,17 +125,17 @@ impl Serialize for Ground {
     }
 }
 
-/// A pulse of ground acceleration, as it was read; before and after it the ground moves uniformly.
+/// A pulse of ground acceleration as read; before and after it the ground velocity is constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PulseGround {
     /// Shape of the pulse.
     pub(crate) kind: Pulse,
     /// Peak acceleration, positive to the right, in -1000 to 1000.
     pub(crate) amplitude_g: f64,
-    /// Peak of the vertical acceleration, positive upwards, with the same shape at the same time, in -1000
-    /// to 1000; the ground must not fall as fast as a free body.
+    /// Peak of the vertical acceleration, positive upwards, with the same shape and timing, in -1000 to 1000; the
+    /// ground must not accelerate downwards as fast as a free fall.
     pub(crate) vertical_amplitude_g: f64,
-    /// Length of the part of the pulse that its kind names, in 1e-6 to 1e6.
+    /// Length of the part of the pulse to which its kind refers, in 1e-6 to 1e6.
     pub(crate) duration_s: f64,
     /// When the pulse starts, in 0 to 1e6.
     pub(crate) start_s: f64,
@@ -145,7 +145,7 @@ pub struct PulseGround {
     pub(crate) phase_deg: f64,
 }
 
-/// The key for the length of a wave train, as its source calls it, and its range.
+/// The key for the length of a wave train, named as in its source, and its range.
 const fn cycles_key(kind: Pulse) -> (&'static str, &'static Number) {
     match kind {
         Pulse::WindowedSine => ("cycles", &CYCLES),
@@ -202,7 +202,7 @@ impl PulseGround {
             cycles: cycles?,
             phase_deg: phase_deg?,
         };
-        // Whether the ground falls does not depend on gravity, which may be faulty.
+        // Whether the ground falls freely does not depend on gravity, whose value may itself be faulty.
         let gravity_m_s2 = gravity_m_s2.unwrap_or(1.0);
         let motion = pulse.motion(gravity_m_s2);
         match motion.free_fall_s(gravity_m_s2) {

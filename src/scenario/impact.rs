@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::table::{Number, OneOf, Reading, Table};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 
-/// From no rebound to far above what was measured: 0.67 to 0.97 times the theory.
+/// From no rebound to far above the measured 0.67 to 0.97 times the theory.
 const RESTITUTION_FACTOR: Number = Number(Included(0.0), Included(100.0));
 pub(super) const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
 

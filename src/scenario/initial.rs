@@ -1,4 +1,4 @@
-//! Where the motion starts from: `[initial]`.
+//! The initial state of the motion: `[initial]`.
 
 use std::f64::consts::PI;
 use std::ops::Bound::{Excluded, Included};

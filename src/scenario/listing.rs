@@ -1,4 +1,4 @@
-//! Records that keys of a table name, by files or by patterns of files, with the keys that say how tables are read.
+//! Records that a table names by files or by patterns of file names, with the keys that tell how tables are read.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component as PathPart, Path, PathBuf};
@@ -10,7 +10,7 @@ use super::record::{Form, Format, Layout, Series};
 use super::shown;
 use super::table::{Reading, Table};
 
-/// The files that keys of a table name, and how they are read.
+/// The files named by the keys of a table, and how to read them.
 pub(super) struct Listing {
     files: Vec<Listed>,
     layout: Layout,
@@ -21,14 +21,14 @@ struct Listed {
     /// The key that names it.
     key: &'static str,
     file: String,
-    /// Index of the element that names it first.
+    /// Index of the list element that names it first.
     element: usize,
     format: Format,
 }
 
 impl Listing {
-    /// Finds the files of keys, each given with its patterns, in this format or as their endings tell, and reads the keys that
-    /// say how tables are read.
+    /// Finds the files that the keys name by their patterns, and reads the keys that tell how tables are read. The files have
+    /// this format, or else the one that their extensions indicate.
     pub(super) fn read(
         table: &mut Table<'_>,
         folder: &Path,
@@ -66,7 +66,7 @@ impl Listing {
         self.files.len()
     }
 
-    /// The records, each with the key that names it, sorted by file name for each key; those that are not accepted are errors.
+    /// The records, each with the key that names it, sorted by file name within each key. A record that is not accepted is an error.
     pub(super) fn series(
         self,
         table: &mut Table<'_>,
@@ -104,13 +104,13 @@ impl Listing {
     }
 }
 
-/// Writes the keys that say how records are read.
+/// Writes the keys that tell how the records are read.
 pub(super) fn serialize_layout<'a, M: SerializeMap>(
     map: &mut M,
     records: impl Iterator<Item = &'a Series> + Clone,
 ) -> Result<(), M::Error> {
     let mut layouts = records.map(|series| &series.layout);
-    // Files of both formats were told apart by their endings.
+    // If the formats differ, the file extensions told them apart.
     if let Some(first) = layouts.clone().next()
         && layouts
             .clone()
@@ -118,7 +118,7 @@ pub(super) fn serialize_layout<'a, M: SerializeMap>(
     {
         map.serialize_entry("format", &first.format())?;
     }
-    // What tables have in common is that of all, or else AT2 files may have a unit in common.
+    // All tables share the same keys; without a table, AT2 files may share a unit.
     let telling = layouts
         .clone()
         .find(|layout| layout.format() == Format::Csv)
@@ -140,7 +140,7 @@ fn list(
     format: Option<Format>,
 ) -> Reading<Vec<Listed>> {
     let mut found = BTreeMap::new();
-    // A file with several names counts once.
+    // A file found under several names counts once.
     let mut seen = BTreeSet::new();
     let mut all_well = Ok(());
     for (element, pattern) in patterns.iter().enumerate() {
@@ -177,9 +177,9 @@ fn list(
     listed.into_iter().collect()
 }
 
-/// The files that match a pattern, relative to the folder; or why there are none, as words to follow the pattern.
+/// The files that match a pattern, relative to the folder; or why there are none, as words that continue the pattern.
 fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
-    // A file whose name looks like a pattern is taken as that file, so that a resolved scenario reads back the
+    // If a file has a name that looks like a pattern, that file is meant; so a resolved scenario reads back the
     // same.
     let path = folder.join(pattern);
     if path.is_dir() {
@@ -198,7 +198,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     } else {
         folder
     };
-    // `glob` has no folder to start from: its patterns are made absolute.
+    // `glob` cannot start from a folder, so its patterns are made absolute.
     let folder =
         std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
     let escaped = folder
@@ -227,10 +227,10 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     Ok(files)
 }
 
-/// What a cell begins with that spreadsheets compute; so does a tab, a control character.
+/// Spreadsheets take a cell that begins with one of these for a formula; also with a tab, which is a control character.
 const FORMULA: [char; 4] = ['=', '+', '-', '@'];
 
-/// The name of a file for scenarios and results, where it must fit on a line and in a cell.
+/// The name of a file as scenarios and results hold it; it must fit on one line and in one cell.
 fn file_name(path: &Path) -> Result<String, String> {
     let plain: PathBuf = path
         .components()

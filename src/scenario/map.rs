@@ -6,9 +6,9 @@
 //! amplitude_g = { from = 0.15, to = 1.5, count = 80, spacing = "logarithmic" }
 //! ```
 //!
-//! Two quantities of the scenario vary; all else stays as it is. Under a record, its strength varies as `scale` or
-//! `peak_g`. A number of any other table is named by table and key, `"column.width_m" = [0.6, 0.8]`. With free hinges, `spread = true` computes
-//! every cell with half and with double steps as well, to see whether its outcome depends on them.
+//! Two quantities of the scenario vary; everything else stays the same. With a record, its strength varies as `scale` or
+//! `peak_g`. A number of any other table is named by table and key: `"column.width_m" = [0.6, 0.8]`. With free hinges,
+//! `spread = true` repeats every cell with half and with double steps, to see whether its outcome depends on them.
 
 use std::ops::Bound::{Included, Unbounded};
 
@@ -25,15 +25,15 @@ use crate::argument::plain;
 use crate::mechanics::four_link::impact::ImpactModel;
 
 named! {
-    /// What may vary over a map, by its key in `[map]`. Of two, the first in this order goes along x.
+    /// What may vary over a map, by its key in `[map]`. Of the two quantities, the first in this order goes along x.
     pub enum Quantity {
         /// A number of another table of the scenario, by its table and key.
         Other = "table.key",
         /// Duration of the pulse.
         Duration = "duration_s",
-        /// Its inverse.
+        /// Frequency of the pulse, the inverse of its duration.
         Frequency = "frequency_hz",
-        /// Mean radius of the arch; its thickness ratio stays.
+        /// Mean radius of the arch; the thickness ratio stays the same.
         MeanRadius = "mean_radius_m",
         /// Thickness over mean radius.
         ThicknessRatio = "thickness_ratio",
@@ -43,15 +43,15 @@ named! {
         Restitution = "restitution",
         /// Peak acceleration of the pulse.
         Amplitude = "amplitude_g",
-        /// Factor on the horizontal record, or the only one.
+        /// Factor on the horizontal record, or on the only record.
         Scale = "scale",
-        /// Horizontal peak that the record is scaled to.
+        /// Horizontal peak acceleration to which the record is scaled.
         PeakG = "peak_g",
     }
 }
 
 impl Quantity {
-    /// What the scenario's own key allows.
+    /// The range of the same key in its own table.
     const fn range(self) -> &'static Number {
         match self {
             Self::Duration => &DURATION_S,
@@ -67,13 +67,13 @@ impl Quantity {
         }
     }
 
-    /// Whether it says how strong the ground moves.
+    /// Whether it measures the strength of the ground motion.
     #[must_use]
     pub const fn is_strength(self) -> bool {
         matches!(self, Self::Amplitude | Self::Scale | Self::PeakG)
     }
 
-    /// Whether it is of records, or of pulses; `None`: of neither.
+    /// True if it belongs to records, false if it belongs to pulses; `None`: to neither.
     const fn is_of_records(self) -> Option<bool> {
         match self {
             Self::Scale | Self::PeakG => Some(true),
@@ -83,7 +83,7 @@ impl Quantity {
     }
 }
 
-/// What the key of another table allows is asked of that table.
+/// No limits here: a key of another table is checked by that table.
 const ANY: Number = Number(Unbounded, Unbounded);
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
 
@@ -92,28 +92,28 @@ const SCALE: Number = Number(Included(-1e6), Included(1e6));
 pub struct Axis {
     /// What varies.
     pub quantity: Quantity,
-    /// Its key, in `[map]` or, of another table, after the name of that.
+    /// Its key in `[map]`; for a number of another table, `table.key`.
     pub key: String,
     /// Its values.
     pub sequence: Sequence,
 }
 
-/// Which cells a map has.
+/// The cells of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// To the right.
     pub x: Axis,
-    /// Upwards; the amplitude where it is one of the two.
+    /// Upwards; this is the amplitude if that is one of the two.
     pub y: Axis,
-    /// Whether every cell is computed with half and with double steps as well; with free hinges only.
+    /// Whether every cell is repeated with half and with double steps; with free hinges only.
     pub spread: bool,
 }
 
-/// Most cells of a map: more fit neither into a picture nor, as rows, into memory.
+/// Largest number of cells: more would fit neither into a picture nor, as rows, into memory.
 const MAX_CELLS: usize = 1_000_000;
 
 impl Map {
-    /// Reads `[map]`, and checks it against the other tables where these are valid.
+    /// Reads `[map]`, and checks it against those other tables that are valid.
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
@@ -184,7 +184,7 @@ impl Map {
         Ok(map)
     }
 
-    /// Checks that no ground motion is cut off.
+    /// Checks that every ground motion of the map ends within the simulation.
     fn check_end(
         &self,
         table: &mut Table<'_>,
@@ -233,7 +233,7 @@ impl Map {
 }
 
 impl Serialize for Map {
-    /// The two sequences, named by what varies, and the spread where there is one.
+    /// Writes the two sequences, named by what varies, and `spread` if it is set.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for axis in [&self.x, &self.y] {
@@ -246,7 +246,7 @@ impl Serialize for Map {
     }
 }
 
-/// Refuses a quantity of pulses where there is a record, and the other way round.
+/// Refuses a quantity of pulses with a record, and a quantity of records with a pulse.
 fn check_ground(
     table: &mut Table<'_>,
     quantity: Quantity,
@@ -266,7 +266,7 @@ fn check_ground(
 
 const SPREAD: &str = "spread";
 
-/// Reads `spread`, which is of free hinges.
+/// Reads `spread`, which only free hinges and elastic joints allow.
 fn read_spread(table: &mut Table<'_>, hinges: Hinges) -> Reading<bool> {
     let spread = table.or(SPREAD, &Switch, false)?;
     if spread && !hinges.has_joints() {

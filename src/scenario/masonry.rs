@@ -1,4 +1,4 @@
-//! Arches of other shapes, blocks from files, and what stands beside any arch: `[pointed_arch]`, `[elliptic_arch]`,
+//! Arches of other shapes, blocks from files, and additions to any arch: `[pointed_arch]`, `[elliptic_arch]`,
 //! `[basket_arch]`, `[blocks]`; `[piers]`, `[fill]`, `[[load]]`.
 //!
 //! ```toml
@@ -37,7 +37,7 @@ const PIER_BLOCKS: Count = Count {
     why: "a pier of one piece",
 };
 
-/// The shapes that have tables of their own.
+/// Reads the shapes that have tables of their own.
 pub(super) fn read_shapes(
     table: &mut Table<'_>,
     folder: &Path,
@@ -150,7 +150,7 @@ fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
         given.outlines =
             read_outlines(&path, &given).map_err(|wrong| table.wrong("outlines", wrong))?;
     }
-    // What makes no row is told by the line of its joint.
+    // If the blocks do not form a row, the error names the line of the joint.
     let shape = Shape::Blocks(given.clone());
     match Masonry::new(shape, Piers::default(), None, Vec::new()) {
         Ok(_) => Ok(given),
@@ -163,7 +163,7 @@ fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
     }
 }
 
-/// Blocks and joints as people count them in the files.
+/// Explains why blocks form no row, with blocks and joints counted as in the files.
 fn why_no_row(error: &RowError) -> String {
     match error {
         RowError::Crossing(first) => format!(
@@ -235,10 +235,10 @@ fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
     Ok(outlines)
 }
 
-/// Corners of the outlines of blocks, with their indices.
+/// Corners of the outlines of blocks, with the indices of the blocks.
 type Outlines = Vec<(usize, Vec<Vector2<f64>>)>;
 
-/// What stands beside an arch.
+/// Additions to an arch: piers, fill and loads.
 pub(super) struct Additions {
     piers: Piers,
     fill: Option<Fill>,
@@ -261,7 +261,7 @@ impl Additions {
         self.piers.are_none() && self.fill.is_none() && self.loads.is_empty()
     }
 
-    /// That what is given goes with no structure of this kind.
+    /// Reports that the additions do not go with a structure of this kind.
     pub fn refused(&self, table: &mut Table<'_>, wrong: &str) -> Reported {
         let key = match self {
             _ if !self.piers.are_none() => "piers",
@@ -271,7 +271,7 @@ impl Additions {
         table.wrong(key, wrong)
     }
 
-    /// The arch with what stands beside it, if that stands.
+    /// The arch with its additions, if it can stand.
     pub fn complete(self, table: &mut Table<'_>, shape: Shape) -> Reading<Masonry> {
         let key = shape.name();
         let masonry = Masonry::new(shape, self.piers, self.fill, self.loads.clone());
@@ -317,7 +317,7 @@ impl Additions {
 }
 
 fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
-    // What is said of both; each may say otherwise.
+    // Values for both piers; `[piers.left]` and `[piers.right]` may override them.
     let both = [
         table.optional("height_m", &MAGNITUDE)?,
         table.optional("width_m", &MAGNITUDE)?,
@@ -346,7 +346,7 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
     let (left, right) = (table.table("left", read), table.table("right", read));
     let (mut left, mut right) = (left?, right?);
     if said || (left.is_none() && right.is_none()) {
-        // Both stand, as `[piers]` says.
+        // Both piers exist, with the values that `[piers]` gives.
         let lacking = |key: &'static str, value: Option<f64>| match value {
             Some(value) => Ok(value),
             None => Err(key),
@@ -411,7 +411,7 @@ fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
     })
 }
 
-/// Says that the masonry falls under its own weight, and what would hold it.
+/// Reports that the masonry falls under its own weight, and what would hold it.
 fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Reported {
     let shape = masonry.shape().name();
     let falls = format!(

@@ -1,7 +1,7 @@
 //! The scenario: what stands, how the ground moves, and how the motion is computed.
 //!
-//! A scenario is read from a TOML text. Every value is checked, and all that is wrong with the text
-//! is said at once, each error with its line, its column and what is allowed instead:
+//! A scenario is read from a TOML text. Every value is checked, and all errors are reported
+//! together, each with its line, its column and what is allowed instead:
 //!
 //! ```
 //! use archrock::scenario::Scenario;
@@ -91,28 +91,28 @@ pub use verify::{
     Height, LimitState, ModeState, PointDemand, Records, Relief, Sides, StateRule, Verify,
 };
 
-/// What changes a scenario as it is read.
+/// Changes that are made to a scenario while it is read.
 ///
-/// With free hinges asked for, the steps are those of `[free_hinges]` if that is there, and `[impact]` is not asked
-/// for; with four links `[free_hinges]` is not asked for.
+/// If free hinges are asked for, the steps are those of `[free_hinges]` if it is given, and `[impact]` is not
+/// needed. If four links are asked for, `[free_hinges]` is not needed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Changes<'a> {
-    /// The model of motion; `None`: the one that the scenario chooses.
+    /// The model of motion; `None`: the one that the scenario itself chooses.
     pub hinges: Option<Hinges>,
-    /// Values that take the place of those in the text; of two for one key, the later.
+    /// Values that replace those in the text. If one key is set twice, the later value counts.
     pub set: &'a [Assignment],
 }
 
-/// What to simulate, every default resolved.
+/// What to simulate, with every default filled in.
 ///
-/// A scenario is read from text, which checks it; it is written as it is read, to TOML by
+/// A scenario is read from a text, which is checked. It can be written again: to TOML by
 /// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     title: Option<String>,
     structure: Structure,
     motion: Motion,
-    /// Whether the text has an `[impact]` that does not count.
+    /// Whether the text has an `[impact]` that is ignored.
     ignores_impact: bool,
     ground: Option<Ground>,
     initial: Option<Initial>,
@@ -123,19 +123,19 @@ pub struct Scenario {
     demand: Option<Demand>,
     verify: Option<Verify>,
     uncertain: Option<Uncertain>,
-    /// The motion of `ground`, built when that was read.
+    /// The motion of `ground`, built when `ground` was read.
     ground_motion: Arc<GroundMotion>,
 }
 
-/// What it says.
+/// The contents of the scenario.
 impl Scenario {
-    /// Free text for the results, as it is [shown](fn@shown).
+    /// Free text for the results, as [`shown`](fn@shown) shows it.
     #[must_use]
     pub fn title(&self) -> Option<&str> {
         self.title.as_deref()
     }
 
-    /// What stands on the ground.
+    /// The structure that stands on the ground.
     #[must_use]
     pub const fn structure(&self) -> &Structure {
         &self.structure
@@ -147,13 +147,13 @@ impl Scenario {
         &self.motion
     }
 
-    /// How the ground moves; `None`: it stays still.
+    /// The ground motion; `None`: the ground stays still.
     #[must_use]
     pub const fn ground(&self) -> Option<&Ground> {
         self.ground.as_ref()
     }
 
-    /// Where the motion starts from; `None`: from rest.
+    /// The initial state of the motion; `None`: rest.
     #[must_use]
     pub const fn initial(&self) -> Option<Initial> {
         self.initial
@@ -165,43 +165,43 @@ impl Scenario {
         &self.simulation
     }
 
-    /// What varies over an overturning map.
+    /// The quantities that vary over an overturning map.
     #[must_use]
     pub const fn map(&self) -> Option<&Map> {
         self.map.as_ref()
     }
 
-    /// What is tried for an overturning spectrum; `None`: the defaults.
+    /// The cases of an overturning spectrum; `None`: the defaults.
     #[must_use]
     pub const fn spectrum(&self) -> Option<&Spectrum> {
         self.spectrum.as_ref()
     }
 
-    /// Which records shake the structure for its fragility.
+    /// The records that shake the structure for its fragility.
     #[must_use]
     pub const fn suite(&self) -> Option<&Suite> {
         self.suite.as_ref()
     }
 
-    /// What is demanded of it in a check.
+    /// The demand of a check.
     #[must_use]
     pub const fn demand(&self) -> Option<&Demand> {
         self.demand.as_ref()
     }
 
-    /// How it is checked; `None`: by the defaults.
+    /// The options of a check; `None`: the defaults.
     #[must_use]
     pub const fn verify(&self) -> Option<&Verify> {
         self.verify.as_ref()
     }
 
-    /// What of it is not known; `None`: nothing.
+    /// The uncertain numbers of the scenario; `None`: none.
     #[must_use]
     pub const fn uncertain(&self) -> Option<&Uncertain> {
         self.uncertain.as_ref()
     }
 
-    /// The same with nothing uncertain.
+    /// The same scenario with nothing uncertain.
     #[must_use]
     pub fn without_uncertain(self) -> Self {
         Self {
@@ -210,13 +210,13 @@ impl Scenario {
         }
     }
 
-    /// Gravity, in m/s2.
+    /// Acceleration of gravity, in m/s2.
     #[must_use]
     pub const fn gravity_m_s2(&self) -> f64 {
         self.simulation.gravity_m_s2
     }
 
-    /// Says what of the text does not count with its model of motion, where there is such.
+    /// Reports a table that the text gives but the model of motion ignores, if there is one.
     #[must_use]
     pub fn ignored(&self) -> Option<&'static str> {
         self.ignores_impact
@@ -230,8 +230,8 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// All that is wrong with the text and with its records. After twenty lines that are not TOML it stops
-    /// looking.
+    /// Everything that is wrong with the text and with its records. After twenty lines that are not TOML, the search
+    /// stops.
     pub fn parse(text: &str, name: &str) -> Result<Self, ScenarioErrors> {
         Self::of(&Source::of_text(text, name), &Changes::default())
     }
@@ -245,12 +245,12 @@ impl Scenario {
         Self::of(&Source::of_file(path)?, &Changes::default())
     }
 
-    /// Reads a scenario, changed.
+    /// Reads a scenario with changes.
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`], and when a change does not go with the rest. Errors in an assignment have no place but
-    /// the assignment, which stands for the file.
+    /// As [`Scenario::parse`], and when a change does not fit the rest. An error in an assignment has no line; the
+    /// assignment stands in place of the file.
     pub fn of(source: &Source, changes: &Changes<'_>) -> Result<Self, ScenarioErrors> {
         let Source { folder, text, .. } = source;
         table::read_text(text, changes.set, |table| {
@@ -333,8 +333,8 @@ impl Scenario {
         })
     }
 
-    /// The same structure, simulated in the same way, on ground that moves like this; without the tables of studies,
-    /// which go with the ground that they were read with.
+    /// The same structure and simulation with this ground motion. The tables of studies are left out, because they were
+    /// checked against the original ground.
     #[must_use]
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
         let motion = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
@@ -351,13 +351,13 @@ impl Scenario {
         }
     }
 
-    /// The ground motion of a record under this scenario's gravity, multiplied by a factor.
+    /// The ground motion of a record multiplied by a factor, for this scenario's gravity.
     #[must_use]
     pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
         suite::shaking(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
     }
 
-    /// What moves, by its model of motion.
+    /// The structure with its model of motion.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -365,7 +365,7 @@ impl Scenario {
         self.motion.model(&self.structure)
     }
 
-    /// The structure with other properties that are as likely as its own.
+    /// The same structure with other properties that are as likely as its own.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -373,13 +373,13 @@ impl Scenario {
         self.motion.variations(&self.structure)
     }
 
-    /// The name of that model in results.
+    /// The name of the model of motion in results.
     #[must_use]
     pub const fn model_name(&self) -> &'static str {
         self.motion.name(&self.structure)
     }
 
-    /// What stands as mechanisms of one degree of freedom, also where it moves otherwise.
+    /// The structure as mechanisms of one degree of freedom, even if the scenario uses another model.
     ///
     /// # Errors
     /// As [`Structure::model`].
@@ -387,10 +387,10 @@ impl Scenario {
         self.structure.model(self.motion.impact())
     }
 
-    /// Refuses a scenario that does not start from rest, as the histories of what is asked for do.
+    /// Refuses a scenario that does not start from rest; the histories of `what` always do.
     ///
     /// # Errors
-    /// In words, what to change.
+    /// Explains what to change.
     pub(crate) fn check_from_rest(&self, what: &str) -> Result<(), String> {
         match self.initial {
             None => Ok(()),
@@ -400,8 +400,8 @@ impl Scenario {
         }
     }
 
-    /// The blocks of which limit analysis tells what starts them: of masonry, and of a column that is not the one block
-    /// of Housner. `None` of what starts as one mechanism.
+    /// The row of blocks, if limit analysis has to find what starts them: for masonry, and for a column that is not
+    /// Housner's single block. `None` for a structure that starts as one mechanism.
     ///
     /// # Errors
     /// As [`Structure::free_hinges`].
@@ -415,17 +415,17 @@ impl Scenario {
         })
     }
 
-    /// The ground motion, of still ground where the scenario has no `[ground]`.
+    /// The ground motion; still ground if the scenario has no `[ground]`.
     #[must_use]
     pub fn ground_motion(&self) -> &GroundMotion {
         &self.ground_motion
     }
 
-    /// Whether there is a history to simulate: the ground moves, or the structure is released from a rotated
+    /// Checks that there is a history to simulate: the ground moves, or the structure is released from a rotated
     /// position.
     ///
     /// # Errors
-    /// In words, what to add or which command is meant.
+    /// Explains what to add or which command is meant.
     pub fn check_for_run(&self) -> Result<(), String> {
         if self.ground.is_some() || self.initial.is_some() {
             return Ok(());
@@ -438,7 +438,7 @@ impl Scenario {
         })
     }
 
-    /// What is asked of the simulation, samples at every output step included.
+    /// The request for the simulation, with samples at every output step.
     #[must_use]
     pub fn request(&self) -> Request {
         Request {
@@ -451,7 +451,7 @@ impl Scenario {
         }
     }
 
-    /// The same from rest, whatever the scenario starts from: what studies ask of their histories.
+    /// The same request from rest, whatever `[initial]` says; studies use it for their histories.
     #[must_use]
     pub fn request_from_rest(&self) -> Request {
         Request {
@@ -460,7 +460,7 @@ impl Scenario {
         }
     }
 
-    /// The scenario as TOML text, every default written out.
+    /// The scenario as TOML text, with every default written out.
     ///
     /// Reading the text of a valid scenario gives an equal scenario.
     #[must_use]
@@ -471,13 +471,13 @@ impl Scenario {
         }
     }
 
-    /// The scenario as JSON, every default written out, with the keys of the file.
+    /// The scenario as JSON, with every default written out and the keys of the file.
     #[must_use]
     pub fn to_json(&self) -> Value {
         fn json(value: &impl Serialize) -> Value {
             serde_json::to_value(value).expect("a scenario consists of tables of numbers and texts")
         }
-        // What a row of blocks is asked for stands beside it, and what mechanisms are asked for after the ground.
+        // The options of rows of blocks follow the structure; those of mechanisms follow the ground.
         let motion = |row: bool| match self.motion.hinges().has_joints() {
             has_joints if has_joints == row => (self.motion.table_name(), self.motion.table()),
             _ => ("", Value::Null),

@@ -1,4 +1,4 @@
-//! The model of motion: which tables it has, and what it makes of a structure.
+//! The model of motion: its tables, and the models that it builds from a structure.
 
 use serde_json::{Value, json};
 
@@ -15,17 +15,17 @@ use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 named! {
     /// A model of motion.
     pub enum Hinges {
-        /// Mechanisms of one degree of freedom that follow one another: four links, or Housner's column.
+        /// Mechanisms with one degree of freedom, one after another: four links, or Housner's column.
         Four = "four",
         /// A row of blocks whose joints open and shut anywhere.
         Free = "free",
-        /// A row of blocks whose joints give way.
+        /// A row of blocks with elastic joints.
         Elastic = "elastic",
     }
 }
 
 impl Hinges {
-    /// Whether it moves a row of blocks at its joints.
+    /// Whether it moves a row of blocks that open at their joints.
     #[must_use]
     pub const fn has_joints(self) -> bool {
         match self {
@@ -38,7 +38,7 @@ impl Hinges {
 /// A model of motion with its options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// [`Hinges::Four`], and what happens when hinges close: `[impact]`.
+    /// [`Hinges::Four`], with the impact law of `[impact]`.
     FourLinks(ImpactLaw),
     /// [`Hinges::Free`]: `[free_hinges]`.
     FreeHinges(RowOptions),
@@ -57,13 +57,13 @@ impl Motion {
         }
     }
 
-    /// Whether its models compute several motions at once: [`Model::is_faster_together`].
+    /// Whether its models compute several motions faster together: [`Model::is_faster_together`].
     #[must_use]
     pub const fn is_faster_together(&self) -> bool {
         matches!(self, Self::ElasticJoints(_))
     }
 
-    /// Its name for people.
+    /// Its name in sentences.
     #[must_use]
     pub const fn words(&self) -> &'static str {
         match self {
@@ -73,7 +73,7 @@ impl Motion {
         }
     }
 
-    /// The name in results of the model of a structure.
+    /// The name in results of the model built from a structure.
     pub(super) const fn name(&self, structure: &Structure) -> &'static str {
         match self {
             Self::FreeHinges(_) => "free_hinges",
@@ -95,7 +95,7 @@ impl Motion {
         })
     }
 
-    /// The structure with other properties that are as likely as its own; with elastic joints, also with rigid ones.
+    /// The structure with other properties that are as likely as its own; for elastic joints, also with rigid joints.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -118,7 +118,7 @@ impl Motion {
         Ok(variations)
     }
 
-    /// The same for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases).
+    /// The same model for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases).
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -135,7 +135,7 @@ impl Motion {
         }
     }
 
-    /// What happens when the hinges of four links close, also where the structure moves otherwise: then as in theory.
+    /// The impact law when hinges of four links close. Models without four links have the theoretical one.
     #[must_use]
     pub fn impact(&self) -> ImpactLaw {
         match self {
@@ -144,7 +144,7 @@ impl Motion {
         }
     }
 
-    /// Coulomb's coefficient of friction of joints that slip; `None` where none does.
+    /// Coulomb's coefficient of friction if joints may slip; otherwise `None`.
     #[must_use]
     pub const fn friction_coefficient(&self) -> Option<f64> {
         match self {
@@ -154,7 +154,7 @@ impl Motion {
         }
     }
 
-    /// The longest step of a motion of a structure, in seconds; `None` where steps follow from a tolerance, or where it does not stand.
+    /// The longest step of the motion of a structure, in seconds; `None` if a tolerance sets the steps, or if the structure does not stand.
     pub(super) fn longest_step_s(&self, structure: &Structure, request: &Request) -> Option<f64> {
         match self {
             Self::FourLinks(_) => None,
@@ -166,7 +166,7 @@ impl Motion {
         }
     }
 
-    /// Refuses options that do not go with a structure.
+    /// Refuses options that do not fit a structure.
     pub(super) fn check(
         &self,
         table: &mut Table<'_>,
@@ -191,7 +191,7 @@ impl Motion {
         }
     }
 
-    /// The compressive strength of joints that crush, in MPa; `None` where none does.
+    /// The compressive strength of joints that may crush, in MPa; otherwise `None`.
     #[must_use]
     pub const fn compressive_strength_mpa(&self) -> Option<f64> {
         match self {
@@ -200,7 +200,7 @@ impl Motion {
         }
     }
 
-    /// The key of its table.
+    /// The name of its table.
     #[must_use]
     pub const fn table_name(&self) -> &'static str {
         match self {
@@ -210,7 +210,7 @@ impl Motion {
         }
     }
 
-    /// Its table.
+    /// The contents of its table.
     pub(super) fn table(&self) -> Value {
         match self {
             Self::FourLinks(law) => impact::to_json(law),
@@ -220,7 +220,7 @@ impl Motion {
     }
 }
 
-/// What a scenario says of its model of motion.
+/// The tables of a scenario that concern its model of motion.
 pub(super) struct Tables {
     pub(super) hinges: Hinges,
     asked: bool,
@@ -229,7 +229,7 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    /// Reads which model it is, unless that is `asked` for, and the tables of rows.
+    /// Reads the tables of rows of blocks, which decide the model unless one is `asked` for.
     pub(super) fn read(table: &mut Table<'_>, asked: Option<Hinges>) -> Self {
         let free_hinges = table.table("free_hinges", free_hinges::read);
         let elastic_joints = table.table("elastic_joints", ElasticTable::read);
@@ -248,7 +248,7 @@ impl Tables {
         }
     }
 
-    /// Reads what happens at impacts. Returns the model, and whether there is an `[impact]` that does not count.
+    /// Reads the impact law. Returns the model, and whether there is an `[impact]` that is ignored.
     pub(super) fn complete(self, table: &mut Table<'_>) -> Reading<(Motion, bool)> {
         let law = table.table_or_defaults("impact", impact::read);
         let (elastic, free) = (table.gives("elastic_joints"), table.gives("free_hinges"));

@@ -16,11 +16,11 @@ named! {
     }
 }
 
-/// Increasing numbers, each another case of a study.
+/// Increasing numbers, each for one case of a study.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Sequence {
-    /// `{ from = 0.1, to = 2.0, count = 20, spacing = "logarithmic" }`: ends included, linear by default.
+    /// `{ from = 0.1, to = 2.0, count = 20, spacing = "logarithmic" }`: includes the ends, linear by default.
     Range {
         /// The first.
         from: f64,
@@ -28,7 +28,7 @@ pub enum Sequence {
         to: f64,
         /// How many, at least 2.
         count: usize,
-        /// How the others lie between.
+        /// How the numbers between the ends are spaced.
         spacing: Spacing,
     },
     /// `[0.1, 0.5, 2.0]`: at least one.
@@ -63,7 +63,7 @@ impl Rule for Ascending<'_> {
     }
 }
 
-/// Length of a range.
+/// How many numbers a range may have.
 const COUNT: Count = Count {
     range: 2..=10_000,
     why: "the ends",
@@ -86,7 +86,7 @@ impl Sequence {
         }
     }
 
-    /// Spacing of the axis that the numbers are drawn along.
+    /// Spacing of the axis along which the numbers are drawn.
     #[must_use]
     pub const fn spacing(&self) -> Spacing {
         match self {
@@ -95,7 +95,7 @@ impl Sequence {
         }
     }
 
-    /// The numbers of a key, if given; each must follow `rule`.
+    /// Reads the numbers of a key, if given; each must follow `rule`.
     pub(super) fn read(table: &mut Table<'_>, key: &str, rule: &Number) -> Reading<Option<Self>> {
         if table.gives_table(key) {
             return table.table(key, |table| Self::read_range(table, rule));
@@ -141,8 +141,8 @@ impl Sequence {
     }
 }
 
-/// The number as people would write it, 0.12 and not 0.12000000000000002: with twelve digits of the largest, or so many
-/// that a millionth of a step is kept.
+/// The number as people would write it: 0.12, not 0.12000000000000002. It keeps as many decimals as give the largest
+/// number twelve digits, or more if a millionth of a step needs them.
 fn round(value: f64, largest: f64, step: f64) -> f64 {
     let digits = (12.0 - largest.log10().floor()).max(6.0 - step.log10().floor());
     #[expect(
@@ -152,11 +152,11 @@ fn round(value: f64, largest: f64, step: f64) -> f64 {
     )]
     let digits = digits.clamp(0.0, 340.0) as usize;
     let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
-    // No negative zero.
+    // Turns negative zero into zero.
     rounded + 0.0
 }
 
-/// The ends are exact, and so is every number that has few digits.
+/// A number of a range. The ends are exact, and so is every number with few digits.
 #[expect(clippy::cast_precision_loss, reason = "at most ten thousand")]
 fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
     let part = index as f64 / last as f64;

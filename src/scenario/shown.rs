@@ -1,7 +1,7 @@
-//! Texts from outside, such as titles and names of files, as they are shown.
+//! Texts from outside, such as titles and file names, made safe to show.
 
-/// The text with everything escaped that would not be seen, or would change how the text around it is read: control
-/// characters, line ends, and marks of the direction of writing. Escapes are those of TOML and JSON.
+/// Escapes every character that would be invisible, or would change how the text around it reads: control
+/// characters, line ends, and marks of writing direction. Escapes are those of TOML and JSON.
 ///
 /// ```
 /// use archrock::scenario::shown;
@@ -13,7 +13,7 @@ pub fn shown(text: &str) -> String {
     escape(text, |_| false)
 }
 
-/// The same of a text of several lines, whose line ends and tabs are meant.
+/// The same for a text of several lines: its line ends and tabs are kept.
 #[must_use]
 pub fn shown_lines(text: &str) -> String {
     escape(text, |c| matches!(c, '\n' | '\t'))
@@ -27,23 +27,23 @@ fn escape(text: &str, is_meant: impl Fn(char) -> bool) -> String {
             '\n' => shown += "\\n",
             '\r' => shown += "\\r",
             '\t' => shown += "\\t",
-            // All of them have four digits.
+            // All hidden characters have codes of four digits.
             c => shown += &format!("\\u{:04x}", u32::from(c)),
         }
     }
     shown
 }
 
-/// Whether a character is not seen, or changes how others are read.
+/// Whether a character is invisible, or changes how others read.
 pub(super) fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(
             c,
-            // Marks of direction.
+            // Marks of writing direction.
             '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
-            // Ends of lines and paragraphs.
+            // Line and paragraph separators.
             | '\u{2028}' | '\u{2029}'
-            // No characters, which XML does not allow.
+            // Noncharacters, which XML does not allow.
             | '\u{fffe}' | '\u{ffff}'
         )
 }
@@ -52,7 +52,7 @@ pub(super) fn is_hidden(c: char) -> bool {
 mod tests {
     use super::*;
 
-    /// What is shown reads back as what was meant in JSON, between its marks.
+    /// An escaped text in quotation marks, read as JSON, gives the original.
     #[test]
     fn escapes_are_those_of_json() {
         let hidden: String = (0..=0xffff)

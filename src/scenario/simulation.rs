@@ -20,9 +20,9 @@ pub struct Simulation {
     pub duration_s: f64,
     /// Time between rows of the output, at least 1e-6 and at most `duration_s`.
     pub output_step_s: f64,
-    /// Error that the integrator may make, relative to the state, in 1e-13 to 1e-3.
+    /// Allowed error of the integrator, relative to the state, in 1e-13 to 1e-3.
     pub relative_tolerance: f64,
-    /// Energy over energy barrier below which the structure is at rest, in 1e-16 to 0.1.
+    /// The structure is at rest when its energy falls below this fraction of the energy barrier, in 1e-16 to 0.1.
     pub rest_energy_ratio: f64,
     /// Acceleration of gravity, in 0.001 to 1000.
     pub gravity_m_s2: f64,
@@ -79,7 +79,7 @@ impl Simulation {
         } else {
             return Ok(());
         };
-        // The defaults agree, so at least one of the two is given; the step is the easier to change.
+        // The defaults agree with each other, so at least one of the two is given; the step is easier to change.
         let culprit = if table.gives("output_step_s") {
             "output_step_s"
         } else {

@@ -9,7 +9,7 @@ use super::error::{Fault, ScenarioErrors};
 /// Largest text of a scenario.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// The text of a scenario, not yet read, and what stands for it in errors.
+/// The text of a scenario before it is read, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     pub(super) name: String,
@@ -29,7 +29,7 @@ impl Source {
         }
     }
 
-    /// What stands for it in errors.
+    /// Its name in errors.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -38,7 +38,7 @@ impl Source {
     /// The text of a file.
     ///
     /// # Errors
-    /// When there is no such file, it cannot be read, is not UTF-8 text or is larger than 1 MiB.
+    /// When there is no such file, or it cannot be read, is not UTF-8 text or is larger than 1 MiB.
     pub fn of_file(path: &Path) -> Result<Self, ScenarioErrors> {
         let name = path.display().to_string();
         let unreadable = |message: String| ScenarioErrors::unreadable(&name, message);
@@ -53,15 +53,15 @@ impl Source {
         })
     }
 
-    /// What a reader holds; `name` stands for it in errors, and records of ground motion are relative to the current
-    /// folder.
+    /// The text from a reader. `name` stands for the file in errors, and records of ground motion are relative to the
+    /// current folder.
     ///
     /// # Errors
     /// When it cannot be read, is not UTF-8 text or is larger than 1 MiB.
     pub fn of_reader(reader: impl Read, name: &str) -> Result<Self, ScenarioErrors> {
         let unreadable = |message: String| ScenarioErrors::unreadable(name, message);
         let mut bytes = Vec::new();
-        // The limit is on what is read, because not every file knows its size.
+        // The limit applies while reading, because not every file knows its size.
         reader
             .take(MAX_BYTES + 1)
             .read_to_end(&mut bytes)
@@ -75,7 +75,7 @@ impl Source {
             return Err(unreadable(wrong.to_owned()));
         }
         let text = String::from_utf8(bytes).map_err(|error| {
-            // What precedes the fault is the same in the lossy text.
+            // The text before the fault is the same in the lossy text.
             let text = String::from_utf8_lossy(error.as_bytes());
             let fault = Fault {
                 offset: error.utf8_error().valid_up_to(),
@@ -91,7 +91,7 @@ impl Source {
     }
 }
 
-/// Why a file is not text as it is read here, where its first bytes or its line ends tell.
+/// Why a file is not plain text, if its first bytes or its line ends show it.
 pub(super) fn not_plain(bytes: &[u8]) -> Option<&'static str> {
     let is_utf_16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
     // Without a mark, every other byte of letters and digits in UTF-16 is zero.
@@ -105,7 +105,7 @@ pub(super) fn not_plain(bytes: &[u8]) -> Option<&'static str> {
     )
 }
 
-/// The folder that a file is in.
+/// The folder that holds a file.
 fn folder_of(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
 }

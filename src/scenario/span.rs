@@ -1,4 +1,4 @@
-//! The shape of a circular arch: by its mean radius, or by its span, as masons and surveyors have it.
+//! The shape of a circular arch, given by its mean radius, or by its span as masons and surveyors measure it.
 //!
 //! ```toml
 //! [arch]
@@ -15,7 +15,7 @@ use super::table::{Number, OneOf, Reading, Table};
 use crate::argument::plain;
 
 const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
-/// Spans and rises may be less than any radius.
+/// Spans and rises may be smaller than any radius.
 const LENGTH: Number = Number(Included(1e-6), Included(1e6));
 
 named! {
@@ -23,7 +23,7 @@ named! {
     pub enum MeasuredAt {
         /// The lower side: the clear span.
         Intrados = "intrados",
-        /// Halfway.
+        /// The middle line.
         Mean = "mean",
         /// The upper side.
         Extrados = "extrados",
@@ -31,7 +31,7 @@ named! {
 }
 
 impl MeasuredAt {
-    /// From this line to that halfway, in thicknesses, outwards.
+    /// The distance outwards from this line to the mean line, in thicknesses.
     const fn to_mean(self) -> f64 {
         match self {
             Self::Intrados => 0.5,
@@ -48,7 +48,7 @@ pub(super) struct Circular {
     pub(super) embrace_deg: f64,
 }
 
-/// How thick it is.
+/// The thickness of the arch.
 #[derive(Clone, Copy)]
 enum Thickness {
     Ratio(f64),
@@ -88,7 +88,7 @@ impl Circular {
             let mean_radius_m = table.required("mean_radius_m", &MAGNITUDE);
             let thickness = thickness(table);
             let embrace_deg = table.required("embrace_deg", &EMBRACE_DEG);
-            // A key at a time says what is missing beside it; all are needed.
+            // Every key has reported its own error by now; only then does the first failure end the reading.
             span_m?;
             rise_m?;
             measured_at?;
@@ -127,7 +127,7 @@ impl Circular {
         Self::around(table, radius_m, measured_at, thickness, embrace_deg)
     }
 
-    /// The ring whose line has this radius.
+    /// The ring of which this line has this radius.
     fn around(
         table: &mut Table<'_>,
         radius_m: f64,
@@ -142,7 +142,7 @@ impl Circular {
                 (mean_radius_m, thickness_m / mean_radius_m)
             }
         };
-        // The radius of an extrados thicker than twice itself has the wrong sign.
+        // An extrados radius of less than half the thickness gives a mean radius of the wrong sign.
         if !THICKNESS_RATIO.contains(thickness_ratio) {
             let wrong = format!(
                 "is out of range: {} mean radii of {} m; must be at least a millionth of the mean radius and below \
@@ -168,10 +168,10 @@ impl Circular {
     }
 }
 
-/// The angle of a circle of that span and rise.
+/// The embrace angle of an arc of this span and rise.
 fn embrace_deg_of(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
     let half_m = 0.5 * span_m;
-    // The angle between chord and tangent is a quarter of it.
+    // The angle between chord and tangent at the crown is a quarter of the embrace angle.
     let embrace_deg = 4.0 * (rise_m / half_m).atan().to_degrees();
     if EMBRACE_DEG.contains(embrace_deg) {
         return Ok(embrace_deg);

@@ -6,11 +6,11 @@
 //! acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "logarithmic" }
 //! ```
 //!
-//! How strong must a pulse be to overturn a structure of some size? With the frequency parameter `p` of the
-//! equivalent block at the unstable equilibrium (see [`crate::mechanics::equivalent`]) and the duration `t_p`
-//! of the pulse, size is `p t_p`: similar structures under pulses of one shape do the same at the same `p t_p`
-//! and the same peak acceleration over `g A_L`. So the structure stays as it is, and the duration varies; so
-//! does the horizontal amplitude, while a vertical one stays.
+//! How strong must a pulse be to overturn a structure of a given size? The measure of size is `p t_p`: the frequency
+//! parameter `p` of the equivalent block at the unstable equilibrium (see [`crate::mechanics::equivalent`]) times
+//! the duration `t_p` of the pulse. Similar structures under pulses of one shape respond alike at the same `p t_p`
+//! and the same peak acceleration over `g A_L`. So the structure stays the same, and the duration of the pulse varies
+//! with its horizontal amplitude; a vertical amplitude stays the same.
 
 use std::ops::Bound::{Excluded, Included};
 
@@ -25,17 +25,17 @@ use crate::dynamics::model::MechanismModel;
 use crate::mechanics::equivalent::{Block, Equivalent};
 use crate::mechanics::four_link::impact::ImpactModel;
 
-/// What is tried for a spectrum.
+/// The cases of a spectrum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Spectrum {
     /// The sizes `p t_p`.
     pub p_t: Sequence,
-    /// Peak accelerations of the pulse over `g A_L`, as magnitudes: the scenario's own amplitude says to which
+    /// Peak accelerations of the pulse over `g A_L`, as magnitudes: the sign of the scenario's own amplitude gives the
     /// side.
     pub acceleration_over_incipient: Sequence,
 }
 
-/// A shorter pulse is a blow, a longer one a lasting acceleration.
+/// Any shorter pulse is a blow, any longer one a constant acceleration.
 const P_T: Number = Number(Included(1e-3), Included(1e3));
 /// Relative to `g A_L`, in magnitude.
 const ACCELERATION_OVER_INCIPIENT: Number = Number(Excluded(0.0), Included(1e6));
@@ -56,7 +56,7 @@ impl Default for Spectrum {
 }
 
 impl Spectrum {
-    /// Reads `[spectrum]`, and checks it against the other tables where these are valid.
+    /// Reads `[spectrum]`, and checks it against those other tables that are valid.
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,

@@ -1,4 +1,4 @@
-//! What stands on the ground: an arch, blocks, or `[column]`.
+//! The structure on the ground: an arch, blocks, or `[column]`.
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Bound::{Excluded, Included};
@@ -27,7 +27,7 @@ use crate::mechanics::masonry::{CircularArch, Masonry, Shape};
 use crate::mechanics::parts::Parts;
 use crate::mechanics::sway::Sway;
 
-/// Lengths and densities.
+/// Range of lengths and densities.
 pub(super) const MAGNITUDE: Number = Number(
     Included(*arch::MAGNITUDE.start()),
     Included(*arch::MAGNITUDE.end()),
@@ -46,7 +46,7 @@ pub(super) const VOUSSOIRS: Count = Count {
     why: "four hinges need four joints",
 };
 
-/// What stands on the ground.
+/// The structure that stands on the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Structure {
@@ -65,7 +65,7 @@ pub enum ModelError {
     /// It does not rock as four links.
     #[error(transparent)]
     FourLinks(#[from] FourLinkError),
-    /// It makes no row of blocks that stands.
+    /// It is not a row of blocks that stands.
     #[error(transparent)]
     FreeHinges(#[from] FreeHingesError),
     /// It does not stand on its elastic joints.
@@ -74,7 +74,7 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads what stands, for a model of motion. Files are relative to `folder`.
+    /// Reads the structure for a model of motion. Files are relative to `folder`.
     pub(super) fn read(table: &mut Table<'_>, folder: &Path, hinges: Hinges) -> Reading<Self> {
         let free_hinges = hinges.has_joints();
         let beside = Additions::read(table);
@@ -100,7 +100,7 @@ impl Structure {
         }
     }
 
-    /// The model of its motion by mechanisms of one degree of freedom: four links, or Housner's block.
+    /// The model of the motion as mechanisms of one degree of freedom: four links, or Housner's block.
     ///
     /// # Errors
     /// When it does not rock as four links.
@@ -115,7 +115,7 @@ impl Structure {
         })
     }
 
-    /// The same as four links, with what only they have; `None` for a column.
+    /// The same model with the properties that only four links have; `None` for a column.
     ///
     /// # Errors
     /// When it does not rock as four links.
@@ -130,7 +130,7 @@ impl Structure {
         })
     }
 
-    /// What it consists of.
+    /// The parts of which it consists.
     #[must_use]
     pub fn as_parts(&self) -> &dyn Parts {
         match self {
@@ -140,19 +140,19 @@ impl Structure {
         }
     }
 
-    /// Whether it thrusts: an arch does, and a column stands by itself.
+    /// Whether it thrusts at its springings: an arch does, a free-standing column does not.
     #[must_use]
     pub const fn thrusts(&self) -> bool {
         !matches!(self, Self::Column(_))
     }
 
-    /// Whether it is its own mirror image whatever its dimensions.
+    /// Whether it is symmetric whatever its dimensions.
     #[must_use]
     pub const fn is_symmetric(&self) -> bool {
         !matches!(self, Self::Masonry(_))
     }
 
-    /// The circular arch by itself, where it is that.
+    /// The circular arch, if the structure is one by itself.
     #[must_use]
     pub const fn circular(&self) -> Option<&Arch> {
         match self {
@@ -161,7 +161,7 @@ impl Structure {
         }
     }
 
-    /// Length out of plane in m and density in kg/m3, of several the first.
+    /// Length out of plane in m and density in kg/m3; if densities differ, the first.
     pub(crate) fn depth_and_density(&self) -> (f64, f64) {
         match self {
             Self::Arch(arch) => (arch.depth_m(), arch.density_kg_m3()),
@@ -173,8 +173,8 @@ impl Structure {
         }
     }
 
-    /// The rotation below which it can be released: the limit position of its first mechanism. `None` where that is
-    /// none of one degree of freedom. Drums turn as one about the base.
+    /// The rotation below which it can be released: the limit position of its first mechanism. `None` if that mechanism
+    /// has more than one degree of freedom. Drums turn about the base as one block.
     pub(super) fn release_limit_rad(&self) -> Option<f64> {
         match self {
             Self::Arch(arch) => {
@@ -203,7 +203,7 @@ impl Structure {
         }
     }
 
-    /// The model of its motion as a row of blocks whose joints open and shut.
+    /// The model of the motion as a row of blocks whose joints open and shut.
     ///
     /// # Errors
     /// When it is an arch without voussoirs, or cannot stand.
@@ -212,7 +212,7 @@ impl Structure {
     }
 }
 
-/// A row of blocks as four links, as deep as the scenario says.
+/// A row of blocks as four links, with the depth that the scenario gives.
 fn four_link_row(
     masonry: &Masonry,
     impact: impl Into<ImpactLaw>,
@@ -221,15 +221,15 @@ fn four_link_row(
     Ok(FourLinkRow::new(masonry.row(), impact)?.with_depth_m(depth_m)?)
 }
 
-/// What a table of a structure says.
+/// The contents of a table that describes a structure.
 enum Read {
     Arch(Arch),
     Column(Column),
     Shape(Shape),
 }
 
-/// Reads `[arch]`. If it is `alone`, without piers or loads, and of equal voussoirs or none, it must start as four links,
-/// unless its hinges are free: then it must have voussoirs and stand.
+/// Reads `[arch]`. If it is `alone`, without piers or loads, with equal voussoirs or none, it must start as four links.
+/// With free hinges it must instead have voussoirs and stand.
 fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<Read> {
     let circular = Circular::read(table);
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
@@ -290,7 +290,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     }
 }
 
-/// Why the limit analysis refuses the arch, and what to change.
+/// Explains why limit analysis refuses the arch, and what to change.
 fn why_not(arch: &Arch, error: LimitError) -> String {
     let embrace_deg = arch.embrace_deg();
     match error {
@@ -325,7 +325,7 @@ const DRUMS: Count = Count {
     why: "each is a block",
 };
 
-/// Reads `[column]`; drums and a taper go with models of blocks only.
+/// Reads `[column]`; drums and a taper are for models of blocks only.
 fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);

@@ -26,11 +26,11 @@ use super::{Component, Ground, Scenario, Simulation};
 use crate::argument::{plain, short};
 
 named! {
-    /// What the levels of a suite are, named by their key in `[suite]`.
+    /// The measure of the levels of a suite, named by its key in `[suite]`.
     pub enum Measure {
         /// Factors of the records.
         Scale = "scales",
-        /// Peak accelerations that the records are scaled to, in units of gravity.
+        /// Peak accelerations to which the records are scaled, in units of gravity.
         PeakG = "peaks_g",
     }
 }
@@ -40,7 +40,7 @@ const MAX_SCALE: f64 = 1e6;
 const SCALE: Number = Number(Excluded(0.0), Included(MAX_SCALE));
 
 impl Measure {
-    /// What a single level may be.
+    /// The range of a single level.
     const fn range(self) -> &'static Number {
         match self {
             Self::Scale => &SCALE,
@@ -48,7 +48,7 @@ impl Measure {
         }
     }
 
-    /// What one of the levels is called.
+    /// The name of a single level in results.
     #[must_use]
     pub const fn column(self) -> &'static str {
         match self {
@@ -70,15 +70,15 @@ impl Measure {
 pub struct Suite {
     /// The records as they are in their files, sorted by file name; at least one.
     pub records: Vec<Series>,
-    /// What the levels are.
+    /// What the levels measure.
     pub measure: Measure,
-    /// How strong each record is made, above 0.
+    /// The levels to which each record is scaled, above 0.
     pub levels: Sequence,
-    /// Whether every record is also run mirrored, which acts to the other side.
+    /// Whether every record is also run mirrored, so that it acts to the other side.
     pub both_signs: bool,
 }
 
-/// Cases of a suite: their rows must fit into memory.
+/// Largest number of cases of a suite: their rows must fit into memory.
 const MAX_CASES: usize = 1_000_000;
 
 impl Suite {
@@ -120,7 +120,7 @@ impl Suite {
         })
     }
 
-    /// A record as it shakes at a level, perhaps mirrored.
+    /// A record scaled to a level, perhaps mirrored.
     pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
         let signed = if mirrored { -level } else { level };
         shaking(&self.records[record], self.measure.scaling(signed))
@@ -141,7 +141,7 @@ impl Serialize for Suite {
 
 const RECORDS: &str = "records";
 
-/// Why a record cannot be used at the strongest level.
+/// Checks that a record can be used at the strongest level, or explains why not.
 fn suits(
     series: &Series,
     strongest: Scaling,
@@ -192,8 +192,8 @@ pub(super) fn shaking(series: &Series, scaling: Scaling) -> Record {
 }
 
 impl Scenario {
-    /// The scenario once for each record of its suite, which shakes it as it is in its file; none without a suite.
-    /// What other studies there are is left out.
+    /// The scenario once for each record of its suite, with that record unscaled as its ground motion; empty without a suite.
+    /// Other studies are left out.
     #[must_use]
     pub fn by_record(&self) -> Vec<(String, Self)> {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
@@ -207,7 +207,7 @@ impl Scenario {
     }
 }
 
-/// Time of the simulation at the file's time zero: no record begins before the simulation does.
+/// Time in the simulation of the file's time zero; it is chosen so that no record begins before the simulation.
 fn start_s(series: &Series) -> f64 {
     (-series.first_s()).max(0.0)
 }

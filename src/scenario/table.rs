@@ -1,6 +1,6 @@
-//! Reading the tables of a TOML text so that every error is found and keeps its place.
+//! Reads the tables of a TOML text so that every error is found and keeps its place.
 //!
-//! Nothing here knows the keys of a scenario; each table is read in the file of its subject.
+//! Nothing here knows the keys of a scenario; each table is read in the module of its subject.
 
 use std::fmt;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
@@ -14,15 +14,15 @@ use crate::argument::short;
 
 /// Stands for a value that could not be read; the reason is recorded as a [`Fault`].
 ///
-/// A reader asks for all its keys before it gives up on one (with `?`), so that all are checked.
+/// A reader asks for all its keys before one error makes it give up (with `?`), so that all keys are checked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reported;
 
-/// A value, or [`Reported`]: its fault is recorded.
+/// A value, or [`Reported`] if its fault has been recorded.
 pub(super) type Reading<T> = Result<T, Reported>;
 
-/// Reads a whole TOML text with `read`, values replaced as `set` says, or says all that is wrong with it. What is
-/// wrong with an assignment is [behind](Appended) the text.
+/// Reads a whole TOML text with `read`, after replacing values as `set` says, or returns everything that is wrong.
+/// Faults of assignments have offsets [behind](Appended) the text.
 pub(super) fn read_text<T>(
     text: &str,
     set: &[Assignment],
@@ -63,22 +63,22 @@ pub(super) fn read_text<T>(
 
 /// The part of a text that is TOML.
 ///
-/// A syntax error hides what follows it and causes others, so the first one is recorded, its line
-/// blanked out, and the rest parsed again.
+/// A syntax error hides what follows it and causes other errors. So the first error is recorded, its line is
+/// blanked out, and the rest is parsed again.
 struct Legible {
-    /// The text with the faulty lines blanked out: offsets are those of the original.
+    /// The text with the faulty lines blanked out, so that offsets are those of the original.
     text: String,
-    /// What was blanked out. A key that is named here may be given, so it is not called missing.
+    /// The blanked-out text. A key that occurs in it may have been given, so it is not reported as missing.
     unread: String,
-    /// Whether `text` is valid TOML now. It is not when an error spans lines, such as an unclosed
-    /// bracket, or when there are too many errors.
+    /// Whether `text` is now valid TOML. It is not if an error spans several lines, such as an unclosed
+    /// bracket, or if there are too many errors.
     is_toml: bool,
     faults: Vec<Fault>,
 }
 
 impl Legible {
     fn of(text: &str) -> Self {
-        // Each takes a pass over the text.
+        // Each fault costs one pass over the text.
         const MAX_SYNTAX_FAULTS: usize = 20;
         let mut legible = Self {
             text: text.to_owned(),
@@ -88,7 +88,7 @@ impl Legible {
         };
         while legible.faults.len() < MAX_SYNTAX_FAULTS {
             let (_, errors) = DeTable::parse_recoverable(&legible.text);
-            // Only the error for keys nested too deeply has no place.
+            // Only the error about keys that are nested too deeply has no place.
             let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
             let Some(first) = errors.into_iter().min_by_key(start) else {
                 legible.is_toml = true;
@@ -113,8 +113,8 @@ impl Legible {
         legible
     }
 
-    /// The one fault of a text that is no scenario at all, such as a record: several lines are not legible, and none
-    /// begins a table.
+    /// The single fault of a text that is not a scenario at all, such as a record: several lines are not valid, and no
+    /// line begins a table.
     fn is_another_file(&self) -> Option<Fault> {
         const FEW: usize = 2;
         let first = self.faults.first()?;
@@ -133,8 +133,8 @@ impl Legible {
     }
 }
 
-/// The line around `offset`; when it is the header of a table, with all of the table, whose keys
-/// would otherwise be taken for those of the table before.
+/// The line around `offset`. If it is the header of a table, the whole table: otherwise its keys
+/// would be taken for keys of the table before.
 fn faulty_part(text: &str, offset: usize) -> std::ops::Range<usize> {
     let bytes = text.as_bytes();
     let start = bytes[..offset.min(bytes.len())]
@@ -156,9 +156,9 @@ fn faulty_part(text: &str, offset: usize) -> std::ops::Range<usize> {
     start..end
 }
 
-/// A table of the file, and what was found wrong in it.
+/// A table of the file, and the faults found in it.
 ///
-/// It remembers the keys that it was asked for: those are the ones it allows.
+/// It remembers the keys it was asked for: these are the allowed keys.
 pub(super) struct Table<'a> {
     /// Its name in messages.
     name: String,
@@ -187,7 +187,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The value of a key that can be left out, which means `default`.
+    /// The value of a key that can be left out, or `default`.
     pub(super) fn or<R: Rule>(
         &mut self,
         key: &str,
@@ -208,7 +208,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The table of that name, read by `read`, if given.
+    /// The table of that name as `read` reads it, if given.
     pub(super) fn table<T>(
         &mut self,
         key: &str,
@@ -225,7 +225,7 @@ impl<'a> Table<'a> {
             .map(Some)
     }
 
-    /// The tables of an array `[[key]]`, each read by `read`; none if it is not given.
+    /// The tables of an array `[[key]]`, each read by `read`; empty if not given.
     pub(super) fn tables<T>(
         &mut self,
         key: &str,
@@ -254,7 +254,7 @@ impl<'a> Table<'a> {
         tables.into_iter().collect()
     }
 
-    /// The table of that name, read by `read`, or what `read` makes of an empty one.
+    /// The table of that name as `read` reads it; if not given, `read` gets an empty table.
     pub(super) fn table_or_defaults<T>(
         &mut self,
         key: &str,
@@ -266,7 +266,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The value of the one key given out of several that exclude each other.
+    /// The value of the only key that is given, out of several that exclude each other.
     pub(super) fn exactly_one<T>(
         &mut self,
         what: &str,
@@ -280,7 +280,7 @@ impl<'a> Table<'a> {
         given.sort_unstable();
         let rule = format!("exactly one of the {what} {}", keys.join(", "));
         match given.as_slice() {
-            // A candidate whose line could not be read.
+            // The line of a candidate could not be read.
             [] if candidates.iter().any(|(_, value)| value.is_err()) => return Err(Reported),
             [] => {
                 let message = format!("{} needs {rule}", self.name);
@@ -295,7 +295,7 @@ impl<'a> Table<'a> {
                 return Err(Reported);
             }
         }
-        // If there is none, the key that is given is faulty.
+        // If there is no value, the given key is faulty.
         candidates
             .into_iter()
             .find_map(|(_, value)| value.ok().flatten())
@@ -320,12 +320,12 @@ impl<'a> Table<'a> {
         self.entries.contains_key(key)
     }
 
-    /// Records that the value which the file gives for `key` is wrong: `message` follows the two.
+    /// Records that the given value of `key` is wrong: `message` continues the key and its value.
     pub(super) fn wrong(&mut self, key: &str, message: impl fmt::Display) -> Reported {
         self.wrong_entry(self.entries.get(key), key, message)
     }
 
-    /// The same of a value in a table of this one.
+    /// The same for a value in a table inside this one.
     pub(super) fn wrong_in(
         &mut self,
         table: &str,
@@ -337,8 +337,8 @@ impl<'a> Table<'a> {
         self.wrong_entry(entry, key, message)
     }
 
-    /// The same of a value in a table within tables of this one; where the innermost does not give it, in the table
-    /// around that.
+    /// The same for a value in nested tables inside this one. If the innermost table does not give it, the table
+    /// around it is used.
     pub(super) fn wrong_within(
         &mut self,
         tables: &[&str],
@@ -355,7 +355,7 @@ impl<'a> Table<'a> {
         self.wrong_entry(entry, key, message)
     }
 
-    /// Whether a table of the file gives the key.
+    /// Whether a table inside this one gives the key.
     pub(super) fn gives_in(&self, table: &str, key: &str) -> bool {
         let inner = self.entries.get(table).map(Spanned::get_ref);
         inner.is_some_and(|inner| {
@@ -385,8 +385,8 @@ impl<'a> Table<'a> {
         self.fault(span.start, message)
     }
 
-    /// Records that an element of the array which the file gives for `key` is wrong; the first is at 0. A
-    /// value that is not an array stands for its only element.
+    /// Records that an element of the array given for `key` is wrong; elements are counted from 0. A
+    /// value that is not an array counts as its only element.
     pub(super) fn wrong_element(
         &mut self,
         key: &str,
@@ -402,7 +402,7 @@ impl<'a> Table<'a> {
         self.fault(span.start, format!("`{value}` in `{key}` {message}"))
     }
 
-    /// Records that the table as a whole is wrong: `message` follows its name.
+    /// Records that the whole table is wrong: `message` continues its name.
     pub(super) fn wrong_itself(&mut self, message: impl fmt::Display) -> Reported {
         self.fault(self.offset, format!("{} {message}", self.name))
     }
@@ -463,7 +463,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// What a value must be.
+/// A rule for a value.
 pub(super) trait Rule {
     /// The type it is read as.
     type Value;
@@ -477,7 +477,7 @@ pub(super) trait Rule {
 pub(super) struct Number(pub(super) Bound<f64>, pub(super) Bound<f64>);
 
 impl Number {
-    /// Of a range, its ends included.
+    /// The numbers of a range, ends included.
     pub(super) const fn within(range: &RangeInclusive<f64>) -> Self {
         Self(
             Bound::Included(*range.start()),
@@ -679,7 +679,7 @@ fn kind_of(value: &DeValue<'_>) -> &'static str {
 
 /// Suggests the known name nearest to `name`; empty when none is near.
 fn did_you_mean(name: &str, known: &[impl AsRef<str>]) -> String {
-    // Half a name in common: enough for a forgotten unit or prefix, too much for a chance match.
+    // At least half the name in common: enough to match a forgotten unit or prefix, too much for a chance match.
     const NEAR: f64 = 0.5;
     let name = excerpt(name);
     known

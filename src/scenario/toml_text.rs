@@ -1,11 +1,11 @@
-//! TOML text of the resolved scenario, from the form that it is serialized to.
+//! Writes the resolved scenario as TOML text.
 
 use serde_json::{Map, Value};
 
 use super::shown::is_hidden;
 
-/// The text of a table and of all that are in it. What is spread, a table with the key `from` or `deviation`, stands
-/// in one line.
+/// The text of a table and of all tables in it. A table with the key `from` or `deviation` describes a spread; it is
+/// written in one line.
 pub(crate) fn toml_text(table: &Map<String, Value>) -> String {
     let mut text = String::new();
     write_table(&mut text, "", table);
@@ -17,7 +17,7 @@ fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
         let spread = |it: &Map<_, _>| it.contains_key("from") || it.contains_key("deviation");
         value.as_object().is_some_and(|it| !spread(it))
     });
-    // An empty table says something by being there.
+    // Even an empty table has a meaning, so its header is written.
     if !name.is_empty() && (!keys.is_empty() || tables.is_empty()) {
         if !text.is_empty() {
             text.push('\n');
@@ -50,7 +50,7 @@ fn inline(value: &Value) -> String {
                 .map(|(key, value)| format!("{key} = {}", inline(value)));
             format!("{{ {} }}", pairs.collect::<Vec<_>>().join(", "))
         }
-        // The shortest digits that read back as the same number; TOML libraries write 1e-9 with all its zeros.
+        // The shortest digits that read back as the same number; TOML libraries would write out all zeros of 1e-9.
         Value::Number(number) if number.is_f64() => {
             format!("{:?}", number.as_f64().unwrap_or(f64::NAN))
         }
@@ -58,7 +58,7 @@ fn inline(value: &Value) -> String {
     }
 }
 
-/// A key, between marks where it has a point in it.
+/// A key, in quotation marks if it contains a dot.
 fn bare(key: &str) -> String {
     if key.contains('.') {
         quoted(key)

@@ -1,4 +1,4 @@
-//! What is not known: `[uncertain]`.
+//! Uncertain numbers: `[uncertain]`.
 //!
 //! ```toml
 //! [uncertain]
@@ -8,8 +8,8 @@
 //! "free_hinges.friction_coefficient" = { from = 0.5, to = 0.8 }
 //! ```
 //!
-//! Every key of another table that is a number may be uncertain. A sample gives a value to each of them, at a point of
-//! a Sobol sequence with the scramble of Owen.
+//! Every number that is a key of another table may be uncertain. A sample gives each of them a value, from one point of
+//! a Sobol sequence with Owen scrambling.
 
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
@@ -32,28 +32,28 @@ named! {
     }
 }
 
-/// How a number is spread.
+/// How the values of a number are spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
-    /// Equally over a range.
+    /// Uniformly over a range.
     Range {
-        /// The least value.
+        /// The smallest value.
         from: f64,
         /// The largest.
         to: f64,
-        /// Whether the values or their logarithms are spread equally.
+        /// Whether the values or their logarithms are spread uniformly.
         spacing: Spacing,
     },
-    /// About the scenario's value, cut off at [`MOST_DEVIATIONS`].
+    /// Around the scenario's value, cut off at [`MOST_DEVIATIONS`].
     About {
-        /// Standard deviation, in the unit of the key; of lognormal ones that of the natural logarithm, without unit.
+        /// Standard deviation, in the unit of the key; for a lognormal one that of the natural logarithm, without unit.
         deviation: f64,
-        /// Of which form.
+        /// The form of the distribution.
         distribution: Distribution,
     },
 }
 
-/// Deviations at which normal distributions are cut off.
+/// Number of standard deviations at which normal distributions are cut off.
 pub const MOST_DEVIATIONS: f64 = 3.0;
 
 /// An uncertain number of a scenario.
@@ -61,24 +61,24 @@ pub const MOST_DEVIATIONS: f64 = 3.0;
 pub struct UncertainKey {
     /// Its key, as `table.key`.
     pub key: String,
-    /// How it is spread.
+    /// How its values are spread.
     pub spread: Spread,
-    /// What the scenario itself gives it, if it does.
+    /// The scenario's own value, if it has one.
     pub own: Option<f64>,
 }
 
-/// The numbers of a scenario that are uncertain, and how many samples are taken of them.
+/// The uncertain numbers of a scenario, and how many samples are taken.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertain {
     /// The numbers, at least one, in the order of the file.
     pub keys: Vec<UncertainKey>,
-    /// How many samples, at least 1.
+    /// The number of samples, at least 1.
     pub samples: usize,
-    /// Which scramble of the sequence.
+    /// The seed of the scrambling.
     pub seed: u32,
 }
 
-/// As many points as the sequence has.
+/// No more samples than the sequence has points.
 const SAMPLES: Count = Count {
     range: 1..=65_536,
     why: "one sample",
@@ -87,7 +87,7 @@ const SEED: Count = Count {
     range: 0..=u32::MAX as usize,
     why: "the first",
 };
-/// As many dimensions as the sequence has.
+/// No more keys than the sequence has dimensions.
 const MAX_KEYS: usize = 256;
 const ANY: Number = Number(Unbounded, Unbounded);
 const DEVIATION: Number = Number(Excluded(0.0), Included(1e12));
@@ -135,7 +135,7 @@ impl Spread {
         }
     }
 
-    /// The value below which a part of all values is, in 0 to 1.
+    /// The quantile: the value below which this part of all values lies, in 0 to 1.
     fn at(self, part: f64, own: f64) -> f64 {
         match self {
             Self::Range {
@@ -155,17 +155,17 @@ impl Spread {
     }
 }
 
-/// The probability of the standard normal distribution below a deviation.
+/// The probability that a standard normal variable lies below this deviation.
 fn normal(deviations: f64) -> f64 {
     0.5 * libm::erfc(-deviations * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// The deviation below which a part of a standard normal distribution is that is cut off at [`MOST_DEVIATIONS`].
+/// The quantile of a standard normal distribution that is cut off at [`MOST_DEVIATIONS`].
 fn cut_normal(part: f64) -> f64 {
     let most = MOST_DEVIATIONS;
     let below = normal(-most);
     let wanted = below + part * (1.0 - 2.0 * below);
-    // Ends that are told as bounds are met exactly.
+    // The ends, which are reported as bounds, are exact.
     if part <= 0.0 || part >= 1.0 {
         return if part <= 0.0 { -most } else { most };
     }
@@ -205,7 +205,7 @@ impl Serialize for Uncertain {
 const TABLE: &str = "uncertain";
 
 impl Uncertain {
-    /// Reads `[uncertain]`, which is [checked](Uncertain::check) against the rest of the scenario later.
+    /// Reads `[uncertain]`. It is [checked](Uncertain::check) later against the rest of the scenario.
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let samples = table.or("samples", &SAMPLES, 100);
         let seed = table.or("seed", &SEED, 1);
@@ -237,8 +237,8 @@ impl Uncertain {
         })
     }
 
-    /// Completes it with the values of the scenario, and refuses what that does not allow. The faults go to the table
-    /// around `[uncertain]`.
+    /// Adds the scenario's own values, and refuses keys and values that the scenario does not allow. The faults go to the
+    /// table around `[uncertain]`.
     pub(super) fn check(mut self, table: &mut Table<'_>, scenario: &Scenario) -> Reading<Self> {
         let resolved = scenario.to_json();
         let mut faulty = Ok(());
@@ -248,7 +248,7 @@ impl Uncertain {
             }
         }
         faulty?;
-        // Each alone is allowed; two that say the same are not allowed together.
+        // Each key is allowed by itself; two keys that fix the same quantity are not allowed together.
         for count in 2..=self.keys.len() {
             let keys = &self.keys[..count];
             let values: Vec<_> = keys.iter().map(|key| (&*key.key, key.at(0.5))).collect();
@@ -304,7 +304,7 @@ impl Uncertain {
                 key.key
             ));
         }
-        // The least, the largest, and one that is no whole number.
+        // The smallest value, the largest, and one that is not a whole number.
         for part in [0.0, 1.0, 0.381_966] {
             let value = key.at(part);
             scenario
@@ -319,10 +319,10 @@ impl Uncertain {
         Ok(())
     }
 
-    /// The point of a sample, counted from 0: a number above 0 and below 1 for each key.
+    /// The point of a sample, counted from 0: one number above 0 and below 1 for each key.
     #[must_use]
     pub fn point(&self, sample: usize) -> Vec<f64> {
-        // The sequence has numbers of 24 bits: each stands for the middle of what would be rounded down to it.
+        // The sequence has numbers of 24 bits: each stands for the middle of the interval that rounds down to it.
         const HALF_BIT: f64 = 0.5 / (1_u32 << 24) as f64;
         let index = u32::try_from(sample).unwrap_or(u32::MAX);
         (0..)
@@ -343,10 +343,10 @@ impl Uncertain {
             .collect()
     }
 
-    /// The scenario with other values of the keys, without its studies and with nothing uncertain.
+    /// The scenario with these values of the keys, without its studies and with nothing uncertain.
     ///
     /// # Errors
-    /// Says what the values make of the scenario that is not allowed.
+    /// Explains why the scenario does not allow the values.
     pub fn scenario(&self, scenario: &Scenario, values: &[f64]) -> Result<Scenario, String> {
         let keys = self.keys.iter().map(|key| key.key.as_str());
         let values: Vec<_> = keys.zip(values.iter().copied()).collect();
@@ -355,7 +355,7 @@ impl Uncertain {
 }
 
 impl UncertainKey {
-    /// The value below which a part of all values is, in 0 to 1.
+    /// The quantile: the value below which this part of all values lies, in 0 to 1.
     #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         self.spread.at(part, self.own.unwrap_or(0.0))
@@ -366,7 +366,7 @@ impl UncertainKey {
 mod tests {
     use super::*;
 
-    /// Against the quantile function of the normal distribution, by integration of its density with Simpson's rule.
+    /// Compares with the quantile function of the normal distribution, from its density integrated by Simpson's rule.
     #[test]
     fn normal_values_are_cut_off_and_keep_their_shares() {
         let density = |x: f64| (-0.5 * x * x).exp();
@@ -386,8 +386,8 @@ mod tests {
         assert_eq!([cut_normal(0.0), cut_normal(1.0)], [-3.0, 3.0]);
     }
 
-    /// The first 2^m points of a Sobol sequence, scrambled or not, have one value in each of 2^m equal parts, in every
-    /// dimension, and the first two dimensions one point in each box of that area.
+    /// Of the first 2^m points of a Sobol sequence, scrambled or not, each of 2^m equal intervals holds one, in every
+    /// dimension; and in the first two dimensions, each box of that area holds one.
     #[test]
     fn points_are_spread_evenly() {
         let key = |key: &str| UncertainKey {

@@ -1,4 +1,4 @@
-//! Input that is possible but unlikely, such as a length in centimetres.
+//! Finds input that is possible but unlikely, such as a length in centimetres.
 
 use std::ops::RangeInclusive;
 
@@ -7,30 +7,30 @@ use crate::argument::{plain, short};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::sway::Sway;
 
-/// Strongest recorded ground accelerations are a little above 2 g, and weaker ones than the least are not felt: what is
-/// beyond is in another unit.
+/// The strongest recorded ground accelerations are a little above 2 g, and people do not feel those below the lower
+/// limit. A value outside is probably in another unit.
 const PEAK_G: RangeInclusive<f64> = 1e-3..=3.0;
-/// A pulse this many times as strong as the one that starts the structure throws it.
+/// A pulse this many times as strong as the one that starts the structure would throw it.
 const PEAK_OVER_INCIPIENT: f64 = 20.0;
 /// The largest masonry arches span 140 m.
 const RADIUS_M: f64 = 100.0;
-/// Thicker than any arch.
+/// More than the thickness of any arch.
 const THICKNESS_M: f64 = 5.0;
-/// Larger than any column or arch on piers.
+/// More than the size of any column or arch on piers.
 const SIZE_M: f64 = 200.0;
-/// Full circles in radians are less; in degrees it is almost nothing.
+/// A full circle in radians is less than this; as degrees that is almost nothing.
 pub(super) const LIKELY_EMBRACE_DEG: f64 = 10.0;
 /// Gravity on Earth, from the equator to the poles.
 const GRAVITY_M_S2: RangeInclusive<f64> = 9.75..=9.85;
-/// Offset of a record over its peak.
+/// Offset of a record relative to its peak.
 const OFFSET: f64 = 0.01;
 /// More steps than these take minutes.
 const STEPS: f64 = 1e7;
-/// With four links, motion for so long takes minutes.
+/// With four links, a motion this long takes minutes.
 const DURATION_S: f64 = 1e5;
 
 impl Scenario {
-    /// What is possible but unlikely, a sentence each, with what it might be instead.
+    /// The unlikely values, a sentence each, with a suggestion what was meant.
     #[must_use]
     pub fn unlikely(&self) -> Vec<String> {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
@@ -57,7 +57,7 @@ impl Scenario {
                 .records
                 .iter()
                 .map(|series| series.unlikely(gravity_m_s2));
-            // One unit is that of all tables.
+            // A wrong unit is wrong in all tables, so only the first record is described.
             if let Some(first) = records.find(|unlikely| !unlikely.is_empty()) {
                 let others = records.filter(|unlikely| !unlikely.is_empty()).count();
                 unlikely.extend(first);
@@ -96,7 +96,7 @@ impl Scenario {
         })
     }
 
-    /// That a motion until the end of the simulation takes long to compute.
+    /// Warns that a motion up to the end of the simulation takes long to compute.
     fn takes_long(&self) -> Option<String> {
         let duration_s = self.simulation.duration_s;
         let begin = format!("the simulation lasts {} s", short(duration_s));
@@ -169,7 +169,7 @@ fn extents_m(row: &Row) -> [f64; 2] {
     })
 }
 
-/// That a length is beyond what is usual, in a unit that makes it usual.
+/// Warns that a length is larger than usual, and names a unit in which it would be usual.
 fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
     let unit = if length_m > 10.0 * usual_m {
         "millimetres"
@@ -180,7 +180,7 @@ fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
 }
 
 impl Series {
-    /// What is possible but unlikely in a record, a sentence each, with what it might be instead.
+    /// The unlikely values of a record, a sentence each, with a suggestion what was meant.
     #[must_use]
     pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<String> {
         let mut unlikely = Vec::new();

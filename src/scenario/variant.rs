@@ -1,4 +1,4 @@
-//! A scenario with other values than those in its text.
+//! A scenario with values that differ from those in its text.
 
 use serde_json::Value;
 
@@ -6,19 +6,19 @@ use super::toml_text::toml_text;
 use super::{Assignment, Changes, Ground, Scenario, Source};
 use std::sync::Arc;
 
-/// Tables whose keys are of a study, not of what it studies.
+/// Tables that describe a study, not the structure or ground motion under study.
 const STUDIES: [&str; 4] = ["map", "spectrum", "suite", "uncertain"];
-/// Tables of the check, which asks nothing of a history.
+/// Tables of the check, which needs no history.
 const CHECK: [&str; 2] = ["demand", "verify"];
-/// Before the keys of a record.
+/// What precedes the keys of a record.
 const RECORD: &str = "ground.record.";
 
 impl Scenario {
-    /// The scenario with other numbers for some keys, each as `table.key`, without its studies and its check. The samples of a
-    /// record stay as they are.
+    /// The scenario with other numbers for some keys, each named `table.key`. Studies and the check are left out. The samples
+    /// of a record stay the same.
     ///
     /// # Errors
-    /// Says what is wrong with the keys or with what the numbers make of the scenario.
+    /// Explains what is wrong with the keys or with the changed scenario.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
         let record = match &self.ground {
             Some(Ground::Record(record)) => Some(record),
@@ -61,7 +61,7 @@ impl Scenario {
     }
 }
 
-/// A number for a key of a table; whole numbers may stand for counts.
+/// An assignment of a number to a key of a table; whole numbers may stand for counts.
 fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
     let is_study = key
         .split('.')

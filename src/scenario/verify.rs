@@ -1,4 +1,4 @@
-//! A check by the Circolare 7/2019: what is demanded, `[demand]`, and how it is checked, `[verify]`.
+//! A check by the Circolare 7/2019: the demand, `[demand]`, and the options of the check, `[verify]`.
 //!
 //! ```toml
 //! [verify]                      # all may be left out
@@ -57,29 +57,29 @@ named! {
 }
 
 named! {
-    /// The sides that a mechanism is checked to.
+    /// The sides to which a mechanism is checked.
     pub enum Sides {
-        /// Both; the worse counts.
+        /// Both; the worse result counts.
         Both = "both",
-        /// To the right only: something holds the structure from the other side.
+        /// To the right only: something holds the structure on the other side.
         Right = "right",
         /// To the left only.
         Left = "left",
     }
 }
 
-/// Period of the elastic vibration before a mechanism moves, where it is not held by walls.
+/// Period of the elastic vibration before a mechanism moves, for a structure that no walls hold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum FreeStanding {
-    /// Known.
+    /// A known period.
     Period {
         /// The period, in seconds.
         t0_s: f64,
     },
-    /// By [C8.7.1.7].
+    /// The period by [C8.7.1.7].
     Elastic {
-        /// 6.2 of a cantilever, 2.2 where it is supported at both ends.
+        /// 6.2 for a cantilever, 2.2 if it is supported at both ends.
         kappa: f64,
         /// Height or span, in metres.
         length_m: f64,
@@ -91,7 +91,7 @@ pub enum FreeStanding {
 }
 
 impl FreeStanding {
-    /// The period in seconds, of masonry of this density in kg/m3: `kappa lambda L sqrt(W / (E g))`, with `lambda = L / t` and
+    /// The period in seconds, for masonry of this density in kg/m3: `kappa lambda L sqrt(W / (E g))`, with `lambda = L / t` and
     /// the weight per volume `W` [C8.7.1.7].
     #[must_use]
     pub fn period_s(&self, density_kg_m3: f64) -> f64 {
@@ -110,16 +110,16 @@ impl FreeStanding {
     }
 }
 
-/// How it is checked.
+/// The options of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verify {
-    /// Confidence factor FC, which accelerations are divided by.
+    /// Confidence factor FC, by which accelerations are divided.
     pub confidence_factor: f64,
-    /// Behaviour factor q of the simplified check of SLV.
+    /// Behaviour factor q for the simplified check of SLV.
     pub behaviour_factor: f64,
-    /// To which sides.
+    /// The sides that are checked.
     pub sides: Sides,
-    /// Free to vibrate before it moves; `None`: held by walls all along.
+    /// If given, the structure is free to vibrate before it moves; `None`: walls hold it all along.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free_standing: Option<FreeStanding>,
     /// Records of the dynamic route.
@@ -127,7 +127,7 @@ pub struct Verify {
     pub records: Records,
 }
 
-/// Records of the motion where the mechanism stands, for each limit state; none for one that is not checked so.
+/// Records of the motion at the place of the mechanism, for each limit state; empty for a state that is not checked with records.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Records {
     /// For SLV.
@@ -138,11 +138,11 @@ pub struct Records {
 
 const SLV_RECORDS: &str = "slv_records";
 const SLC_RECORDS: &str = "slc_records";
-/// The fewest whose worst counts (NTC 2018, § 7.3.5).
+/// The least number of records of which the worst counts (NTC 2018, § 7.3.5).
 const LEAST_RECORDS: usize = 3;
 
 impl Records {
-    /// Those of a state.
+    /// The records of a state.
     #[must_use]
     pub fn of(&self, state: LimitState) -> &[Series] {
         match state {
@@ -216,13 +216,13 @@ impl Serialize for Records {
     }
 }
 
-/// FC of the least level of knowledge, LC1 (Tab. C8.5.IV): what counts where the load multiplier takes no account of the
+/// FC of the lowest level of knowledge, LC1 (Tab. C8.5.IV); it applies if the load multiplier does not account for the
 /// compressive strength.
 pub const CONFIDENCE_FACTOR: f64 = 1.35;
-/// q without better knowledge (C8.7.1.2.1.7).
+/// q if nothing better is known (C8.7.1.2.1.7).
 pub const BEHAVIOUR_FACTOR: f64 = 2.0;
 
-/// A number in a range, and the clause that it is of.
+/// A number in a range, and the clause that sets the range.
 struct ByClause(Number, &'static str);
 
 impl Rule for ByClause {
@@ -288,7 +288,7 @@ impl Verify {
         })
     }
 
-    /// Refuses records of states that are not checked, and of one side only.
+    /// Refuses records for states that are not checked, and records if only one side is checked.
     pub(super) fn suits(&self, table: &mut Table<'_>, demand: Option<&Demand>) -> Reading<()> {
         for (key, state) in [
             (SLV_RECORDS, LimitState::Slv),
@@ -333,7 +333,7 @@ impl FreeStanding {
     }
 }
 
-/// What is given for each limit state.
+/// One value for each limit state that has one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ByState<T> {
     /// For SLD.
@@ -348,7 +348,7 @@ pub struct ByState<T> {
 }
 
 impl<T> ByState<T> {
-    /// What is given for a state.
+    /// The value for a state.
     #[must_use]
     pub const fn get(&self, state: LimitState) -> Option<&T> {
         match state {
@@ -376,33 +376,33 @@ impl<T> ByState<T> {
     }
 }
 
-/// What the ground, or the building, demands.
+/// The demand of the ground or of the building.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Demand {
-    /// Spectra of NTC 2018 from their parameters.
+    /// Spectra of NTC 2018, from their parameters.
     Code(CodeDemand),
-    /// Spectra by points.
+    /// Spectra given by points.
     Points(ByState<PointDemand>),
 }
 
-/// Parameters of spectra of NTC 2018.
+/// Parameters of the spectra of NTC 2018.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodeDemand {
-    /// Subsoil.
+    /// Soil category.
     pub soil: Soil,
-    /// Relief.
+    /// Topography.
     #[serde(flatten)]
     pub relief: Relief,
     /// Hazard of each state that is checked.
     #[serde(flatten)]
     pub hazards: ByState<Hazard>,
-    /// At a height in a building; `None`: on the ground.
+    /// Position at a height in a building; `None`: on the ground.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height: Option<Height>,
 }
 
-/// The relief of a site.
+/// The topography of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Relief {
@@ -423,26 +423,26 @@ impl Relief {
     }
 }
 
-/// Where in a building it stands.
+/// The building at a height of which the mechanism stands.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Height {
     /// The building's modes.
     pub modes: Vec<BuildingMode>,
 }
 
-/// A mode of a building, in the state that it is in at each limit state.
+/// A mode of a building, with its vibration at each limit state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BuildingMode {
     /// Participation factor.
     pub gamma: f64,
     /// Modal shape at the height of the mechanism.
     pub psi: f64,
-    /// Its vibration.
+    /// Its vibration at each limit state.
     #[serde(flatten)]
     pub states: ByState<ModeState>,
 }
 
-/// How a mode vibrates.
+/// How a mode of the building vibrates.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModeState {
     /// Period, in seconds.
@@ -451,14 +451,14 @@ pub struct ModeState {
     pub damping_percent: f64,
 }
 
-/// A spectrum by points, and what it is compared with.
+/// A spectrum given by points, and the rule of its limit state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointDemand {
     /// Its file.
     pub spectrum: String,
-    /// Damping at which it is given, in per cent.
+    /// Damping of the given spectrum, in per cent.
     pub damping_percent: f64,
-    /// What makes the state; `None` of SLD, which is the beginning of the motion.
+    /// The rule of the state; `None` for SLD, which is the onset of motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub state: Option<StateRule>,
     /// The points.
@@ -466,23 +466,23 @@ pub struct PointDemand {
     pub points: PointSpectrum,
 }
 
-/// What makes a limit state in terms of displacements.
+/// The rule that defines a limit state in terms of displacements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StateRule {
-    /// Part of the ultimate displacement that may be reached.
+    /// Fraction of the ultimate displacement that may be reached.
     pub part_of_d0: f64,
-    /// The period is pi times this times `sqrt(d / a)`.
+    /// The period is pi times this factor times `sqrt(d / a)`.
     pub period_factor: f64,
     /// Damping of the mechanism, in per cent.
     pub damping_percent: f64,
-    /// What accelerations of the mechanism are divided by.
+    /// Divisor of the accelerations of the mechanism.
     pub divide_acceleration: f64,
-    /// What displacements that may be reached are divided by, once the period is known.
+    /// Divisor of the displacements that may be reached, applied once the period is known.
     pub divide_displacement: f64,
 }
 
 impl StateRule {
-    /// That of the Circolare 7/2019 (C8.7.1.2.1.6 and .8) with a confidence factor; `None` for SLD.
+    /// The rule of the Circolare 7/2019 (C8.7.1.2.1.6 and .8) for a confidence factor; `None` for SLD.
     #[must_use]
     pub const fn circolare(state: LimitState, confidence_factor: f64) -> Option<Self> {
         let (part_of_d0, period_factor, damping_percent) = match state {
@@ -500,7 +500,7 @@ impl StateRule {
     }
 }
 
-/// The code's own ranges depend on the soil: [`GroundSpectrum::new`] knows them.
+/// The code's own ranges depend on the soil; [`GroundSpectrum::new`] checks them.
 const HAZARD: ByClause = ByClause(Number(Excluded(0.0), Unbounded), "NTC 2018, § 3.2");
 const TOPOGRAPHIC_FACTOR: ByClause = ByClause(
     Number(Included(1.0), Included(2.0)),
@@ -508,13 +508,13 @@ const TOPOGRAPHIC_FACTOR: ByClause = ByClause(
 );
 const GAMMA: Number = Number(Excluded(0.0), Included(10.0));
 const PSI: Number = Number(Included(-10.0), Included(10.0));
-/// Beyond it the spectrum of a floor is no longer larger than its peak.
+/// At more damping than this the spectrum of a floor is no longer larger than its peak.
 const DAMPING_PERCENT: Number = Number(Excluded(0.0), Included(30.0));
 const PART_OF_D0: Number = Number(Excluded(0.0), Excluded(1.0));
 const PERIOD_FACTOR: Number = Number(Excluded(0.0), Included(10.0));
 const DIVIDE: Number = Number(Included(1.0), Included(10.0));
 
-/// Keys of `[demand]` that spectra of the code are made of.
+/// Keys of `[demand]` that define spectra of the code.
 const CODE_KEYS: [&str; 4] = ["soil", "topography", "topographic_factor", "height"];
 
 impl Demand {
@@ -548,7 +548,7 @@ impl Demand {
         Ok(demand)
     }
 
-    /// The states that are checked.
+    /// The limit states that are checked.
     pub fn states(&self) -> impl Iterator<Item = LimitState> {
         let states = LimitState::ALL.iter().copied();
         states.filter(|state| match self {
@@ -618,7 +618,7 @@ fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> Reading<Hazard> {
 }
 
 impl Height {
-    /// Reads `[demand.height]`, for states of these hazards.
+    /// Reads `[demand.height]`, for the states with these hazards.
     fn read(table: &mut Table<'_>, hazards: Option<&ByState<Hazard>>) -> Reading<Self> {
         let modes = table.tables("modes", BuildingMode::read)?;
         if modes.is_empty() {
@@ -727,7 +727,7 @@ impl StateRule {
     }
 }
 
-/// The points of a spectrum in a file, or what is wrong with it.
+/// Reads the points of a spectrum from a file, or explains what is wrong with it.
 fn read_points(path: &Path, damping_percent: f64) -> Result<PointSpectrum, String> {
     let rows = read_numbers::<2>(path)?;
     let points = rows
