@@ -42,7 +42,7 @@ pub enum FourLinkError {
         /// Why.
         error: LimitError,
     },
-    /// It could not be told whether a row stands.
+    /// It could not be determined whether the row stands.
     #[error(transparent)]
     Contact(#[from] ContactError),
     /// The restitution coefficient is out of range.

@@ -1,16 +1,16 @@
-//! How much kinetic energy an impact can leave at most: the projection onto all admissible fields.
+//! The most kinetic energy that an impact can leave: the projection onto all admissible fields.
 //!
 //! The paper chooses the mechanism after an impact among those with four hinges, and there may be a better
 //! motion with more. Let `K` be the velocity fields that open and never close a joint of the ring, without
-//! sliding: rotations about the edge points of joints, as many as there are, none of them backwards. `K` is a
-//! convex cone, and the velocity `w` of the closing mechanism has one nearest field `P w` in it, the motion
-//! after the perfectly inelastic impact of Moreau. Its restitution `r = <Pw, Pw> / <w, w>` is not exceeded by
-//! any four-link mechanism with hinges at these joints.
+//! sliding: any number of rotations about the edge points of joints, none of them backwards. `K` is a convex
+//! cone, and the velocity `w` of the closing mechanism has one nearest field `P w` in it, the motion after the
+//! perfectly inelastic impact of Moreau. No four-link mechanism with hinges at these joints exceeds its
+//! restitution `r = <Pw, Pw> / <w, w>`.
 //!
 //! On a ring cut into rigid voussoirs the projection is a convex quadratic program. Its multipliers are the
-//! impulses at the edges of the joints. Compression at both edges is what makes the resultant pass inside the
-//! ring, so that the optimality conditions are the theorem of the paper in its exact form: a motion is
-//! the projection if and only if its impulse line is admissible (Moreau's decomposition of `w` into polar parts).
+//! impulses at the edges of the joints. Compression at both edges means that the resultant passes inside the
+//! ring, so the optimality conditions are the theorem of the paper in its exact form: a motion is the projection
+//! if and only if its impulse line is admissible (Moreau's decomposition of `w` into polar parts).
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -39,8 +39,8 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Joints that open: index, edge about which, and rotation rate. Rotations that are small beside the
-    /// largest are left out.
+    /// Joints that open: index, edge about which they open, and rotation rate. Rotations that are small
+    /// beside the largest are left out.
     ///
     /// In a continuous ring whole zones open, where the impulse line follows an edge.
     pub fn opened(&self) -> impl Iterator<Item = (usize, Edge, f64)> {
@@ -59,8 +59,8 @@ impl Projection {
     }
 }
 
-/// Joints that rotate less than this part of the largest rotation, or of the rate of the closing mechanism, count
-/// as closed: the solver leaves that much at the ends of zones, where both opening and impulse vanish.
+/// Joints that rotate less than this fraction of the largest rotation, or of the rate of the closing mechanism,
+/// count as closed: the solver leaves that much at the ends of zones, where both opening and impulse vanish.
 const MIN_OPENING: f64 = 1e-3;
 
 /// A joint at the impact; rates and impulses are per unit rate of the closing mechanism.

@@ -1,8 +1,8 @@
 //! The chain of mechanisms that an arch passes through, impact after impact.
 //!
-//! Which mechanism follows an impact depends on the one that closes, not on how fast: from the mechanism
-//! that starts at the incipient acceleration the whole sequence is a property of the arch. Links are
-//! computed when first asked for and cached; threads may share a chain.
+//! Which mechanism follows an impact depends on the one that closes, not on how fast it closes. So the
+//! whole sequence, from the mechanism that starts at the incipient acceleration, is a property of the arch.
+//! Links are computed on the first request and cached; threads may share a chain.
 
 use std::sync::{Arc, OnceLock};
 
@@ -46,7 +46,7 @@ impl ArchLink {
         Self {
             mechanism: impact.mechanism,
             link: Link::new(linkage, limit_rad, rate_ratio, restitution),
-            // The momentum theorems hold for the restitution that they give.
+            // The momentum theorems hold only for the restitution that they give.
             impulse_line: impact.impulse_line.filter(|_| law.is_theory()),
         }
     }
@@ -86,7 +86,7 @@ impl Chain {
         }
     }
 
-    /// The profile in the frame in which the mechanism after so many impacts sways right.
+    /// The profile in the frame in which the mechanism after this many impacts sways right.
     #[must_use]
     pub fn profile(&self, impacts: usize) -> &dyn Profile {
         &*self.profiles[impacts % 2]
@@ -156,8 +156,8 @@ impl Chain {
     }
 }
 
-/// The chains after a first sway to the right and to the left: one and the same of a structure that is its own mirror
-/// image.
+/// The chains after a first sway to the right and to the left: one and the same for a structure that is its own
+/// mirror image.
 #[derive(Clone, Debug)]
 pub(crate) struct Chains {
     right: Arc<Chain>,
@@ -200,7 +200,7 @@ impl Chains {
         self.thrust_at_rest(body_force_g).demand(self.right.sites())
     }
 
-    /// Hinges from left to right after so many impacts, when that sways to this side.
+    /// Hinges from left to right after this many impacts, when that mechanism sways to this side.
     pub fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
         let chain = self.from(sway.before(impacts));
         chain.link(impacts).map_or(Vec::new(), |link| {
@@ -265,7 +265,7 @@ mod tests {
             assert_eq!(hinges(400), hinges(402));
             let pair = *chain.pair.get().unwrap();
             assert!(pair < MAX_CHAIN_LENGTH - 2, "{pair}");
-            // Each link of the pair keeps what its own impact leaves, also where the chain closes.
+            // Each link of the pair keeps the energy that its own impact leaves, also where the chain closes.
             for index in pair..pair + 4 {
                 let (before, after) = (chain.link(index).unwrap(), chain.link(index + 1).unwrap());
                 let inertia = |link: &ArchLink| link.link.mechanism.coefficients(0.0).inertia;

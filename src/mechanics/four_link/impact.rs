@@ -69,7 +69,7 @@ impl ImpactModel {
     }
 }
 
-/// An impact model, and how much of its restitution there is.
+/// An impact model, and a factor on its restitution.
 ///
 /// Experiments lose more energy than the theorems say, or less: a factor brings the restitution coefficient to what
 /// was measured.
@@ -77,7 +77,7 @@ impl ImpactModel {
 pub struct ImpactLaw {
     /// The model.
     pub model: ImpactModel,
-    /// What its restitution coefficient is multiplied by; the product is at most one.
+    /// Factor on its restitution coefficient; the product is at most one.
     pub restitution_factor: f64,
 }
 
@@ -106,7 +106,7 @@ impl ImpactLaw {
         (rate_ratio * (measured / restitution).sqrt(), measured)
     }
 
-    /// Whether impacts are those of the model.
+    /// Whether impacts are those of the model, unchanged.
     #[expect(clippy::float_cmp, reason = "the factor of the model itself")]
     pub(crate) fn is_theory(self) -> bool {
         self.restitution_factor == 1.0
@@ -115,8 +115,8 @@ impl ImpactLaw {
 
 /// An impact: what follows when a mechanism closes at unit rate.
 ///
-/// The mechanism after the impact sways to the other side; it is given in the frame in which that is the
-/// right, the mirror image of the frame of the mechanism before.
+/// The mechanism after the impact sways to the other side. It is given in the frame in which that side is
+/// the right: the mirror image of the frame of the mechanism before.
 #[derive(Clone, Debug)]
 pub struct Impact {
     /// The mechanism after the impact, in its own frame.
@@ -137,9 +137,9 @@ pub fn closing_field(mechanism: &FourLink, profile: &dyn Profile) -> Field {
     mechanism.field().scaled(-1.0).mirrored(profile)
 }
 
-/// The impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can
-/// follow. The profile is that seen in the frame of what follows: of a structure that is not its own mirror image, the
-/// mirrored one.
+/// The impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can follow. The profile
+/// is given in the frame of the mechanism that follows: the mirrored one, for a structure that is not its own mirror
+/// image.
 #[must_use]
 pub fn impact(
     mechanism: &FourLink,
@@ -227,8 +227,8 @@ pub struct MomentumTheorems {
 impl MomentumTheorems {
     /// Solves Eqs. (7)-(10) for a ring that moves with `before` when the hinges of `mechanism` form.
     ///
-    /// Linear momentum along x and y and angular momentum about the centre for the part between the
-    /// outer hinges, angular momentum of each end body about its inner hinge.
+    /// They are linear momentum along x and y and angular momentum about the centre for the part between
+    /// the outer hinges, and angular momentum of each end body about its inner hinge.
     #[must_use]
     pub fn solve(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> Self {
         let [a, b, c, d] = mechanism.hinges_rad();

@@ -1,9 +1,9 @@
 //! The impulses of an impact, at the hinges of the new mechanism and at every section.
 //!
-//! During the impact every part of the ring obeys impulse = change of momentum. What crosses a section is
-//! then known up to the impulse at one springing, and the four hinges of the new mechanism, which carry no moment,
-//! determine that. The points where the impulses cross their sections are the impulse line of the paper
-//! (Fig. 10).
+//! During the impact every part of the ring obeys impulse = change of momentum. The impulse that crosses a section
+//! is then known up to the impulse at one springing. The four hinges of the new mechanism, which carry no moment,
+//! determine that one. The points where the impulses cross their sections are the impulse line of the paper (Fig.
+//! 10).
 
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ impl ImpulseLine {
         }
     }
 
-    /// The impulse that each part hands on to its neighbour on the right.
+    /// The impulse that each part transmits to its neighbour on the right.
     #[must_use]
     pub const fn resultants(&self) -> &ResultantLine {
         &self.resultants

@@ -61,7 +61,7 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
     incipient_of(ring, sites)
 }
 
-/// The same of any profile that carries its own weight.
+/// The same for any profile that carries its own weight.
 ///
 /// # Errors
 /// When no four-link mechanism governs, or no push moves one.
@@ -105,10 +105,10 @@ fn push(acceleration_g: f64) -> Field {
     Field::uniform(Twist::translation(Vector2::new(acceleration_g, -1.0)))
 }
 
-/// Minimum of `int v_y / int v_x` for what stands, the kinematic theorem.
+/// Minimum of `int v_y / int v_x` for a profile that stands, by the kinematic theorem.
 ///
-/// There a mechanism that sways to the right also rises. One that seems not to either does neither but
-/// for rounding, as where hinges merge, or sways to the left.
+/// In such a profile a mechanism that sways to the right also rises. One that seems not to either does
+/// neither, apart from rounding, as where hinges merge, or sways to the left.
 fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, FourLink)> {
     let lattice = Lattice::new(profile, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.
@@ -140,7 +140,7 @@ fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, 
         .map(|(value, mechanism)| (-value, mechanism))
 }
 
-/// Minus the acceleration at which a mechanism starts to move, if a push to the right does that.
+/// Minus the acceleration at which a mechanism starts to move, if a push to the right moves it.
 struct LeastAcceleration<'a> {
     profile: &'a dyn Profile,
 }

@@ -2,10 +2,10 @@
 //!
 //! Between impacts the hinges stay where they are in the material. A, D and the ground are one bar, the
 //! three moving bodies the others. The coordinate `q` is the **clockwise rotation of the left body** A-B
-//! (of the mechanism that sways right): while the arch falls, B flattens until A, B and C are on one
-//! line, which is the limit position of the right body. Seen from the right body the others would there
-//! turn infinitely fast; seen from the left body nothing special happens, and the equation of motion
-//! stays well conditioned beyond the limit.
+//! (of the mechanism that sways right). While the arch falls, the angle at B flattens until A, B and C are
+//! on one line, which is the limit position of the right body. If the right body's rotation were the
+//! coordinate, the others would turn infinitely fast there. With that of the left body nothing special
+//! happens, and the equation of motion stays well conditioned beyond the limit.
 
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ impl Body {
         }
     }
 
-    /// With a point mass at the end of the bar.
+    /// The body with a point mass at the end of the bar.
     fn loaded(self, mass: f64) -> Self {
         Self {
             first_per_bar: self.first_per_bar + Vector2::new(mass, 0.0),
@@ -166,9 +166,9 @@ impl Linkage {
 
     /// The thrust line in motion: from the dynamic equilibrium of the three bodies.
     ///
-    /// The moments of the right body about D and of the middle body about B give the force at C, and
-    /// forces alone the others. `B-C` and `C-D` are never on one line before the limit position. That the
-    /// line passes through B on the left body's side as well is the equation of motion.
+    /// The moments of the right body about D and of the middle body about B give the force at C, and the
+    /// equilibrium of forces the others. `B-C` and `C-D` are never on one line before the limit position.
+    /// The equation of motion makes the line pass through B on the left body's side as well.
     #[must_use]
     pub fn thrust_line(&self, motion: &Motion) -> ThrustLine {
         let bars = self.bars(motion.q_rad);

@@ -142,8 +142,8 @@ impl ResultantLine {
         SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
-    /// The extremes over all sections where hinges sit anywhere, and over the joints of voussoirs, which
-    /// are rigid and may be left in between.
+    /// The extremes over all sections where hinges may form anywhere, or over the joints of voussoirs,
+    /// which are rigid: there the line may leave the ring between joints.
     #[must_use]
     pub fn extremes(&self, sites: HingeSites) -> Extremes {
         let smallest_normal = self.largest(sites, &|section| -section.normal);

@@ -65,8 +65,8 @@ impl FourLinkRow {
         })
     }
 
-    /// The same row with its depth out of plane in metres, which is 1 m unless given. Nothing depends on it but the metre of
-    /// depth that impulses are told for: the blocks have their masses.
+    /// The same row with its depth out of plane in metres, which is 1 m unless given. It affects only the impulses, which
+    /// are given per metre of depth: the blocks have their masses.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.

@@ -16,7 +16,7 @@ use crate::mechanics::geometry::ring::Edge;
 /// first six restitution coefficients, to 1e-9, for 138 arches from 70 to 180 degrees and t/R 0.03 to 0.29.
 const LATTICE_INTERVALS: usize = 20;
 
-/// One more lattice section this part of an interval inside each springing, for maxima close to them.
+/// One more lattice section this fraction of an interval inside each springing, for maxima close to them.
 const NEAR_SPRINGING: f64 = 0.002;
 
 /// Up to this number of voussoirs the lattice holds every joint, so that the search is exhaustive.
@@ -241,9 +241,9 @@ fn ascend(
     Some((climber.value(&mechanism), mechanism))
 }
 
-/// Like [`ascend`], and on from the maximum found to its twins: where the slope jumps up at a kink there is a
-/// maximum on either side of it, often within one interval of the lattice, which then starts from one of
-/// them only.
+/// Like [`ascend`], and then from the maximum found to its twins. Where the slope jumps up at a kink there is
+/// a maximum on either side of it, often within one interval of the lattice. The lattice then starts from
+/// only one of them.
 fn ascend_all_sides(
     profile: &dyn Profile,
     ends: &[f64],
@@ -361,7 +361,7 @@ impl<O: Objective> Climber<'_, O> {
         }
         let curvature = self.curvature(mechanism, &free)?;
         let gradient = DVector::from_iterator(free.len(), free.iter().map(|i| gradient[*i]));
-        // Damped until the quadratic model has a maximum, as far from one it may not.
+        // Damped until the quadratic model has a maximum: far from one it may have none.
         let scale = curvature.amax().max(f64::MIN_POSITIVE);
         let mut damping = 0.0;
         let mut step = loop {

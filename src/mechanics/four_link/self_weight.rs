@@ -120,8 +120,8 @@ impl SymmetricLines {
         last(0.0, 0.5 * self.ring.embrace_rad(), rises)
     }
 
-    /// The largest room for `k` at any thrust: positive if the ring stands. `None`: unbounded, since a straight
-    /// line fits into the ring.
+    /// The largest room for `k` at any thrust: positive if the ring stands; `None` if it is unbounded, since a
+    /// straight line fits into the ring.
     fn largest_margin(&self) -> Option<f64> {
         let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad());
         let slope = |edge: Edge, angle: f64| self.touching(edge, 0.0, angle).slope;
@@ -138,7 +138,7 @@ impl SymmetricLines {
     }
 }
 
-/// The last number between two at which something holds that holds up to there, to rounding.
+/// The last number between two, to rounding, at which a condition holds that holds for all smaller ones.
 fn last(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     bisect(low, high, Width::Rounding, |at| !holds(at)).0
 }

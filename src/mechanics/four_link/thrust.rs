@@ -31,8 +31,8 @@ const TOP_ACCURACY_RAD: f64 = 1e-6;
 /// Excess below which the line is inside: it touches the edge at the hinges, to rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A normal force below this part of the structure's weight, tension included, counts as this
-/// much in a [`Demand`], which stays finite and goes on growing with the moment (the tension).
+/// A normal force below this fraction of the structure's weight, tension included, counts as this much in a
+/// [`Demand`]. The demand then stays finite and keeps growing with the moment (the tension).
 const MIN_NORMAL: f64 = 0.01;
 
 impl Demand {
@@ -131,7 +131,7 @@ pub struct Part {
     /// Its last section.
     pub end_rad: f64,
     load: Load,
-    /// The resultant at the left springing if the part reached so far.
+    /// The resultant at the left springing if the part extended that far.
     start: Momentum,
 }
 
@@ -180,10 +180,10 @@ impl ThrustLine {
 
     /// A line of the structure at rest under a force per unit mass in g.
     ///
-    /// At rest it is hyperstatic, and one admissible line proves that it can stay at rest. This is the
+    /// At rest it is statically indeterminate, and one admissible line proves that it can stay at rest. This is the
     /// mean of the two limit lines, at `A_L` to the right and to the left (the latter as its mirror image, which sways
-    /// right), weighted so that their loads add up to the load: moments and normal forces being linear in the load,
-    /// it is inside wherever both are, and grows into that of the mechanism that starts.
+    /// right), weighted so that their loads add up to the load. Moments and normal forces are linear in the load, so
+    /// the line is inside wherever both are. It grows into that of the mechanism that starts.
     #[must_use]
     pub fn at_rest(
         to_right: &Incipient,
