@@ -1,16 +1,16 @@
 //! The ASC files of the Engineering Strong Motion database and of ITACA (DYNA format).
 //!
-//! A header of lines `KEY: value`, and then the accelerations or velocities, one a line.
+//! A header of lines `KEY: value`, followed by the accelerations or velocities, one per line.
 
 use super::layout::{Contents, evenly};
 use super::{LineFault, MAX_SAMPLES, MIN_STEP_S, Recorded, Unit, number, sample};
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
-/// Lines that are searched for a header.
+/// Number of lines that may make up the header.
 const MAX_HEADER_LINES: usize = 200;
 
-/// What the header says, each with its line from 1.
+/// The contents of the header, each with its line from 1.
 #[derive(Default)]
 struct Header {
     step_s: Option<(usize, f64)>,

@@ -1,8 +1,8 @@
 //! The AT2 and VT2 files of the PEER ground motion databases.
 //!
-//! A header of a few lines, the last of which gives the number of samples and their spacing in one of
-//! many wordings, and then the accelerations, in units of gravity unless a line says otherwise, or velocities, as Fortran wrote
-//! them: several to a line, of fixed width, so that a minus sign may be all that parts two of them.
+//! A header of a few lines comes first; its last line gives the number of samples and their spacing, in one of
+//! many wordings. Accelerations follow, in units of gravity unless a line says otherwise, or velocities. Fortran wrote
+//! them several to a line, in fixed width, so that a minus sign may be all that separates two of them.
 
 use super::layout::{Contents, too_long};
 use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Recorded, Unit, number, sample};
@@ -11,10 +11,10 @@ use crate::scenario::error::excerpt;
 
 /// The header is searched up to this line.
 const MAX_HEADER_LINES: usize = 64;
-/// Characters of a line that are searched.
+/// Number of characters of a line that are searched.
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
-/// Reads the samples; the first is at time zero. `unit` is theirs whatever the header says.
+/// Reads the samples; the first is at time zero. `unit` overrides the unit in the header.
 pub(super) fn parse(
     text: &str,
     unit: Option<Unit>,
@@ -73,7 +73,7 @@ pub(super) fn parse(
     })
 }
 
-/// The numbers of a line as they are written, also where only a sign parts them.
+/// The numbers of a line as written, even where only a sign separates them.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     // Some files end with the end-of-file character of DOS.
     let blank = |c: char| c.is_whitespace() || c == ',' || c == '\u{1a}';
@@ -96,18 +96,18 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// What the header says.
+/// The contents of the header.
 struct Header {
     /// Its last line, from 1.
     line: usize,
     /// Number of samples.
     count: usize,
     step_s: f64,
-    /// Their unit, where it is named.
+    /// The unit of the samples, if the header names it.
     unit: Option<Unit>,
 }
 
-/// What matters on the line with the numbers.
+/// A part of the line with the numbers that matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Item {
     Count,
@@ -148,7 +148,7 @@ impl Header {
                 }
             }
             let here = Item::all(line);
-            // The two may be on two consecutive lines.
+            // The number of samples and their spacing may be on two consecutive lines.
             if here.contains(&Item::Count) || !items.is_empty() {
                 items.extend_from_slice(&here);
             }
@@ -229,7 +229,7 @@ impl Item {
     }
 }
 
-/// Number of samples and time step: each label with the number after it, or else the first two numbers in
+/// Number of samples and time step: the number after each label, or else the first two numbers in
 /// the order of the labels, as in `4096 0.01 NPTS, DT`.
 fn values(items: &[Item]) -> Option<(f64, f64)> {
     let position = |label: Item| items.iter().position(|item| *item == label);
@@ -253,18 +253,18 @@ fn values(items: &[Item]) -> Option<(f64, f64)> {
     })
 }
 
-/// The number that a word begins with, as in `.0050SEC`.
+/// The number at the beginning of a word, as in `.0050SEC`.
 fn leading_number(word: &str) -> Option<f64> {
     let end = word
         .find(|c: char| !(c.is_ascii_digit() || "+-.eEdD".contains(c)))
         .unwrap_or(word.len());
-    // An E that follows the number may belong to it or to the next word.
+    // An E after the number may belong to it or to the next word.
     (1..=end.min(40))
         .rev()
         .find_map(|end| number(&word[..end]).ok())
 }
 
-/// Why a line of the header says that the file holds something else than accelerations.
+/// Explains why a line of the header shows that the file holds something other than the wanted quantity.
 fn wrong_quantity(line: &str, wanted: Recorded) -> Option<String> {
     let line = line.to_ascii_uppercase();
     let holds = |name: &str| line.contains(&format!("{} TIME", name.to_ascii_uppercase()));
@@ -287,7 +287,7 @@ fn wrong_quantity(line: &str, wanted: Recorded) -> Option<String> {
 /// The unit that a line of the header names.
 fn unit_named(line: &str) -> Option<&str> {
     const WORDS: &str = "UNITS OF ";
-    // In ASCII the places stay.
+    // Upper case does not move the places of characters: only ASCII letters change.
     let at = line.to_ascii_uppercase().find(WORDS)? + WORDS.len();
     let unit = line[at..].split_whitespace().next()?;
     Some(unit.trim_end_matches(|c: char| !c.is_alphanumeric()))
@@ -351,7 +351,7 @@ mod tests {
             values("1,-2-3\n\n 4\r\n\u{1a}").unwrap(),
             [1.0, -2.0, -3.0, 4.0]
         );
-        // Numbers not even separated by a sign are not guessed at.
+        // Numbers without even a sign between them are not guessed.
         for line in [
             "0.12340.5678 0 0 0",
             ".12E-03.56E-03 0 0",

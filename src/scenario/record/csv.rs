@@ -1,4 +1,4 @@
-//! Tables of samples, with times or at even steps: columns parted by commas, semicolons, tabs or blanks.
+//! Tables of samples, with times or at even steps; commas, semicolons, tabs or blanks separate the columns.
 
 mod wrapped;
 
@@ -14,8 +14,8 @@ use crate::scenario::error::excerpt;
 
 /// Reads the samples, in the unit of the file.
 ///
-/// Blank lines and lines that begin with `#` are skipped. The first of the others may hold the names of
-/// the columns, and must where a column is chosen by name.
+/// Blank lines and lines that begin with `#` are skipped. The first of the other lines may hold the names of
+/// the columns; it must if a column is chosen by name.
 pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Contents, LineFault> {
     let table = without_first(text, layout.skip_rows);
     let contents = |samples, wrapped| Contents {
@@ -32,7 +32,7 @@ pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Contents, LineFa
     Ok(contents(parse_columns(&table, layout)?, false))
 }
 
-/// Reads a table with a sample a row.
+/// Reads a table with one sample per row.
 fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault> {
     let mut rows = Rows::new(text, layout.decimal);
     let Some(first) = rows.next()? else {
@@ -103,7 +103,7 @@ fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault>
     }
 }
 
-/// That a table has no rows.
+/// Reports that a table has no rows.
 fn nothing(text: &str) -> LineFault {
     let lines_that_are_not = |line: &&str| line.is_empty();
     LineFault {
@@ -112,7 +112,7 @@ fn nothing(text: &str) -> LineFault {
     }
 }
 
-/// The text with its first lines blank, so that the others keep their numbers.
+/// The text with its first lines blanked out, so that the others keep their numbers.
 fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
     if lines == 0 {
         return Cow::Borrowed(text);
@@ -124,7 +124,7 @@ fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
     }
 }
 
-/// Refuses a time out of range, or one that does not follow that before.
+/// Refuses a time that is out of range, or not later than the time before it.
 fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     if time_s.abs() > MAX_TIME_S {
         return Err(format!(
@@ -144,15 +144,15 @@ fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     }
 }
 
-/// Where in a row times and accelerations are, from 0.
+/// The columns of times and accelerations in a row, counted from 0.
 struct Columns {
-    /// `None` for times at even steps.
+    /// `None` if times are at even steps.
     time: Option<usize>,
     acceleration: usize,
-    /// Whether that was chosen; if not, there are no others.
+    /// Whether the acceleration column was chosen; if not, there must be no other.
     is_chosen: bool,
     decimal: Decimal,
-    /// Whether one is chosen by its name.
+    /// Whether a column is chosen by its name.
     by_name: bool,
     /// Whether the first row has names instead of numbers.
     has_names: bool,
@@ -195,7 +195,7 @@ impl Columns {
         self.time.into_iter().chain([self.acceleration])
     }
 
-    /// Time, zero where the table has none, and acceleration.
+    /// Time, or zero if the table has none, and acceleration.
     fn values(&self, row: &Row<'_>) -> Result<[f64; 2], String> {
         let value = |index: usize| match row.cells().nth(index) {
             Some(cell) => self.number(cell),
@@ -205,7 +205,7 @@ impl Columns {
         Ok([time_s, in_range(value(self.acceleration)?)?])
     }
 
-    /// Refuses columns among which none was chosen.
+    /// Refuses a row with several columns if none was chosen.
     fn check_count(&self, row: &Row<'_>) -> Result<(), String> {
         let (count, samples) = (row.count(), row.count() - usize::from(self.time.is_some()));
         if self.is_chosen || samples <= 1 {
@@ -258,7 +258,7 @@ impl Decimal {
     }
 }
 
-/// Rows of exactly this many numbers, each with its line. A first row without any number holds names.
+/// Rows of exactly this many numbers, each with its line. A first row without any number holds the names.
 pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N])>, LineFault> {
     let mut rows = Rows::new(text, Decimal::Point);
     let mut found = Vec::new();
@@ -302,11 +302,11 @@ struct Row<'a> {
 impl<'a> Rows<'a> {
     fn new(text: &'a str, decimal: Decimal) -> Self {
         let is_row = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
-        // The first may be names, which may have blanks and commas in them.
+        // The first row may hold names, which may contain blanks and commas.
         let mut rows = text.lines().filter(is_row);
         let first = rows.next().unwrap_or_default();
         let second = rows.next().unwrap_or(first);
-        // What stands in quotation marks does not part cells.
+        // Delimiters inside quotation marks do not separate cells.
         let parts = |row: &str, c: char| row.split('"').step_by(2).any(|part| part.contains(c));
         let either = |c: char| parts(first, c) || parts(second, c);
         let delimiter = if either(';') {
@@ -320,7 +320,7 @@ impl<'a> Rows<'a> {
         } else {
             b' '
         };
-        // Where the last line has an end, the line number after a row is that of the next line.
+        // If the last line ends with a line break, the line number after a row is that of the next line.
         let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
         let reader = ReaderBuilder::new()
             .has_headers(false)
@@ -363,7 +363,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Says which row begins the table, where one does, to follow what is wrong with the first row.
+    /// Tells which row begins the table, if one does; continues the message about the first row.
     fn where_they_begin(&mut self, is_of_table: impl Fn(&Row<'_>) -> bool) -> String {
         while let Ok(Some(row)) = self.next() {
             if is_of_table(&row) {
@@ -377,7 +377,7 @@ impl<'a> Rows<'a> {
         String::new()
     }
 
-    /// Refuses names between blanks that are not as many as the columns, because one of them has a blank.
+    /// Refuses names separated by blanks if they are more or fewer than the columns, because one of them contains a blank.
     fn check_names(&self, header: &Row<'_>, row: &Row<'_>, by_name: bool) -> Result<(), LineFault> {
         let [names, columns] = [header, row].map(|row| row.cells().count());
         if by_name && self.by_blanks && names != columns {
@@ -390,16 +390,16 @@ impl<'a> Rows<'a> {
 }
 
 impl Row<'_> {
-    /// The cells, without blanks around them. A quotation mark that follows a blank does not quote, but surely was
-    /// meant to.
+    /// The cells, without blanks around them. A quotation mark after a blank does not quote, though it was surely meant
+    /// to.
     fn cells(&self) -> impl Iterator<Item = &str> {
         let cells = self.record.iter();
-        // Several blanks part no more than one does.
+        // Several blanks in a row separate no more cells than one does.
         let cells = cells.filter(|cell| !(self.by_blanks && cell.trim().is_empty()));
         cells.map(|cell| cell.trim().trim_matches('"').trim())
     }
 
-    /// How many there are up to the last that is not empty.
+    /// The number of cells up to the last one that is not empty.
     fn count(&self) -> usize {
         let filled = self.cells().zip(1..).filter(|(cell, _)| !cell.is_empty());
         filled.last().map_or(0, |(_, count)| count)
@@ -466,7 +466,7 @@ mod tests {
                 columns(name("t"), name("a")),
             ),
             ("a,t\n1,0\n-2,.5\n", columns(number(2), number(1))),
-            // Quotation marks hold delimiters, line breaks and their like together.
+            // Quotation marks keep delimiters, line breaks and the like inside a cell.
             (
                 "\"x; \"\"raw\"\"\",t,\"a\"\n\"1,5\",0,1\n;,\"0.5\", \"-2\" \n",
                 columns(name("t"), name("a")),
@@ -499,7 +499,7 @@ mod tests {
             "`x` is not a finite number",
         );
         fault("t,a\n0,1\n1,\"2\n3\"\n", 4, "`2` is not a finite number");
-        // A mark that is not closed quotes all that follows.
+        // A quotation mark that is never closed quotes everything after it.
         fault("t,a\n0,1\n1,\"2\n2,3\n", 4, "`2` is not a finite number");
         fault("t,a\n0,1\n1,\"2\n2,3", 4, "`2` is not a finite number");
         fault("t,a\n0,1\n1,inf\n", 3, "`inf` is not a finite number");
@@ -511,7 +511,7 @@ mod tests {
         fault("t,a\n0,1\n-1,2\n", 3, "does not increase");
         fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
         fault("t,a\n0,1\n", 2, "number of samples is 1");
-        // A first row that is half a number is not a header.
+        // A first row that holds one proper number is not a header.
         assert_fault("0,1x\n1,2\n", &csv(numbered()), 1, "`1x`");
     }
 
@@ -543,7 +543,7 @@ mod tests {
         });
         let text = "time  acc\n0 1\n0.5 -2\n";
         assert_eq!(parse(text, &named), Ok(vec![(0.0, 1.0), (0.5, -2.0)]));
-        // A name with a blank in it would be taken for two.
+        // A name with a blank in it would count as two.
         let text = "time (s) acc (g)\n0 1\n0.5 -2\n";
         assert_fault(text, &named, 1, "4 names between blanks for 2 columns");
     }

@@ -1,15 +1,15 @@
 //! The files of K-NET and KiK-net (NIED, Japan).
 //!
-//! A header of lines with a name of up to 18 characters and a value, the last of which begins with `Memo.`, and then
-//! whole numbers, several to a line. Times the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in
-//! gal, with the offset of the instrument.
+//! A header comes first, of lines with a name of up to 18 characters and a value; the last line begins with `Memo.`.
+//! Whole numbers follow, several to a line. Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are
+//! accelerations in gal, including the offset of the instrument.
 
 use super::layout::{Contents, evenly};
 use super::{LineFault, MAX_SAMPLES, MIN_STEP_S, Unit, number, sample};
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
-/// Lines that are searched for a header.
+/// Number of lines that may make up the header.
 const MAX_HEADER_LINES: usize = 64;
 
 const FREQUENCY: &str = "Sampling Freq(Hz)";
@@ -17,13 +17,13 @@ const SCALE: &str = "Scale Factor";
 const DURATION: &str = "Duration Time(s)";
 const LAST: &str = "Memo.";
 
-/// What the header says.
+/// The contents of the header.
 #[derive(Default)]
 struct Header {
     step_s: Option<f64>,
-    /// What a number times this is in gal.
+    /// Converts the whole numbers to gal.
     scale: Option<f64>,
-    /// With its line, from 1.
+    /// The duration, with its line from 1.
     duration_s: Option<(usize, f64)>,
 }
 
@@ -65,7 +65,7 @@ pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
     }
     let samples = evenly(step_s, accelerations)
         .map_err(|wrong| fault(format!("{FREQUENCY} and the number of samples {wrong}")))?;
-    // The duration is in whole seconds.
+    // The header gives the duration in whole seconds.
     #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
     let lasts_s = count as f64 * step_s;
     if let Some((line, duration_s)) = header.duration_s
@@ -85,7 +85,7 @@ pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
 }
 
 impl Header {
-    /// The header, and how many lines it has.
+    /// The header, and its number of lines.
     fn parse(text: &str) -> Result<(Self, usize), LineFault> {
         let mut header = Self::default();
         for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
@@ -166,7 +166,7 @@ mod tests {
         }
     }
 
-    /// The mean over time makes the velocity at the end zero.
+    /// Without the mean over time, the velocity at the end is zero.
     #[test]
     fn the_offset_goes_only_where_that_is_asked_for() {
         let layout = Layout {

@@ -1,4 +1,4 @@
-//! How a record's file is read: its format, and for tables where times and accelerations stand.
+//! How the file of a record is read: its format, and for tables the places of times and accelerations.
 
 use std::ffi::OsStr;
 use std::ops::Bound::Included;
@@ -27,7 +27,7 @@ named! {
 }
 
 named! {
-    /// What the samples of a record are.
+    /// The quantity that the samples of a record measure.
     #[derive(Default)]
     pub enum Recorded {
         /// Accelerations, joined by straight lines.
@@ -39,13 +39,13 @@ named! {
 }
 
 named! {
-    /// What parts the whole of a number from its fraction.
+    /// The decimal mark.
     #[derive(Default)]
     pub enum Decimal {
         /// `0.12`.
         #[default]
         Point = "point",
-        /// `0,12`; commas then part no columns.
+        /// `0,12`; commas then do not separate columns.
         Comma = "comma",
     }
 }
@@ -71,21 +71,21 @@ pub enum Times {
     Step(f64),
 }
 
-/// How a table is read. Its columns are parted by semicolons, tabs, commas or blanks.
+/// How a table is read. Semicolons, tabs, commas or blanks separate its columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TableLayout {
     /// Times.
     #[serde(flatten)]
     pub times: Times,
-    /// Accelerations, or velocities. `None`: there is but one column of them; of several, a row holds as many samples,
-    /// where the table shows that.
+    /// The column of accelerations or velocities. `None`: there is only one such column, or a row holds several samples
+    /// and the table shows that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceleration_column: Option<TableColumn>,
-    /// Whether a row holds several samples, one after another, whatever the table shows; counts at even steps, where no
-    /// column is chosen.
+    /// Whether a row holds several consecutive samples, even if the table does not show it. Used only with even steps and if
+    /// no column is chosen.
     #[serde(skip_serializing_if = "is_default")]
     pub wrapped: bool,
-    /// Their unit.
+    /// The unit of the samples.
     pub unit: Unit,
     /// Lines before the table.
     #[serde(skip_serializing_if = "is_default")]
@@ -100,7 +100,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 impl TableLayout {
-    /// A table that begins on the first line, with decimal points and the samples where it shows them.
+    /// A table that begins on the first line, with decimal points, whose acceleration column need not be chosen.
     #[must_use]
     pub const fn new(times: Times, unit: Unit) -> Self {
         Self {
@@ -114,40 +114,40 @@ impl TableLayout {
     }
 }
 
-/// How a file is written.
+/// The format of a file, with its options.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "format", rename_all = "snake_case")]
 pub enum Form {
-    /// As an AT2 file.
+    /// An AT2 file.
     At2 {
-        /// Unit of its samples; `None`: the one that its header names, or gravity.
+        /// Unit of its samples; `None`: the unit that its header names, or gravity.
         #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<Unit>,
     },
-    /// As an ASC file, whose header says all.
+    /// An ASC file, whose header gives everything.
     Asc,
-    /// As a file of K-NET, whose header says all.
+    /// A file of K-NET, whose header gives everything.
     Knet,
-    /// As a table.
+    /// A table.
     Csv(TableLayout),
 }
 
 /// How a file is read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Layout {
-    /// How it is written.
+    /// The format of the file.
     #[serde(flatten)]
     pub form: Form,
-    /// What its samples are.
+    /// The quantity that its samples measure.
     #[serde(skip_serializing_if = "is_default")]
     pub quantity: Recorded,
-    /// Whether accelerations are read without their mean over the time of the record.
+    /// Whether the mean over the time of the record is subtracted from the accelerations.
     #[serde(skip_serializing_if = "is_default")]
     pub remove_mean: bool,
 }
 
 impl From<Form> for Layout {
-    /// Accelerations as they are in the file.
+    /// Accelerations as the file holds them.
     fn from(form: Form) -> Self {
         Self {
             form,
@@ -157,15 +157,15 @@ impl From<Form> for Layout {
     }
 }
 
-/// What is in a file.
+/// The contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
-    /// Times in s, increasing by at least a microsecond, and accelerations or velocities. There are from 2 to 1 800 000,
-    /// of a magnitude of at most 1e12.
+    /// Times in s, at least a microsecond apart, and accelerations or velocities. There are from 2 to 1 800 000 samples,
+    /// with magnitudes up to 1e12.
     pub samples: Vec<(f64, f64)>,
-    /// Their unit.
+    /// The unit of the samples.
     pub unit: Unit,
-    /// Whether a row of a table holds several of them.
+    /// Whether a row of a table holds several samples.
     pub wrapped: bool,
 }
 
@@ -190,7 +190,7 @@ const TABLE_KEYS: [&str; 6] = [
 ];
 
 impl Format {
-    /// The format that the ending of a file's name tells; the error follows the name.
+    /// The format that the extension of a file name indicates; the error continues the name.
     pub(in crate::scenario) fn of_ending(file: &str) -> Result<Self, &'static str> {
         let ending = Path::new(file)
             .extension()
@@ -209,7 +209,7 @@ impl Format {
         }
     }
 
-    /// The format that the ending of a file's name tells; `None`: it is not that of a record.
+    /// The format that the extension of a file name indicates; `None`: the extension is not that of a record.
     #[must_use]
     pub fn of_file(file: &Path) -> Option<Self> {
         Self::of_ending(file.to_str()?).ok()
@@ -225,11 +225,11 @@ impl Format {
 }
 
 impl Layout {
-    /// What is in the bytes of a file.
+    /// The contents of a file, from its bytes.
     ///
     /// # Errors
     ///
-    /// The first thing that is wrong with them.
+    /// The first fault in the bytes.
     pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
         let text = legible(bytes)?;
         let mut contents = match &self.form {
@@ -347,7 +347,7 @@ impl Layout {
         })
     }
 
-    /// Whether a key of `[ground.record]` is of tables only.
+    /// Whether a key of `[ground.record]` describes tables: the keys that only tables have, and `unit`.
     #[must_use]
     pub fn is_of_tables(key: &str) -> bool {
         TABLE_KEYS.contains(&key) || key == "unit"
@@ -364,7 +364,7 @@ impl Layout {
     }
 }
 
-/// The text of a file. Headers may be in any encoding that has the digits where ASCII has them.
+/// The text of a file. Headers may be in any encoding that has its digits where ASCII has them.
 pub(super) fn legible(bytes: &[u8]) -> Result<String, LineFault> {
     if let Some(wrong) = not_plain(bytes) {
         return Err(LineFault {
@@ -376,7 +376,7 @@ pub(super) fn legible(bytes: &[u8]) -> Result<String, LineFault> {
     Ok(text.trim_start_matches('\u{feff}').to_owned())
 }
 
-/// The mean over time of samples that are joined by straight lines.
+/// The mean over time of samples joined by straight lines.
 pub(super) fn mean(samples: &[(f64, f64)]) -> f64 {
     let [Some(first), Some(last)] = [samples.first(), samples.last()] else {
         return 0.0;
@@ -406,7 +406,7 @@ impl Rule for AnyColumn {
     }
 }
 
-/// Times of samples at even steps, which must not last too long; the error follows what makes them.
+/// Samples with times at even steps, which must not last too long; the error continues the key that sets the step.
 pub(super) fn evenly(step_s: f64, accelerations: Vec<f64>) -> Result<Samples, String> {
     // Counts below 2^53 are exact.
     #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
@@ -419,7 +419,7 @@ pub(super) fn evenly(step_s: f64, accelerations: Vec<f64>) -> Result<Samples, St
     Ok(samples.map(|(index, a)| (time_s(index), a)).collect())
 }
 
-/// Says that a record is too long.
+/// Reports that a record is too long.
 pub(super) fn too_long(last_s: f64) -> String {
     use crate::argument::{plain, short};
     format!(

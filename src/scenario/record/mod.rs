@@ -18,9 +18,9 @@
 //! unit = "cm/s2"                # of tables, and required there: "g", "m/s2" or "cm/s2"; "m/s" or "cm/s" of velocities
 //! ```
 //!
-//! How files are read is in [`Layout`]. Samples are joined by straight lines, so that the acceleration of a record of
-//! velocities is constant from one to the next; outside them the acceleration is zero. Units of gravity are those of
-//! the simulation, `gravity_m_s2`.
+//! [`Layout`] describes how files are read. Straight lines join the samples, so the acceleration of a record of
+//! velocities is constant between samples. Before the first sample and after the last the acceleration is zero. Units
+//! of gravity are those of the simulation, `gravity_m_s2`.
 
 mod asc;
 mod at2;
@@ -61,9 +61,9 @@ const MAX_BYTES: u64 = 64 << 20;
 const MAX_SAMPLES: usize = 1_800_000;
 /// Times of a record are at most this far from zero.
 const MAX_TIME_S: f64 = 1e6;
-/// Least spacing of samples: a jump may take a microsecond.
+/// Smallest spacing of samples: a jump may take a microsecond.
 const MIN_STEP_S: f64 = 1e-6;
-/// Largest sample in any unit: no product or square of what follows from it leaves the range of an `f64`.
+/// Largest sample in any unit: no product or square derived from it leaves the range of an `f64`.
 const MAX_SAMPLE: f64 = 1e12;
 
 const SCALE: Number = Number(Included(-1e6), Included(1e6));
@@ -71,7 +71,7 @@ pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(MAX_ACCELERATIO
 const START_S: Number = Number(Included(0.0), Included(MAX_TIME_S));
 
 named! {
-    /// Where the accelerations of a record point.
+    /// The direction of the accelerations of a record.
     pub enum Component {
         /// To the right.
         Horizontal = "horizontal",
@@ -80,13 +80,13 @@ named! {
     }
 }
 
-/// What the accelerations of a file are multiplied by.
+/// The factor by which the accelerations of a file are multiplied.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Scaling {
     /// This factor.
     #[serde(rename = "scale")]
     Factor(f64),
-    /// The factor of the same sign that makes their largest magnitude so large, in units of gravity.
+    /// The factor, of the same sign, that scales the peak to this magnitude, in units of gravity.
     #[serde(rename = "peak_g")]
     PeakG(f64),
 }
@@ -99,7 +99,7 @@ pub struct Series {
     /// How it is read.
     #[serde(flatten)]
     pub layout: Layout,
-    /// How strong it is.
+    /// How it is scaled.
     #[serde(flatten)]
     pub scaling: Scaling,
     /// Unit of the samples in the file.
@@ -113,23 +113,23 @@ pub struct Series {
     pub samples: Arc<[(f64, f64)]>,
 }
 
-/// How the samples of a record follow one another.
+/// The number and spacing of the samples of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     /// Number of samples.
     pub count: usize,
-    /// Time from one to the next, where that is always the same.
+    /// Time between samples, if it is constant.
     pub step_s: Option<f64>,
-    /// Shortest time from one to the next.
+    /// Shortest time between samples.
     pub least_step_s: f64,
     /// Time from the first to the last.
     pub duration_s: f64,
 }
 
-/// Number, steps and length of the samples.
+/// Number, spacing and duration of the samples.
 impl fmt::Display for Sampling {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Six digits at most, and no zeros behind them.
+        // At most six digits, without trailing zeros.
         let rounded = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
         write!(f, "{} samples ", self.count)?;
         match self.step_s {
@@ -147,14 +147,14 @@ impl fmt::Display for Sampling {
 /// Ground motion from one or two files.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Record {
-    /// The one record, or that of the horizontal component.
+    /// The only record, or the horizontal one of two.
     #[serde(flatten)]
     pub main: Series,
-    /// Where the accelerations of `main` point.
+    /// The direction of the accelerations of `main`.
     pub component: Component,
-    /// Time of the simulation at time zero of the files, in 0 to 1e6.
+    /// Time in the simulation at time zero of the files, in 0 to 1e6.
     pub start_s: f64,
-    /// The record of the vertical component, where `main` is the horizontal one.
+    /// The record of the vertical component, if `main` is the horizontal one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertical: Option<Series>,
 }
@@ -165,7 +165,7 @@ impl Record {
         [&self.main].into_iter().chain(&self.vertical)
     }
 
-    /// The ground motion with the horizontal record, or the only one, scaled otherwise; the other stays as it is.
+    /// The ground motion with another scaling of the horizontal record, or of the only one; the vertical one stays as it is.
     pub(crate) fn rescaled(
         &self,
         scaling: Scaling,
@@ -182,7 +182,7 @@ impl Record {
         Ok(rescaled.motion(gravity_m_s2))
     }
 
-    /// The same with other numbers for some of its keys.
+    /// The same record with other numbers for some of its keys.
     pub(super) fn with_values(
         &self,
         values: &[(&str, f64)],
@@ -219,7 +219,7 @@ impl Record {
         Ok(record)
     }
 
-    /// When the last of its records ends.
+    /// The time at which the last of its records ends.
     pub(super) fn end_s(&self) -> f64 {
         let ends = self.series().map(Series::last_s);
         self.start_s + ends.fold(0.0, f64::max)
@@ -282,7 +282,7 @@ impl Record {
 }
 
 impl Series {
-    /// The accelerations of a file as they are there; the error follows its name.
+    /// The unscaled samples of a file; the error continues the name of the file.
     pub(super) fn of_file(folder: &Path, file: String, layout: Layout) -> Result<Self, String> {
         let path = folder.join(&file);
         match read_contents(&path, &layout) {
@@ -308,10 +308,10 @@ impl Series {
         }
     }
 
-    /// Reads a file by itself, with the keys of `[ground.record]` that say how.
+    /// Reads a file on its own, with the keys of `[ground.record]` that tell how.
     ///
     /// # Errors
-    /// All that is wrong with the keys, or what is wrong with the file. Neither has a place but the assignment or the
+    /// Everything that is wrong with the keys, or what is wrong with the file. The only place given is the assignment or the
     /// file.
     pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Self, ScenarioErrors> {
         let name = path.display().to_string();
@@ -335,13 +335,13 @@ impl Series {
         }
     }
 
-    /// The name of its file, as it is shown.
+    /// The name of its file, made safe to show.
     #[must_use]
     pub fn name(&self) -> String {
         shown(&self.file)
     }
 
-    /// The same record, differently scaled.
+    /// The same record, with another scaling.
     #[must_use]
     pub(super) fn scaled(&self, scaling: Scaling) -> Self {
         Self {
@@ -350,7 +350,7 @@ impl Series {
         }
     }
 
-    /// Checksum of the samples: the same for files that differ in nothing but how they are written.
+    /// Checksum of the samples: the same for files that hold the same samples in different formats.
     #[must_use]
     pub fn checksum(&self) -> u32 {
         let mut hasher = crc32fast::Hasher::new();
@@ -361,10 +361,10 @@ impl Series {
         hasher.finalize()
     }
 
-    /// How its samples follow one another.
+    /// The number and spacing of its samples.
     #[must_use]
     pub fn sampling(&self) -> Sampling {
-        /// Steps are taken as even that differ by no more than rounded times do.
+        /// Relative difference up to which steps count as even, because times in files are rounded.
         const EVEN: f64 = 1e-3;
         let steps = || self.samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
         let duration_s = self.last_s() - self.first_s();
@@ -380,7 +380,7 @@ impl Series {
         }
     }
 
-    /// Largest magnitude as scaled, in units of gravity.
+    /// Largest magnitude after scaling, in units of gravity.
     #[must_use]
     pub fn peak_g(&self, gravity_m_s2: f64) -> f64 {
         (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs()
@@ -410,8 +410,8 @@ impl Series {
         self.samples.last().map_or(0.0, |sample| sample.0)
     }
 
-    /// Times in s, on the clock of the file, and accelerations in m/s2 as scaled, joined by straight lines. Where they
-    /// jump there are two at a time.
+    /// Times in s, on the clock of the file, and scaled accelerations in m/s2, joined by straight lines. A jump has two
+    /// points at the same time.
     #[must_use]
     pub fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Vec<(f64, f64)> {
         let factor = self.factor(gravity_m_s2);
@@ -419,7 +419,7 @@ impl Series {
         self.accelerations().iter().map(scaled).collect()
     }
 
-    /// The same in the unit of the file, over seconds if that is one of velocity.
+    /// The same, unscaled, in the unit of the file; for velocities, in that unit per second.
     fn accelerations(&self) -> Cow<'_, [(f64, f64)]> {
         match self.unit.quantity() {
             Recorded::Acceleration => Cow::Borrowed(&*self.samples),
@@ -434,7 +434,7 @@ impl Series {
         }
     }
 
-    /// What an acceleration in the unit of the file is multiplied by to be in m/s2.
+    /// Converts an acceleration in the unit of the file to a scaled one in m/s2.
     fn factor(&self, gravity_m_s2: f64) -> f64 {
         match self.scaling {
             Scaling::Factor(factor) => factor * self.unit.in_si(gravity_m_s2),
@@ -448,7 +448,7 @@ impl Series {
         accelerations.iter().map(|s| s.1.abs()).fold(0.0, f64::max)
     }
 
-    /// Mean of the accelerations over the time of the record as scaled, in units of gravity.
+    /// Mean of the scaled accelerations over the time of the record, in units of gravity.
     #[must_use]
     pub fn mean_g(&self, gravity_m_s2: f64) -> f64 {
         layout::mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
@@ -477,7 +477,7 @@ impl Series {
         Ok(series)
     }
 
-    /// Checks that the ground can move like that.
+    /// Checks that the ground can move as the record says.
     fn check(&self, table: &mut Table<'_>, start_s: f64, gravity_m_s2: f64) -> Reading<()> {
         if let Scaling::PeakG(_) = self.scaling
             && self.peak() == 0.0
@@ -514,7 +514,7 @@ impl Scaling {
     }
 }
 
-/// What is wrong with a record's file.
+/// A fault on a line of a record's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineFault {
     /// Line, from 1.
@@ -524,7 +524,7 @@ pub struct LineFault {
 }
 
 impl fmt::Display for LineFault {
-    /// `line: message`, to follow the name of the file and a colon.
+    /// `line: message`, which follows the name of the file and a colon.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.line, self.message)
     }
@@ -532,28 +532,28 @@ impl fmt::Display for LineFault {
 
 impl std::error::Error for LineFault {}
 
-/// Why a file gives no samples.
+/// Why samples cannot be read from a file.
 enum FileFault {
-    /// It is not there, or too large: to follow its name.
+    /// The file does not exist, or is too large; the text continues its name.
     Unreadable(String),
     /// Its contents are wrong.
     Line(LineFault),
 }
 
-/// Reads the samples of a file, or says what is wrong with it.
+/// Reads the samples of a file, or tells what is wrong with it.
 fn read_contents(path: &Path, layout: &Layout) -> Result<Contents, FileFault> {
     let bytes = read_bytes(path).map_err(FileFault::Unreadable)?;
     layout.parse(&bytes).map_err(FileFault::Line)
 }
 
-/// Rows of this many numbers in a file, each with its line, or with its fault. The first may hold names.
+/// Rows of this many numbers in a file, each with its line; or the first fault. The first row may hold names.
 pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f64; N])>, String> {
     let bytes = read_bytes(path)?;
     let numbers = layout::legible(&bytes).and_then(|text| csv::numbers(&text));
     numbers.map_err(|fault| faulty(path, &fault))
 }
 
-/// That a line of a file is wrong.
+/// Reports that a line of a file is wrong.
 pub(super) fn faulty(path: &Path, fault: &LineFault) -> String {
     let path = shown(&path.display().to_string());
     format!("is faulty: {path}:{fault}")
@@ -575,7 +575,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// A finite number as programs write them, also with Fortran's `D` for the exponent.
+/// A finite number as programs write it; Fortran's `D` may begin the exponent.
 fn number(word: &str) -> Result<f64, String> {
     // The library would also take "inf" and "nan".
     let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
@@ -594,7 +594,7 @@ fn sample(word: &str) -> Result<f64, String> {
     in_range(number(word)?)
 }
 
-/// Refuses a sample that is none.
+/// Refuses a sample that is out of range.
 fn in_range(value: f64) -> Result<f64, String> {
     if value.abs() <= MAX_SAMPLE {
         return Ok(value);
@@ -634,7 +634,7 @@ mod tests {
     }
 
     proptest! {
-        /// Noise and damaged files are read, in order, or said to be wrong.
+        /// Noise and damaged files are either read, in order, or refused.
         #[test]
         fn readers_never_panic(
             noise in any::<String>(),

@@ -22,7 +22,7 @@ named! {
 }
 
 impl Unit {
-    /// What it is a unit of.
+    /// The quantity that it measures.
     #[must_use]
     pub const fn quantity(self) -> Recorded {
         match self {
@@ -31,7 +31,7 @@ impl Unit {
         }
     }
 
-    /// In m/s2, or m/s.
+    /// The unit in m/s2, or m/s.
     pub(super) const fn in_si(self, gravity_m_s2: f64) -> f64 {
         match self {
             Self::Gravity => gravity_m_s2,
@@ -40,7 +40,7 @@ impl Unit {
         }
     }
 
-    /// That it is a unit of the other quantity than asked for, and what to change.
+    /// Reports that the unit belongs to the other quantity, and what to change.
     pub(super) const fn other_quantity(self) -> &'static str {
         match self.quantity() {
             Recorded::Velocity => {
@@ -52,7 +52,7 @@ impl Unit {
         }
     }
 
-    /// The unit that is written in one of the ways that files have: `cm/s^2`, `CM/SEC/SEC`, `gal`.
+    /// The unit in one of the spellings that files have: `cm/s^2`, `CM/SEC/SEC`, `gal`.
     pub(super) fn written(text: &str) -> Option<Self> {
         let plain: String = text
             .chars()
@@ -70,7 +70,7 @@ impl Unit {
     }
 }
 
-/// A unit, by its name or as files write it.
+/// A unit, by its name or in a spelling that files have.
 pub(super) struct AnyUnit;
 
 const NAMES: OneOf<'static, Unit> = OneOf {

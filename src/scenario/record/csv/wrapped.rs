@@ -1,11 +1,12 @@
-//! Tables whose rows hold several samples, one after another.
+//! Tables whose rows hold several consecutive samples.
 
 use super::super::layout::{Decimal, TableLayout, evenly};
 use super::super::{LineFault, MAX_SAMPLES, Samples, in_range};
 use super::{Row, Rows, nothing};
 
-/// Whether the table shows that its rows hold several samples: all rows but the last are equally long and that is
-/// shorter, or the number of all samples stands before the table, `text` with its first lines skipped, or in a comment.
+/// Whether the table shows that its rows hold several samples. Either all rows but the last are equally long and the last is
+/// shorter; or the total number of samples is given before the table (`text` includes the skipped lines), in a comment or in
+/// the row of names.
 pub(super) fn is_shown(text: &str, table: &str, layout: &TableLayout) -> bool {
     let Some((names, lengths)) = lengths(table, layout.decimal) else {
         return false;
@@ -30,11 +31,11 @@ pub(super) fn is_shown(text: &str, table: &str, layout: &TableLayout) -> bool {
         .flat_map(|line| line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c)))
         .filter_map(|word| word.parse::<usize>().ok())
         .collect();
-    // Rows that are announced are rows.
+    // A number that equals the number of rows announces rows, not samples.
     announced.contains(&lengths.iter().sum()) && !announced.contains(&lengths.len())
 }
 
-/// A first row of names, and how many numbers are in each of the others; `None`: some are no numbers.
+/// The first row if it holds names, and the count of numbers in each other row; `None` if a cell is not a number.
 fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)> {
     let mut rows = Rows::new(table, decimal);
     let mut names = None;
@@ -51,7 +52,7 @@ fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)
     Some((names, lengths))
 }
 
-/// Reads the samples of all rows. A first row without any number holds names.
+/// Reads the samples of all rows. A first row without any number holds the names.
 pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Result<Samples, LineFault> {
     let mut rows = Rows::new(table, decimal);
     let mut samples = Vec::new();
@@ -154,7 +155,7 @@ mod tests {
         // The last line is shorter.
         assert_reads("1 -2 3 4\n5 6\n", table());
         assert_reads("acceleration in g\n1,-2,3,4,5\n6\n", table());
-        // The number of samples stands before them.
+        // The number of samples is given before them.
         let skipping = |skip_rows| TableLayout {
             skip_rows,
             ..table()
@@ -174,7 +175,7 @@ mod tests {
             "there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`";
         for text in [
             "1 -2 3\n4 5 6\n",
-            // Two rows of three are announced, or nothing.
+            // Two rows of three are announced, or a number that fits nothing.
             "# 2 rows of 3, 6 in all\n1 -2 3\n4 5 6\n",
             "# 7 samples\n1 -2 3\n4 5 6\n",
             // The last line is longer, or a line before it is shorter.
@@ -190,9 +191,9 @@ mod tests {
         };
         let say = "there are 3 columns: give `acceleration_column`, the one to read; or, if a row holds 3 samples";
         fault("0 -2 3\n4 5 6\n", times.clone(), 1, say);
-        // A column that is empty is none.
+        // An empty column does not count.
         assert_eq!(parse("0,1,\n1,2,\n", &csv(times)).unwrap().len(), 2);
-        // One that is chosen is read, whatever the last line is.
+        // A chosen column is read, whatever the length of the last line.
         let second = TableLayout {
             acceleration_column: Some(TableColumn::Number(2)),
             ..table()
