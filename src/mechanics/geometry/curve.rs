@@ -160,7 +160,7 @@ impl Curve {
         image
     }
 
-    /// Integral over the curve of a function of the point, the derivative, and the part.
+    /// Integral over the curve of a function of the point and the derivative.
     pub(crate) fn integral<T>(&self, of: impl Fn(Vector2<f64>, Vector2<f64>) -> T) -> T
     where
         T: std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
@@ -196,7 +196,7 @@ impl Curve {
         }
     }
 
-    /// The part of the way at which it has a length.
+    /// The part of the way at which the curve has reached a length.
     #[must_use]
     pub fn part_at(&self, length: f64) -> f64 {
         match self {
@@ -205,7 +205,7 @@ impl Curve {
         }
     }
 
-    /// The part of the way from which on something holds.
+    /// The part of the way from which on a condition holds.
     pub(crate) fn first(&self, holds: impl Fn(f64) -> bool) -> f64 {
         let (low, high) = bisect(0.0, 1.0, Width::Absolute(1e-16), holds);
         middle(low, high)

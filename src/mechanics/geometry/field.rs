@@ -59,7 +59,7 @@ impl Twist {
         self.at_center + turned(point) * self.rate
     }
 
-    /// Momentum of a body of the given moments that moves so.
+    /// Momentum of a body of the given moments that moves with this twist.
     #[must_use]
     pub fn momentum(&self, body: &MassMoments) -> Momentum {
         Momentum {
@@ -120,7 +120,7 @@ pub struct Momentum {
 }
 
 impl Momentum {
-    /// None.
+    /// No momentum.
     pub const ZERO: Self = Self {
         linear: Vector2::new(0.0, 0.0),
         angular: 0.0,

@@ -1,4 +1,4 @@
-//! What hinges divide into rigid parts: a continuous ring, or a row of blocks between joints.
+//! The profile that hinges divide into rigid parts: a continuous ring, or a row of blocks between joints.
 //!
 //! Sections follow each other from the left support to the right one and are named by a number that rises from zero to
 //! [`Profile::end`]: the angle of a ring, the index of a joint. At each of them a hinge may sit on either edge.
@@ -51,15 +51,16 @@ pub trait Profile: Debug + Send + Sync {
         MassMoments::NONE
     }
 
-    /// Derivative of the point on an edge with respect to the section's number, likewise.
+    /// Derivative of the point on an edge with respect to the section's number; zero where hinges can sit at joints only.
     fn edge_slope(&self, _section: f64, _edge: Edge) -> Vector2<f64> {
         Vector2::zeros()
     }
 
-    /// The sections that cut it into equal parts, the supports included; of a row its joints, whatever the number.
+    /// The sections that cut it into equal parts, the supports included; for a row its joints, whatever the number of
+    /// parts.
     fn sections(&self, parts: usize) -> Vec<f64>;
 
-    /// The joint that a section is; `None` where sections are angles.
+    /// The joint at a section; `None` where sections are angles.
     fn joint(&self, _section: f64) -> Option<usize> {
         None
     }
@@ -70,7 +71,7 @@ pub trait Profile: Debug + Send + Sync {
         None
     }
 
-    /// The same to keep.
+    /// The same profile, shared.
     fn shared(&self) -> Arc<dyn Profile>;
 }
 
@@ -120,13 +121,13 @@ impl Profile for Ring {
     }
 }
 
-/// A row of blocks between two supports, whose sections are its joints; in its size and its whole mass.
+/// A row of blocks between two supports, whose sections are its joints. Its units are its size and its whole mass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointedProfile {
     joints: Vec<Joint>,
-    /// Before every joint.
+    /// Moments before every joint.
     moments: Vec<MassMoments>,
-    /// Of every block; shared, because every linkage keeps its profile.
+    /// Outlines of every block; shared, because every linkage keeps its profile.
     outlines: Arc<[Vec<Vector2<f64>>]>,
 }
 
@@ -171,7 +172,7 @@ impl JointedProfile {
         self.joints.len()
     }
 
-    /// The joint that a section is.
+    /// The joint at a section.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -33,7 +33,7 @@ impl Edge {
     }
 }
 
-/// Longest line that an arc of an outline is drawn with.
+/// Longest straight line with which an arc of an outline is drawn.
 const OUTLINE_STEP_RAD: f64 = 3.0 * PI / 180.0;
 
 /// Why a ring cannot be built.
@@ -194,7 +194,7 @@ pub struct MassMoments {
 }
 
 impl MassMoments {
-    /// Of nothing.
+    /// The moments of nothing.
     pub const NONE: Self = Self {
         mass: 0.0,
         first: Vector2::new(0.0, 0.0),

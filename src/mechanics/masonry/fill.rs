@@ -70,7 +70,7 @@ impl Fill {
                     ];
                     Block::bounded(outline, from, material.depth_m, self.density_kg_m3)
                 })
-                // Slivers as at a level joint weigh nothing.
+                // Slivers, as at a level joint, weigh nothing.
                 .filter(|block| block.mass_kg > 0.0 && block.inertia_kg_m2 > 0.0)
                 .reduce(|sum, next| sum.with(&next));
             if let Some(below) = below {

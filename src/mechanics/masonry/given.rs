@@ -1,4 +1,4 @@
-//! Blocks of any shape by the corners of their joints.
+//! Blocks of any shape, given by the corners of their joints.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -10,10 +10,10 @@ use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
 use crate::mechanics::geometry::curve::Curve;
 
-/// Corners that differ in height by less than this part of the size are at one level.
+/// Corners that differ in height by less than this fraction of the size are at one level.
 const LEVEL_RATIO: f64 = 1e-9;
 
-/// Why the outline of a block is none. Blocks count from 0 here, and from 1 in words.
+/// Why the outline of a block is not valid. Blocks count from 0 here, and from 1 in messages.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum OutlineError {
     /// There is no such block.
@@ -41,7 +41,7 @@ pub enum OutlineError {
         /// From 0 on.
         sides: (usize, usize),
     },
-    /// It leaves a corner of a joint aside.
+    /// It misses a corner of a joint.
     #[error(
         "the outline of block {number} does not pass through the corner ({x:?}, {y:?}) of its joint",
         number = .block + 1, x = .corner_m.x, y = .corner_m.y
@@ -59,7 +59,7 @@ pub enum OutlineError {
 /// A block is the quadrilateral between its joints unless it has an outline. The last joint of a stack is its free top.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GivenBlocks {
-    /// File of the joints, where they were read from one.
+    /// File of the joints, if they were read from one.
     #[serde(rename = "joints")]
     pub joints_file: String,
     /// File of the outlines.
@@ -113,7 +113,7 @@ impl GivenBlocks {
     /// Checks the outline of a block: its sides do not cross, and the corners of its joints are on them.
     ///
     /// # Errors
-    /// When that is not so.
+    /// When one of these does not hold.
     pub fn check_outline(
         &self,
         block: usize,
@@ -208,7 +208,8 @@ impl GivenBlocks {
         )
     }
 
-    /// Whether the faces on the left and the right support stand on ground that goes on: they are level, and nothing reaches lower.
+    /// Whether the faces on the left and the right support stand on ground that extends beyond them: they are level, and nothing
+    /// reaches lower.
     pub(super) fn on_ground(&self) -> [bool; 2] {
         let corners = self.outlines_m().into_iter().flatten();
         let lowest_m = corners.map(|corner| corner.y).fold(f64::INFINITY, f64::min);
@@ -235,7 +236,7 @@ impl GivenBlocks {
         0.5 * extent(|corner| corner.x).hypot(extent(|corner| corner.y))
     }
 
-    /// The block or joint that an error is about, as the lines of the joints' file: from 0 on.
+    /// The block or joint that an error concerns, as a line of the file of joints: from 0 on.
     #[must_use]
     pub fn joint_of(error: &RowError) -> Option<usize> {
         match error {

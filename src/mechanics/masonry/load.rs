@@ -14,9 +14,9 @@ use crate::mechanics::geometry::ring::MassMoments;
 pub struct PlacedLoad {
     /// The mass in kg.
     pub mass_kg: f64,
-    /// Where it is, from the middle of the span to the right, in metres; of a patch, its middle.
+    /// How far to the right of the middle of the span it is, in metres; for a patch, its middle.
     pub x_m: f64,
-    /// Over which width it is spread, in metres; zero: a point.
+    /// Width over which it is spread, in metres; zero for a point.
     #[serde(skip_serializing_if = "is_zero")]
     pub width_m: f64,
 }

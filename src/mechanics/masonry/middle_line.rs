@@ -191,8 +191,8 @@ impl EllipticArch {
     }
 }
 
-/// An arch whose middle line consists of three arcs that go over into each other smoothly (a basket handle): the outer
-/// ones rise vertically from the springings. Its voussoirs are of equal length along the middle line.
+/// An arch whose middle line consists of three arcs that join smoothly (a basket handle): the outer ones rise
+/// vertically from the springings. Its voussoirs are of equal length along the middle line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BasketArch {
     /// Its dimensions.

@@ -1,5 +1,5 @@
-//! Arches of other shapes than the circular one of equal voussoirs, on piers, with fill and loads: rows of blocks by
-//! their dimensions.
+//! Arches of shapes other than the circular one of equal voussoirs, on piers, with fill and loads: rows of blocks
+//! given by their dimensions.
 //!
 //! Coordinates are in metres, x from the middle of the span to the right. An arch is what lies between two edges at
 //! half a thickness from its middle line, cut by joints normal to that (`cut`).
@@ -31,7 +31,7 @@ pub use pier::{Pier, Piers};
 pub use pointed::PointedArch;
 pub use remedy::Remedy;
 
-/// What a structure is made of, out of plane and by weight.
+/// Depth out of plane and density of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Material {
     /// Length out of plane, in metres.
@@ -58,7 +58,7 @@ impl Material {
     }
 }
 
-/// What arches of different shapes are given by alike.
+/// Dimensions that arches of different shapes share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Dimensions {
     /// Distance of the springings, from middle to middle, in metres.
@@ -69,7 +69,7 @@ pub struct Dimensions {
     pub thickness_m: f64,
     /// Number of voussoirs.
     pub voussoirs: usize,
-    /// Of what it is made.
+    /// Its material.
     #[serde(flatten)]
     pub material: Material,
 }
@@ -137,7 +137,7 @@ impl Shape {
         }
     }
 
-    /// Of what it is made; of blocks with densities of their own, the first.
+    /// Its material; for blocks with densities of their own, that of the first.
     #[must_use]
     pub fn material(&self) -> Material {
         match self {
@@ -172,8 +172,8 @@ impl Shape {
         })
     }
 
-    /// What energies and steps are measured with: the mean radius of a circle, else half the span; of blocks half the
-    /// diagonal of the rectangle around their joints.
+    /// The length that scales energies and steps: the mean radius of a circle, else half the span; for blocks half
+    /// the diagonal of the rectangle around their joints.
     fn size_m(&self) -> f64 {
         match self {
             Self::Circular(arch) => arch.arch.mean_radius_m(),
@@ -214,7 +214,7 @@ pub enum MasonryError {
         /// What is wrong.
         error: ArgumentError,
     },
-    /// The level of the fill is out of range.
+    /// A number of the fill is out of range.
     #[error("fill: {0}")]
     Fill(ArgumentError),
     /// A number of a load is out of range.
@@ -225,10 +225,10 @@ pub enum MasonryError {
         /// What is wrong.
         error: ArgumentError,
     },
-    /// An outline of a block is none.
+    /// An outline of a block is not valid.
     #[error(transparent)]
     Outline(#[from] OutlineError),
-    /// The blocks make no row.
+    /// The blocks do not make a row.
     #[error(transparent)]
     Row(#[from] RowError),
     /// Piers and fill go with arches that are given by their dimensions.
@@ -372,7 +372,7 @@ impl Masonry {
         Ok(falls(&self.row)?.is_none())
     }
 
-    /// The same on rigid abutments.
+    /// The same masonry on rigid abutments.
     ///
     /// # Errors
     /// Those of [`Masonry::new`].

@@ -35,12 +35,13 @@ pub struct Pier {
     pub height_m: f64,
     /// Width in metres.
     pub width_m: f64,
-    /// Number of blocks on each other.
+    /// Number of blocks, one on top of the other.
     pub blocks: usize,
     /// Density in kg/m3; `None`: that of the arch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub density_kg_m3: Option<f64>,
-    /// Whether it stands on a pedestal as wide as its base, off which it falls where it slips too far; else on ground that goes on.
+    /// Whether it stands on a pedestal as wide as its base, off which it falls if it slips too far; else on ground that extends
+    /// beyond the base.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub pedestal: bool,
 }

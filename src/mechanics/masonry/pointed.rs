@@ -11,8 +11,8 @@ use super::middle_line::part;
 use crate::argument::ArgumentError;
 use crate::mechanics::geometry::curve::Curve;
 
-/// A pointed arch. Its joints point at the centres, and part the intrados into equal lengths; an even number of
-/// voussoirs has a vertical joint at the crown, an odd one a keystone.
+/// A pointed arch. Its joints point at the centres and divide the intrados into equal lengths; an even number
+/// of voussoirs has a vertical joint at the crown, an odd one a keystone.
 ///
 /// The radius of the middle line is `r = rise^2 / span + span / 4`; with a rise of half the span it is a
 /// semicircle.
@@ -58,7 +58,7 @@ impl PointedArch {
         };
         let halves = |radius: f64| vec![arc(radius), arc(radius).mirrored()];
         let outer_m = inner_m + dimensions.thickness_m;
-        // How far the extrados goes on where the intrados ends.
+        // Fraction of the extrados that lies opposite the intrados; the rest reaches on to the crown.
         let angle = |radius: f64| PI - (-centre.x / radius).acos();
         let shorter = angle(inner_m) / angle(outer_m);
         let joint = |joint: usize| {

@@ -1,19 +1,20 @@
-//! What would hold an arch that falls under its own weight.
+//! Changes that would hold an arch that falls under its own weight.
 
 use super::{BasketArch, Dimensions, EllipticArch, Masonry, Pier, Piers, PointedArch, Shape};
 use crate::bisection::{Width, try_bisect};
 
-/// What to change of masonry that falls, and by which factor: the least one, rounded up to four decimals; none if four do not do.
+/// What to change in masonry that falls, and by which factor: the least one, rounded up to four decimals; none if a factor of
+/// four is not enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remedy {
-    /// The arch stands on rigid ground: the width of its piers.
+    /// The width of its piers: on rigid ground the arch stands.
     WiderPiers(Option<f64>),
     /// The thickness of the arch.
     ThickerArch(Option<f64>),
 }
 
 impl Masonry {
-    /// What would hold masonry that falls under its own weight.
+    /// The change that would hold masonry that falls under its own weight.
     #[must_use]
     pub fn remedy(&self) -> Remedy {
         let arch_stands = || {
@@ -50,7 +51,7 @@ impl Piers {
 }
 
 impl Shape {
-    /// None of blocks, which are as thick as they are.
+    /// `None` for blocks, whose thickness is given.
     fn thickened(&self, factor: f64) -> Option<Self> {
         let scaled = |dimensions: Dimensions| Dimensions {
             thickness_m: dimensions.thickness_m * factor,
@@ -78,7 +79,7 @@ impl Shape {
     }
 }
 
-/// The least factor with which something stands, rounded up to four decimals; `None` if that is above four.
+/// The least factor with which the masonry stands, rounded up to four decimals; `None` if that is above four.
 fn least_factor(stands: impl Fn(f64) -> Option<bool>) -> Option<f64> {
     let high = [1.25, 1.5, 2.0, 3.0, 4.0]
         .into_iter()
