@@ -1,9 +1,9 @@
-//! What a picture was computed of, in a line: the structure, the ground and the model of motion.
+//! One line that tells what a picture was computed from: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::scenario::{Axis, Ground, Quantity, Scenario, Series, Structure};
 
-/// The line. What varies along the axes is left out.
+/// The caption. It leaves out what varies along the axes.
 #[must_use]
 pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
     let varies = |quantities: &[Quantity], key: &str| {
@@ -68,7 +68,7 @@ fn structure(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) ->
     }
 }
 
-/// Four digits are enough to know it by.
+/// Four digits are enough to identify a value.
 fn short(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -1,17 +1,17 @@
-//! Long series thinned for pictures.
+//! Thins long series for pictures.
 
-/// Columns that a curve is thinned to, at most: about two to a pixel.
+/// Largest number of columns to which a curve is thinned: about two per pixel.
 pub(crate) const COLUMNS: usize = 1600;
 
-/// A long series of values thinned to the least and largest of each of equal groups.
+/// A long series of values, thinned to the smallest and largest of each of equal groups.
 #[derive(Clone, Debug)]
 pub(crate) struct Envelope {
-    /// Columns that it is thinned to.
+    /// Largest number of columns.
     most: usize,
     group: usize,
-    /// Samples in the last column.
+    /// Number of samples in the last column.
     in_last: usize,
-    /// Time and value of the least and the largest of each column.
+    /// Time and value of the minimum and of the maximum of each column.
     columns: Vec<[(f64, f64); 2]>,
     last: Option<(f64, f64)>,
 }
@@ -60,7 +60,7 @@ impl Envelope {
         self.in_last = 1;
     }
 
-    /// The points to draw, in the order of time.
+    /// The points to draw, in order of time.
     pub(crate) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         let mut points: Vec<(f64, f64)> = Vec::new();
         let extremes = self.columns.iter().flat_map(|[low, high]| {

@@ -1,4 +1,4 @@
-//! A folder of results that are replaced as a whole.
+//! A folder of results that are replaced together.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
@@ -10,33 +10,33 @@ use super::OutputError;
 
 /// A folder in which results are being prepared.
 ///
-/// Every file is written under a hidden name and gets its own when all are complete. The last of them,
-/// the seal, is removed first and written last: a folder that has it holds the results of one run.
+/// Every file is written under a hidden name and gets its own name when all are complete. The last of them,
+/// the seal, is removed first and written last: a folder with a seal holds the results of one run.
 ///
-/// The folder is locked as long as this lives, so that no two runs mix their files: another one is told that it is being
-/// written to. A single file replaces another at once and mixes with nothing; its writers share the lock.
+/// The folder stays locked as long as this value lives, so that two runs cannot mix their files: a second run gets an error.
+/// A single file is replaced in one step and cannot mix with others, so runs that write only one share the lock.
 ///
-/// A killed run leaves its hidden files behind, and no lock: the next run removes them.
+/// A killed run leaves its hidden files behind, but no lock; the next run removes the files.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
     /// Holds the lock; `None` where folders cannot be locked, as on some network drives and on Windows.
     _lock: Option<File>,
-    /// Folders that were made for this one, outermost first.
+    /// Folders that were created for this one, outermost first.
     made: Vec<PathBuf>,
     files: Vec<(String, BufWriter<NamedTempFile>)>,
-    /// Results of earlier runs that this one does not have.
+    /// Results that earlier runs may have left and that this run does not write.
     obsolete: Vec<String>,
 }
 
-/// Beginning of the hidden names.
+/// How the hidden names begin.
 const PREFIX: &str = ".archrock-";
 
 impl Folder {
-    /// Opens the folder, making it if need be, with the files that it is going to have, the seal last.
+    /// Opens the folder for the files with these names, the seal last; creates the folder if necessary.
     ///
     /// # Errors
-    /// When the folder or a file in it cannot be made, or another run is writing to it.
+    /// When the folder or a file in it cannot be created, or another run is writing to it.
     pub fn open(path: &Path, names: &[&str]) -> Result<Self, OutputError> {
         let mut folder = Self {
             path: path.to_owned(),
@@ -51,7 +51,7 @@ impl Folder {
             }
             match fs::create_dir(ancestor) {
                 Ok(()) => folder.made.push(ancestor.to_owned()),
-                // Another run was faster.
+                // Another run created it first.
                 Err(_) if ancestor.is_dir() => {}
                 Err(error) => {
                     let what = format!("cannot make the folder {}", ancestor.display());
@@ -69,7 +69,7 @@ impl Folder {
                 .prefix(&format!("{PREFIX}{name}-"))
                 .permissions_like_others()
                 .tempfile_in(path)
-                // The system's words would name the hidden file.
+                // The system's message would name the hidden file.
                 .map_err(|error| error.kind().into())
                 .map_err(OutputError::io(format!(
                     "cannot write {}",
@@ -82,7 +82,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Names a result that earlier runs may have left and this one does not have.
+    /// Names a result that earlier runs may have left and that this run does not write.
     pub fn forget(&mut self, name: &str) {
         self.obsolete.push(name.to_owned());
     }
@@ -96,13 +96,13 @@ impl Folder {
     /// The file of that name, to write to.
     ///
     /// # Panics
-    /// When it is none of those the folder was opened with.
+    /// When the folder was not opened with this name.
     pub fn file(&mut self, name: &str) -> &mut impl Write {
         let found = self.files.iter_mut().find(|(known, _)| known == name);
         &mut found.expect("the names are those given to `open`").1
     }
 
-    /// All files with their names, to write to them in turn.
+    /// All files with their names, to be written in turn.
     pub fn files(&mut self) -> impl Iterator<Item = (&str, &mut impl Write)> {
         self.files.iter_mut().map(|(name, file)| (&**name, file))
     }
@@ -143,14 +143,14 @@ impl Drop for Folder {
     fn drop(&mut self) {
         self.files.clear();
         for made in self.made.iter().rev() {
-            // A folder that is no longer empty stays.
+            // A folder that holds anything else stays.
             let _ = fs::remove_dir(made);
         }
     }
 }
 
-/// Locks a folder, for one run alone or for several writers of single files. The system unlocks it when the program ends,
-/// however that is.
+/// Locks a folder, for one run alone or for several that write single files. The system unlocks it when the program ends,
+/// even if it is killed.
 fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
     let Ok(folder) = File::open(path) else {
         return Ok(None);
@@ -256,7 +256,7 @@ mod tests {
     fn what_a_killed_run_left_goes() {
         let root = tempfile::tempdir().unwrap();
         fs::write(root.path().join(".archrock-x.csv-dead"), "half").unwrap();
-        // Not ours, whatever its name.
+        // A folder is never one of our hidden files, whatever its name.
         fs::create_dir(root.path().join(".archrock-folder")).unwrap();
         let folder = Folder::open(root.path(), &["x.csv", "seal.json"]).unwrap();
         folder.complete().unwrap();
@@ -281,7 +281,7 @@ mod tests {
         }
         working.complete().unwrap();
         assert_eq!(names(root.path()), ["seal.json", "x.csv"]);
-        // Single files do not get in each other's way, nor does what is left of one.
+        // Runs that write single files do not disturb each other, nor does a hidden file that one leaves behind.
         let mut one = Folder::open(root.path(), &["one.csv"]).unwrap();
         let mut two = Folder::open(root.path(), &["two.csv"]).unwrap();
         assert!(Folder::open(root.path(), &all).is_err());

@@ -1,12 +1,12 @@
-//! The acceleration of the ground as a curve, with its jumps.
+//! The ground acceleration as a curve, including its jumps.
 
 use super::envelope::{COLUMNS, Envelope};
 use crate::dynamics::ground::GroundMotion;
 
-/// Points on a piece that is no straight line.
+/// Number of parts into which a piece is cut if it is not a straight line.
 const POINTS: u32 = 24;
 
-/// Times in seconds up to an end, and horizontal accelerations in g there; a jump is two points at the same time.
+/// Times in seconds up to an end, and the horizontal accelerations in g; a jump is two points at the same time.
 pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> Vec<(f64, f64)> {
     let mut points = Vec::new();
     let pieces = ground.pieces().iter();
@@ -28,7 +28,7 @@ pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> V
     if points.len() <= 2 * COLUMNS {
         return points;
     }
-    // Longer ones are records, which do not jump.
+    // Only records have more points; they are thinned.
     let mut envelope = Envelope::new();
     for (time_s, ground_g) in points {
         envelope.push(time_s, ground_g);
@@ -56,7 +56,7 @@ mod tests {
             &curve_g(&ground, 10.0, 2.0),
             &[&rectangle[..], &[(2.0, 0.0)]].concat(),
         );
-        // Cut off in the middle, it does not come down.
+        // Cut off in the middle, the curve does not return to zero.
         near(
             &curve_g(&ground, 10.0, 0.2),
             &[&rectangle[..3], &[(0.2, -0.5)]].concat(),

@@ -1,4 +1,4 @@
-//! How hinges and bodies are named, for programs and for people.
+//! Names of hinges and bodies, for programs and for people.
 
 use serde_json::{Value, json};
 
@@ -26,7 +26,7 @@ pub fn hinges(hinges: &[Hinge]) -> Value {
 /// Names of the hinges of an arch, from left to right.
 pub(crate) const HINGES: [&str; 4] = ["A", "B", "C", "D"];
 
-/// Names of the columns for each body: `rotation_left_rad`, or `rotation_rad` where there is only one body.
+/// Names of the columns for each body: `rotation_left_rad`, or `rotation_rad` if there is only one body.
 pub(crate) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<String> {
     let name = |body: &String| match &**body {
         "" => format!("{quantity}_{unit}"),

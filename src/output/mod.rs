@@ -29,12 +29,12 @@ use crate::scenario::shown_lines;
 /// Why results could not be written.
 #[derive(Debug, Error)]
 pub enum OutputError {
-    /// The system refused.
+    /// The system reported an error.
     #[error("{what}: {source}")]
     Io {
-        /// What was to be done, with the path.
+        /// The failed action, with the path.
         what: String,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
     /// Another run is writing to the folder.
@@ -43,7 +43,7 @@ pub enum OutputError {
         /// Its path.
         folder: PathBuf,
     },
-    /// A result is not a finite number. This is a defect of the program; nothing is written.
+    /// A result is not a finite number. This is a bug in the program; nothing is written.
     #[error("the result {what} is not a finite number: please report the scenario")]
     NotFinite {
         /// Name of the column or key.
@@ -52,7 +52,7 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// Whether the reader of a pipe has gone, which is no failure.
+    /// Whether the reader of a pipe has closed it, which is not a failure.
     #[must_use]
     pub fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
@@ -78,13 +78,13 @@ impl OutputError {
     }
 }
 
-/// JSON for people to read as well: what would not be seen in it is escaped.
+/// JSON that people can read too: invisible characters are escaped.
 #[must_use]
 pub fn pretty(value: &Value) -> String {
     shown_lines(&format!("{value:#}\n"))
 }
 
-/// Refuses what is not finite. Tables check their cells themselves.
+/// Refuses values that are not finite. Tables check their own cells.
 pub(crate) fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

@@ -1,11 +1,11 @@
-//! What pages of HTML are made of.
+//! Building blocks of HTML pages.
 
 use serde_json::Value;
 
 pub(crate) use super::svg::escaped;
 use crate::scenario::shown_lines;
 
-/// A template whose places, names between `%`, are filled with these texts. What fills a place is not looked at again.
+/// Fills a template: each name between `%` signs is replaced by its text. The inserted texts are not scanned again.
 pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
     let mut page = String::new();
     let mut rest = template;
@@ -29,7 +29,7 @@ pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
     page + rest
 }
 
-/// JSON that can stand in a script of a page: nothing in it ends the script.
+/// JSON that is safe inside a script of a page: nothing in it ends the script.
 pub(crate) fn script_safe(data: &Value) -> String {
     shown_lines(&data.to_string()).replace('<', "\\u003c")
 }

@@ -1,4 +1,4 @@
-//! Panels over a shared time axis: what all pictures of histories have in common.
+//! Panels over a shared time axis, as in all pictures of histories.
 
 use super::ground;
 use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
@@ -6,22 +6,22 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::State;
 use crate::mechanics::sway::Sway;
 
-/// Bands narrower than this many pixels are not told apart.
+/// Bands narrower than this, in pixels, cannot be told apart.
 const NARROWEST_PX: f64 = 1.0;
 
-/// Between panels.
+/// Gap between panels.
 const GAP_PX: f64 = 22.0;
 
-/// What a history is of.
+/// The subject of the picture of a history.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
-    /// Above the picture.
+    /// Text above the picture.
     pub title: &'a str,
-    /// How the ground moves.
+    /// The ground motion.
     pub ground: &'a GroundMotion,
     /// Gravity.
     pub gravity_m_s2: f64,
-    /// Pushes that start the structure to the right and to the left, in g, where there are any.
+    /// Accelerations that start the structure to the right and to the left, in g, if they exist.
     pub incipient_g: [Option<f64>; 2],
 }
 
@@ -49,13 +49,13 @@ impl Curve {
         }
     }
 
-    /// Whether there is anything to be seen of it.
+    /// Whether the curve is zero throughout.
     pub(crate) fn is_flat(&self) -> bool {
         self.points.iter().all(|(_, value)| *value == 0.0)
     }
 }
 
-/// What the structure does over time, for shading.
+/// The states of the structure over time, for shading.
 #[derive(Clone, Debug)]
 pub(crate) struct States {
     pub(crate) start: State,
@@ -69,21 +69,21 @@ pub(crate) struct Panels {
     start_s: f64,
     end_s: f64,
     top: f64,
-    /// Where the lowest panel ends, and its axes, which get the labels of the times.
+    /// The axes of the lowest panel, which get the time labels.
     last: Option<Axes>,
-    /// Whether there were hops too short to be told apart.
+    /// Whether there were hops too short to tell apart.
     hops: bool,
-    /// Whether what starts the structure is drawn.
+    /// Whether the accelerations that start the structure are drawn.
     incipient: bool,
 }
 
 impl Panels {
-    /// Of a history, from time zero on.
+    /// Panels of a history, from time zero.
     pub(crate) fn new(figure: Figure, title: &str, end_s: f64) -> Self {
         Self::spanning(figure, title, [0.0, end_s.max(f64::MIN_POSITIVE)])
     }
 
-    /// Over these times.
+    /// Panels over this range of times.
     pub(crate) fn spanning(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
         let mut drawing = Drawing::new(figure);
         let top = drawing.title(title) + 20.0;
@@ -99,7 +99,7 @@ impl Panels {
         }
     }
 
-    /// The next panel, so high on the screen: shades behind, axes, then what `draw` draws.
+    /// Adds the next panel, of this height on the screen: first the shades, then the axes, then what `draw` draws.
     pub(crate) fn panel(
         &mut self,
         label: &str,
@@ -123,7 +123,7 @@ impl Panels {
         self.last = Some(axes);
     }
 
-    /// A panel with these curves and a scale that holds them.
+    /// Adds a panel with these curves, on a scale that holds them all.
     pub(crate) fn curves(
         &mut self,
         label: &str,
@@ -138,7 +138,7 @@ impl Panels {
         });
     }
 
-    /// The panel of the ground, with what starts the structure; nothing where the ground stays still.
+    /// Adds the panel of the ground, with the accelerations that start the structure; nothing if the ground stays still.
     pub(crate) fn ground(&mut self, height_px: f64, subject: &Subject<'_>, doing: Option<&States>) {
         let Subject {
             ground,
@@ -158,7 +158,7 @@ impl Panels {
             .iter()
             .fold(0.0_f64, |most, point| most.max(point.1.abs()));
         let [right, left] = subject.incipient_g;
-        // Ground that accelerates to the left pushes to the right. Far beyond what the ground does it would hide that.
+        // Ground that accelerates to the left pushes to the right. Levels far beyond the ground motion would flatten its curve.
         let levels = [right.map(|g| -g), left].into_iter().flatten();
         let levels: Vec<f64> = levels.filter(|level| level.abs() < 4.0 * largest).collect();
         let values = curve.points.iter().map(|point| point.1);
@@ -173,8 +173,8 @@ impl Panels {
         });
     }
 
-    /// The file, with the time below the panels and a legend: these entries first, then those of what all pictures
-    /// have.
+    /// The file, with the time axis below the panels and a legend: first these entries, then those that all pictures
+    /// share.
     pub(crate) fn finish(mut self, keys: &[Key<'_>], shaded: bool) -> String {
         if let Some(axes) = self.last {
             axes.label_x(&mut self.drawing, "Time (s)");
@@ -197,12 +197,12 @@ impl Panels {
     }
 }
 
-/// Ticks of a panel that is so high on the screen.
+/// Number of ticks for a panel of this height on the screen.
 fn ticks(height_px: f64) -> u32 {
     if height_px > 200.0 { 6 } else { 3 }
 }
 
-/// A scale that holds values and zero, with a little room, so that no curve runs along the frame.
+/// A scale that holds the values and zero, with a little margin, so that no curve runs along the frame.
 pub(crate) fn around(values: impl Iterator<Item = f64>, ticks: u32) -> Scale {
     Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
 }
@@ -225,10 +225,10 @@ type Shade = (&'static str, &'static str);
 const SWAYS_RIGHT: Shade = ("right", color::SKY);
 const SWAYS_LEFT: Shade = ("left", color::ORANGE);
 const OVERTURNED: Shade = ("overturned", color::BLACK);
-/// Hops to both sides, each too short to be seen.
+/// Hops to both sides that are too short to be seen one by one.
 const HOPS: Shade = ("hops", color::GREY);
 
-/// So strong are the colours of bands.
+/// Opacity of the bands.
 const OPACITY: f64 = 0.22;
 
 const fn shade_of(state: State) -> Option<Shade> {
@@ -240,8 +240,8 @@ const fn shade_of(state: State) -> Option<Shade> {
     }
 }
 
-/// Shades what the structure does from its beginning on, and tells whether there are hops too short to be told apart:
-/// these get one shade together.
+/// Shades the states of the structure from the beginning, and tells whether there are hops too short to tell apart.
+/// A sequence of such hops gets one common shade.
 fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &States) -> bool {
     let place = |time_s: f64| axes.place(time_s.min(end_s), axes.y.low).x;
     let mut band = |(name, fill): Shade, left: f64, right: f64| {
@@ -252,7 +252,7 @@ fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &States) -> bool
     };
     let changes = doing.changes.iter().copied();
     let ends_s = changes.clone().map(|(time_s, _)| time_s).chain([end_s]);
-    // Where the last band ends that is wide enough to be seen.
+    // The right end of the last visible band.
     let mut drawn = place(0.0);
     let mut hops = false;
     let states = [(0.0, doing.start)].into_iter().chain(changes);
@@ -285,12 +285,12 @@ pub(crate) fn mark_overturning(drawing: &mut Drawing, axes: &Axes, time_s: f64) 
     drawing.curve("overturning", ends, OVERTURNING);
 }
 
-/// How an impact is marked.
+/// The stroke that marks an impact.
 pub(crate) const IMPACT: Stroke = Stroke::new(color::VERMILION, 1.0, "");
-/// Marks closer together than this, in pixels, would run into one.
+/// Marks closer together than this, in pixels, would merge.
 const BETWEEN_MARKS_PX: f64 = 2.5;
 
-/// Marks impacts along the lower side by short upright lines, those apart from the last mark.
+/// Marks impacts with short upright lines along the lower side; leaves out a mark too close to the one before.
 pub(crate) fn mark_impacts(
     drawing: &mut Drawing,
     axes: &Axes,

@@ -1,11 +1,11 @@
-//! A record of ground motion: its acceleration, and what follows from it.
+//! A record of ground motion: its acceleration and the quantities derived from it.
 
 use super::envelope::Envelope;
 use super::panels::{Curve, Panels, around, draw_curves};
 use super::svg::{Figure, Frame, Scale, Sign, Stroke, color};
 use crate::dynamics::ground::intensity::Intensity;
 
-/// Draws acceleration, velocity, displacement and the build-up of the Arias intensity, whose significant part is
+/// Draws acceleration, velocity, displacement and the build-up of the Arias intensity. The significant duration is
 /// shaded. Samples are times in s and accelerations in m/s2.
 #[must_use]
 pub fn draw(
@@ -58,5 +58,5 @@ pub fn draw(
 }
 
 const CURVE: Stroke = Stroke::new(color::BLACK, 1.0, "");
-/// So strong is the colour of the significant part.
+/// Opacity of the significant duration.
 const SHADE: f64 = 0.18;

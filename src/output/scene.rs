@@ -1,5 +1,5 @@
-//! What of a structure is drawn at an instant: outlines of its bodies, hinges and the line of thrust, all as points of
-//! bodies, so that poses move them.
+//! The drawable parts of a structure at an instant: outlines of its bodies, hinges and the line of thrust. All are
+//! points of bodies, so that poses move them.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ use crate::mechanics::geometry::ring::{Edge, Ring};
 use crate::mechanics::sway::Sway;
 use crate::scenario::Structure;
 
-/// A structure as it is drawn, undeformed.
+/// A structure to be drawn, undeformed.
 #[derive(Clone, Debug)]
 pub struct Scene {
     shape: Shape,
@@ -24,7 +24,7 @@ pub struct Scene {
 
 #[derive(Clone, Debug)]
 enum Shape {
-    /// A ring that is cut at its hinges, and drawn with these joints.
+    /// A ring that is cut at its hinges, drawn with these joints.
     Ring {
         ring: Ring,
         mean_radius_m: f64,
@@ -32,33 +32,33 @@ enum Shape {
     },
     /// One body.
     Block { outline_m: Vec<Vector2<f64>> },
-    /// A body for each block; or, if linked, the blocks between two hinges are one, and those outside stand still.
+    /// One body per block. If linked, the blocks between two hinges form one body, and those outside the hinges stand still.
     Row {
         outlines_m: Vec<Vec<Vector2<f64>>>,
         linked: bool,
     },
 }
 
-/// A section where the line of thrust is told, in metres, undeformed.
+/// A section at which the position of the line of thrust is known, in metres, undeformed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
-    /// Its middle.
+    /// Its midpoint.
     pub middle_m: Vector2<f64>,
-    /// From its end at the intrados to that at the extrados; of a column from left to right.
+    /// From its intrados end to its extrados end; in a column, from left to right.
     pub across_m: Vector2<f64>,
-    /// In an arch that is cut at its hinges: where it is, in radians from the left springing.
+    /// For an arch that is cut at its hinges: its angle, in radians from the left springing.
     angle_rad: Option<f64>,
 }
 
-/// A point of a structure. Which body it moves with may depend on the hinges that are open.
+/// A point of a structure. The body that carries it may depend on which hinges are open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Where it is in the undeformed structure, in metres.
+    /// Its position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     part: Part,
 }
 
-/// What a point is part of.
+/// The part of the structure to which a point belongs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
     /// A block, by its index.
@@ -67,19 +67,19 @@ enum Part {
     Section(f64),
 }
 
-/// The part of a joint that presses, from the intrados to the extrados.
+/// The compressed part of a joint, from the intrados to the extrados.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pressed {
     /// Its ends.
     pub ends: [Mark; 2],
     /// Compressive stress there, in Pa.
     pub stresses_pa: [f64; 2],
-    /// Unit vector across the joint, undeformed, into the block after it.
+    /// Unit vector normal to the undeformed joint, pointing into the block after it.
     pub across: Vector2<f64>,
 }
 
 impl Pressed {
-    /// The stress as a wedge on the joint, so many metres high per Pa.
+    /// The stress as a wedge on the joint, with this height in metres per Pa.
     #[must_use]
     pub fn wedge(&self, metres_per_pa: f64) -> [Mark; 4] {
         let [first, last] = self.ends;
@@ -92,7 +92,7 @@ impl Pressed {
     }
 }
 
-/// A part of a body.
+/// A piece of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     /// Index of the body; `None`: it stands still.
@@ -106,12 +106,12 @@ pub struct Piece {
 pub struct Mark {
     /// Index of the body; `None`: it stands still.
     pub body: Option<usize>,
-    /// Where it is in the undeformed structure, in metres.
+    /// Its position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
 }
 
 impl Mark {
-    /// Where the point is now, its displacement times `exaggeration`.
+    /// The current position of the point, with its displacement multiplied by `exaggeration`.
     #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
         moved(self.body, self.at_m, poses, exaggeration)
@@ -119,7 +119,7 @@ impl Mark {
 }
 
 impl Piece {
-    /// Its corners now, their displacements times `exaggeration`.
+    /// The current positions of its corners, with their displacements multiplied by `exaggeration`.
     #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vec<Vector2<f64>> {
         let corners = self.outline_m.iter();
@@ -129,7 +129,7 @@ impl Piece {
     }
 }
 
-/// Points that coincide go on coincide, and shut joints stay shut, however much displacements are exaggerated; bodies
+/// Points that coincide still coincide, and shut joints stay shut, at any exaggeration. The price is that bodies
 /// grow with the square of their rotation.
 fn moved(
     body: Option<usize>,
@@ -142,7 +142,7 @@ fn moved(
 }
 
 impl Scene {
-    /// A structure that rocks as mechanisms; a row of blocks where it cannot.
+    /// A structure that rocks as mechanisms; masonry is a row of linked blocks.
     #[must_use]
     pub fn new(structure: &Structure) -> Self {
         match structure {
@@ -219,13 +219,13 @@ impl Scene {
         }
     }
 
-    /// The sections where the line of thrust is told.
+    /// The sections at which the position of the line of thrust is known.
     #[must_use]
     pub fn sections(&self) -> &[Section] {
         &self.sections
     }
 
-    /// The faces of the supports of an arch, in metres, from the intrados to the extrados; none of a column, which stands
+    /// The faces of the supports of an arch, in metres, from the intrados to the extrados; empty for a column, which stands
     /// on the ground.
     #[must_use]
     pub fn supports_m(&self) -> Vec<[Vector2<f64>; 2]> {
@@ -252,7 +252,7 @@ impl Scene {
         })
     }
 
-    /// The bodies in pieces when these hinges are open. A ring is cut at its hinges and its joints.
+    /// The bodies cut into pieces while these hinges are open. A ring is cut at its hinges and its joints.
     #[must_use]
     pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
         match &self.shape {
@@ -297,7 +297,7 @@ impl Scene {
         }
     }
 
-    /// Where hinges that are open are, as points of the body to their right, or above.
+    /// The positions of the open hinges, as points of the body to the right of each, or above it.
     #[must_use]
     pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<Mark> {
         let hinges = hinges.iter().enumerate();
@@ -310,7 +310,7 @@ impl Scene {
                     ..
                 },
             ) => Some(Mark {
-                // The last hinge is on the part that stands still.
+                // The last hinge lies on the part that stands still.
                 body: (index < LINKS).then_some(index),
                 at_m: ring.point(angle_rad, edge) * *mean_radius_m,
             }),
@@ -346,7 +346,7 @@ impl Scene {
         marks.collect()
     }
 
-    /// The corners of a joint of a row at intrados and extrados, as points of the block after it; `None` where several
+    /// The corners of a joint of a row at intrados and extrados, as points of the block after it; `None` if several
     /// blocks move as one body.
     #[must_use]
     pub fn joint(&self, joint: usize) -> Option<[Mark; 2]> {
@@ -364,13 +364,13 @@ impl Scene {
             middle_m, across_m, ..
         } = self.sections.get(joint)?;
         Some([-0.5, 0.5].map(|part| Mark {
-            // After the last block of an arch is its support.
+            // The support follows the last block of an arch.
             body: (joint < outlines_m.len()).then_some(joint),
             at_m: middle_m + across_m * part,
         }))
     }
 
-    /// Where the elastic joints of a row press; nothing of joints that are rigid.
+    /// The compressed parts of the elastic joints of a row; empty for rigid joints.
     #[must_use]
     pub fn pressed(&self, sample: &Sample) -> Vec<Pressed> {
         let pressures = sample.pressures.iter().enumerate();
@@ -379,7 +379,7 @@ impl Scene {
                 let [intrados_pa, extrados_pa] = pressure.edge_stresses_pa;
                 let [intrados, extrados] = self.joint(joint)?;
                 let along_m = extrados.at_m - intrados.at_m;
-                // The stress is linear over what presses.
+                // The stress is linear over the compressed part.
                 let [from, to] = match (intrados_pa > 0.0, extrados_pa > 0.0) {
                     (true, true) => [0.0, 1.0],
                     (true, false) => [0.0, pressure.contact_ratio],
@@ -399,7 +399,7 @@ impl Scene {
             .collect()
     }
 
-    /// Unit vector across a joint of a row, undeformed, into the block after it.
+    /// Unit vector normal to an undeformed joint of a row, pointing into the block after it.
     #[must_use]
     pub fn across(&self, joint: usize) -> Option<Vector2<f64>> {
         let Shape::Row { outlines_m, .. } = &self.shape else {
@@ -409,7 +409,7 @@ impl Scene {
             middle_m, across_m, ..
         } = self.sections.get(joint)?;
         let across = Vector2::new(across_m.y, -across_m.x).normalize();
-        // Away from the block before it, or into the one after it.
+        // The vector must point away from the block before the joint, or into the block after it.
         let (block, into) = match joint.checked_sub(1) {
             Some(before) => (before, -1.0),
             None => (joint, 1.0),
@@ -419,7 +419,7 @@ impl Scene {
         Some(across * (into * towards.signum()))
     }
 
-    /// The body that each of [`Scene::sections`] moves with when these hinges are open.
+    /// The body that carries each of [`Scene::sections`] while these hinges are open.
     #[must_use]
     pub fn bodies_of_sections(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
         let hinges_rad = sections_rad(hinges);
@@ -438,11 +438,11 @@ impl Scene {
             .collect()
     }
 
-    /// The point of the structure at this place, undeformed, in metres. Beside a block it is of that block, as far as rounding and
-    /// curves drawn as straight lines may put it there.
+    /// The point of the structure at this place, undeformed, in metres. A place just outside counts as a point of the nearest
+    /// block, within the error of rounding and of drawing curves as straight lines.
     ///
     /// # Errors
-    /// With the nearest place in the structure, where this one is outside.
+    /// If the place is outside the structure; the error is the nearest place inside.
     pub fn point(&self, at_m: impl Into<Vector2<f64>>) -> Result<Point, Vector2<f64>> {
         let at_m = at_m.into();
         let pieces = self.pieces(&[]).into_iter().enumerate();
@@ -458,7 +458,7 @@ impl Scene {
             Shape::Ring { ring, .. } => {
                 let left = ring.radial(0.0);
                 let angle_rad = -left.perp(&at_m).atan2(left.dot(&at_m));
-                // Just below the left springing, and not all around.
+                // Down to this angle a point lies just below the left springing; beyond, it has gone round the other way.
                 let before_rad = 0.5 * (ring.embrace_rad() - TAU);
                 let turns = if angle_rad < before_rad { TAU } else { 0.0 };
                 Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad()))
@@ -468,7 +468,7 @@ impl Scene {
         Ok(Point { at_m, part })
     }
 
-    /// A point with the body that it moves with while these hinges are open.
+    /// A point with the body that carries it while these hinges are open.
     #[must_use]
     pub fn mark(&self, point: &Point, hinges: &[OpenHinge]) -> Mark {
         let body = match (point.part, &self.shape) {
@@ -482,7 +482,7 @@ impl Scene {
         }
     }
 
-    /// The line of thrust of a sample, in stretches over sections that are pressed.
+    /// The line of thrust of a sample, in stretches over consecutive compressed sections.
     #[must_use]
     pub fn thrust_line(&self, sample: &Sample) -> Vec<Vec<Mark>> {
         let bodies = self.bodies_of_sections(&sample.hinges);
@@ -504,16 +504,16 @@ impl Scene {
     }
 }
 
-/// A point so near to the structure, over its size, is one of it.
+/// A point this near to the structure, relative to its size, belongs to it.
 const BESIDE_RATIO: f64 = 5e-3;
 
-/// The place nearest to another one in what an outline encloses.
+/// The point nearest to a place, on or inside an outline.
 fn nearest(outline_m: &[Vector2<f64>], at_m: Vector2<f64>) -> Vector2<f64> {
     let sides = || {
         let next = outline_m.iter().cycle().skip(1);
         outline_m.iter().zip(next)
     };
-    // A line to the right crosses the outline an odd number of times.
+    // From a point inside, a line to the right crosses the outline an odd number of times.
     let crossings = sides().filter(|(a, b)| {
         (a.y > at_m.y) != (b.y > at_m.y)
             && at_m.x < a.x + (b.x - a.x) * (at_m.y - a.y) / (b.y - a.y)
@@ -524,7 +524,7 @@ fn nearest(outline_m: &[Vector2<f64>], at_m: Vector2<f64>) -> Vector2<f64> {
     let on_side = |(a, b): (&Vector2<f64>, &Vector2<f64>)| {
         let along = b - a;
         let part = (at_m - a).dot(&along) / along.norm_squared();
-        // Corners that coincide make no side.
+        // Two corners that coincide form no side.
         a + along * if part > 0.0 { part.min(1.0) } else { 0.0 }
     };
     let away_m = |near_m: &Vector2<f64>| (near_m - at_m).norm();
@@ -534,7 +534,7 @@ fn nearest(outline_m: &[Vector2<f64>], at_m: Vector2<f64>) -> Vector2<f64> {
     nearest.expect("an outline has corners")
 }
 
-/// The link that a block of a row belongs to when hinges are open at these joints.
+/// The link to which a block of a row belongs while hinges are open at these joints.
 fn linked_body(hinges: &[OpenHinge], block: usize) -> Option<usize> {
     let before = hinges
         .iter()
@@ -543,13 +543,13 @@ fn linked_body(hinges: &[OpenHinge], block: usize) -> Option<usize> {
     (link < LINKS).then_some(link)
 }
 
-/// Bodies of a four-link mechanism.
+/// Number of moving bodies of a four-link mechanism.
 const LINKS: usize = 3;
 
-/// Sections closer together than this are one.
+/// Sections closer together than this count as one.
 const SAME_SECTION_RAD: f64 = 1e-9;
 
-/// Eccentricity, in parts of the thickness, beyond which a line of thrust is cut off.
+/// Eccentricity, in thicknesses, at which a line of thrust is cut off.
 pub const FARTHEST: f64 = 1.5;
 
 /// Hinges at sections of a ring, in radians from the left springing.
@@ -561,7 +561,7 @@ fn sections_rad(hinges: &[OpenHinge]) -> Vec<f64> {
     angles.collect()
 }
 
-/// The body that a section belongs to, of those that hinges cut out of a ring.
+/// The body to which a section belongs, of those into which the hinges cut a ring.
 fn link(hinges_rad: &[f64], angle_rad: f64) -> Option<usize> {
     let before = hinges_rad
         .iter()

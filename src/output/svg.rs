@@ -1,6 +1,6 @@
 //! Drawing in SVG: a few shapes, axes with ticks and labels, colours for print and for the colour-blind.
 //!
-//! A whole plotting library would bring fonts and backends for what is a few strings here. Marks that
+//! A plotting library would bring fonts and backends where a few strings are enough. Marks that
 //! stand for a result carry its name in `data-name`, for scripts and tests.
 
 use std::fmt::Write as _;
@@ -11,7 +11,7 @@ use nalgebra::Vector2;
 
 use crate::scenario::shown_lines;
 
-/// Colours that the colour-blind can tell apart (Okabe and Ito), the dark ones.
+/// Colours that colour-blind people can tell apart (Okabe and Ito), the dark ones.
 pub mod color {
     /// Blue.
     pub const BLUE: &str = "#0072b2";
@@ -27,11 +27,11 @@ pub mod color {
     pub const SKY: &str = "#56b4e9";
     /// For text and axes.
     pub const BLACK: &str = "#000000";
-    /// For what stands behind.
+    /// For things in the background.
     pub const GREY: &str = "#999999";
 }
 
-/// Colours and dashes of the curves of a chart: told apart by either.
+/// Colours and dashes of the curves of a chart; either is enough to tell them apart.
 pub const CURVES: [Stroke; 6] = [
     Stroke::new(color::BLUE, 1.6, ""),
     Stroke::new(color::VERMILION, 1.6, "7 3"),
@@ -53,17 +53,17 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// A line of that look.
+    /// A line with these properties.
     #[must_use]
     pub const fn new(color: &'static str, width: f64, dash: &'static str) -> Self {
         Self { color, width, dash }
     }
 }
 
-/// Where a text begins.
+/// How a text is aligned to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// At the point.
+    /// It begins at the point.
     Start,
     /// Its middle is at the point.
     Middle,
@@ -84,26 +84,26 @@ pub struct Frame {
     pub height: f64,
 }
 
-/// How wide a picture is. It is laid out in pixels, with text of 13; a wider one has room for more, not larger text.
+/// The width of a picture. Layout is in pixels, with text of 13 pixels; a wider picture has more room, not larger text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
     width_px: f64,
-    /// Width in print, where that is given.
+    /// Width in print, if given.
     width_mm: Option<f64>,
 }
 
 /// Size of text in pixels.
 const TEXT_PX: f64 = 13.0;
-/// The same in print.
+/// Size of text in print, in points.
 const TEXT_PT: f64 = 8.0;
 const MM_PER_PT: f64 = 25.4 / 72.0;
 
-/// Width of a character, about: of letters and digits as they come.
+/// Approximate mean width of a character.
 const CHARACTER_PX: f64 = 6.6;
 
-/// Lines that a title may have; more is cut.
+/// Largest number of lines of a title; the rest is cut off.
 const TITLE_LINES: usize = 3;
-/// From the baseline of a line of text to that of the next.
+/// Distance between the baselines of two lines of text.
 const LINE_PX: f64 = 17.0;
 
 impl Figure {
@@ -130,13 +130,13 @@ impl Figure {
         self.width_px
     }
 
-    /// A height that goes with the width, of what is this high on the screen, in pixels.
+    /// A height that suits the width, for something that has this height on the screen, in pixels.
     #[must_use]
     pub fn height_px(&self, on_screen_px: f64) -> f64 {
         on_screen_px * (0.35 + 0.65 * self.width_px / Self::SCREEN.width_px)
     }
 
-    /// Ticks along the width where there are so many on the screen.
+    /// Number of ticks along the width, from the number on the screen.
     #[must_use]
     pub fn ticks(&self, on_screen: u32) -> u32 {
         #[expect(
@@ -148,7 +148,7 @@ impl Figure {
         ticks.max(3)
     }
 
-    /// How many things stand side by side that are at least so wide, of `wanted` at most.
+    /// How many columns of at least this width fit side by side, at most `wanted`.
     #[must_use]
     pub fn columns(&self, wanted: usize, least_px: f64) -> usize {
         #[expect(
@@ -202,7 +202,7 @@ impl FromStr for Figure {
         let units = [("mm", 1.0), ("cm", 10.0), ("in", 25.4)];
         let number = |(unit, mm): (&str, f64)| {
             let number: f64 = text.trim().strip_suffix(unit)?.trim().parse().ok()?;
-            // Without the residue of rounding.
+            // Removes rounding errors.
             Some((number * mm * 1e6).round() / 1e6)
         };
         let width_mm = units.into_iter().find_map(number);
@@ -212,7 +212,7 @@ impl FromStr for Figure {
     }
 }
 
-/// Width of a text, about, in pixels.
+/// Approximate width of a text, in pixels.
 #[expect(clippy::cast_precision_loss, reason = "the length of a label")]
 fn text_px(text: &str) -> f64 {
     CHARACTER_PX * text.chars().count() as f64
@@ -235,7 +235,7 @@ impl Drawing {
         }
     }
 
-    /// A title in the middle above all else, in a few lines; a very long one is cut. Returns where it ends.
+    /// A centred title above everything else, in a few lines; a very long one is cut off. Returns the position of its lower end.
     pub fn title(&mut self, title: &str) -> f64 {
         let width_px = self.figure.width_px - 20.0;
         let mut lines = Figure::lines(title, width_px);
@@ -246,13 +246,13 @@ impl Drawing {
         self.paragraph(&lines, Vector2::new(0.5 * self.figure.width_px, 26.0))
     }
 
-    /// Text in the middle, its first baseline at `y`, in as many lines as it takes; returns where it ends.
+    /// Centred text, its first baseline at `y`, in as many lines as it needs; returns the position of its lower end.
     pub fn caption(&mut self, y: f64, text: &str) -> f64 {
         let middle = Vector2::new(0.5 * self.figure.width_px, y);
         self.caption_at(middle, self.figure.width_px - 20.0, text)
     }
 
-    /// The same around the middle of its first baseline, so wide at most.
+    /// The same around the middle of its first baseline, with this width at most.
     pub fn caption_at(&mut self, middle: Vector2<f64>, width_px: f64, text: &str) -> f64 {
         self.paragraph(&Figure::lines(text, width_px), middle)
     }
@@ -267,7 +267,7 @@ impl Drawing {
         y - LINE_PX + 8.0
     }
 
-    /// The file, of this height in pixels.
+    /// The complete file, with this height in pixels.
     #[must_use]
     pub fn finish(self, height: f64) -> String {
         let Figure { width_px, width_mm } = self.figure;
@@ -289,7 +289,7 @@ impl Drawing {
         )
     }
 
-    /// A polyline named `name`; nothing for less than two points.
+    /// A polyline named `name`; nothing if there are fewer than two points.
     pub fn curve(
         &mut self,
         name: &str,
@@ -374,7 +374,7 @@ impl Drawing {
         );
     }
 
-    /// What `draw` draws, as far as it is within a frame.
+    /// What `draw` draws, clipped to a frame.
     pub fn within(&mut self, frame: &Frame, draw: impl FnOnce(&mut Self)) {
         let Frame {
             left,
@@ -415,8 +415,8 @@ impl Drawing {
         );
     }
 
-    /// A legend below `top`, in as many rows as it takes: from `left` on, what each entry draws at the middle of its key,
-    /// 24 pixels wide, and its text. Returns where it ends.
+    /// A legend below `top`, in as many rows as it needs. From `left` on, each entry has a sign, 24 pixels wide, and its
+    /// text. Returns the position of the lower end.
     pub fn legend(&mut self, left: f64, top: f64, entries: &[Key<'_>]) -> f64 {
         if entries.is_empty() {
             return top;
@@ -451,7 +451,7 @@ impl Drawing {
                 }
             }
             let at = Vector2::new(x + KEY_PX + 6.0, y + 4.5);
-            // A text that is wider than the picture goes on below.
+            // A text wider than the picture continues on the next line.
             let lines = Figure::lines(text, (right - at.x).max(CHARACTER_PX));
             for (number, line) in (0_u32..).zip(&lines) {
                 let down = Vector2::new(0.0, LINE_PX * f64::from(number));
@@ -465,7 +465,7 @@ impl Drawing {
         y + 0.5 * LEGEND_ROW_PX
     }
 
-    /// A rectangle without filling.
+    /// An unfilled rectangle.
     pub fn outline(&mut self, frame: &Frame, stroke: Stroke) {
         let Frame {
             left,
@@ -478,10 +478,10 @@ impl Drawing {
     }
 }
 
-/// An entry of a legend: its text, and what it explains.
+/// An entry of a legend: its text and its sign.
 pub type Key<'a> = (&'a str, Sign);
 
-/// What an entry of a legend shows.
+/// The sign of an entry of a legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sign {
     /// A line.
@@ -494,14 +494,14 @@ pub enum Sign {
     Tick(Stroke),
 }
 
-/// Width of what a legend shows.
+/// Width of a sign in a legend.
 const KEY_PX: f64 = 24.0;
 /// Height of a row of a legend.
 const LEGEND_ROW_PX: f64 = 24.0;
-/// Characters that a word is cut at.
+/// Number of characters at which a word is cut off.
 const LONGEST_WORD: usize = 130;
 
-/// The name of a mark that stands for a result; nothing for others.
+/// The attribute that names a mark for a result; empty for other marks.
 fn name_attribute(name: &str) -> String {
     if name.is_empty() {
         String::new()
@@ -510,7 +510,7 @@ fn name_attribute(name: &str) -> String {
     }
 }
 
-/// Text as it is shown, line ends and tabs as they are, with the characters that mean something in XML replaced.
+/// Text made safe to show, with its line ends and tabs, and with the special characters of XML escaped.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for character in shown_lines(text).chars() {
@@ -535,17 +535,17 @@ pub struct Scale {
     steps: Steps,
 }
 
-/// How ticks follow one another.
+/// The spacing of ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Steps {
-    /// By the same difference.
+    /// Equal differences.
     Linear(f64),
-    /// By about the same ratio; equal ratios are equal distances.
+    /// About equal ratios; equal ratios have equal distances.
     Logarithmic,
 }
 
 impl Scale {
-    /// The scale that holds all `values`, with about `ticks` ticks; from 0 to 1 for none.
+    /// The scale that holds all `values`, with about `ticks` ticks; from 0 to 1 if there are no values.
     #[must_use]
     pub fn around(values: impl IntoIterator<Item = f64>, ticks: u32) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -555,7 +555,7 @@ impl Scale {
         if low > high {
             (low, high) = (0.0, 1.0);
         }
-        // A constant gets room of its own size; zero gets room one.
+        // A constant gets a margin of half its size; zero gets a margin of one.
         if high - low <= 1e-9 * high.abs().max(low.abs()) {
             let room = if high == 0.0 { 1.0 } else { 0.5 * high.abs() };
             (low, high) = (low - room, high + room);
@@ -578,7 +578,7 @@ impl Scale {
         }
     }
 
-    /// The logarithmic scale from `low` to `high` exactly; from the least positive number if that is more.
+    /// The logarithmic scale from `low` to `high` exactly; `low` is raised to the least positive number if necessary.
     #[must_use]
     pub const fn logarithmic(low: f64, high: f64) -> Self {
         Self {
@@ -597,7 +597,7 @@ impl Scale {
         }
     }
 
-    /// Powers of ten with their multiples, fewer the more of them there are.
+    /// Powers of ten and multiples of them; the more powers, the fewer multiples.
     fn logarithmic_ticks(&self) -> Vec<(f64, String)> {
         let decades = (self.high / self.low).log10();
         let digits: &[u32] = match decades {
@@ -624,7 +624,7 @@ impl Scale {
         let first = (self.low / step - 1e-6).ceil();
         let count = (self.high / step + 1e-6).floor() - first;
         let largest = self.low.abs().max(self.high.abs());
-        // Powers of ten outside the range of plain reading.
+        // Very large and very small values are written with powers of ten.
         let exponent = step.log10().floor();
         let plain = largest < 1e5 && exponent >= -5.0;
         #[expect(
@@ -646,7 +646,7 @@ impl Scale {
             .collect()
     }
 
-    /// The value at a part of the axis, from 0 to 1.
+    /// The value at a fraction of the axis, from 0 to 1.
     #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         match self.steps {
@@ -663,7 +663,7 @@ impl Scale {
     }
 }
 
-/// The distance 1, 2 or 5 times a power of ten that cuts `span` into about `ticks` parts.
+/// The distance, 1, 2 or 5 times a power of ten, that divides `span` into about `ticks` parts.
 fn tick_step(span: f64, ticks: u32) -> f64 {
     let rough = span / f64::from(ticks.max(1));
     let power = 10_f64.powf(rough.log10().floor());
@@ -680,11 +680,11 @@ fn tick_step(span: f64, ticks: u32) -> f64 {
 /// A frame with scales: places values on the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes {
-    /// Where it is.
+    /// Its position.
     pub frame: Frame,
-    /// Along the lower side.
+    /// Scale along the lower side.
     pub x: Scale,
-    /// Along the left side.
+    /// Scale along the left side.
     pub y: Scale,
 }
 
@@ -704,7 +704,7 @@ impl Axes {
         )
     }
 
-    /// Draws frame, ticks and labels; without `x_label` the lower side has ticks only.
+    /// Draws the frame, ticks and labels; without `x_label` the lower side has ticks only.
     pub fn draw(&self, drawing: &mut Drawing, x_label: Option<&str>, y_label: &str) {
         let thin = Stroke::new(color::BLACK, 0.8, "");
         let faint = Stroke::new("#dddddd", 0.6, "");
@@ -735,7 +735,7 @@ impl Axes {
         }
     }
 
-    /// Labels of the ticks below, and what they are.
+    /// Draws the labels of the ticks on the lower side, and the label of the axis.
     pub fn label_x(&self, drawing: &mut Drawing, label: &str) {
         let bottom = self.frame.top + self.frame.height;
         for (value, text) in self.x.ticks() {
@@ -798,7 +798,7 @@ mod tests {
         for (text, width_mm) in [("85mm", 85.0), ("17 cm", 170.0), ("3.5in", 88.9)] {
             let figure: Figure = text.parse().unwrap();
             let sheet = Drawing::new(figure).finish(figure.width_px());
-            // A square sheet is as high as it is wide.
+            // A square sheet has equal width and height.
             let size = format!("width=\"{width_mm}mm\" height=\"{width_mm:.3}mm\"");
             assert!(sheet.contains(&size), "{sheet}");
             let points = TEXT_PX / figure.width_px() * width_mm / 25.4 * 72.0;

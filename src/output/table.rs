@@ -1,4 +1,4 @@
-//! Tables: lists of columns, written as CSV in which every number is finite.
+//! Tables: lists of columns, written as CSV with only finite numbers.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -8,16 +8,16 @@ use serde::Serialize;
 
 use super::OutputError;
 
-/// A column of a table over rows of some kind, or several side by side: their names, and the cells of a row.
+/// A column of a table, or several side by side: their names, and the cells for a row.
 pub(crate) struct Column<'a, R> {
     names: Vec<Cow<'a, str>>,
     cells: Cells<'a, R>,
 }
 
-/// Adds the cells of a row, of which the number is given, from 1.
+/// Adds the cells for a row; the number is that of the row, from 1.
 type Cells<'a, R> = Box<dyn for<'r> Fn(&'r R, usize, &mut Vec<Cell<'r>>) + 'a>;
 
-/// A cell, or numbers in several; they are written with the fewest digits that read back as the same.
+/// One cell, or numbers in several cells; numbers have the fewest digits that read back as the same value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(crate) enum Cell<'r> {
@@ -28,7 +28,7 @@ pub(crate) enum Cell<'r> {
     Numbers(Cow<'r, [f64]>),
 }
 
-/// A column, of a cell that is anything which makes one.
+/// A column whose cells are computed from the row.
 pub(crate) fn column<'a, R, C: Into<Cell<'static>>>(
     name: impl Into<Cow<'a, str>>,
     cell: impl Fn(&R) -> C + 'a,
@@ -39,7 +39,7 @@ pub(crate) fn column<'a, R, C: Into<Cell<'static>>>(
     }
 }
 
-/// The column of the numbers of rows, from 1.
+/// A column with the row numbers, from 1.
 pub(crate) fn row_number<'a, R>(name: &'a str) -> Column<'a, R> {
     Column {
         names: vec![name.into()],
@@ -47,7 +47,7 @@ pub(crate) fn row_number<'a, R>(name: &'a str) -> Column<'a, R> {
     }
 }
 
-/// Columns whose cells are added together, one for each name.
+/// Several columns whose cells are computed together, one for each name.
 pub(crate) fn several<'a, R>(
     names: impl IntoIterator<Item = String>,
     add: impl for<'r> Fn(&'r R, &mut Vec<Cell<'r>>) + 'a,
@@ -58,7 +58,7 @@ pub(crate) fn several<'a, R>(
     }
 }
 
-/// Columns of numbers that a row has side by side.
+/// Columns for numbers that a row holds side by side.
 pub(crate) fn numbers<'a, R>(
     names: impl IntoIterator<Item = String>,
     numbers: impl Fn(&R) -> &[f64] + 'a,
@@ -125,7 +125,7 @@ pub(crate) struct TableWriter<'a, R, W: Write> {
 }
 
 impl<'a, R, W: Write> TableWriter<'a, R, W> {
-    /// Starts with the header; `what` cannot be done where that fails.
+    /// Begins with the header; `what` is the error message if writing fails.
     pub(crate) fn new(
         writer: W,
         what: &'static str,
@@ -176,22 +176,22 @@ fn table<W: Write>(writer: W) -> Table<W> {
     })
 }
 
-/// Stands between the text of a table and its file, and refuses cells that are what numbers that are not finite are
-/// written as.
+/// Passes the text of a table on to its file, and refuses cells that hold the text of a number that is not
+/// finite.
 struct Finite<W> {
     writer: W,
     /// Names of the columns.
     columns: Vec<String>,
     in_header: bool,
-    /// Whether the text is between quotation marks.
+    /// Whether the current text is between quotation marks.
     quoted: bool,
-    /// Number of the column.
+    /// Number of the current column.
     column: usize,
-    /// The cell so far, or its beginning.
+    /// The current cell so far, or its beginning.
     cell: Vec<u8>,
 }
 
-/// A number that is not finite, by the name of its column.
+/// The column in which a number is not finite.
 #[derive(Debug)]
 pub(super) struct NotFinite(pub(super) String);
 
@@ -203,7 +203,7 @@ impl fmt::Display for NotFinite {
 
 impl std::error::Error for NotFinite {}
 
-/// Longest text of a number that is not finite.
+/// Length of the longest text of a number that is not finite.
 const LONGEST: usize = "-inf".len();
 
 impl<W> Finite<W> {
@@ -267,7 +267,7 @@ mod tests {
             let what = "cannot write";
             let csv = |error| OutputError::csv(what)(error);
             table.write_record(["a", "b\"c"]).map_err(csv)?;
-            // Much more than is kept back.
+            // Much more text than is buffered.
             for row in 0..10_000 {
                 table.serialize((f64::from(row), 0.5)).map_err(csv)?;
             }
