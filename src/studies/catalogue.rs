@@ -1,4 +1,4 @@
-//! The studies that a scenario describes by a table of their name, computed and told whichever is meant.
+//! The studies that a scenario can describe, each in the table of its name: computed and reported, whichever it is.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -23,17 +23,17 @@ use crate::scenario::{Scenario, ScenarioErrors};
 named! {
     /// A study that a scenario describes.
     pub enum StudyKind {
-        /// Which pulses overturn, over two quantities.
+        /// Which pulses overturn the structure, over two quantities.
         Map = "map",
-        /// How strong a pulse must be, over the size of the structure.
+        /// How strong a pulse must be, against the size of the structure.
         Spectrum = "spectrum",
-        /// What records overturn.
+        /// Which records overturn the structure.
         Suite = "suite",
-        /// How histories end and go, for samples of what is not known.
+        /// How histories end and proceed, for samples of the uncertain numbers.
         Uncertain = "uncertain",
-        /// From which factor on samples of what is not known overturn.
+        /// The factor from which samples of the uncertain numbers overturn.
         UncertainThreshold = "uncertain_threshold",
-        /// Which records overturn samples of what is not known.
+        /// Which records overturn samples of the uncertain numbers.
         UncertainSuite = "uncertain_suite",
     }
 }
@@ -44,7 +44,7 @@ pub enum StudyError {
     /// The scenario does not describe it.
     #[error("{0}")]
     Scenario(String),
-    /// Its rows are not complete.
+    /// Its rows could not be completed.
     #[error(transparent)]
     Runner(#[from] RunnerError),
     /// Its parts cannot be joined.
@@ -58,33 +58,33 @@ pub enum StudyError {
     Output(#[from] OutputError),
 }
 
-/// What was computed.
+/// The result of a computation.
 #[derive(Debug)]
 pub enum Done {
-    /// All cases, and the file that has their rows until the results are written; `None` where they are in memory.
+    /// All cases, and the file that keeps their rows until the results are written; `None` if the rows are in memory.
     Whole(Results, Option<PartFile>),
-    /// A part of them.
+    /// A part of the cases.
     Part {
-        /// The file that has its rows.
+        /// The file that keeps their rows.
         part: PartFile,
-        /// How many cases it has.
+        /// The number of cases in the file.
         cases: usize,
-        /// How many the study has.
+        /// The number of cases of the study.
         all: usize,
     },
 }
 
 impl StudyKind {
-    /// The one of this name.
+    /// The kind with this name.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| kind.name() == name)
     }
 
-    /// Computes the study of a scenario in a folder, where it can be resumed, or in memory. `watch` is as in [`Runner::rows`].
+    /// Computes the study of a scenario, in a folder, where it can be resumed, or in memory. `watch` is as in [`Runner::rows`].
     ///
     /// # Errors
-    /// When the scenario does not describe the study, or its rows do not get complete.
+    /// When the scenario does not describe the study, or its rows could not be completed.
     pub fn compute(
         self,
         scenario: &Scenario,
@@ -129,7 +129,7 @@ impl StudyKind {
     }
 }
 
-/// The same of [`StudyKind::UncertainThreshold`], with these factors.
+/// The same for [`StudyKind::UncertainThreshold`], with these factors.
 ///
 /// # Errors
 /// As [`StudyKind::compute`].
@@ -150,7 +150,7 @@ fn ensemble<Q: Question>(scenario: &Scenario, question: Q) -> Result<Ensemble<'_
     Ensemble::new(scenario, question).map_err(StudyError::Scenario)
 }
 
-/// Computes the cases that are asked for, and tells them if they are all.
+/// Computes the requested cases, and turns them into results if they are all cases.
 fn complete<S: Study>(
     study: &S,
     runner: Runner,
@@ -172,11 +172,11 @@ fn complete<S: Study>(
     })
 }
 
-/// Joins the parts of a study. The scenario of the parts is read again, or is the one `given`; of a suite it is not asked for, because
-/// its records may be elsewhere. `look` says how the results look, and may refuse what does not go with the study.
+/// Joins the parts of a study. The scenario is `given`, or is read from the parts; a suite needs none, because its records
+/// may have moved. `look` decides how the results look, and may refuse options that do not fit the study.
 ///
 /// # Errors
-/// When the parts are not all there, are of no study or of another scenario than the one given, or `look` refuses.
+/// When parts are missing, do not belong to one study or belong to a scenario other than the given one, or `look` refuses.
 pub fn merge(
     parts: &[PathBuf],
     given: Option<&Scenario>,
@@ -232,7 +232,7 @@ pub fn merge(
             let look = look(kind, None).map_err(StudyError::Scenario)?;
             let (header, rows) = part::merge(parts)?;
             let scenario = read(&header.scenario)?;
-            // The rows know how far factors went.
+            // The rows themselves know the range of the factors.
             let question = FirstEdges::of(&scenario, Factors::default());
             let question = question.map_err(StudyError::Scenario)?;
             ensemble(&scenario, question)?.tell(&rows, look)?

@@ -1,9 +1,9 @@
 //! Overturning without impact: in the first fall from rest, before the hinges ever close.
 //!
-//! The impact model plays no part, so this boundary can be compared with other programs and closed forms. Along
+//! The impact model has no influence, so this boundary can be compared with other programs and closed forms. Along
 //! the amplitude of a pulse with one lobe it has one edge. A pulse with side lobes can overturn within narrow
-//! windows of the amplitude, in which a lobe carries the structure just over and the next does not catch it; so
-//! the edge is searched in small strides, then bisected.
+//! windows of the amplitude, in which one lobe just carries the structure over and the next one does not catch it.
+//! So the edge is searched in small strides and then bisected.
 
 use nalgebra::Vector2;
 
@@ -13,18 +13,18 @@ use crate::dynamics::model::{MechanismModel, Request, SimulationError};
 use crate::mechanics::sway::Sway;
 use crate::scenario::{MAX_ACCELERATION_G, PulseGround};
 
-/// Ratio of the amplitudes at which the edge of a pulse with lobes to both sides is searched: a narrower window
-/// may be missed. The narrowest found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
+/// Ratio of successive amplitudes in the search for the edge of a pulse with lobes to both sides: a window narrower
+/// than that may be missed. The narrowest found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
 const STRIDE: f64 = 1.005;
 
 /// The same for pulses to one side. A larger amplitude pushes harder at every instant, so there is only one
-/// edge and strides can be long.
+/// edge, and the strides can be long.
 const ONE_SIDED_STRIDE: f64 = 1.5;
 
-/// Relative width to which the edge is bisected: the integration at the default tolerance resolves no more.
+/// Relative width to which the edge is bisected: integration at the default tolerance is not more accurate.
 const RESOLUTION: f64 = 1e-9;
 
-/// A pulse whose amplitude varies, all else as it is.
+/// A pulse of variable amplitude; everything else stays as it is.
 #[derive(Clone, Debug)]
 pub struct ScalablePulse {
     pulse: PulseGround,
@@ -33,7 +33,7 @@ pub struct ScalablePulse {
 }
 
 impl ScalablePulse {
-    /// The pulse under the given gravity. Its own amplitude says to which side it pushes.
+    /// The pulse with this gravity. The sign of its own amplitude gives the side to which it pushes.
     #[must_use]
     pub fn new(pulse: PulseGround, gravity_m_s2: f64) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl ScalablePulse {
         }
     }
 
-    /// The ground motion with an amplitude, positive to the right.
+    /// The ground motion for an amplitude, positive to the right.
     #[must_use]
     pub fn motion(&self, amplitude_g: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(amplitude_g, self.pulse.vertical_amplitude_g);
@@ -51,15 +51,15 @@ impl ScalablePulse {
         motion.expect("the amplitudes of a scenario are those of a ground motion")
     }
 
-    /// The ground motion with an amplitude to the pulse's own side.
+    /// The ground motion for an amplitude to the pulse's own side.
     #[must_use]
     pub fn motion_of_magnitude(&self, magnitude_g: f64) -> GroundMotion {
         self.motion(magnitude_g.copysign(self.pulse.amplitude_g))
     }
 
-    /// The smallest amplitude, as a magnitude in g, that overturns the structure without impact, and the side
-    /// to which it does; `None` if no allowed amplitude does. The search goes in strides and, where there can
-    /// be windows between these, also tries `tried_g`.
+    /// The smallest amplitude, as a magnitude in g, that overturns the structure without impact, and the side to
+    /// which the structure falls; `None` if no allowed amplitude does. The search goes in strides. Where windows may
+    /// lie between the strides, it also tries `tried_g`.
     ///
     /// # Errors
     /// When the integration fails.
@@ -78,7 +78,7 @@ impl ScalablePulse {
         let Some(incipient_g) = model.incipient_acceleration_g(side) else {
             return Ok(None);
         };
-        // Ground that falls makes the structure lighter.
+        // Ground that accelerates downwards makes the structure lighter.
         let from_g = incipient_g * (1.0 - self.pulse.vertical_amplitude_g.abs().min(0.99));
         let tried_g: &[f64] = if one_sided { &[] } else { tried_g };
         let mut ascending_g: Vec<f64> = strides(one_sided, from_g, MAX_ACCELERATION_G)
@@ -96,7 +96,7 @@ impl ScalablePulse {
     }
 }
 
-/// Amplitudes from `from` to `to`, in strides that do not miss an edge: of 0.5 % where there can be windows.
+/// Amplitudes from `from` to `to`, in strides that do not miss an edge: of 0.5 % if there can be windows.
 fn strides(one_sided: bool, from: f64, to: f64) -> impl Iterator<Item = f64> {
     let stride = if one_sided { ONE_SIDED_STRIDE } else { STRIDE };
     std::iter::successors(Some(from), move |last| {
@@ -104,8 +104,8 @@ fn strides(one_sided: bool, from: f64, to: f64) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The smallest amplitude that overturns without impact, from a function that tells whether one does: the first
-/// of ascending ones, bisected to `1e-9` of it against the one before. `None` if none does.
+/// The smallest amplitude that overturns without impact. `overturns` tells whether an amplitude does. The first of the
+/// ascending ones that does is bisected against the one before, to a relative width of `1e-9`. `None` if none does.
 ///
 /// # Errors
 /// Those of the function.

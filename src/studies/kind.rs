@@ -5,9 +5,9 @@ use crate::output::svg::{Key, Sign, color};
 
 /// Outcome of an arch that cannot carry its own weight.
 pub(crate) const CANNOT_STAND: &str = "cannot_stand";
-/// Outcome of an arch that is too thick for four links.
+/// Outcome of an arch that is too thick to rock as four links.
 pub(crate) const NOT_FOUR_LINKS: &str = "not_four_links";
-/// Outcome where the ground falls as fast as a free body.
+/// Outcome if the ground accelerates downwards as fast as a free fall.
 pub(crate) const GROUND_FALLS: &str = "ground_falls";
 
 /// Kind of outcome, which sets the colour of a result.
@@ -22,7 +22,7 @@ const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Ki
     Kind { name, label, fill }
 }
 
-/// What survives, by its largest rotation over the critical one: the darker, the closer it was.
+/// Surviving cases, by their largest rotation over the critical one: darker colours came closer to overturning.
 const SURVIVED: [Kind; 6] = [
     kind("survived-0", "survives, peak below 20 %", "#e3eef9"),
     kind("survived-20", "below 40 %", "#c1d9ed"),
@@ -62,8 +62,8 @@ impl Kind {
         kind(FAILED, "failed", color::BLACK),
     ];
 
-    /// That of an outcome by its name, with the number of impacts before overturning where all hinges close at
-    /// once: the landings of free hinges, which come in cascades, tell no kinds apart.
+    /// The kind of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
+    /// landings of free hinges come in cascades, and their number does not matter.
     pub(crate) fn of(outcome: &str, impacts: Option<usize>) -> Self {
         let name = match (outcome, impacts) {
             ("overturned", Some(0)) => "overturned-0",
@@ -77,7 +77,7 @@ impl Kind {
     }
 }
 
-/// What the colours of these kinds mean.
+/// The legend entries of these kinds.
 pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key<'static>> {
     let present = Kind::ALL.into_iter().filter(|kind| kinds.contains(kind));
     present

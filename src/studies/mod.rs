@@ -1,19 +1,19 @@
-//! Studies: one history told, or many evaluated together.
+//! Studies: the report of one history, or the evaluation of many together.
 //!
-//! A [study](runner::Study) is a list of cases, and each case depends only on its definition, so cases may be
+//! A [study](runner::Study) is a list of cases. Each case depends only on its definition, so the cases can be
 //! computed in any order, by any number of threads, on several machines, and resumed later. The
-//! [runner](runner::Runner) does so, in memory or in [files](part) that can be resumed and merged. The result
-//! of a case is a row, a typed value from the computation to the last file.
+//! [runner](runner::Runner) computes them in memory, or in [files](part) that can be resumed and merged. The result
+//! of a case is a row, which stays a typed value from the computation to the last file.
 //!
-//! - [`run`]: one history, with all that is told of it;
+//! - [`run`]: one history, with everything reported about it;
 //! - [`map`]: which pulses overturn, over two quantities; [`boundary`](map::boundary): the amplitudes from which they do so
 //!   without impact;
-//! - [`spectrum`]: how strong a pulse must be, over the size of a structure;
+//! - [`spectrum`]: how strong a pulse must be, against the size of a structure;
 //! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them;
-//! - [`suite`]: what records overturn, at several levels, and the [`fragility`](suite::fragility) curve of that;
+//! - [`suite`]: which records overturn, at several levels, and the [`fragility`](suite::fragility) curve of that;
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
-//! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, which tells itself: numbers, words and page;
+//! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with its own numbers, words and page;
 //! - [`chart`]: arches of many shapes compared, without a history.
 
 pub mod capacity;

@@ -1,10 +1,10 @@
-//! The part file of a running study: what it computes, and the rows so far.
+//! The part file of a running study: what is being computed, and the rows so far.
 //!
-//! The first line is a header that identifies the study; every other line is a checksum, the index of a case
-//! and its row, with commas between. Header and rows are JSON, whose numbers read back as the same `f64`. Lines
-//! are only ever appended, so the file of a killed program is valid up to its last complete line, and the
-//! checksums reveal any other damage. A study computed in shards, on several machines, is merged from such
-//! files.
+//! The first line is a header that identifies the study. Every other line holds a checksum, the index of a case
+//! and its row, separated by commas. Header and rows are JSON, whose numbers read back as the same `f64`. Lines
+//! are only ever appended, so the file of a killed program is valid up to its last complete line; the
+//! checksums reveal any other damage. A study that was computed in shards, on several machines, is merged from
+//! such files.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -18,10 +18,10 @@ use thiserror::Error;
 
 use super::runner::Study;
 
-/// Shards of a study: more than any cluster has nodes.
+/// Largest number of shards of a study: more than any cluster has nodes.
 const MAX_SHARDS: usize = 100_000;
 
-/// Which of the cases: the one whose number, counted from 1, is `index` and every `count`-th after.
+/// A selection of the cases: the one whose number, counted from 1, is `index`, and every `count`-th after it.
 ///
 /// Neighbouring cases cost about the same, so dealing them out in turn gives all shards equal work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,24 +35,24 @@ impl Shard {
     /// All cases.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Its cases out of all.
+    /// The indices of its cases, out of `all`.
     pub fn cases(self, all: usize) -> impl Iterator<Item = usize> {
         (self.index - 1..all).step_by(self.count)
     }
 
-    /// Whether the case of this index is one of its own.
+    /// Whether the case of this index belongs to it.
     #[must_use]
     pub const fn has(self, case: usize) -> bool {
         case % self.count == self.index - 1
     }
 
-    /// Whether it is all there is.
+    /// Whether it holds all cases.
     #[must_use]
     pub const fn is_whole(self) -> bool {
         self.count == 1
     }
 
-    /// What its file is called: `map-2-of-4.part`.
+    /// The name of its file: `map-2-of-4.part`.
     #[must_use]
     pub fn file_name(self, study: &str) -> String {
         if self.is_whole() {
@@ -104,27 +104,27 @@ impl FromStr for Shard {
     }
 }
 
-/// Identifies the study of the rows: headers of one study differ in the shard only.
+/// Identifies the study of the rows: headers of one study differ only in the shard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the program.
     program: String,
     /// Its version.
     pub version: String,
-    /// Which study: [`Study::NAME`].
+    /// The study: [`Study::NAME`].
     pub study: String,
     /// Number of cases of the whole study.
     pub cases: usize,
-    /// Which of them are here.
+    /// The shard whose cases are in this file.
     pub shard: Shard,
-    /// The scenario, every default resolved.
+    /// The scenario, with every default filled in.
     pub scenario: String,
-    /// What else the cases depend on: checksums of the files that the scenario names.
+    /// The other input of the cases: checksums of the files that the scenario names.
     pub inputs: Vec<String>,
 }
 
 impl Header {
-    /// The header of a shard of a study by this version of the program.
+    /// The header for a shard of a study, with this version of the program.
     #[must_use]
     pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
         Self {
@@ -144,7 +144,7 @@ impl Header {
         self.shard.cases(self.cases).count()
     }
 
-    /// What another header has that makes it one of other rows; `None` if both are of the very same part.
+    /// How another header differs, if its file holds other rows; `None` if both belong to the very same part.
     fn other(&self, other: &Self) -> Option<String> {
         self.difference(other).or_else(|| {
             let (here, there) = (self.shard, other.shard);
@@ -152,7 +152,7 @@ impl Header {
         })
     }
 
-    /// The first input that another header has and this one has not, or the other way round.
+    /// The first input that only one of the two headers has.
     fn other_input(&self, other: &Self) -> Option<String> {
         fn only<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
             let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
@@ -192,14 +192,14 @@ impl Header {
     }
 }
 
-/// A line for a row.
+/// Writes the line of a row.
 fn to_line(index: usize, row: &impl Serialize) -> Result<String, serde_json::Error> {
     let content = format!("{index},{}", serde_json::to_string(row)?);
     let checksum = crc32fast::hash(content.as_bytes());
     Ok(format!("{checksum:08x},{content}\n"))
 }
 
-/// The index and the row of a line, if it is as it was written.
+/// Reads the index and the row from a line; `None` if the line is damaged.
 fn from_line<R: DeserializeOwned>(line: &str) -> Option<(usize, R)> {
     let (checksum, content) = line.split_once(',')?;
     let checksum = u32::from_str_radix(checksum, 16).ok()?;
@@ -216,14 +216,14 @@ pub type Rows<R> = BTreeMap<usize, R>;
 /// Why the file of a part cannot be used.
 #[derive(Debug, Error)]
 pub enum PartError {
-    /// The system refused.
+    /// The system reported an error.
     #[error("cannot {what} {}: {source}", path.display())]
     Io {
-        /// What was to be done with it.
+        /// The failed action.
         what: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
     /// The file is not one of ours, or was damaged, or is in use.
@@ -231,10 +231,10 @@ pub enum PartError {
     Unusable {
         /// The file.
         path: PathBuf,
-        /// What is the matter, and the remedy.
+        /// The problem, and its remedy.
         what: String,
     },
-    /// The file has rows of something else.
+    /// The file holds rows of another study.
     #[error("{}: belongs to another study: {difference}", path.display())]
     Other {
         /// The file.
@@ -242,12 +242,12 @@ pub enum PartError {
         /// The first difference.
         difference: String,
     },
-    /// The file has some of the cases that are to be computed, and nobody asked to resume.
+    /// The file already holds some of the requested cases, and resuming was not requested.
     #[error("{}: has {done} cases of this study, from an interrupted run", path.display())]
     Interrupted {
         /// The file.
         path: PathBuf,
-        /// How many it has.
+        /// How many cases it has.
         done: usize,
     },
     /// A shard to be merged lacks cases.
@@ -257,9 +257,9 @@ pub enum PartError {
         path: PathBuf,
         /// Its shard.
         shard: Shard,
-        /// How many it has.
+        /// How many cases it has.
         done: usize,
-        /// How many it should have.
+        /// How many cases it should have.
         all: usize,
     },
 }
@@ -271,7 +271,7 @@ fn unusable(path: &Path, what: impl Into<String>) -> PartError {
     }
 }
 
-/// Refuses what is there and no file: of a pipe nobody would ever read the end.
+/// Refuses a path that exists but is not a file: reading a pipe would never end.
 fn check_file(path: &Path) -> Result<(), PartError> {
     match fs::metadata(path) {
         Ok(found) if !found.is_file() => Err(unusable(path, "is not a file")),
@@ -279,7 +279,7 @@ fn check_file(path: &Path) -> Result<(), PartError> {
     }
 }
 
-/// The complete lines of a file, or of its beginning as it is read here, and how many bytes these are.
+/// The complete lines of a file, or of the part of it that `read` returns, and their length in bytes.
 fn complete_lines(
     path: &Path,
     read: impl FnOnce(&Path) -> io::Result<Vec<u8>>,
@@ -287,7 +287,7 @@ fn complete_lines(
     check_file(path)?;
     let mut bytes =
         read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
-    // A line without end was being written when the program was killed.
+    // An incomplete last line was being written when the program was killed.
     let complete = bytes
         .iter()
         .rposition(|byte| *byte == b'\n')
@@ -298,7 +298,7 @@ fn complete_lines(
     Ok((text, complete as u64))
 }
 
-/// The header and the other lines; `None` if the program was killed before it wrote the header.
+/// The header, and the other lines; `None` if the program was killed before it wrote the header.
 fn header_of<'t>(
     path: &Path,
     text: &'t str,
@@ -339,7 +339,7 @@ fn rows_of<R: DeserializeOwned>(
     Ok(rows)
 }
 
-/// The header of a part that was computed before, complete or not.
+/// The header of a part file, complete or not.
 ///
 /// # Errors
 /// When the file cannot be read or is not a part.
@@ -353,7 +353,7 @@ pub fn read_header(path: &Path) -> Result<Header, PartError> {
     Ok(header)
 }
 
-/// The file of a shard that is being computed. It is locked as long as this lives.
+/// The file of a shard that is being computed. It stays locked as long as this value lives.
 #[derive(Debug)]
 pub struct PartFile {
     path: PathBuf,
@@ -361,12 +361,12 @@ pub struct PartFile {
 }
 
 impl PartFile {
-    /// Begins a part, or goes on with it; returns the rows that it has. A part that is complete is as good as
-    /// computed again. The folder must be there.
+    /// Begins a part, or continues it; returns the rows that it already has. A complete part need not be computed
+    /// again. The folder must exist.
     ///
     /// # Errors
-    /// When the system refuses, another program is at work on it, a part to `resume` belongs to another study, or
-    /// an interrupted one would be lost.
+    /// When the system reports an error, another program is working on the file, a part to `resume` belongs to another
+    /// study, or an interrupted part would be lost.
     pub fn open<R: DeserializeOwned>(
         path: &Path,
         header: &Header,
@@ -379,7 +379,7 @@ impl PartFile {
             .append(true)
             .open(path)
             .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
-        // Where files cannot be locked, two programs may write to the same file.
+        // On systems where files cannot be locked, two programs may write to the same file.
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
         }
@@ -387,7 +387,7 @@ impl PartFile {
         let rows = match header_of(path, &text)? {
             None => Rows::new(),
             Some((found, lines)) => {
-                // Rows are not thrown away unasked; a header alone may be.
+                // Rows are never discarded without a request; a header without rows may be.
                 let begun = resume || lines.clone().next().is_some();
                 if begun && let Some(difference) = header.other(&found) {
                     let path = path.to_owned();
@@ -421,10 +421,10 @@ impl PartFile {
         &self.path
     }
 
-    /// Appends rows. They survive if the program is killed thereafter.
+    /// Appends rows. They are safe even if the program is killed afterwards.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When the system reports an error.
     pub fn append<R: Serialize>(&mut self, rows: &[(usize, R)]) -> Result<(), PartError> {
         let mut lines = String::new();
         for (index, row) in rows {
@@ -438,10 +438,10 @@ impl PartFile {
         written.map_err(self.cannot("write"))
     }
 
-    /// Removes it, once the results are complete.
+    /// Removes the file, once the results are complete.
     ///
     /// # Errors
-    /// When it is there and the system refuses.
+    /// When the file exists and the system does not remove it.
     pub fn remove(self) -> Result<(), PartError> {
         match fs::remove_file(&self.path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -451,7 +451,7 @@ impl PartFile {
         }
     }
 
-    /// Checks that it is still there, as a result of its own.
+    /// Checks that the file still exists; with `--shard` the file itself is the result.
     pub(super) fn check_there(&self) -> Result<(), PartError> {
         if self.path.exists() {
             return Ok(());
@@ -474,10 +474,10 @@ impl PartFile {
     }
 }
 
-/// Joins the parts of a study: its header as a whole, and all its rows in the order of their cases.
+/// Joins the parts of a study: the header of the whole, and all rows in the order of their cases.
 ///
 /// # Errors
-/// When a file is not a part, the parts do not belong to one study or are not all there, or their rows are not of
+/// When a file is not a part, the parts do not belong to one study or are incomplete, or their rows are not of
 /// this type.
 pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>), PartError> {
     let mut whole: Option<(Header, Rows<R>)> = None;

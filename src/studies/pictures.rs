@@ -16,28 +16,28 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
-/// Part of the way to its limit position at which a mechanism is drawn, so that one sees it open.
+/// Fraction of the way to the limit position at which a mechanism is drawn, so that it is visibly open.
 const DRAWN_PART: f64 = 0.25;
 
-/// Eccentricity, in parts of the thickness, beyond which a line of resultants is cut off.
+/// Eccentricity, in thicknesses, at which a line of resultants is cut off.
 const DRAWN_ECCENTRICITY: f64 = 1.5;
 
-/// Parts of a ring between the points of a line of resultants; of a row of blocks they are at the joints.
+/// Number of parts of a ring between the points of a line of resultants; for a row of blocks the points are the joints.
 const LINE_PARTS: usize = 720;
 
-/// Places a structure of unit size on the sheet.
+/// The position of a structure of unit size on the sheet.
 struct Place<'a> {
     chain: &'a Chain,
     /// First sway of the chain.
     first: Sway,
     origin: Vector2<f64>,
-    /// Pixels per size.
+    /// Pixels per unit of size.
     scale: f64,
     /// Lowest point of the structure at rest.
     bottom: f64,
 }
 
-/// Left, lower, right and upper bound of a structure at rest.
+/// Left, lower, right and upper bounds of a structure at rest.
 fn bounds(profile: &dyn Profile) -> [f64; 4] {
     let end = profile.end();
     let Some(outlines) = profile.outlines(0.0, end) else {
@@ -58,7 +58,7 @@ fn bounds(profile: &dyn Profile) -> [f64; 4] {
 }
 
 impl<'a> Place<'a> {
-    /// In a rectangle of that width, not higher than wide, with the crown at `top`.
+    /// Fits the structure into a rectangle of that width, no higher than wide, with the crown at `top`.
     fn new(chain: &'a Chain, first: Sway, middle: f64, top: f64, width: f64) -> Self {
         let mut place = Self {
             chain,
@@ -75,17 +75,17 @@ impl<'a> Place<'a> {
         place
     }
 
-    /// The profile in the frame of a sway to that side.
+    /// The profile in the frame of a sway to this side.
     fn profile(&self, sway: Sway) -> &'a dyn Profile {
         self.chain.profile(usize::from(sway != self.first))
     }
 
-    /// On the sheet, for a sway to that side, whose mirror image the coordinates are in.
+    /// The place on the sheet of a point in the frame of a sway to this side; the frame of a sway to the left is mirrored.
     fn px(&self, point: Vector2<f64>, sway: Sway) -> Vector2<f64> {
         self.origin + Vector2::new(sway.sign() * point.x, -point.y) * self.scale
     }
 
-    /// A sector, displaced.
+    /// Draws a displaced sector.
     fn sector(
         &self,
         drawing: &mut Drawing,
@@ -111,7 +111,7 @@ impl<'a> Place<'a> {
         } else {
             let corner = |section: f64, edge: Edge| px(profile.point(section, edge));
             let radius = |edge: Edge| profile.point(from, edge).norm() * self.scale;
-            // Seen in a mirror the arcs turn the other way.
+            // In a mirror image the arcs turn the other way.
             let (there, back) = match sway {
                 Sway::Right => (1, 0),
                 Sway::Left => (0, 1),
@@ -129,7 +129,7 @@ impl<'a> Place<'a> {
         drawing.path(name, &path, fill, stroke);
     }
 
-    /// The joints, where there are voussoirs.
+    /// Draws the joints, if there are voussoirs.
     fn joints(&self, drawing: &mut Drawing) {
         if let HingeSites::Voussoirs(count) = self.chain.sites() {
             let profile = self.profile(Sway::Right);
@@ -148,7 +148,7 @@ impl<'a> Place<'a> {
         self.sector(drawing, "ring", all, still, (fill, stroke));
     }
 
-    /// The mechanism open, over the ring at rest; returns the rotations drawn, as seen.
+    /// Draws the open mechanism over the ring at rest; returns the rotations drawn, as seen.
     fn mechanism(&self, drawing: &mut Drawing, link: &ArchLink, sway: Sway) -> [f64; 3] {
         self.whole(drawing, "none", Stroke::new(color::GREY, 0.8, "3 3"));
         let linkage = &link.link.mechanism;
@@ -158,7 +158,7 @@ impl<'a> Place<'a> {
         let [a, b, c, d] = link.mechanism.hinges_rad();
         let none = Pose::UNDEFORMED;
         let line = Stroke::new(color::BLACK, 1.2, "");
-        // In the mirror of a sway to the left the first body is the one on the right.
+        // In the mirrored frame of a sway to the left, the first body is the one on the right.
         let mut looks = [
             ("left", "#cfe3f1"),
             ("middle", "#f6dcc4"),
@@ -191,7 +191,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The hinges with their letters, from the left; names `hinge A` and so on, with `mark` after the letter.
+    /// Draws the hinges with their letters, from the left. They are named `hinge A` and so on, with `mark` after the letter.
     fn hinges(&self, drawing: &mut Drawing, link: &ArchLink, sway: Sway, mark: &str) {
         let profile = self.profile(Sway::Right);
         let hinges = link.mechanism.hinges_from_left(profile, sway);
@@ -214,7 +214,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// A line of resultants in the frame of a sway, cut off far outside the structure.
+    /// Draws a line of resultants in the frame of a sway, cut off far outside the structure.
     fn resultants(&self, drawing: &mut Drawing, name: &str, line: &ResultantLine, sway: Sway) {
         let profile = self.profile(sway);
         let points = profile.sections(LINE_PARTS).into_iter().map(|section| {
@@ -239,7 +239,7 @@ fn shape(profile: &dyn Profile) -> String {
     }
 }
 
-/// A number for people, without rounding residue.
+/// A number without rounding errors, for people.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
@@ -248,10 +248,10 @@ fn rotations_text([left, middle, right]: [f64; 3]) -> String {
     format!("left {left:+.3}, middle {middle:+.3}, right {right:+.3} rad")
 }
 
-/// Incipient rocking to one side: the thrust line at `A_L` through its hinges, and the mechanism. The chain is the one
-/// that begins with that sway.
+/// Incipient rocking to one side: the thrust line at `A_L`, through its hinges, and the mechanism. The chain must begin
+/// with that sway.
 ///
-/// The mechanism is drawn to scale at finite rotations, at a quarter of the way to its limit position.
+/// The mechanism is drawn at true scale with finite rotations, a quarter of the way to its limit position.
 #[must_use]
 pub fn limit(figure: Figure, chain: &Chain, first: Sway) -> String {
     let link = chain
@@ -289,7 +289,7 @@ pub fn limit(figure: Figure, chain: &Chain, first: Sway) -> String {
     drawing.finish(end.max(first_end) + 12.0)
 }
 
-/// Two arches side by side, or one below the other where there is not the room.
+/// Two arches side by side, or one below the other if there is not enough room.
 struct Cells<'a> {
     chain: &'a Chain,
     /// First sway of the chain.
@@ -299,7 +299,7 @@ struct Cells<'a> {
     side_by_side: bool,
 }
 
-/// Room above an arch, for its hinges and a body that rises.
+/// Space above an arch, for its hinges and a body that rises.
 const ABOVE_PX: f64 = 42.0;
 
 impl<'a> Cells<'a> {
@@ -313,7 +313,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The place of the first arch below `top`, and the middle of its cell.
+    /// The place of the first arch, below `top`, and the middle of its cell.
     fn first(&self, top: f64) -> (Place<'a>, f64) {
         self.place(0.5 * self.width, top)
     }
@@ -324,7 +324,7 @@ impl<'a> Cells<'a> {
         (place, middle)
     }
 
-    /// That of the second, where the first ends at `first_end`.
+    /// The same for the second arch, when the first ends at `first_end`.
     fn second(&self, top: f64, first_end: f64) -> (Place<'a>, f64) {
         if self.side_by_side {
             self.place(1.5 * self.width, top)
@@ -333,15 +333,15 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Text below an arch; returns where it ends.
+    /// Writes text below an arch; returns the position of its lower end.
     fn caption(&self, drawing: &mut Drawing, middle: f64, bottom: f64, text: &str) -> f64 {
         let at = Vector2::new(middle, bottom + 34.0);
         drawing.caption_at(at, self.width - 16.0, text)
     }
 }
 
-/// An impact as Fig. 10 of the paper: the mechanisms before and after, the bodies that both together cut out of the
-/// ring (Eq. (3)), and the impulse line. `None` when this impact or one before it stops the arch.
+/// An impact, as in Fig. 10 of the paper: the mechanisms before and after, the bodies into which both together cut the
+/// ring (Eq. (3)), and the impulse line. `None` if this impact or one before it stops the arch.
 #[must_use]
 pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
     let (before, after) = (impact.before()?, impact.after()?);
@@ -375,7 +375,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
     let place = Place::new(chain, first, middle, lower_top, wide);
     let closing = closing_field(&before.mechanism, profile);
     let field = after.mechanism.field();
-    // All in the frame of the new mechanism, which is drawn in a mirror if it sways left.
+    // Everything is in the frame of the new mechanism, which is mirrored if it sways left.
     let cut = closing.minus(&field);
     let mut bounds = [cut.cuts_rad(), &[0.0, profile.end()]].concat();
     bounds.sort_by(f64::total_cmp);
@@ -388,7 +388,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
         .map(|section| profile.end() - section);
     let [a, b, c, d] = hinges_before;
     let mut number = 0;
-    // The bodies are counted from the left.
+    // Bodies are counted from the left.
     let mut sectors: Vec<&[f64]> = bounds.windows(2).collect();
     if sway_after == Sway::Left {
         sectors.reverse();
@@ -439,8 +439,8 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
     Some(drawing.finish(end + 12.0))
 }
 
-/// Where the number of a body stands: at a distance outside the extrados of a ring. Of a row at a distance inside the
-/// intrados, as buttresses stand behind the extrados, and midway between the joints on either side.
+/// The place for the number of a body: for a ring, at a distance outside the extrados. For a row, at a distance inside
+/// the intrados, because buttresses stand behind the extrados, and midway between the joints on either side.
 fn beside(profile: &dyn Profile, section: f64, distance: f64) -> Vector2<f64> {
     let at = |section: f64, edge: Edge, out: f64| {
         profile.point(section, edge) + profile.outward(section) * out

@@ -1,4 +1,4 @@
-//! What a study says of its cases beside their rows: what became of them, which failed, which are uncertain.
+//! What a study reports about its cases in addition to their rows: their outcomes, failures and uncertainties.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,9 +12,9 @@ use crate::scenario::Scenario;
 /// A case of a study that failed or is uncertain, as results list it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// Which case, in words.
+    /// The case, in words.
     pub case: String,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
@@ -27,14 +27,14 @@ impl Remark {
     }
 }
 
-/// What a study says of its cases beside their rows.
+/// What a study reports about its cases in addition to their rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Remarks {
-    /// The cases that failed, and why.
+    /// The cases that failed, with the reasons.
     pub failures: Vec<Remark>,
-    /// The cases of which it is uncertain whether they overturn, and why.
+    /// The cases for which it is uncertain whether they overturn, with the reasons.
     pub uncertain: Vec<Remark>,
-    /// The shortest and the longest of the longest steps of the cases, in seconds, and of their shortest ones.
+    /// Smallest and largest, over the cases, of the longest step of a case, and of its shortest step, in seconds.
     steps_s: Option<[[f64; 2]; 2]>,
 }
 
@@ -51,7 +51,7 @@ impl Remarks {
         self.note_steps(ending);
     }
 
-    /// Notes the steps of a case.
+    /// Notes the lengths of the steps of a case.
     pub(crate) fn note_steps(&mut self, ending: &Ending) {
         if let Some(Steps {
             longest_s,
@@ -67,7 +67,7 @@ impl Remarks {
         }
     }
 
-    /// Adds them to a summary, as far as there are any.
+    /// Adds the remarks to a summary, if there are any.
     pub(crate) fn add_to(&self, summary: &mut Value) {
         let list = |remarks: &[Remark]| -> Value {
             let list = remarks.iter();
@@ -98,7 +98,7 @@ impl fmt::Display for Remark {
     }
 }
 
-/// The summary of a study as JSON: its scenario, the number of its cases, and what is to be remarked of these.
+/// The summary of a study as JSON: its scenario, the number of its cases, and the remarks on them.
 pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> Value {
     let mut summary = json!({
         "program": env!("CARGO_PKG_NAME"),
@@ -111,7 +111,7 @@ pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> V
 }
 
 impl Remarks {
-    /// How many cases failed, why the first did, and where the others are; `None` where none did.
+    /// How many cases failed, why the first one did, and which file lists the others; `None` if none failed.
     pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
         let (count, first) = (self.failures.len(), self.failures.first()?);
         let others = if count > 1 {
@@ -122,7 +122,7 @@ impl Remarks {
         Some(format!("failed: {count}; the first: {first}{others}"))
     }
 
-    /// What is uncertain, and where it is told; `None` where nothing is.
+    /// How many cases are uncertain, and which file lists them; `None` if none is.
     pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
         let first = self.uncertain.first()?;
         let listed = match self.uncertain.len() {
@@ -135,10 +135,10 @@ impl Remarks {
     }
 }
 
-/// Words for what became of cases, and their place among the counts.
+/// Words for an outcome, and their position in the list of counts.
 pub(crate) type Words = (u8, &'static str);
 
-/// The words of how a case ended.
+/// How a case ended, in words.
 pub(crate) const fn in_words(ending: &Ending) -> Words {
     match (&ending.uncertain, ending.outcome) {
         (Some(_), _) => (4, "are uncertain"),
@@ -149,7 +149,7 @@ pub(crate) const fn in_words(ending: &Ending) -> Words {
     }
 }
 
-/// How many cases came to what.
+/// The number of cases with each outcome, in words.
 pub(crate) fn counts(cases: impl Iterator<Item = Words>) -> String {
     let mut counts = BTreeMap::new();
     for words in cases {

@@ -1,4 +1,4 @@
-//! What a study tells once all its rows are there: files and words, the same for the program, for parts that are merged, and for Python.
+//! The results of a study, once it has all rows: files and words, the same for the program, for merged parts, and for Python.
 
 use std::io::Write as _;
 
@@ -6,16 +6,16 @@ use serde_json::Value;
 
 use crate::output::{Figure, Folder, OutputError};
 
-/// What a study tells.
+/// The results of a study.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Results {
-    /// Files by their names; a folder that has the last one is complete.
+    /// Files by their names; a folder that has the last of them is complete.
     pub files: Vec<(&'static str, Vec<u8>)>,
-    /// A file that earlier results may have, and these have not.
+    /// A file that earlier results may have left, and that these do not have.
     pub obsolete: Option<&'static str>,
-    /// What they say, line by line.
+    /// The summary in words, line by line.
     pub words: String,
-    /// The same for programs, with all numbers.
+    /// The summary for programs, with all numbers.
     pub summary: Value,
 }
 
@@ -29,7 +29,7 @@ impl Results {
     /// Writes the files into a folder that was opened for them; it is complete afterwards.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When the system reports an error.
     pub fn write(&self, mut folder: Folder) -> Result<(), OutputError> {
         if let Some(name) = self.obsolete {
             folder.forget(name);
@@ -45,7 +45,7 @@ impl Results {
     }
 }
 
-/// What is answered at once, for programs and for people.
+/// An answer given at once, for programs and for people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// All numbers.
@@ -54,21 +54,21 @@ pub struct Answer {
     pub text: String,
 }
 
-/// How results look.
+/// The look of results.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Width of the pictures, and the size of their text.
     pub figure: Figure,
-    /// Whether what survives in a map is coloured by its largest rotation over the critical one, where that is known.
+    /// Whether surviving cells of a map are coloured by their largest rotation over the critical one, if that is known.
     pub by_peak: bool,
-    /// What the axes of a map, pulse duration and amplitude, are multiplied by to have no dimension; `None`: as they are.
+    /// Factors that make the axes of a map, pulse duration and amplitude, dimensionless; `None`: the axes keep their units.
     pub factors: Option<[f64; 2]>,
-    /// Whether the least amplitudes of a map that overturn without impact are a table.
+    /// Whether a table gives the least amplitudes of a map that overturn without impact.
     pub no_impact: bool,
 }
 
 impl Look {
-    /// A map coloured by outcome, its axes as they are, without the table.
+    /// A map coloured by outcome, with the units of its axes, without the table.
     #[must_use]
     pub const fn of(figure: Figure) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Long work: the cases of a study on all processors, with progress, that can be cancelled and resumed.
+//! Computes the cases of a study on all processors, and shows progress; the work can be cancelled and resumed.
 //!
 //! ```
 //! use std::ops::ControlFlow;
@@ -55,19 +55,19 @@ use thiserror::Error;
 
 use super::part::{Header, PartError, PartFile, Rows, Shard};
 
-/// Many cases, each a function of its index alone. So they may be computed in any order, by any number of threads,
-/// on several machines, and today or tomorrow.
+/// Many cases, each a function of its index alone. So they can be computed in any order, by any number of threads,
+/// on several machines, at any time.
 pub trait Study: Sync {
-    /// What is known of a case once it is computed. A case that fails has a row as well, which says why.
+    /// The result of a case. A case that fails has a row as well, with the reason.
     type Row: Serialize + DeserializeOwned + Send;
 
-    /// Name of the study in the files of its parts, and of these files.
+    /// Name of the study, in part files and in their names.
     const NAME: &'static str;
 
-    /// The scenario, every default resolved: with the inputs, all that the rows depend on.
+    /// The scenario, with every default filled in. The rows depend on it and on the inputs, and on nothing else.
     fn scenario(&self) -> String;
 
-    /// What else the rows depend on: name and checksum of each file that the scenario names, with a space between.
+    /// Other things on which the rows depend: name and checksum of each file that the scenario names, separated by a space.
     fn inputs(&self) -> Vec<String> {
         Vec::new()
     }
@@ -75,26 +75,26 @@ pub trait Study: Sync {
     /// Number of cases.
     fn count(&self) -> usize;
 
-    /// Computes the row of a case, below [`Study::count`].
+    /// Computes the row of a case; `index` is below [`Study::count`].
     fn row(&self, index: usize) -> Self::Row;
 
-    /// Of which family a case is: those of one family are computed faster together. `None`: alone.
+    /// The family of a case: cases of one family are computed faster together. `None`: the case is computed alone.
     fn family(&self, _index: usize) -> Option<usize> {
         None
     }
 
-    /// Computes the rows of some cases of one family, in their order. No row depends on what is beside it.
+    /// Computes the rows of some cases of one family, in their order. No row depends on the other cases.
     fn rows(&self, indices: &[usize]) -> Vec<Self::Row> {
         indices.iter().map(|index| self.row(*index)).collect()
     }
 }
 
-/// How far the work is.
+/// The progress of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Number of cases that are done, those of an earlier run included.
+    /// Number of cases done, including those of an earlier run.
     pub done: usize,
-    /// Number of cases to be done.
+    /// Number of all cases.
     pub all: usize,
 }
 
@@ -107,12 +107,12 @@ pub enum RunnerError {
     /// The file of the part cannot be used.
     #[error(transparent)]
     Part(#[from] PartError),
-    /// The folder cannot be made.
+    /// The folder cannot be created.
     #[error("cannot make the folder {}: {source}", path.display())]
     Folder {
         /// Its path.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
     /// The threads could not be started.
@@ -120,21 +120,21 @@ pub enum RunnerError {
     Threads(String),
 }
 
-/// What is to be computed in a folder.
+/// A task to compute in a folder.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'p> {
-    /// The folder, which is made if need be.
+    /// The folder; it is created if necessary.
     pub folder: &'p Path,
-    /// Which cases.
+    /// The cases to compute.
     pub shard: Shard,
-    /// Whether to go on where an interrupted run stopped, if there is one.
+    /// Whether to continue an interrupted run, if there is one.
     pub resume: bool,
 }
 
-/// What was computed in a folder.
+/// The result of a computation in a folder.
 #[derive(Debug)]
 pub enum Computed<R> {
-    /// The rows of all cases, and the file that has them until there are results.
+    /// The rows of all cases, and the file that keeps them until there are results.
     Whole(Vec<R>, PartFile),
     /// The file of a shard, to be merged with the others.
     Shard(PartFile),
@@ -143,12 +143,12 @@ pub enum Computed<R> {
 /// Computes the rows of studies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Runner {
-    /// How many threads work; `None`: as many as there are processors.
+    /// The number of threads; `None`: as many as there are processors.
     pub threads: Option<NonZeroUsize>,
 }
 
-/// How many cases of a family are computed together: at least as many as fit side by side, and not so many that threads wait for
-/// one another.
+/// How many cases of a family are computed together: at least as many as fit side by side, but not so many that threads
+/// wait for one another.
 const TOGETHER: RangeInclusive<usize> = 8..=32;
 
 /// How often rows are written and progress is reported.
@@ -157,8 +157,8 @@ const TICK: Duration = Duration::from_millis(100);
 impl Runner {
     /// The rows of all cases, in their order, in memory.
     ///
-    /// `watch` is told the progress at the beginning, ten times a second, and at the end, on this thread. Where it
-    /// breaks, the cases under way are finished and no others begun.
+    /// `watch` receives the progress at the beginning, ten times a second, and at the end, on this thread. When it
+    /// breaks, cases under way are finished and no others begun.
     ///
     /// # Errors
     /// When `watch` breaks or threads cannot be started.
@@ -172,7 +172,7 @@ impl Runner {
         self.each_of_families(study.count(), family, rows_of, watch)
     }
 
-    /// Computes `row` for every index below `count` on all threads, and returns the results in order: for work that is no study.
+    /// Computes `row` for every index below `count`, on all threads, and returns the results in order: for work that is not a study.
     ///
     /// # Errors
     /// As [`Runner::rows`].
@@ -186,7 +186,7 @@ impl Runner {
         self.each_of_families(count, |_| None, rows_of, watch)
     }
 
-    /// The same of cases in families, as [`Study::family`] and [`Study::rows`].
+    /// The same for cases in families, as in [`Study::family`] and [`Study::rows`].
     ///
     /// # Errors
     /// As [`Runner::rows`].
@@ -202,8 +202,8 @@ impl Runner {
         Ok(rows.into_values().collect())
     }
 
-    /// The rows of the cases of a shard, kept in the file of a part as they come: see [`super::part`]. Whatever
-    /// ends the program, the file can be resumed.
+    /// The rows of the cases of a shard, which are saved in a part file as they are computed: see [`super::part`]. However
+    /// the program ends, the file can be resumed.
     ///
     /// `watch` is as in [`Runner::rows`]. Whenever it is called, all rows that it counts are in the file.
     ///
@@ -247,7 +247,7 @@ impl Runner {
             .map_err(|error| RunnerError::Threads(error.to_string()))
     }
 
-    /// Computes the rows that are missing, and hands them to `keep` as they come.
+    /// Computes the missing rows, and passes them to `keep` as they are computed.
     fn complete<R: Send>(
         &self,
         cases: impl Iterator<Item = usize>,
@@ -264,14 +264,14 @@ impl Runner {
         let cancelled = AtomicBool::new(false);
         let (sender, receiver) = mpsc::channel();
         let compute = || {
-            // Cases cost from microseconds to seconds: each group is dealt out on its own.
+            // Cases cost from microseconds to seconds, so each group is dealt out on its own.
             let todo = todo.par_iter().with_max_len(1);
             todo.try_for_each_with(sender, |sender, indices| {
                 if cancelled.load(Ordering::Relaxed) {
                     return None;
                 }
                 let mut rows = indices.iter().copied().zip(rows_of(indices));
-                // Sending fails only after the receiver has given up.
+                // Sending fails only if the receiver has given up.
                 rows.try_for_each(|row| sender.send(row).ok())
             })
         };
@@ -295,7 +295,7 @@ impl Runner {
                 if over {
                     break;
                 }
-                // Rows that arrive meanwhile are written together, which spares waking this thread for each.
+                // Rows that arrive in the meantime are written together; this thread need not wake for each.
                 thread::park_timeout(TICK);
                 let mut new = Vec::new();
                 over = loop {
@@ -319,7 +319,7 @@ impl Runner {
     }
 }
 
-/// Cases in the groups in which they are computed: each alone, or with others of its family.
+/// The cases in the groups in which they are computed: each alone, or with others of its family.
 fn in_groups(
     cases: Vec<usize>,
     family: impl Fn(usize) -> Option<usize>,

@@ -1,26 +1,26 @@
-//! Which strengths of a ground motion a structure survives, in brief, and in a line of words.
+//! Which strengths of a ground motion a structure survives, in brief and in one line of words.
 
 use super::ending::Verdict;
 use super::threshold::{Threshold, rounded};
 
-/// Where a structure first overturns as its ground motion gets stronger, where it survives again, and where that is uncertain.
+/// Where a structure first overturns as its ground motion gets stronger, where it survives again, and where this is uncertain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survival {
-    /// The least strength that certainly overturns; `None` where none does.
+    /// The least strength that certainly overturns; `None` if none does.
     pub overturns_from: Option<f64>,
-    /// Whether that is the least strength that was tried, so that a smaller one may overturn as well.
+    /// Whether that is also the least strength tried, so that a smaller one might overturn too.
     pub from_the_first: bool,
-    /// From and to which strengths it is certainly survived above that.
+    /// Ranges of greater strengths that it certainly survives.
     pub again: Vec<[f64; 2]>,
-    /// From and to which strengths it is uncertain whether it overturns.
+    /// Ranges of strengths for which it is uncertain whether it overturns.
     pub uncertain: Vec<[f64; 2]>,
     /// The greatest strength that was tried.
     pub tried_to: f64,
 }
 
 impl Survival {
-    /// Of strengths that were tried, ascending, and whether they overturn, where there is a history. What is survived again or
-    /// uncertain goes from the first to the last of those tried that are.
+    /// From ascending strengths, and whether each overturns, if its history is known. A range of survival or of uncertainty
+    /// goes from the first to the last strength tried in it.
     #[must_use]
     pub fn of_levels(levels: &[(f64, Option<Verdict>)]) -> Self {
         let known: Vec<(f64, Verdict)> = levels
@@ -33,7 +33,7 @@ impl Survival {
         Self::of_runs(&runs.collect::<Vec<_>>(), tried)
     }
 
-    /// Of a threshold, whose edges are enclosed.
+    /// From a threshold, with the bounds of its edges.
     #[must_use]
     pub fn of_threshold(threshold: &Threshold) -> Self {
         let tried = threshold.samples.iter();
@@ -45,7 +45,7 @@ impl Survival {
         Self::of_runs(&runs.collect::<Vec<_>>(), tried)
     }
 
-    /// Of ranges of one verdict each, ascending, and the least and the greatest strength that was tried.
+    /// From ascending ranges, each with one verdict, and from the least and the greatest strength tried.
     fn of_runs(runs: &[(Verdict, [f64; 2])], [tried_from, tried_to]: [f64; 2]) -> Self {
         let first = runs.iter().position(|run| run.0 == Verdict::Overturns);
         let overturns_from = first.map(|first| runs[first].1[0]);
@@ -63,7 +63,7 @@ impl Survival {
     }
 }
 
-/// The line, of strengths in this unit, which may be empty: `first overturns at 2.113; survives again at 2.401 to
+/// The line, with strengths in this unit, which may be empty: `first overturns at 2.113; survives again at 2.401 to
 /// 2.604`.
 #[must_use]
 pub fn in_words(survival: &Survival, unit: &str) -> String {
@@ -142,10 +142,10 @@ mod tests {
             )
         );
         assert_eq!(of("xx"), (Some(1.0), true, vec![], 2.0));
-        // What is not known does not count.
+        // A strength without a history does not count.
         assert_eq!(of("?x.?.x?"), (Some(2.0), true, vec![[3.0, 5.0]], 6.0));
         assert_eq!(of("??"), (None, false, vec![], 0.0));
-        // What is uncertain has neither overturned nor been survived.
+        // An uncertain strength counts neither as overturned nor as survived.
         assert_eq!(of(".~x~.~"), (Some(3.0), false, vec![[5.0, 5.0]], 6.0));
         assert_eq!(of("~~"), (None, false, vec![], 2.0));
         let uncertain = |outcomes| survival(outcomes).uncertain;
