@@ -28,11 +28,11 @@ pub enum NoCapacity {
     Control(#[from] CapacityError),
 }
 
-/// The capacity to the right and to the left. The control point is that given (in metres, x from the middle to the right, y
-/// as in the drawings: from the centre of a circular arch, else from the springings or the base), or the crown.
+/// The capacity to the right and to the left. The control point is the given one, or else the crown. It is in metres: x from the
+/// middle to the right, y as in the drawings, from the centre of a circular arch, otherwise from the springings or the base.
 ///
 /// # Errors
-/// When there is no mechanism of one degree of freedom, or the control point is not on it or does not move.
+/// When there is no mechanism of one degree of freedom, or the control point is outside it or does not move.
 pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
@@ -71,7 +71,7 @@ pub(super) fn crown_of(structure: &dyn Parts, model: &dyn MechanismModel, sway: 
     carrying(model, sway)(place, at_m)
 }
 
-/// What carries a point, given with its place along the structure, in the first mechanism to a side.
+/// What carries a point in the first mechanism to a side; the point is given with its place along the structure.
 fn carrying(
     model: &dyn MechanismModel,
     sway: Sway,
@@ -86,7 +86,7 @@ fn carrying(
     }
 }
 
-/// Where along the structure a hinge is: an angle, or a joint.
+/// The place of a hinge along the structure: an angle, or the number of a joint.
 #[expect(clippy::cast_precision_loss, reason = "joints are few")]
 fn place_of_hinge(hinge: &Hinge) -> f64 {
     match hinge {

@@ -1,4 +1,4 @@
-//! What capacity curves tell: table, JSON, picture, words.
+//! Reports capacity curves: as a table, JSON, a picture and words.
 
 use std::fmt::Write as _;
 
@@ -12,13 +12,13 @@ use crate::output::{OutputError, pretty};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;
 
-/// Parts of the ultimate displacement at which secant periods are told.
+/// Fractions of the ultimate displacement at which secant periods are reported.
 const PARTS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["capacity.svg", "capacity.csv", "capacity.json"];
 
-/// Files and words of the curves of a scenario to both sides; and the JSON among the files.
+/// Files and words for the curves of a scenario to both sides; one of the files is JSON.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -70,7 +70,7 @@ fn table(sides: &[Capacity; 2]) -> Result<Vec<u8>, OutputError> {
     csv(columns, &rows)
 }
 
-/// Both sides, without the points of the curves.
+/// The JSON for both sides, without the points of the curves.
 fn to_json(sides: &[Capacity; 2], gravity_m_s2: f64) -> Value {
     let side = |capacity: &Capacity| {
         let periods: Map<String, Value> = PARTS
@@ -99,7 +99,7 @@ fn to_json(sides: &[Capacity; 2], gravity_m_s2: f64) -> Value {
     json!({ "capacity": { "right": side(right), "left": side(left) } })
 }
 
-/// Acceleration against displacement of the control point, both sides.
+/// Draws acceleration against displacement of the control point, for both sides.
 fn draw(figure: Figure, title: &str, sides: &[Capacity; 2]) -> String {
     let mut drawing = Drawing::new(figure);
     let top = drawing.title(title);
@@ -130,7 +130,7 @@ fn draw(figure: Figure, title: &str, sides: &[Capacity; 2]) -> String {
 }
 
 fn words(sides: &[Capacity; 2], masses: &str, gravity_m_s2: f64) -> String {
-    // A middle that rounding has moved is still the middle.
+    // A crown that rounding moved off the middle is still in the middle.
     let control = sides[0]
         .control
         .at_m

@@ -1,4 +1,4 @@
-//! Arches of many shapes compared: onset, first impact, and what impacts tend to.
+//! Compares arches of many shapes: onset, first impact, and the limit to which repeated impacts tend.
 
 mod told;
 
@@ -22,19 +22,19 @@ pub struct ShapeResult {
     pub incipient_g: f64,
     /// Restitution coefficient of the first impact; `None` if it stops the arch.
     pub first_restitution: Option<f64>,
-    /// Restitution coefficient of the impacts that the chain tends to; `None` if one stops the arch.
+    /// Restitution coefficient to which the impacts of the chain tend; `None` if one stops the arch.
     pub last_restitution: Option<f64>,
 }
 
-/// The chain has settled when an impact raises the restitution coefficient by no more than this. It rises
-/// by ever smaller, nearly geometric amounts, so that what is left is of the order of ten times as much.
+/// The chain has settled when an impact raises the restitution coefficient by no more than this. The rises
+/// get ever smaller, nearly in geometric progression, so the remaining rise is about ten times as much.
 const SETTLED: f64 = 1e-7;
 
-/// Impacts after which a chain counts as settled in any case.
+/// Number of impacts after which a chain counts as settled in any case.
 const MAX_IMPACTS: usize = 200;
 
-/// Incipient acceleration and restitution coefficients of one shape; `None` if no four-link mechanism
-/// starts: the arch cannot stand, or is too thick.
+/// Incipient acceleration and restitution coefficients of one shape; `None` if the arch does not start as a
+/// four-link mechanism, because it cannot stand or is too thick.
 #[must_use]
 pub fn shape_result(
     embrace_deg: f64,
@@ -70,26 +70,26 @@ pub fn shape_result(
     })
 }
 
-/// Shapes beside the arch of a scenario.
+/// The shapes compared with the arch of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// Embrace by embrace, thicknesses ascending.
+    /// One embrace angle after another, each with ascending thicknesses.
     shapes: Vec<ShapeResult>,
     /// The arch itself.
     own: Option<ShapeResult>,
 }
 
-/// Embrace angles charted beside that of the scenario, in degrees.
+/// Embrace angles of the chart, in addition to that of the scenario, in degrees.
 const EMBRACES_DEG: [f64; 5] = [180.0, 170.0, 157.5, 140.0, 120.0];
 
-/// Thickness ratios of a curve, from the thinnest arch that stands to the thickest charted.
+/// Number of thickness ratios of a curve, from the thinnest arch that stands to the thickest of the chart.
 const THICKNESSES: u32 = 24;
 
-/// Largest thickness ratio charted, unless the scenario's is larger.
+/// Largest thickness ratio of the chart, unless that of the scenario is larger.
 const MAX_THICKNESS_RATIO: f64 = 0.3;
 
 impl Chart {
-    /// Computes the shapes beside an arch, on all processors.
+    /// Computes the shapes to compare with an arch, on all processors.
     #[must_use]
     pub fn of(arch: &Arch, law: ImpactLaw) -> Self {
         let mut embraces_deg = EMBRACES_DEG.to_vec();
@@ -116,15 +116,15 @@ impl Chart {
     }
 }
 
-/// From just above the least thickness ratio at which an arch stands to the largest charted.
+/// From just above the least thickness ratio at which an arch stands to the largest of the chart.
 fn thicknesses(least: f64, largest: f64) -> impl Iterator<Item = f64> {
     let least = 1.001 * least;
     let step = (largest - least) / f64::from(THICKNESSES - 1);
     (0..THICKNESSES).map(move |i| least + f64::from(i) * step)
 }
 
-/// The results of shapes, given by embrace angle in degrees and thickness over mean radius, in their order and
-/// on all processors; those of which no four-link mechanism starts are left out.
+/// The results of shapes, each given by embrace angle in degrees and thickness over mean radius, in their order and
+/// on all processors. Shapes that do not start as a four-link mechanism are left out.
 fn shape_results(shapes: &[(f64, f64)], sites: HingeSites, law: ImpactLaw) -> Vec<ShapeResult> {
     shapes
         .par_iter()

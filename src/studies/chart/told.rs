@@ -1,4 +1,4 @@
-//! What a chart of shapes tells: its table and its picture, incipient acceleration and restitution over the thickness ratio.
+//! Reports a chart of shapes: a table, and a picture of incipient acceleration and restitution against the thickness ratio.
 
 use super::{Chart, ShapeResult};
 use crate::output::OutputError;
@@ -10,7 +10,7 @@ use crate::studies::results::Results;
 pub const FILES: [&str; 2] = ["chart.svg", "chart.csv"];
 
 impl Chart {
-    /// Its files and words.
+    /// The files and words of the chart.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -25,7 +25,7 @@ impl Chart {
     }
 }
 
-/// A row per shape. Where an impact stops the arch the restitution coefficient is left empty.
+/// One row per shape. The restitution coefficient is empty if an impact stops the arch.
 fn table(results: &[ShapeResult]) -> Result<Vec<u8>, OutputError> {
     let columns = [
         column("embrace_deg", |shape: &ShapeResult| shape.embrace_deg),
@@ -48,8 +48,8 @@ fn table(results: &[ShapeResult]) -> Result<Vec<u8>, OutputError> {
 /// A quantity of a shape, if it has it.
 type Quantity = fn(&ShapeResult) -> Option<f64>;
 
-/// Draws three panels, a curve for each embrace angle, and marks the results of the scenario's own arch. Results come
-/// embrace by embrace, thicknesses ascending.
+/// Draws three panels with a curve for each embrace angle, and marks the results of the scenario's own arch. The results
+/// must come one embrace angle after another, with ascending thicknesses.
 fn draw(figure: Figure, results: &[ShapeResult], own: Option<&ShapeResult>) -> String {
     let mut drawing = Drawing::new(figure);
     let top = drawing.title("Circular arches of several embrace angles");

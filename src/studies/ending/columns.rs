@@ -1,11 +1,11 @@
-//! How histories ended, as columns of a table.
+//! The endings of histories as columns of a table.
 
 use super::{Ending, Outcome};
 use crate::output::table::{Column, column};
 
-/// Outcome where a history could not be computed.
+/// Outcome if the history could not be computed.
 pub(crate) const FAILED: &str = "failed";
-/// Outcome where it is uncertain whether it overturns.
+/// Outcome if it is uncertain whether the structure overturns.
 pub(crate) const UNCERTAIN: &str = "uncertain";
 
 impl Ending {
@@ -18,7 +18,7 @@ impl Ending {
         }
     }
 
-    /// To which side a case overturned, where it certainly did.
+    /// The side to which a case overturned; `None` unless that is certain.
     pub(crate) const fn overturning_sway(&self) -> Option<&'static str> {
         match (self.outcome, &self.uncertain) {
             (Outcome::Overturned(sway), None) => Some(sway.name()),
@@ -27,11 +27,11 @@ impl Ending {
     }
 }
 
-/// The ending of a row, or the outcome that stands for none.
+/// The ending of a row, or the outcome to report if the row has none.
 type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
 
-/// The columns of the ending of a row. Only what certainly overturned has a sway and impacts before it; the numbers of what is uncertain
-/// are those of the history itself, not of its repetitions.
+/// The columns of the ending of a row. Sway and number of impacts before overturning are given only if overturning is certain.
+/// The numbers of an uncertain case are those of the history itself, not of its repetitions.
 pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
     let number = |name: &'static str, of: fn(&Ending) -> Option<f64>| {
         column(name, move |row| ended(row).ok().and_then(of).map(number))

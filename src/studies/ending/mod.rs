@@ -1,4 +1,4 @@
-//! How a history ended, as studies keep it, and whether that is [certain](crate::dynamics::spread).
+//! How a history ended, as studies record it, and whether the ending is [certain](crate::dynamics::spread).
 
 pub(crate) mod columns;
 
@@ -15,45 +15,45 @@ use crate::dynamics::spread::{doubts, until_safe};
 pub struct Steps {
     /// The longest, in seconds.
     pub longest_s: f64,
-    /// The shortest, in seconds, but for steps that end at landings.
+    /// The shortest, in seconds, apart from steps that end at landings.
     pub shortest_s: f64,
 }
 
-/// How a history ended, in the numbers that studies compare. They are finite.
+/// How a history ended, in the numbers that studies compare. All of them are finite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ending {
-    /// How it ended.
+    /// The outcome.
     pub outcome: Outcome,
-    /// When, in seconds.
+    /// The time of the outcome, in seconds.
     pub outcome_time_s: f64,
-    /// When it was found that it cannot overturn any more and comes to rest, in seconds: there its history was ended, and what came
-    /// later, more impacts and the time of rest, is not known. `None` where the history was followed to its end.
+    /// The time, in seconds, from which the structure can no longer overturn and will come to rest. The history was ended there,
+    /// so later impacts and the time of rest are unknown. `None` if the history was followed to its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe_from_s: Option<f64>,
-    /// Number of impacts; where the structure overturns, all are before. `None` of elastic joints, which know none.
+    /// Number of impacts; those before overturning if the structure overturns. `None` for elastic joints, which have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub impacts: Option<usize>,
-    /// Largest gap in the energy balance: of a mechanism over its energy barrier, of free hinges over weight times
-    /// size.
+    /// Largest error in the energy balance: for a mechanism relative to its energy barrier, for free hinges relative to
+    /// weight times size.
     pub energy_defect_ratio: f64,
-    /// How far it went.
+    /// The largest rotation.
     pub peak: PeakRotation,
-    /// The steps that it was computed in; `None` of models whose steps follow from a tolerance.
+    /// The time steps of the computation; `None` for models whose steps follow from a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steps: Option<Steps>,
-    /// Why it is uncertain whether it overturns: what it does, and what a repetition does instead. `None` where it is certain.
+    /// Why it is uncertain whether the structure overturns: its outcome, and the other outcome of a repetition. `None` if it is certain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<String>,
 }
 
-/// The largest rotation, measured as the model can.
+/// The largest rotation, in the measure that the model allows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PeakRotation {
-    /// Of one mechanism at a time, all of whose hinges close at once: over that at the unstable equilibrium, where
-    /// that is known.
+    /// For one mechanism at a time, whose hinges all close at once: relative to the rotation at the unstable equilibrium,
+    /// if that is known.
     OverCritical(Option<f64>),
-    /// Of free hinges, which close one by one: that of any block, in radians.
+    /// For free hinges, which close one by one: the rotation of any block, in radians.
     Rad(f64),
 }
 
@@ -65,7 +65,7 @@ impl PeakRotation {
         }
     }
 
-    /// Over that at the unstable equilibrium, where that is known.
+    /// Relative to the rotation at the unstable equilibrium, if that is known.
     #[must_use]
     pub const fn over_critical(self) -> Option<f64> {
         match self {
@@ -74,7 +74,7 @@ impl PeakRotation {
         }
     }
 
-    /// In radians, of free hinges.
+    /// In radians, for free hinges.
     #[must_use]
     pub const fn rad(self) -> Option<f64> {
         match self {
@@ -85,7 +85,7 @@ impl PeakRotation {
 }
 
 impl Ending {
-    /// When it ended as it did, in seconds; `None` where that is not known.
+    /// The time of the outcome, in seconds; `None` if it is unknown.
     #[must_use]
     pub const fn known_time_s(&self) -> Option<f64> {
         match self.safe_from_s {
@@ -94,7 +94,7 @@ impl Ending {
         }
     }
 
-    /// Number of all its impacts; `None` where that is not known.
+    /// Number of all its impacts; `None` if it is unknown.
     #[must_use]
     pub const fn known_impacts(&self) -> Option<usize> {
         match self.safe_from_s {
@@ -103,7 +103,7 @@ impl Ending {
         }
     }
 
-    /// Number of impacts at which all hinges close at once; `None` of free hinges, which close one by one.
+    /// Number of impacts at which all hinges close at once; `None` for free hinges, which close one by one.
     #[must_use]
     pub const fn impacts_of_all_hinges(&self) -> Option<usize> {
         match self.peak {
@@ -112,7 +112,7 @@ impl Ending {
         }
     }
 
-    /// Whether it overturns, as far as that is known.
+    /// Whether the structure overturns, as far as this is known.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         match self.uncertain {
@@ -121,7 +121,7 @@ impl Ending {
         }
     }
 
-    /// That of the mirror image.
+    /// The ending of the mirror image.
     pub(super) fn mirrored(&self) -> Self {
         let outcome = match self.outcome {
             Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
@@ -133,29 +133,29 @@ impl Ending {
         }
     }
 
-    /// Simulates a structure, and again in other ways where that may matter, and returns how that ended.
+    /// Simulates a structure, repeats the history in other ways if that may matter, and returns how it ended.
     ///
     /// # Errors
-    /// Says why there is no history, or none that could be kept.
+    /// Explains why there is no history, or why its numbers cannot be kept.
     pub fn of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Result<Self, String> {
         Self::of_all(model, &[(ground.clone(), *request)]).remove(0)
     }
 
-    /// The same of several cases, in their order, with the reasons of those that have no history, or none that could be kept.
+    /// The same for several cases, in their order. A case without a history, or with one that cannot be kept, has the reason instead.
     #[must_use]
     pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
         let own = model.simulate_all(cases);
         Self::repeated(own, vec![None; cases.len()], model, cases)
     }
 
-    /// The same, where a history that cannot overturn any more, and has ample time to come to rest, ends there.
+    /// The same, but a history ends once it cannot overturn any more and has ample time to come to rest.
     #[must_use]
     pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
         let (own, safe_from_s) = until_safe(model, cases);
         Self::repeated(own, safe_from_s, model, cases)
     }
 
-    /// What histories came to, repeated where that may matter.
+    /// The endings of histories, repeated if that may matter.
     fn repeated(
         own: Vec<Result<Summary, SimulationError>>,
         safe_from_s: Vec<Option<f64>>,
@@ -172,10 +172,10 @@ impl Ending {
             .collect()
     }
 
-    /// What a history came to, and why that is uncertain, if it is.
+    /// The ending of a history, and why it is uncertain, if it is.
     ///
     /// # Errors
-    /// Says that a number is not finite.
+    /// Reports that a number is not finite.
     pub(super) fn from_summary(
         summary: &Summary,
         safe_from_s: Option<f64>,
@@ -201,7 +201,7 @@ impl Ending {
     }
 }
 
-/// Answers to the cases that there are, in the order of all; the others keep their reasons.
+/// Answers the cases that are valid, and returns all in their order; the others keep their reasons.
 pub(super) fn answered<C, A, E>(
     cases: impl IntoIterator<Item = Result<C, E>>,
     answer: impl FnOnce(&[C]) -> Vec<Result<A, E>>,
@@ -216,7 +216,7 @@ pub(super) fn answered<C, A, E>(
     cases.into_iter().map(of).collect()
 }
 
-/// Refuses numbers that are not finite: a defect of the program.
+/// Refuses numbers that are not finite: they are a bug in the program.
 pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
     if values.iter().all(|value| value.is_finite()) {
         Ok(())

@@ -1,4 +1,4 @@
-//! From which factor on its ground motion every sample overturns: upwards to the first edge only.
+//! The factor on its ground motion from which every sample overturns: searched upwards, up to the first edge only.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,34 +11,34 @@ use crate::studies::ending::{Ending, Verdict};
 use crate::studies::results::{Look, Results};
 use crate::studies::threshold::{EDGE_WIDTH, Factors, check};
 
-/// The factors that are tried, upwards.
+/// The factors to try, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstEdges {
-    /// Those of a threshold.
+    /// The factors of a threshold.
     pub factors: Factors,
 }
 
 /// Where a sample first overturns as its ground motion gets stronger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstEdge {
-    /// The least factor that certainly overturns; `None` where none does.
+    /// The least factor that certainly overturns; `None` if none does.
     pub factor: Option<f64>,
-    /// The greatest factor that was tried.
+    /// The greatest factor tried.
     pub tried_to: f64,
-    /// The least factor at which it is uncertain whether it overturns, where there is one below.
+    /// The least factor below that for which overturning is uncertain, if there is one.
     pub uncertain_from: Option<f64>,
 }
 
 impl FirstEdge {
-    /// The factor; beyond all where none overturns.
+    /// The factor; infinite if none overturns.
     #[must_use]
     pub fn strength(&self) -> f64 {
         self.factor.unwrap_or(f64::INFINITY)
     }
 }
 
-/// Where a structure first overturns, of strengths that are tried upwards; the edge between two is enclosed by bisection to
-/// that part of it.
+/// Where a structure first overturns, from strengths that are tried in ascending order. Bisection narrows the edge between two of
+/// them to this relative width.
 pub(super) fn first_edge(
     strengths: &[f64],
     width: f64,
@@ -52,7 +52,7 @@ pub(super) fn first_edge(
     for strength in strengths.iter().copied() {
         let found = match verdict(strength) {
             Ok(found) => found,
-            // A stronger motion may be beyond the model, such as ground that falls.
+            // A stronger motion may exceed what the model allows: the ground may fall freely.
             Err(_) if edge.tried_to > 0.0 => break,
             Err(reason) => return Err(NoAnswer::Failed(reason)),
         };
@@ -76,10 +76,10 @@ pub(super) fn first_edge(
 }
 
 impl FirstEdges {
-    /// The factors on the ground motion of a scenario that starts from rest.
+    /// The factors on the ground motion of a scenario, which must start from rest.
     ///
     /// # Errors
-    /// In words, what to change.
+    /// Explains what to change.
     pub fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
         check(scenario)?;
         Ok(Self { factors })
@@ -118,14 +118,14 @@ impl Question for FirstEdges {
 /// The probability of overturning up to a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbabilityAt {
-    /// The factor: that at which a sample first overturns.
+    /// The factor at which a sample first overturns.
     pub factor: f64,
-    /// How many do up to there.
+    /// The share of samples that overturn up to this factor.
     pub share: Share,
 }
 
 impl Told<'_, FirstEdge> {
-    /// The distribution over the factors at which samples overturn, ascending.
+    /// The distribution of the factors at which samples overturn, ascending.
     pub(crate) fn probabilities(&self) -> Vec<ProbabilityAt> {
         let mut factors: Vec<f64> = self
             .answered()
@@ -143,7 +143,7 @@ impl Told<'_, FirstEdge> {
         factors.iter().enumerate().filter_map(at).collect()
     }
 
-    /// The share that overturns at this factor, or below it already.
+    /// The share of samples that overturn at this factor or below it.
     pub(crate) fn share_up_to(&self, factor: f64) -> Option<Share> {
         let all = self.answered().count();
         let overturned = self
@@ -152,14 +152,14 @@ impl Told<'_, FirstEdge> {
         Share::of(overturned.count(), all)
     }
 
-    /// 5 %, median and 95 % of the factors; infinite where so many do not overturn.
+    /// The 5 % quantile, the median and the 95 % quantile of the factors; infinite if too few samples overturn.
     pub(crate) fn band(&self) -> Option<[f64; 3]> {
         band(self.answered().map(|(_, edge)| edge.strength()).collect())
     }
 }
 
 impl Ensemble<'_, FirstEdges> {
-    /// Files and words of all rows.
+    /// The files and words for all rows.
     ///
     /// # Errors
     /// When a value is not finite.

@@ -1,4 +1,4 @@
-//! How the history of every sample ends, how far it goes, and how it goes over time.
+//! How the history of every sample ends, how far it goes, and how it proceeds over time.
 
 use std::ops::ControlFlow;
 
@@ -13,38 +13,38 @@ use crate::scenario::Scenario;
 use crate::studies::ending::{Ending, Verdict};
 use crate::studies::results::{Look, Results};
 
-/// Times of the bands over time, at most.
+/// Largest number of times in the bands over time.
 const MOST_TIMES: usize = 300;
 
 /// A history, and the times at which its samples are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Histories {
-    /// The body whose rotation is followed, counted from 0: that which rotates most in the history of the scenario itself.
+    /// The body whose rotation is followed, from 0: the one that rotates most in the history of the scenario itself.
     pub body: usize,
-    /// Time between the instants at which it is told.
+    /// Time between the instants at which the rotation is recorded.
     pub step_s: f64,
-    /// How many these are, from time zero on.
+    /// Number of these instants, from time zero.
     pub times: usize,
 }
 
-/// How the history of a sample ended and went.
+/// How the history of a sample proceeded and ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Went {
-    /// How it ended.
+    /// How the history ended.
     pub ending: Ending,
-    /// Largest rotation of any body, in radians; of what overturned, on the way to where that was certain.
+    /// Largest rotation of any body, in radians; if it overturned, the largest until overturning was certain.
     pub peak_rotation_rad: f64,
-    /// Of a row of blocks, its largest potential energy over the barrier, where that is known.
+    /// For a row of blocks, its largest potential energy over the barrier, if that is known.
     pub potential_over_barrier: Option<f64>,
-    /// Rotation of the body at the instants, in radians, until its end: then it stays as it is, or has overturned.
+    /// Rotation of the body at the instants, in radians, until the end of the history; then it stays constant, or has overturned.
     pub course_rad: Vec<f32>,
 }
 
 impl Histories {
-    /// For the samples of a scenario: simulates that once, to see what it does.
+    /// For the samples of a scenario: simulates the scenario once, to find the body and the instants.
     ///
     /// # Errors
-    /// Says why it has no history.
+    /// Explains why the scenario has no history.
     pub fn of(scenario: &Scenario) -> Result<Self, String> {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
@@ -55,7 +55,7 @@ impl Histories {
         let peaks = summary.peak_rotations_rad.iter().enumerate();
         let most = peaks.max_by(|a, b| a.1.total_cmp(b.1));
         let body = most.map_or(0, |(body, _)| body);
-        // What ends early may go on longer in another sample.
+        // A history that ends early may last longer in another sample.
         let end_s = request.end_s.min(2.0 * summary.end_s);
         let samples = (end_s / request.output_step_s).floor().max(1.0);
         let stride = (samples / MOST_TIMES as f64).ceil();
@@ -83,13 +83,13 @@ impl Question for Histories {
             .model()
             .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
         let (ground, mut request) = (scenario.ground_motion(), scenario.request());
-        // Mechanisms go the same way whatever is told of it; of blocks steps may end where samples are.
+        // Output times do not influence the motion of mechanisms; for rows of blocks, steps may end at output times.
         if model.as_mechanisms().is_some() {
             request.output_step_s = self.step_s;
         }
         let mut course_rad: Vec<f32> = Vec::with_capacity(self.times);
         let mut record = |sample: &Sample| {
-            // Rounding of times is far below half a step of the output.
+            // The rounding error of times is far below half an output step.
             let wanted = self.step_s * course_rad.len() as f64 - 0.5 * request.output_step_s;
             if sample.time_s >= wanted && course_rad.len() < self.times {
                 let rotation = sample.rotations_rad.get(self.body).copied();
@@ -118,13 +118,13 @@ impl Question for Histories {
 }
 
 impl Went {
-    /// Whether its own history overturned, certain or not.
+    /// Whether the history itself overturned, whether certain or not.
     #[must_use]
     pub const fn goes_over(&self) -> bool {
         matches!(self.ending.outcome, Outcome::Overturned(_))
     }
 
-    /// How far it went; beyond everything if it overturned.
+    /// The largest rotation; infinite if it overturned.
     #[must_use]
     pub fn peak_rad(&self) -> f64 {
         if self.goes_over() {
@@ -134,7 +134,7 @@ impl Went {
         }
     }
 
-    /// How much it counts as overturned: half where that is uncertain.
+    /// The weight with which it counts as overturned: a half if that is uncertain.
     #[must_use]
     pub fn overturned(&self) -> f64 {
         match self.ending.verdict() {
@@ -144,7 +144,7 @@ impl Went {
         }
     }
 
-    /// The rotation at an instant: beyond everything, to its side, once it has overturned.
+    /// The rotation at an instant; infinite, with its sign, once it has overturned.
     fn rotation_rad(&self, time: usize) -> f64 {
         let last = || {
             let last = self.course_rad.last().copied().map_or(0.0, f64::from);
@@ -164,17 +164,17 @@ impl Went {
 /// The rotation at an instant, over all samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandAt {
-    /// When.
+    /// The time.
     pub time_s: f64,
-    /// That of the scenario itself; `None` where it has overturned.
+    /// The rotation of the scenario itself; `None` once it has overturned.
     pub own_rad: Option<f64>,
-    /// 5 %, median and 95 % of the samples; infinite where so many have overturned.
+    /// The 5 % quantile, the median and the 95 % quantile of the samples; infinite if enough of them have overturned.
     pub band_rad: [f64; 3],
-    /// How many have overturned until then.
+    /// The number of samples that have overturned by then.
     pub overturned: usize,
 }
 
-/// How many samples came to each outcome.
+/// The number of samples with each outcome.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcomes(pub Vec<(&'static str, Share)>);
 
@@ -188,7 +188,7 @@ impl Outcomes {
 }
 
 impl Told<'_, Went> {
-    /// The shares of all outcomes, those that no sample has included.
+    /// The shares of all outcomes, including those that no sample has.
     pub(crate) fn outcomes(&self) -> Outcomes {
         let names = [
             "overturned",
@@ -206,7 +206,7 @@ impl Told<'_, Went> {
         Outcomes(shares.collect())
     }
 
-    /// The rotation over time.
+    /// The bands of the rotation over time.
     pub(crate) fn bands(&self, asked: &Histories) -> Vec<BandAt> {
         let at = |time: usize| {
             let rotations: Vec<f64> = self
@@ -229,7 +229,7 @@ impl Told<'_, Went> {
 }
 
 impl Ensemble<'_, Histories> {
-    /// Files and words of all rows.
+    /// The files and words for all rows.
     ///
     /// # Errors
     /// When a value is not finite.

@@ -1,10 +1,10 @@
-//! What matters: which share of the variance of an answer each uncertain number has.
+//! Which uncertain numbers matter: the share of the variance of an answer that each of them explains.
 //!
-//! The first-order index of Sobol of a number is the part of the variance of the answer that would go if that number were
-//! known, on average: `Var(E[Y | X]) / Var(Y)`. It is estimated from the samples as they are, without further ones: the
-//! answer is expanded in cosines of the rank of the number, which are orthogonal for the equal distribution of ranks, and
-//! the squares of the coefficients add up to that variance (Plischke, Rel. Eng. Syst. Safety 107, 2012). What noise of the
-//! other numbers adds to the squares on average is taken off.
+//! Sobol's first-order index of a number is the part of the variance of the answer that would vanish, on average, if that
+//! number were known: `Var(E[Y | X]) / Var(Y)`. It is estimated from the existing samples, without further ones: the
+//! answer is expanded in cosines of the rank of the number. They are orthogonal for uniformly distributed ranks, and
+//! the squares of the coefficients add up to that variance (Plischke, Rel. Eng. Syst. Safety 107, 2012). The mean
+//! contribution of the other numbers to these squares, which is noise, is subtracted.
 
 use serde::Serialize;
 
@@ -15,23 +15,23 @@ use super::statistics::{bootstrap, correlation, interval, moments, ranks};
 pub struct Matters {
     /// Its first-order index, from 0 to 1.
     pub first_order: f64,
-    /// The interval of 95 % of that, by bootstrap.
+    /// Its 95 % interval, by bootstrap.
     pub first_order_interval: [f64; 2],
-    /// Spearman's rank correlation with the answer: above 0 where larger numbers make it larger.
+    /// Spearman's rank correlation with the answer: above 0 if larger numbers give larger answers.
     pub rank_correlation: f64,
-    /// The interval of 95 % of that, by bootstrap over the ranks as they are.
+    /// Its 95 % interval, by bootstrap with the original ranks.
     pub rank_correlation_interval: [f64; 2],
 }
 
-/// Samples below which nothing is said.
+/// With fewer samples than these, nothing is reported.
 pub const LEAST_SAMPLES: usize = 16;
 
-/// Cosines of the expansion: enough for an answer that turns three times, and so few that their noise is small.
+/// Largest number of cosines: enough for an answer that turns three times, and few enough that their noise is small.
 const MOST_HARMONICS: usize = 8;
-/// Samples that each of them takes.
+/// Number of samples needed for each cosine.
 const SAMPLES_PER_HARMONIC: usize = 16;
 
-/// How much each number matters for the answer of the samples: `values[sample][number]`, `answers[sample]`. `None` where the
+/// How much each number matters for the answer of the samples: `values[sample][number]`, `answers[sample]`. `None` if the
 /// answer does not vary, or there are fewer than [`LEAST_SAMPLES`].
 #[must_use]
 pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>> {
@@ -49,7 +49,7 @@ pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>
         let all: Vec<usize> = (0..count).collect();
         let raw = expansion.index(&all, answers)?;
         let first_order = unbiased(raw, expansion.bias());
-        // Drawing again adds as much noise once more.
+        // Resampling adds the same noise a second time.
         let drawn = resampled
             .iter()
             .filter_map(|drawn| expansion.index(drawn, answers))
@@ -73,12 +73,12 @@ pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>
     (0..numbers).map(of).collect()
 }
 
-/// The part that is not noise of an index that grows by `bias` times what it does not explain.
+/// Corrects an index for noise, which raises it by `bias` times the unexplained part.
 fn unbiased(raw: f64, bias: f64) -> f64 {
     ((raw - bias) / (1.0 - bias)).clamp(0.0, 1.0)
 }
 
-/// Cosines of the ranks of a number: a list for each harmonic.
+/// Cosines of the ranks of a number: one list for each harmonic.
 struct Expansion(Vec<Vec<f64>>);
 
 impl Expansion {
@@ -97,13 +97,13 @@ impl Expansion {
         Self(cosines.collect())
     }
 
-    /// What noise alone would add to the index.
+    /// The index that noise alone would give on average.
     fn bias(&self) -> f64 {
         let samples = self.0.first().map_or(1, Vec::len);
         self.0.len() as f64 / samples as f64
     }
 
-    /// The part of the variance of the answers, of the samples of these numbers, that is a function of the number.
+    /// The part of the variance of the answers of these samples that is a function of the number.
     fn index(&self, samples: &[usize], answers: &[f64]) -> Option<f64> {
         let chosen: Vec<f64> = samples.iter().map(|index| answers[*index]).collect();
         let [mean, variance] = moments(&chosen);

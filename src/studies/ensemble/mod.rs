@@ -1,8 +1,8 @@
-//! What follows from what is not known: a question answered for every sample of the uncertain numbers of a scenario.
+//! The consequences of uncertain numbers: a question answered for every sample of a scenario.
 //!
-//! An ensemble is a study whose first case is the scenario itself; each other case is a sample of [`Uncertain`]. What is asked of a
-//! case is a [`Question`]: how a history ends and goes ([`histories`]), from which factor on it overturns ([`edges`]), which records do ([`records`]).
-//! The study knows nothing of the question but its answers, so that shards, resuming and threads are the same for all.
+//! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is
+//! asked of each case: how its history ends and proceeds ([`histories`]), from which factor it overturns ([`edges`]), or which
+//! records overturn it ([`records`]). The study knows only the answers, so shards, resuming and threads work alike for all questions.
 
 pub mod edges;
 pub mod histories;
@@ -19,21 +19,21 @@ use self::matters::{Matters, what_matters};
 use super::runner::Study;
 use crate::scenario::{Scenario, Uncertain};
 
-/// What is asked of every sample.
+/// A question that is asked of every sample.
 pub trait Question: Sync {
-    /// What is known of a sample once it is computed.
+    /// The result for a sample.
     type Answer: Serialize + DeserializeOwned + Send;
 
     /// Name of the study in the files of its parts.
     const NAME: &'static str;
 
-    /// The answer of a scenario that starts from what the sample gives it.
+    /// The answer for a scenario that has the values of the sample.
     ///
     /// # Errors
-    /// Says why there is none.
+    /// Explains why there is none.
     fn answer(&self, scenario: &Scenario) -> Result<Self::Answer, NoAnswer>;
 
-    /// What else the answers depend on, in words.
+    /// Other settings on which the answers depend, in words.
     fn settings(&self) -> Vec<String> {
         Vec::new()
     }
@@ -43,7 +43,7 @@ pub trait Question: Sync {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoAnswer {
-    /// Its values make no structure that stands.
+    /// Its values do not give a structure that stands.
     Invalid(String),
     /// Its history could not be computed.
     Failed(String),
@@ -59,7 +59,7 @@ impl NoAnswer {
         }
     }
 
-    /// Why.
+    /// The reason.
     #[must_use]
     pub fn reason(&self) -> &str {
         match self {
@@ -68,16 +68,16 @@ impl NoAnswer {
     }
 }
 
-/// A sample, and what it came to.
+/// A sample and its answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampleRow<A> {
-    /// Its values, in the order of the keys; empty of the scenario itself.
+    /// Its values, in the order of the keys; empty for the scenario itself.
     pub values: Vec<f64>,
     /// Its answer.
     pub answer: Result<A, NoAnswer>,
 }
 
-/// The samples of a scenario and what is asked of each. The first case is the scenario itself.
+/// The samples of a scenario and the question asked of each. The first case is the scenario itself.
 #[derive(Debug)]
 pub struct Ensemble<'a, Q> {
     scenario: &'a Scenario,
@@ -86,10 +86,10 @@ pub struct Ensemble<'a, Q> {
 }
 
 impl<'a, Q: Question> Ensemble<'a, Q> {
-    /// Of a scenario with a table `[uncertain]`.
+    /// The ensemble of a scenario with a table `[uncertain]`.
     ///
     /// # Errors
-    /// In words, that it has none.
+    /// Explains that the scenario has no such table.
     pub fn new(scenario: &'a Scenario, question: Q) -> Result<Self, String> {
         let uncertain = scenario.uncertain().ok_or_else(|| {
             "the scenario has no [uncertain]: give it a table such as\n\n\
@@ -149,9 +149,9 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
     }
 }
 
-/// The rows of an ensemble, that of the scenario itself apart.
+/// The rows of an ensemble, with that of the scenario itself set apart.
 pub(crate) struct Told<'a, A> {
-    /// What was asked.
+    /// The scenario.
     pub(crate) scenario: &'a Scenario,
     pub(crate) uncertain: &'a Uncertain,
     /// The answer of the scenario itself.
@@ -181,7 +181,7 @@ impl<'a, A> Told<'a, A> {
         samples.filter_map(|row| Some((&*row.values, row.answer.as_ref().ok()?)))
     }
 
-    /// How many have none for this reason: by its name.
+    /// The number of samples without an answer for this reason, given by its name.
     pub(crate) fn without(&self, name: &str) -> usize {
         let reasons = self
             .samples
@@ -190,7 +190,7 @@ impl<'a, A> Told<'a, A> {
         reasons.filter(|reason| reason.name() == name).count()
     }
 
-    /// What matters for a number of each sample that has an answer, in their order.
+    /// Which uncertain numbers matter for `numbers`, one for each sample that has an answer, in their order.
     pub(crate) fn what_matters(&self, numbers: &[f64]) -> Option<Vec<Matters>> {
         let values: Vec<Vec<f64>> = self.answered().map(|(values, _)| values.to_vec()).collect();
         what_matters(&values, numbers)

@@ -20,7 +20,7 @@ fn title<'a, A>(told: &Told<'a, A>, otherwise: &'a str) -> &'a str {
     told.scenario.title().unwrap_or(otherwise)
 }
 
-/// The rotation over time: the band of the samples, their median, and the history of the scenario itself.
+/// Draws the rotation over time: the band of the samples, their median, and the history of the scenario itself.
 pub(super) fn bands(
     figure: Figure,
     told: &Told<'_, Went>,
@@ -49,7 +49,7 @@ pub(super) fn bands(
         Err(_) => "Rotation (rad)".to_owned(),
     };
     panels.panel(&label, 330.0, y, None, |drawing, axes| {
-        // What overturned is beyond the picture.
+        // Values of samples that overturned are outside the picture.
         let place =
             |at: &BandAt, value: f64| axes.place(at.time_s, value.clamp(axes.y.low, axes.y.high));
         let low = bands.iter().map(|at| place(at, at.band_rad[0]));
@@ -85,7 +85,7 @@ pub(super) fn bands(
     panels.finish(&keys, false)
 }
 
-/// The probability of overturning over the factor, with its interval, and the factor of the scenario itself.
+/// Draws the probability of overturning against the factor, with its interval, and the factor of the scenario itself.
 pub(super) fn probability(
     figure: Figure,
     told: &Told<'_, FirstEdge>,
@@ -112,7 +112,7 @@ pub(super) fn probability(
         ),
         y: Scale::exactly(0.0, 1.0, 5),
     };
-    // Steps: the share rises where a sample overturns.
+    // A step curve: the share rises at each factor at which a sample overturns.
     let steps = |of: fn(&ProbabilityAt) -> f64, first: f64| -> Vec<Vector2<f64>> {
         let mut before = first;
         let mut points = vec![axes.place(axes.x.low, first)];
@@ -145,7 +145,7 @@ pub(super) fn probability(
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
-/// The share that overturns over the intensity: of the records that shake the scenario itself, of each sample, and of all together.
+/// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all together.
 pub(super) fn fragility(figure: Figure, told: &Told<'_, Capacity>, asked: &Capacities) -> String {
     const MOST_FAINT: usize = 20;
     const FAINT: Stroke = Stroke::new("#b9d3e8", 0.9, "");
@@ -196,7 +196,7 @@ pub(super) fn fragility(figure: Figure, told: &Told<'_, Capacity>, asked: &Capac
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
-/// What matters: a bar for each number and answer, with its interval.
+/// Draws how much each number matters for each answer: a bar with its interval.
 pub(super) fn matters<A>(figure: Figure, told: &Told<'_, A>, decides: &[Decides<'_>]) -> String {
     const ROW_PX: f64 = 42.0;
     const BAR_PX: f64 = 14.0;

@@ -1,4 +1,4 @@
-//! From which intensity on every record of a suite overturns every sample: fragility of the records, of what is not known, and of both.
+//! The intensity from which each record of a suite overturns each sample: fragility due to the records, to uncertain numbers, and to both.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -11,10 +11,10 @@ use crate::scenario::{Measure, Scenario, Suite};
 use crate::studies::ending::Ending;
 use crate::studies::results::{Look, Results};
 
-/// How closely an intensity is enclosed, as a part of it: far closer than records agree.
+/// Relative width to which an intensity is bisected: far less than the scatter between records.
 const WIDTH: f64 = 2e-3;
 
-/// The records and levels of a suite, upwards.
+/// The records of a suite, and its levels in ascending order.
 #[derive(Clone, Debug)]
 pub struct Capacities {
     suite: Suite,
@@ -22,10 +22,10 @@ pub struct Capacities {
 }
 
 impl Capacities {
-    /// Those of a scenario that starts from rest.
+    /// Those of a scenario, which must start from rest.
     ///
     /// # Errors
-    /// In words, what to change.
+    /// Explains what to change.
     pub fn of(scenario: &Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
         let suite = scenario
@@ -37,13 +37,13 @@ impl Capacities {
         })
     }
 
-    /// What the intensities are.
+    /// The measure of the intensities.
     #[must_use]
     pub const fn measure(&self) -> Measure {
         self.suite.measure
     }
 
-    /// The levels that are tried, ascending.
+    /// The levels to try, ascending.
     #[must_use]
     pub fn levels(&self) -> &[f64] {
         &self.levels
@@ -53,7 +53,7 @@ impl Capacities {
         if self.suite.both_signs { 2 } else { 1 }
     }
 
-    /// Each record by its file, and whether it is mirrored, in the order of answers.
+    /// The file of each record, and whether it is mirrored, in the order of the answers.
     pub(crate) fn shakes(&self) -> impl Iterator<Item = (&str, bool)> {
         let records = self.suite.records.iter();
         records.flat_map(|series| {
@@ -63,7 +63,7 @@ impl Capacities {
     }
 }
 
-/// From which intensity on each record overturns a sample, each record followed by itself mirrored.
+/// The intensity from which each record overturns a sample; the mirrored record follows each record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Capacity(pub Vec<FirstEdge>);
 
@@ -91,18 +91,18 @@ impl Question for Capacities {
     }
 }
 
-/// A distribution of intensities that overturn, by its fractiles of 16, 50 and 84 %: the median, and as dispersion half the logarithm of the ratio of
-/// the others, which is the standard deviation of the logarithm of lognormal ones.
+/// A distribution of the intensities that overturn, from its 16, 50 and 84 % fractiles. The dispersion is half the logarithm of the
+/// ratio of the outer two, which for a lognormal distribution is the standard deviation of the logarithm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distribution {
-    /// The median; `None` where half of them do not overturn.
+    /// The median; `None` if fewer than half of them overturn.
     pub median: Option<f64>,
-    /// The dispersion; `None` where the upper fractile does not overturn.
+    /// The dispersion; `None` if the upper fractile is not reached.
     pub dispersion: Option<f64>,
 }
 
 impl Distribution {
-    /// Of intensities in any order, infinite where nothing overturned.
+    /// From intensities in any order; infinite ones mean that nothing overturned.
     fn of(mut intensities: Vec<f64>) -> Self {
         intensities.sort_by(f64::total_cmp);
         let finite = |part| quantile(&intensities, part).filter(|at| at.is_finite());
@@ -114,32 +114,32 @@ impl Distribution {
     }
 }
 
-/// A distribution, and the intervals of 95 % of its median and its dispersion, by bootstrap over records.
+/// A distribution, with the 95 % intervals of its median and its dispersion, by bootstrap over the records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimated {
     /// The distribution.
     pub of: Distribution,
-    /// Ends of the interval of the median, where it is known.
+    /// Ends of the interval of the median, if it is known.
     pub median: Option<[f64; 2]>,
-    /// The same of the dispersion.
+    /// The same for the dispersion.
     pub dispersion: Option<[f64; 2]>,
 }
 
 /// The three distributions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fragilities {
-    /// From record to record, of the scenario itself.
+    /// Due to the records: for the scenario itself.
     pub records: Estimated,
-    /// Of what is not known: of the medians over the records of each sample.
+    /// Due to the uncertain numbers: for the median over the records of each sample.
     pub uncertain: Estimated,
-    /// Of both: of all samples under all records.
+    /// Due to both: for all samples under all records.
     pub both: Estimated,
 }
 
-/// The intensities of some of the records: of a sample, those of every record.
+/// The intensities of a sample, a list for each record.
 type Intensities = Vec<Vec<f64>>;
 
-/// The three distributions of these records, of which some may be there more than once.
+/// The three distributions for these records, some of which may occur more than once.
 fn distributions(
     own: &[Vec<f64>],
     samples: &[Intensities],
@@ -173,7 +173,7 @@ impl Told<'_, Capacity> {
             .collect()
     }
 
-    /// The fragility of the records, of what is not known, and of both.
+    /// The fragility due to the records, to the uncertain numbers, and to both.
     pub(crate) fn fragilities(&self, asked: &Capacities) -> Fragilities {
         let own = self
             .own
@@ -193,7 +193,7 @@ impl Told<'_, Capacity> {
             let of = |number: fn(&Distribution) -> Option<f64>| {
                 let numbers = drawn.iter().filter_map(|drawn| number(&drawn[which]));
                 let numbers: Vec<f64> = numbers.collect();
-                // Where a draw has none, neither has the interval.
+                // If any draw lacks the number, there is no interval.
                 (numbers.len() == drawn.len())
                     .then(|| interval(numbers))
                     .flatten()
@@ -211,7 +211,7 @@ impl Told<'_, Capacity> {
         }
     }
 
-    /// The probability of overturning up to each level: of records, and of both.
+    /// The probability of overturning up to each level: due to the records, and due to both.
     pub(crate) fn at_levels(&self, asked: &Capacities) -> Vec<AtLevel> {
         let share = |edges: Vec<&FirstEdge>, level: f64| {
             let overturned = edges.iter().filter(|edge| edge.strength() <= level).count();
@@ -235,14 +235,14 @@ impl Told<'_, Capacity> {
     }
 }
 
-/// The share that overturns up to an intensity.
+/// The share of cases that overturn up to an intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtLevel {
     /// The intensity.
     pub intensity: f64,
-    /// Of the records that shake the scenario itself.
+    /// For the records that shake the scenario itself.
     pub records: Option<f64>,
-    /// Of all samples under all records.
+    /// For all samples under all records.
     pub both: Option<f64>,
 }
 
@@ -271,7 +271,7 @@ impl Fragilities {
 }
 
 impl Ensemble<'_, Capacities> {
-    /// Files and words of all rows.
+    /// The files and words for all rows.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -285,7 +285,7 @@ impl Ensemble<'_, Capacities> {
 mod tests {
     use super::*;
 
-    /// Lognormal intensities by their quantiles: the fractiles give back median and dispersion, within the spacing of so many.
+    /// Lognormal intensities from their quantiles: the fractiles give median and dispersion back, within the spacing of the 2000 values.
     #[test]
     fn fractiles_are_those_of_lognormal_intensities() {
         // Phi(1) = 0.8413: the fractile of 84 % is at 0.9945 deviations.
@@ -310,7 +310,7 @@ mod tests {
             (found.dispersion.unwrap() - 0.4 * 0.9945).abs() < 1e-3,
             "{found:?}"
         );
-        // What half of the records do not reach is not known.
+        // The median is unknown if fewer than half of the intensities are finite.
         let none = Distribution::of(vec![1.0, f64::INFINITY, f64::INFINITY]);
         assert_eq!([none.median, none.dispersion], [None, None]);
     }

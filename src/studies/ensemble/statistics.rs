@@ -2,27 +2,27 @@
 
 use serde::Serialize;
 
-/// Deviations of the normal distribution between which 95 % is.
+/// Number of standard deviations on either side of the mean that enclose 95 % of a normal distribution.
 const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
 
-/// How many of the samples have a property, and the share of all possible samples that follows from that.
+/// How many of the samples have a property, and the estimated share among all possible samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
-    /// How many have it.
+    /// The number of samples with the property.
     pub count: usize,
-    /// Of how many.
+    /// The number of all samples.
     pub of: usize,
     /// The share of the samples.
     pub share: f64,
-    /// Lower end of the interval of 95 % confidence.
+    /// Lower end of the 95 % confidence interval.
     pub low: f64,
-    /// Upper end of it.
+    /// Upper end of that interval.
     pub high: f64,
 }
 
 impl Share {
-    /// With the interval of Wilson (1927), which holds for independent samples: those of a sequence of low discrepancy are spread
-    /// more evenly, so it is on the safe side. `None` where there are no samples.
+    /// With the interval of Wilson (1927), which holds for independent samples. Samples of a low-discrepancy sequence are spread
+    /// more evenly, so the interval is on the safe side. `None` if there are no samples.
     #[must_use]
     pub fn of(count: usize, of: usize) -> Option<Self> {
         if of == 0 {
@@ -37,7 +37,7 @@ impl Share {
             count,
             of,
             share,
-            // The ends are met exactly where all or none have it.
+            // The ends are exact if all or none have it.
             low: if count == 0 {
                 0.0
             } else {
@@ -52,11 +52,11 @@ impl Share {
     }
 }
 
-/// The least of the values that a part of all of them, in 0 to 1, does not exceed; they ascend, and may be infinite. `None` where
-/// there are none.
+/// The least value such that this part of all values, in 0 to 1, does not exceed it. The values ascend, and may be infinite. `None`
+/// if there are none.
 #[must_use]
 pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
-    // What is only rounding is no further value.
+    // A rounding error must not advance to the next value.
     let rank = (part * ascending.len() as f64 - 1e-9).ceil().max(1.0);
     #[expect(
         clippy::cast_possible_truncation,
@@ -66,10 +66,10 @@ pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
     ascending.get(rank as usize - 1).copied()
 }
 
-/// The parts of all values that bands tell: from 5 to 95 %, and the median.
+/// The quantiles of bands: 5 %, the median and 95 %.
 pub const BAND: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// The ends and the median of the band of values in any order.
+/// The ends and the median of the band, for values in any order.
 #[must_use]
 pub fn band(mut values: Vec<f64>) -> Option<[f64; 3]> {
     values.sort_by(f64::total_cmp);
@@ -77,7 +77,7 @@ pub fn band(mut values: Vec<f64>) -> Option<[f64; 3]> {
     Some([low?, median?, high?])
 }
 
-/// Ranks from 1; equal values have the mean of theirs.
+/// Ranks from 1; equal values share the mean of their ranks.
 #[must_use]
 pub fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
@@ -107,7 +107,7 @@ pub fn moments(values: &[f64]) -> [f64; 2] {
     [mean, variance]
 }
 
-/// Pearson's correlation of two lists; `None` where one of them does not vary.
+/// Pearson's correlation of two lists; `None` if one of them does not vary.
 #[must_use]
 pub fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let n = pairs.clone().count() as f64;
@@ -122,10 +122,10 @@ pub fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f6
     (xx > 0.0 && yy > 0.0).then(|| (xy / (xx * yy).sqrt()).clamp(-1.0, 1.0))
 }
 
-/// How often a bootstrap draws again.
+/// Number of bootstrap replicates.
 pub const REPLICATES: usize = 300;
 
-/// Draws as many of so many things again, with replacement, [`REPLICATES`] times; the same on every machine.
+/// Draws indices below `count` with replacement, `count` at a time, [`REPLICATES`] times; the same ones on every machine.
 pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
     let mut state = 0_u64;
     // SplitMix64 (Steele, Lea and Flood 2014).
@@ -141,7 +141,7 @@ pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..REPLICATES).map(move |_| (0..count).map(|_| draw()).collect())
 }
 
-/// The ends of the interval of 95 % of bootstrapped values.
+/// The ends of the 95 % interval of bootstrapped values.
 #[must_use]
 pub fn interval(mut values: Vec<f64>) -> Option<[f64; 2]> {
     values.sort_by(f64::total_cmp);
@@ -162,7 +162,7 @@ mod tests {
                 "{share:?}"
             );
         }
-        // Of none and of all an end is known: 0 of 20 is 0 to 0.1611, 29 of 29 is 0.8830 to 1.
+        // If none or all have it, one end is known: 0 of 20 is 0 to 0.1611, 29 of 29 is 0.8830 to 1.
         let none = Share::of(0, 20).unwrap();
         assert!(none.low == 0.0 && (none.high - 0.1611).abs() < 5e-5);
         let all = Share::of(29, 29).unwrap();
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(correlation([(1.0, 2.0), (2.0, 2.0)].into_iter()), None);
     }
 
-    /// The mean of so many draws varies as theory says: by the deviation over the root of their number.
+    /// The mean of 100 draws has the variance that theory gives: that of one draw over their number.
     #[test]
     fn bootstraps_draw_evenly() {
         let means: Vec<f64> = bootstrap(100)

@@ -1,4 +1,4 @@
-//! What ensembles tell: their tables, their JSON, their words.
+//! Reports ensembles: their tables, JSON and words.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -18,7 +18,7 @@ use crate::studies::threshold::rounded;
 
 const SUMMARY: &str = "uncertain.json";
 
-/// A row of the table of samples: its number, from 1, or 0 of the scenario itself; its values; and the answer.
+/// A row of the table of samples: its number, from 1, or 0 for the scenario itself; its values; and its answer.
 struct Line<'a, A> {
     number: usize,
     values: Vec<Option<f64>>,
@@ -40,7 +40,7 @@ fn lines<'a, A>(told: &Told<'a, A>) -> Vec<Line<'a, A>> {
     [own].into_iter().chain(samples).collect()
 }
 
-/// The columns of what the samples are.
+/// The columns with the numbers of the samples and their values.
 fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A>>> {
     let names: Vec<String> = uncertain.keys.iter().map(|key| key.key.clone()).collect();
     vec![
@@ -51,13 +51,13 @@ fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A
     ]
 }
 
-/// What matters for an answer: the numbers by their keys.
+/// How much each uncertain number, given by its key, matters for an answer.
 pub(super) struct Decides<'a> {
-    /// Of what, in words that follow "decides 60 % of".
+    /// The answer, in words that follow "decides 60 % of".
     pub(super) what: &'static str,
     /// Its name in JSON.
     name: &'static str,
-    /// Each number, in the order of the keys; `None` where nothing can be said.
+    /// Each number, in the order of the keys; `None` if nothing can be said.
     pub(super) of: Option<Vec<(&'a UncertainKey, Matters)>>,
 }
 
@@ -125,7 +125,7 @@ impl<'a> Decides<'a> {
     }
 }
 
-/// A key as people say it: `thickness ratio` of `arch.thickness_ratio`, where no other key ends alike.
+/// A key in spoken form: `thickness ratio` for `arch.thickness_ratio`, if no other key has the same last part.
 pub(super) fn spoken(key: &str, uncertain: &Uncertain) -> String {
     const UNITS: [&str; 12] = [
         "_m_s2", "_kg_m3", "_gpa_m", "_mpa", "_gpa", "_rad", "_deg", "_hz", "_kn", "_m", "_s", "_g",
@@ -172,10 +172,10 @@ fn share_in_words(share: &Share) -> String {
     )
 }
 
-/// What no sample can tell.
+/// The uncertainty that samples do not cover.
 const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not name, other ground motions, and the model of motion itself";
 
-/// What the JSON of every ensemble begins with.
+/// The first part of the JSON of every ensemble.
 fn beginning<A>(told: &Told<'_, A>) -> Value {
     let reasons = told.samples.iter().zip(1..).filter_map(|(row, sample)| {
         let reason = row.answer.as_ref().err()?;
@@ -194,7 +194,7 @@ fn beginning<A>(told: &Told<'_, A>) -> Value {
     })
 }
 
-/// How many samples have no answer, and why the first has none.
+/// How many samples have no answer, and why the first of them has none.
 fn without_answer<A>(told: &Told<'_, A>) -> Vec<String> {
     let all = [
         (
@@ -222,18 +222,18 @@ fn without_answer<A>(told: &Told<'_, A>) -> Vec<String> {
     words.collect()
 }
 
-/// Null in place of what is infinite.
+/// Replaces infinite values by null.
 fn finite(values: [f64; 3]) -> [Option<f64>; 3] {
     values.map(|value| value.is_finite().then_some(value))
 }
 
-/// Parts of the answers in JSON, by their names.
+/// The quantiles of the answers in JSON, by their names.
 fn band_to_json(band: Option<[f64; 3]>) -> Value {
     let [low, median, high] = band.map_or([None; 3], finite);
     json!({ "quantile_05": low, "median": median, "quantile_95": high })
 }
 
-/// Files and words of how histories end and go.
+/// Files and words that report how histories proceed and end.
 pub(super) fn histories(
     told: &Told<'_, Went>,
     asked: &Histories,
@@ -244,7 +244,7 @@ pub(super) fn histories(
     let peaks: Vec<f64> = told.answered().map(|(_, went)| went.peak_rad()).collect();
     let overturned: Vec<f64> = told.answered().map(|(_, went)| went.overturned()).collect();
     let overturning = Decides::new(told, ["overturning", "whether it overturns"], &overturned);
-    // What overturned has no number for how far it went, but is beyond the others: ranks can tell that.
+    // A sample that overturned has no largest rotation, but it ranks above all others.
     let names = ["peak_rotation_rank", "how far it rocks"];
     let far = Decides::new(told, names, &ranks(&peaks));
     let decides = [overturning, far];
@@ -329,14 +329,14 @@ fn band_columns() -> Vec<Column<'static, BandAt>> {
     ]
 }
 
-/// The sentence that says it all.
+/// The sentence that sums it all up.
 fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> String {
     let counts = |went: &&Went| went.ending.outcome_name() == "overturned";
     let overturned = told.answered().map(|(_, went)| went).filter(counts).count();
     let Some(share) = Share::of(overturned, told.answered().count()) else {
         return "no sample has an answer".to_owned();
     };
-    // Rounded down, as `run` does: what has not reached the whole is not said to.
+    // Rounded down, as in `run`, so that a value just below 100 % does not read as 100 %.
     let down = |part: f64| format!("{:.1} %", (1000.0 * part).floor() / 10.0);
     let own = match told.own {
         Ok(went) => match went.ending.outcome_name() {
@@ -370,7 +370,7 @@ fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> Stri
     )
 }
 
-/// How far the samples go.
+/// How far the samples rock, in words.
 fn far_in_words(told: &Told<'_, Went>) -> String {
     let number = |value: f64| {
         if value.is_finite() {
@@ -391,10 +391,10 @@ fn far_in_words(told: &Told<'_, Went>) -> String {
     }
 }
 
-/// Files and words of the first factors that overturn.
+/// Files and words for the first factors that overturn.
 pub(super) fn edges(told: &Told<'_, FirstEdge>, figure: Figure) -> Result<Results, OutputError> {
     let probabilities = told.probabilities();
-    // What does not overturn at all is as strong as the strongest that was tried.
+    // A sample that never overturns counts with the largest factor tried.
     let strength = |(_, edge): (_, &FirstEdge)| edge.factor.unwrap_or(edge.tried_to);
     let strengths: Vec<f64> = told.answered().map(strength).collect();
     let names = ["first_factor", "the first factor that overturns"];
@@ -497,7 +497,7 @@ struct Reached<'a> {
     edge: &'a FirstEdge,
 }
 
-/// Files and words of the intensities from which on records overturn.
+/// Files and words for the intensities from which records overturn.
 pub(super) fn capacities(
     told: &Told<'_, Capacity>,
     asked: &Capacities,
@@ -505,7 +505,7 @@ pub(super) fn capacities(
 ) -> Result<Results, OutputError> {
     let fragilities = told.fragilities(asked);
     let levels = told.at_levels(asked);
-    // Of each sample the median over the records; beyond all that were tried where half do not overturn it.
+    // The median over the records for each sample; the largest level if half of the records do not overturn the sample.
     let most = asked.levels().last().copied().unwrap_or(1.0);
     let median = |(_, capacity): (_, &Capacity)| {
         let strengths = capacity.0.iter().map(FirstEdge::strength).collect();

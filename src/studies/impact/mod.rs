@@ -1,4 +1,4 @@
-//! Impacts of the structure of a scenario: the chain of mechanisms that they lead through, and one of them in detail.
+//! Impacts of the structure of a scenario: the chain of mechanisms through which they lead, and one impact in detail.
 
 mod told;
 mod words;
@@ -22,14 +22,14 @@ use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
 use crate::scenario::Scenario;
 
-/// The impact that leads to a link of the chain of four links after a first sway to one side.
+/// The impact that leads to a link of the chain of four links, for a first sway to a given side.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkImpact<'a> {
-    /// What rocks.
+    /// The model of the structure.
     pub model: &'a dyn FourLinkModel,
     /// The first sway.
     pub first: Sway,
-    /// Number of the impact, from 1, and of the link that it leads to.
+    /// Number of the impact, from 1, and of the link to which it leads.
     pub index: usize,
 }
 
@@ -52,13 +52,13 @@ impl<'a> LinkImpact<'a> {
         self.chain().link(self.index)
     }
 
-    /// The impulses; `None` also where the restitution coefficient is prescribed.
+    /// The impulses; `None` also if the restitution coefficient is prescribed.
     #[must_use]
     pub fn line(&self) -> Option<&'a ImpulseLine> {
         self.after()?.impulse_line.as_ref()
     }
 
-    /// Words that follow its number: nothing after a first sway to the right, which goes without saying.
+    /// Words that follow the number of the impact; empty for a first sway to the right, the usual case.
     #[must_use]
     pub const fn after_first(&self) -> &'static str {
         match self.first {
@@ -67,19 +67,19 @@ impl<'a> LinkImpact<'a> {
         }
     }
 
-    /// The side to which the mechanism after it sways.
+    /// The side to which the structure sways after it.
     #[must_use]
     pub const fn sway(&self) -> Sway {
         self.first.before(self.index)
     }
 
-    /// The profile in the frame in which that sway goes right.
+    /// The profile in the frame in which that sway is to the right.
     #[must_use]
     pub fn profile(&self) -> &'a dyn Profile {
         self.chain().profile(self.index)
     }
 
-    /// The impulse line as a table; `None` where there is none.
+    /// The impulse line as a table; `None` if there is none.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -88,7 +88,7 @@ impl<'a> LinkImpact<'a> {
         Some(told::line_table(self, &self.after()?.mechanism, line))
     }
 
-    /// The same impact by the models that the momentum theorems govern, and by that of the scenario.
+    /// The same impact by the models that obey the momentum theorems, and by the model of the scenario.
     fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<(ImpactModel, Option<Impact>)> {
         let mut models = vec![
             ImpactModel::MaxRestitution,
@@ -119,16 +119,16 @@ impl<'a> LinkImpact<'a> {
     }
 }
 
-/// What is asked of the impacts of four links.
+/// A question about the impacts of four links.
 #[derive(Clone, Copy, Debug)]
 pub struct Question {
-    /// How many impacts.
+    /// The number of impacts.
     pub count: usize,
     /// Whether the impact models are compared.
     pub models: bool,
     /// Whether the restitution is certified.
     pub certificate: bool,
-    /// Number of parts into which a ring without joints is cut for the certificate; `None`: as many as usual.
+    /// Number of parts into which a ring without joints is cut for the certificate; `None`: the usual number.
     pub joints: Option<usize>,
 }
 
@@ -146,17 +146,17 @@ pub fn chain_answer(
     }
 }
 
-/// The chain of four links with its impulses, and what else is asked of one impact.
+/// The chain of four links with its impulses, and the details that are asked for about one impact.
 ///
 /// # Errors
-/// When the certificate is not found.
+/// When no certificate is found.
 pub fn four_links_answer(
     scenario: &Scenario,
     impact: &LinkImpact<'_>,
     question: &Question,
 ) -> Result<Answer, ProjectionError> {
     let (model, count) = (impact.model, question.count);
-    // An arch of equal voussoirs, or of none, is its own mirror image, and so is its chain.
+    // An arch of equal voussoirs, or of none, is symmetric, so both chains are mirror images.
     let sides = match scenario.structure().is_symmetric() {
         true => vec![impact.first],
         false => vec![Sway::Right, Sway::Left],

@@ -1,4 +1,4 @@
-//! What impacts tell, for programs: the chain, its impulses and their certificate as JSON, the impulse line as CSV.
+//! Reports impacts for programs: the chain, its impulses and their certificate as JSON, the impulse line as CSV.
 //!
 //! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before.
 
@@ -17,7 +17,7 @@ use crate::output::mechanisms::hinges;
 use crate::output::table::{Cell, column, csv};
 
 /// Result of `impact` for any structure: the first `count` links of the chain that begins with a sway to
-/// this side; fewer when an impact stops the structure.
+/// this side; fewer if an impact stops the structure.
 #[must_use]
 pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Value> {
     let side = |index: usize| {
@@ -67,7 +67,7 @@ fn impulses(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
         .collect()
 }
 
-/// A section, counted from the left, as it is told: what it is called, and its value.
+/// The name and value of a section, counted from the left, in JSON.
 fn section(profile: &dyn Profile, section: f64) -> (&'static str, Value) {
     match profile.joint(section) {
         Some(joint) => ("joint", joint.into()),
@@ -83,7 +83,7 @@ fn section_cell(profile: &dyn Profile, section: f64) -> Cell<'static> {
     }
 }
 
-/// Extremes of the line; values that are infinite, because there is tension, become null.
+/// Extremes of the line; infinite values, which mean tension, become null.
 fn extremes(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
     let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
     let unit = impact.model.impulse_unit_n_s_per_m();
@@ -115,7 +115,7 @@ fn extremes(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
     told
 }
 
-/// Comparison of the impact models; null where by a model no mechanism can follow.
+/// Comparison of the impact models; null for a model by which no mechanism can follow.
 pub(super) fn models(impact: &LinkImpact<'_>, models: &[(ImpactModel, Option<Impact>)]) -> Value {
     let sway = impact.sway();
     let after = |by_model: &Impact| {
@@ -137,7 +137,7 @@ pub(super) fn models(impact: &LinkImpact<'_>, models: &[(ImpactModel, Option<Imp
         .collect()
 }
 
-/// The projection onto all admissible fields beside the link that the chain takes, if any mechanism can follow.
+/// The projection onto all admissible fields, compared with the link that the chain takes, if any mechanism can follow.
 pub(super) fn certificate(impact: &LinkImpact<'_>, projection: &Projection) -> Value {
     let (sway, profile) = (impact.sway(), impact.profile());
     let mut opened: Vec<Value> = projection
@@ -174,8 +174,8 @@ pub(super) fn certificate(impact: &LinkImpact<'_>, projection: &Projection) -> V
 /// Smallest number of parts of a ring between the rows of an impulse line.
 const LINE_PARTS: usize = 720;
 
-/// The impulse line of an impact as CSV, from the left springing: of a ring a row at each section of a fine division, every joint of
-/// voussoirs and every hinge; of a row of blocks one at every joint. The eccentricity is left empty where no impulse crosses a section.
+/// The impulse line of an impact as CSV, from the left springing. A ring has a row at each section of a fine division, at every
+/// joint of voussoirs and at every hinge; a row of blocks has one at every joint. The eccentricity is empty if no impulse crosses the section.
 pub(super) fn line_table(
     impact: &LinkImpact<'_>,
     mechanism: &FourLink,

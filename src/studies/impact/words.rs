@@ -1,4 +1,4 @@
-//! What impacts tell people.
+//! Reports impacts in words.
 
 use std::fmt::Write as _;
 
@@ -84,13 +84,13 @@ fn hinge_text(hinge: Hinge) -> String {
     }
 }
 
-/// How the sections of a structure are spoken of.
+/// Words for the sections of a structure.
 struct Words {
-    /// What it is.
+    /// The structure.
     whole: &'static str,
-    /// What a section is called in the head of a column.
+    /// A section, in the head of a column.
     section: &'static str,
-    /// How the place of an extreme is told.
+    /// The place of an extreme.
     place: &'static str,
 }
 
@@ -111,7 +111,7 @@ impl Words {
     }
 }
 
-/// A section as in tables: degrees or the number of a joint.
+/// A section as in tables: its angle in degrees, or the number of its joint.
 fn section_text(profile: &dyn Profile, section: f64) -> String {
     match profile.joint(section) {
         Some(joint) => joint.to_string(),
@@ -119,7 +119,7 @@ fn section_text(profile: &dyn Profile, section: f64) -> String {
     }
 }
 
-/// Where a section is, in a sentence.
+/// The place of a section, in a sentence.
 fn place_text(near: &str, profile: &dyn Profile, section: f64) -> String {
     match profile.joint(section) {
         Some(joint) => format!("at joint {joint}"),
@@ -182,7 +182,7 @@ pub(super) fn impulses_text(model: &dyn FourLinkModel, first: Sway, count: usize
     let at = |extremum: Extremum| section_text(profile, extremum.angle_rad);
     for (impact, line) in lines() {
         let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
-        // Both are infinite where there is tension.
+        // Both are infinite if there is tension.
         let ratio = |extremum: Extremum| match extremum.value {
             value if value.is_finite() => format!("{value:>9.5}"),
             _ => format!("{:>9}", "-"),
@@ -341,11 +341,11 @@ struct Zone {
     to: f64,
     /// Sum of their rotation rates.
     rate: f64,
-    /// The last of them.
+    /// The last of these joints.
     joint: usize,
 }
 
-/// The zones that open, from the left springing.
+/// The zones that open, in order from the left springing.
 fn zones(asked: &LinkImpact<'_>, projection: &Projection) -> Vec<Zone> {
     let mut zones: Vec<Zone> = Vec::new();
     for (joint, edge, rate) in projection.opened() {

@@ -1,4 +1,4 @@
-//! Limit analysis of a scenario: the push that starts it, and how.
+//! Limit analysis of a scenario: the ground acceleration that starts the structure, and its mechanism.
 
 mod told;
 
@@ -15,27 +15,27 @@ use crate::scenario::{ModelError, Scenario};
 /// Why there is no limit analysis.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoLimit {
-    /// It makes no row of blocks.
+    /// The structure is not a row of blocks.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// It does not start as a mechanism of one degree of freedom.
+    /// The structure does not start as a mechanism of one degree of freedom.
     #[error(transparent)]
     FourLinks(#[from] FourLinkError),
-    /// It makes no row of blocks whose joints slip.
+    /// The structure is not a row of blocks whose joints can slip.
     #[error(transparent)]
     FreeHinges(#[from] FreeHingesError),
-    /// It does not stand.
+    /// The structure does not stand.
     #[error(transparent)]
     Stability(#[from] StabilityError),
-    /// It slides apart, or that could not be told.
+    /// The structure slides apart, or the analysis failed.
     #[error(transparent)]
     Friction(#[from] FrictionError),
 }
 
-/// What starts the structure of a scenario, to either side; with its coefficient of friction as well where joints slip.
+/// The onset of motion of a scenario's structure, to either side; if joints may slip, also with their coefficient of friction.
 ///
 /// # Errors
-/// When the structure does not stand, or is none that the analysis is for.
+/// When the structure does not stand, or the analysis does not apply to it.
 pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
     let mut answer = match scenario.row()? {
         Some(row) => told::row(scenario, &row)?,

@@ -1,4 +1,4 @@
-//! What limit analysis tells, for programs and for people.
+//! Reports limit analysis, for programs and for people.
 
 use std::fmt::Write as _;
 
@@ -17,7 +17,7 @@ use crate::output::mechanisms::columns;
 use crate::output::mechanisms::{HINGES, by_body, degrees, hinges};
 use crate::scenario::Scenario;
 
-/// The push that starts a row, by the static programme, and what opens: for programs and for people.
+/// The acceleration that starts a row, by the static programme, and the joints that open, as JSON and in words.
 pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let onsets = [onset(row, Sway::Right)?, onset(row, Sway::Left)?];
@@ -78,7 +78,7 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
     Ok(Answer { json, text })
 }
 
-/// The push that starts the first mechanism of one degree of freedom.
+/// The acceleration that starts the first mechanism of one degree of freedom.
 pub(super) fn mechanism(scenario: &Scenario) -> Result<Answer, NoLimit> {
     let model = scenario.mechanisms()?;
     let gravity_m_s2 = scenario.gravity_m_s2();
@@ -88,7 +88,7 @@ pub(super) fn mechanism(scenario: &Scenario) -> Result<Answer, NoLimit> {
     })
 }
 
-/// Adds what starts a row whose joints slip with this coefficient.
+/// Adds the onset of motion of a row whose joints slip with this coefficient.
 pub(super) fn add_friction(
     answer: &mut Answer,
     row: &Row,
@@ -99,7 +99,7 @@ pub(super) fn add_friction(
     Ok(())
 }
 
-/// What the limit analysis says of joints that slip.
+/// The result of limit analysis for joints that slip, in words.
 fn friction_text(row: &Row, coefficient: f64) -> Result<String, FrictionError> {
     let mut text =
         format!("\nwith joints that slip at a coefficient of friction of {coefficient:?}:\n");
@@ -121,7 +121,7 @@ fn friction_text(row: &Row, coefficient: f64) -> Result<String, FrictionError> {
         );
         for joint in &onset.yields {
             let open = match joint.opens {
-                // Named by the edge that it turns about, as above.
+                // Named by the edge about which it turns, as above.
                 [true, true] => Some("parts at both edges"),
                 [true, false] => Some("opens with its hinge at the extrados"),
                 [false, true] => Some("opens with its hinge at the intrados"),
@@ -225,7 +225,7 @@ fn hinge_list(hinges: &[Hinge]) -> String {
 /// it, its mechanism, and the least coefficient with which the row stands.
 ///
 /// # Errors
-/// When the row does not stand with this coefficient, or a programme is not solved.
+/// When the row does not stand with this coefficient, or a programme cannot be solved.
 fn friction_json(row: &Row, coefficient: f64) -> Result<Value, FrictionError> {
     let mut sides = serde_json::Map::new();
     for sway in [Sway::Right, Sway::Left] {
@@ -259,8 +259,8 @@ fn friction_json(row: &Row, coefficient: f64) -> Result<Value, FrictionError> {
     Ok(result)
 }
 
-/// Result of `limit` for a row of blocks: the push that starts it to each side, by the static programme, and the joints
-/// that open.
+/// Result of `limit` for a row of blocks: the acceleration that starts it to each side, by the static programme, and the
+/// joints that open.
 #[must_use]
 pub fn row_json(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) -> Value {
     let [right, left] = onsets;
@@ -291,7 +291,7 @@ pub fn row_json(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) ->
     })
 }
 
-/// What four links know of each side: unstable equilibrium and equivalent blocks.
+/// What is specific to four links, for each side: unstable equilibrium and equivalent blocks.
 fn of_both_sides(model: &dyn MechanismModel, gravity_m_s2: f64) -> Value {
     let side = |sway| {
         json!({
@@ -314,9 +314,9 @@ fn equivalent_json(model: &dyn MechanismModel, sway: Sway, gravity_m_s2: f64) ->
     })
 }
 
-/// Result of `limit`: incipient acceleration and mechanism on both sides, rotations of the bodies at the unstable
-/// equilibrium of the first mechanism swaying right (those swaying left are its mirror image), and the equivalent blocks
-/// (see [`crate::mechanics::equivalent`]), the same on both sides.
+/// Result of `limit`: incipient acceleration and mechanism on both sides; rotations of the bodies at the unstable
+/// equilibrium of the first mechanism swaying right (those swaying left are its mirror image); and the equivalent blocks
+/// (see [`crate::mechanics::equivalent`]), which are the same on both sides.
 #[must_use]
 pub fn mechanism_json(model: &dyn MechanismModel, gravity_m_s2: f64) -> Value {
     let both =
