@@ -108,23 +108,23 @@ pub struct Sample {
     pub energy_j: f64,
     /// The same over the energy barrier of the mechanism that moves; `None` where no barrier is known.
     pub energy_ratio: Option<f64>,
-    /// Rotation of the body that carries the coordinate over that at the unstable equilibrium of the mechanism
-    /// that moves, anticlockwise: below -1 or above 1 gravity overturns the structure. `None` where it is not
-    /// known.
+    /// Rotation (anticlockwise) of the body that carries the coordinate, over its rotation at the unstable
+    /// equilibrium of the mechanism that moves: below -1 or above 1 gravity overturns the structure. `None`
+    /// where it is not known.
     pub rotation_over_critical: Option<f64>,
-    /// Gaps of the joints at intrados and extrados, in m, of a row of blocks; else none.
+    /// Gaps of the joints at intrados and extrados, in m; only for a row of blocks.
     pub gaps_m: Vec<[f64; 2]>,
     /// Line of thrust: how far it lies towards the extrados from the middle of each joint, or of each section of
     /// [`Arch::thrust_sections_rad`](crate::mechanics::arch::Arch::thrust_sections_rad), over the thickness; `None`
-    /// where there is no pressure. Only where a [`Recorder`] wants it and the model knows it; else empty.
+    /// where there is no pressure. Empty unless a [`Recorder`] wants it and the model knows it.
     pub eccentricity_ratios: Vec<Option<f64>>,
-    /// Offsets of the joints, in m, the right face towards the extrados, of a row whose joints slip; else none.
+    /// Offsets of the joints, in m, of the right face towards the extrados; only for a row whose joints slip.
     pub offsets_m: Vec<f64>,
-    /// What the joints bear, of a row with elastic joints; else none.
+    /// Forces and stresses of the joints; only for a row with elastic joints.
     pub pressures: Vec<JointPressure>,
 }
 
-/// What an elastic joint bears, by its elastic stress.
+/// Forces and stresses of an elastic joint, by its elastic stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointPressure {
     /// Normal force, in N; compression is positive.
@@ -133,14 +133,14 @@ pub struct JointPressure {
     pub shear_n: f64,
     /// How far the normal force lies towards the extrados from the middle of the joint, over its length; `None` where nothing presses.
     pub eccentricity_ratio: Option<f64>,
-    /// Part of the joint that presses.
+    /// Fraction of the joint that presses.
     pub contact_ratio: f64,
     /// Compressive stress at intrados and extrados, in Pa.
     pub edge_stresses_pa: [f64; 2],
 }
 
 impl Sample {
-    /// A structure at rest on still ground, of which nothing else is told: all lists are empty.
+    /// A structure at rest on still ground, with no other data: all lists are empty.
     #[must_use]
     pub const fn at_rest(time_s: f64) -> Self {
         Self {
@@ -166,7 +166,7 @@ impl Sample {
 }
 
 named! {
-    /// What an event is.
+    /// The kind of an event.
     pub enum EventKind {
         /// The structure starts to move from rest.
         Uplift = "uplift",
@@ -196,10 +196,10 @@ pub struct Event {
     pub rates_rad_s: Vec<f64>,
     /// Kinetic and potential energy just after, in J.
     pub energy_j: f64,
-    /// Hinges of its mechanism from left to right; none at rest. Of a row of blocks, the joints that are open or open at
-    /// once, also those that are left open at rest.
+    /// Hinges of its mechanism from left to right; none at rest. For a row of blocks, the joints that are open or open
+    /// at this instant, including those left open at rest.
     pub hinges: Vec<Hinge>,
-    /// The impact, where the event is one, also one that leads to rest.
+    /// The impact, if the event is one, also if it leads to rest.
     pub impact: Option<Impact>,
 }
 
@@ -238,7 +238,7 @@ pub struct Impact {
     pub energy_before_j: f64,
     /// Kinetic energy after, in J.
     pub energy_after_j: f64,
-    /// The part of the loss that friction took, in J, where joints slip.
+    /// The part of the loss that friction took, in J, if joints slip.
     pub friction_j: Option<f64>,
     /// Rotation rates of the bodies just before.
     pub rates_before_rad_s: Vec<f64>,
@@ -277,18 +277,18 @@ pub struct Summary {
     /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity
     /// alone overturns. `None` where it is not known.
     pub peak_over_critical: Option<f64>,
-    /// Of a row of blocks, its largest potential energy over the barrier of its first mechanism, which may not be the one that
-    /// it overturns by. `None` where no barrier is known, or joints slipped so far that friction took a hundredth of it.
+    /// For a row of blocks, its largest potential energy over the barrier of its first mechanism, which may not be the one by
+    /// which it overturns. `None` where no barrier is known, or if joints slipped so far that friction took a hundredth of it.
     pub peak_potential_over_barrier: Option<f64>,
     /// Largest difference between the energy of the structure and its initial energy plus the work of
     /// the ground minus the losses at impacts, over the energy barrier of the first mechanism.
     pub energy_defect_ratio: f64,
-    /// The demands over all samples, if any were made; of a structure that overturns, over those before
-    /// it passes the unstable equilibrium for the last time.
+    /// The demands over all samples, if any were made; for a structure that overturns, over those before it
+    /// passes the unstable equilibrium for the last time.
     pub thrust: Option<ThrustRecord>,
     /// Work done.
     pub cost: Cost,
-    /// What only rows of blocks tell.
+    /// Results that only rows of blocks have.
     pub row: Option<Box<RowSummary>>,
 }
 
@@ -299,7 +299,7 @@ impl Summary {
         self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Index of the body that turns most: of several, the last.
+    /// Index of the body that turns most; the last one, if several do.
     #[must_use]
     pub fn largest_body(&self) -> usize {
         let most_rad = self.largest_rotation_rad();
@@ -310,7 +310,7 @@ impl Summary {
             .map_or(0, |before| self.peak_rotations_rad.len() - 1 - before)
     }
 
-    /// Number of impacts; `None` of elastic joints, whose contact lasts.
+    /// Number of impacts; `None` for elastic joints, whose contact lasts.
     #[must_use]
     pub fn known_impacts(&self) -> Option<usize> {
         let gives_way = self.row.as_ref().and_then(|row| row.elastic.as_ref());
@@ -323,7 +323,7 @@ impl Summary {
         matches!(self.outcome, Outcome::Overturned(_)).then_some(self.outcome_time_s)
     }
 
-    /// Half cycles of a row of blocks; of others, none.
+    /// Half cycles of a row of blocks; empty for other structures.
     #[must_use]
     pub fn half_cycles(&self) -> &[HalfCycle] {
         self.row.as_ref().map_or(&[], |row| &row.half_cycles)
@@ -333,20 +333,20 @@ impl Summary {
 /// Work done for a history.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Evaluations of the right-hand side; of a row of blocks, systems of equations that were solved.
+    /// Evaluations of the right-hand side; for a row of blocks, systems of equations that were solved.
     pub evaluations: u64,
     /// Accepted steps.
     pub steps: u64,
 }
 
-/// What the summary of a row of blocks tells besides.
+/// Additional summary of a row of blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowSummary {
     /// Half cycles.
     pub half_cycles: Vec<HalfCycle>,
-    /// What slipped; `None` where joints do not slip.
+    /// Slip; `None` where joints do not slip.
     pub sliding: Option<Sliding>,
-    /// What is elastic; `None` where joints are rigid.
+    /// Energies and stresses of elastic joints; `None` where joints are rigid.
     pub elastic: Option<ElasticSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
@@ -354,15 +354,15 @@ pub struct RowSummary {
     pub largest_potential_j: f64,
     /// Energy taken by impacts, in J, without what friction takes.
     pub energy_taken_j: f64,
-    /// By how much the energy balance is wrong, over the larger of the largest kinetic energy and the barrier, where that is known.
+    /// Error of the energy balance, over the larger of the largest kinetic energy and the barrier, where that is known.
     pub energy_error: f64,
     /// Least normal force at a joint outside impacts, in N; infinite without any step.
     pub least_normal_n: f64,
     /// Largest error of closure of an arch, in m.
     pub closure_error_m: f64,
-    /// The longest step that it might take, in seconds.
+    /// The longest step that was allowed, in seconds.
     pub longest_step_s: f64,
-    /// The time within which landings crowd, in seconds.
+    /// The time within which landings count as crowded, in seconds.
     pub shortest_step_s: f64,
     /// Programs solved.
     pub programs: u64,
@@ -376,22 +376,22 @@ pub struct RowSummary {
     pub longest_step: Elapsed,
 }
 
-/// From one passage of the centre of gravity through its undeformed place to the next.
+/// A half cycle: from one passage of the centre of gravity through its undeformed place to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfCycle {
     /// To which side.
     pub sway: Sway,
     /// When it began, in seconds.
     pub start_s: f64,
-    /// How long it took, in seconds; of the last one, until the motion ended.
+    /// How long it took, in seconds; for the last one, until the motion ended.
     pub duration_s: f64,
     /// Largest rotation of a block, in radians.
     pub peak_rad: f64,
-    /// Energy at its end over that at its beginning; of the first and the last one unknown.
+    /// Energy at its end over that at its beginning; unknown for the first and the last one.
     pub energy_ratio: Option<f64>,
 }
 
-/// What slipped in a motion.
+/// The slip in a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sliding {
     /// Energy that friction took, in J.
@@ -402,7 +402,7 @@ pub struct Sliding {
     pub largest_offsets_m: Vec<f64>,
     /// Steps whose bounds of friction did not converge; none with elastic joints, whose bounds are known in every step.
     pub unconverged: u64,
-    /// The largest error of such a bound, as part of the largest bound.
+    /// The largest error of such a bound, as a fraction of the largest bound.
     pub bound_error: f64,
 }
 
@@ -420,7 +420,7 @@ impl Sliding {
     }
 }
 
-/// What a motion with elastic joints tells besides: energies from the beginning to the end.
+/// Additional summary of a motion with elastic joints; energies are totals from the beginning to the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElasticSummary {
     /// The largest compressive stress.
@@ -441,7 +441,7 @@ pub struct ElasticSummary {
     pub rest_eccentricity_joint: usize,
 }
 
-/// A compressive stress, where and when.
+/// A compressive stress, with its place and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stress {
     /// In Pa.
@@ -452,7 +452,7 @@ pub struct Stress {
     pub time_s: f64,
 }
 
-/// Time that a computation took; `None` where it was not measured. It belongs to no result: any two are equal.
+/// Time that a computation took; `None` where it was not measured. It is no part of a result: any two are equal.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Elapsed(pub Option<Duration>);
 
@@ -489,8 +489,8 @@ pub(crate) fn impacts(events: &[Event]) -> impl Iterator<Item = (f64, &Impact)> 
         .filter_map(|event| Some((event.time_s, event.impact.as_ref()?)))
 }
 
-/// The samples of a history as columns, one entry a sample, without lines of thrust. Columns by body have as many entries a sample as there
-/// are bodies, sample by sample.
+/// The samples of a history as columns, one entry a sample, without lines of thrust. Columns by body have one entry for each body and
+/// sample, sample by sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     /// Times.
@@ -521,11 +521,11 @@ pub struct Samples {
     pub energy_ratio: Vec<Option<f64>>,
     /// Rotations over the critical ones, where these are known.
     pub rotation_over_critical: Vec<Option<f64>>,
-    /// Gaps of the joints of a row of blocks at intrados and extrados, in m, joint by joint; else none.
+    /// Gaps of the joints at intrados and extrados, in m, joint by joint; only for a row of blocks.
     pub gaps_m: Vec<[f64; 2]>,
-    /// Offsets of the joints of a row whose joints slip, in m, joint by joint; else none.
+    /// Offsets of the joints, in m, joint by joint; only for a row whose joints slip.
     pub offsets_m: Vec<f64>,
-    /// What the joints of a row with elastic joints bear, joint by joint; else none.
+    /// Forces and stresses of the joints, joint by joint; only for a row with elastic joints.
     pub pressures: Vec<JointPressure>,
 }
 
@@ -615,7 +615,7 @@ fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
     Pose::new(rotation_rad, Vector2::new(x_m, y_m))
 }
 
-/// What the samples of a model tell of.
+/// The size of the samples of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     /// Number of bodies.
@@ -624,22 +624,22 @@ pub struct Shape {
     pub joints: usize,
     /// Number of joints that have offsets.
     pub slipping: usize,
-    /// Number of joints that tell what they bear.
+    /// Number of joints whose forces and stresses are sampled.
     pub pressing: usize,
 }
 
 impl Shape {
-    /// Bytes of so many samples at most: as if all hinges were open all the time.
+    /// Bytes of this many samples, at most: as if all hinges were open all the time.
     #[must_use]
     pub fn bytes(self, samples: u64) -> u64 {
-        // Times, two accelerations, energies; events so far and where the hinges begin; what may not be known.
+        // Times, two accelerations, energies; events so far and where the hinges begin; two ratios that may be unknown.
         let alone = 4 * size_of::<f64>()
             + 2 * size_of::<usize>()
             + 2 * size_of::<Option<f64>>()
             + size_of::<State>()
             + size_of::<Demand>();
         let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
-        // Links have as many hinges more than bodies, at most one, as a row between supports has joints.
+        // There is at most one hinge more than bodies, as a row between supports has one joint more than blocks.
         let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
         let by_joint = self.joints * size_of::<[f64; 2]>()
             + self.slipping * size_of::<f64>()
@@ -649,7 +649,7 @@ impl Shape {
     }
 }
 
-/// Memory that a history may take where nothing else is said, in bytes.
+/// Memory that a history may take by default, in bytes.
 pub const MEMORY_BYTES: u64 = 4_000_000_000;
 
 /// A history takes more memory than it may.
@@ -666,7 +666,7 @@ pub struct MemoryError {
     pub allowed_bytes: u64,
 }
 
-/// A size that people read.
+/// A size in readable units.
 fn in_words(bytes: u64) -> String {
     let megabytes = bytes as f64 / 1e6;
     if megabytes < 1e3 {
@@ -681,12 +681,12 @@ fn in_words(bytes: u64) -> String {
 pub struct Recording {
     samples: Samples,
     events: Vec<Event>,
-    /// What all samples and the events so far take.
+    /// Memory of all samples and of the events so far.
     memory: MemoryError,
 }
 
 impl Recording {
-    /// For so many samples at most, which with the events may take so much memory.
+    /// A recording of at most this many samples, which together with the events may take this much memory.
     ///
     /// # Errors
     /// When the samples alone may take more.

@@ -33,18 +33,18 @@ pub trait Model: Debug + Send + Sync {
     /// `None` if no push moves it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64>;
 
-    /// It as a model of mechanisms of one degree of freedom, if it is one.
+    /// This model as one of mechanisms with one degree of freedom, if it is one.
     fn as_mechanisms(&self) -> Option<&dyn MechanismModel> {
         None
     }
 
-    /// The blocks, where it moves a row of these one by one.
+    /// The row of blocks, if the model moves its blocks one by one.
     fn row(&self) -> Option<&Row> {
         None
     }
 
-    /// The same structure, computed in other ways that are as good: what they do not agree in is not known. None where the
-    /// computation does not matter.
+    /// The same structure, computed in other, equally good ways: where they disagree, the result is not known. Empty if
+    /// the way of computing does not matter.
     fn repetitions(&self) -> Vec<Repetition> {
         Vec::new()
     }
@@ -61,7 +61,7 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
-    /// Energy in J above that at rest which it must reach to overturn, where joints give way and that is known.
+    /// Energy above that at rest, in J, that it must reach to overturn; only for elastic joints, and where it is known.
     fn elastic_barrier_j(&self, _gravity_m_s2: f64) -> Option<f64> {
         None
     }
@@ -71,14 +71,14 @@ pub trait Model: Debug + Send + Sync {
         false
     }
 
-    /// Its motions on several grounds, in their order, as [`Model::simulate`] has them without a recorder. A model that computes several
-    /// at once does so here; no result depends on what is beside it.
+    /// Its motions on several grounds, in their order, as [`Model::simulate`] gives them without a recorder. A model that computes
+    /// several at once does so here; no result depends on the other cases.
     fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
         let alone = |(ground, request): &Case| self.simulate(ground, request, None);
         cases.iter().map(alone).collect()
     }
 
-    /// What its samples tell of.
+    /// The size of its samples.
     fn shape(&self) -> Shape {
         Shape {
             bodies: self.bodies().len(),
@@ -100,12 +100,12 @@ pub trait Model: Debug + Send + Sync {
         self.history_within(MEMORY_BYTES, ground, request)
     }
 
-    /// The same with another bound of memory, in bytes. [`Shape::bytes`] of [`Request::most_samples`] tells what the
-    /// samples take.
+    /// The same with another bound of memory, in bytes. [`Shape::bytes`] of [`Request::most_samples`] gives the
+    /// memory of the samples.
     ///
     /// # Errors
-    /// Those of [`Model::simulate`], and when the history takes more memory: without any work where that is known
-    /// before.
+    /// Those of [`Model::simulate`], and when the history takes more memory: if that is known beforehand, nothing is
+    /// computed.
     fn history_within(
         &self,
         memory_bytes: u64,
@@ -125,25 +125,25 @@ pub trait Model: Debug + Send + Sync {
     }
 }
 
-/// A ground motion, and what is asked of the motion on it.
+/// A ground motion, and a request for the motion on it.
 pub type Case = (GroundMotion, Request);
 
-/// A model beside another one that is computed in another way.
+/// A copy of a model that is computed in another way.
 #[derive(Debug)]
 pub struct Repetition {
-    /// In which way, in words.
+    /// The other way, in words.
     pub name: &'static str,
     /// The same structure.
     pub model: Box<dyn Model>,
 }
 
-/// A model that moves as one mechanism with one degree of freedom at a time, and what only such a model has.
+/// A model that moves as one mechanism with one degree of freedom at a time, with what only such a model has.
 pub trait MechanismModel: Model {
-    /// Restitution coefficient of the impact that leads to the mechanism after so many impacts and a first sway to
-    /// this side, 1 for the first; `None` when an impact before it stops the structure.
+    /// Restitution coefficient of the impact that leads to the mechanism after this many impacts and a first sway
+    /// to this side, 1 for the first; `None` when an impact before it stops the structure.
     fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64>;
 
-    /// The same after a first sway to the right; of a structure that is its own mirror image, to either side.
+    /// The same after a first sway to the right; for a structure that is its own mirror image, to either side.
     fn restitution_after(&self, impacts: usize) -> Option<f64> {
         self.restitution_from(Sway::Right, impacts)
     }
@@ -176,11 +176,12 @@ pub trait MechanismModel: Model {
         self.equivalent_towards(Sway::Right, gravity_m_s2)
     }
 
-    /// Its first mechanism to this side, at this part of its way to the unstable equilibrium; `None` if it has none.
+    /// Its first mechanism to this side, displaced by this fraction of the way to the unstable equilibrium; `None` if it has
+    /// none.
     fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
-    /// Mass times horizontal displacement of the common centre of gravity, in kg m and to the side that it sways to, of the
-    /// mechanism after so many impacts and a first sway to this side, at this coordinate; `None` when there is no such mechanism.
+    /// Mass times horizontal displacement of the common centre of gravity, in kg m towards the side of the sway, at this
+    /// coordinate of the mechanism after this many impacts and a first sway to this side; `None` when there is no such mechanism.
     fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64>;
 
     /// The rigid bodies of its first mechanism to this side, as [`crate::mechanics::capacity::moving_bodies`]; `None` if it
@@ -198,8 +199,8 @@ pub trait MechanismModel: Model {
     ) -> Result<Option<Sway>, SimulationError>;
 }
 
-/// A model that rocks as four links, hinges at sections of a ring or at joints of a row of blocks, and what only such a
-/// model has.
+/// A model that rocks as four links, with hinges at sections of a ring or at joints of a row of blocks, and with what
+/// only such a model has.
 pub trait FourLinkModel: MechanismModel {
     /// Its chain of mechanisms after a first sway to this side.
     fn chain_from(&self, first: Sway) -> &Chain;
@@ -213,7 +214,8 @@ pub trait FourLinkModel: MechanismModel {
 pub struct Request {
     /// Acceleration of gravity, in 0.001 to 1000.
     pub gravity_m_s2: f64,
-    /// Upper bound of the time, in 1e-6 to 1e6: a history ends earlier at rest on ground that is quiet for good, or overturned.
+    /// Upper bound of the time, in 1e-6 to 1e6: a history ends earlier if the structure overturns, or rests on ground that stays
+    /// quiet.
     pub end_s: f64,
     /// Interval of the samples, in 1e-6 to 1e6, of which there are at most 1e7. Some models end their steps there.
     pub output_step_s: f64,
@@ -221,7 +223,7 @@ pub struct Request {
     pub initial: Option<Initial>,
     /// Error that the integrator may make in a step, relative to the state, in 1e-13 to 1e-3.
     pub relative_tolerance: f64,
-    /// An impact that leaves less than this part of the energy barrier of the first mechanism ends in rest; in 1e-16 to 0.1.
+    /// An impact that leaves less than this fraction of the energy barrier of the first mechanism ends in rest; in 1e-16 to 0.1.
     pub rest_energy_ratio: f64,
 }
 
@@ -257,7 +259,8 @@ impl Default for Request {
 impl Request {
     /// Accelerations of gravity.
     pub(crate) const GRAVITY_M_S2: RangeInclusive<f64> = 1e-3..=1e3;
-    /// Lengths of a history, and intervals of its samples. At shorter times the errors of a step get below what numbers can tell apart.
+    /// Lengths of a history, and intervals of its samples. At shorter times the errors of a step fall below the resolution of
+    /// numbers.
     pub(crate) const TIME_S: RangeInclusive<f64> = 1e-6..=1e6;
     /// Tolerances of the integrator.
     pub(crate) const RELATIVE_TOLERANCE: RangeInclusive<f64> = 1e-13..=1e-3;
@@ -269,7 +272,7 @@ impl Request {
     /// How many samples its history has at most: one at every output step, one at the end.
     #[must_use]
     pub fn most_samples(&self) -> u64 {
-        // What is no number of samples is refused elsewhere.
+        // Numbers that cannot count samples are refused elsewhere.
         (self.end_s / self.output_step_s) as u64 + 2
     }
 
@@ -333,7 +336,7 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
-    /// For a reason of the model.
+    /// An error for a reason of the model.
     pub(crate) fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
         Self::Computation(Arc::new(reason))
     }
@@ -353,7 +356,7 @@ pub trait Recorder {
         ControlFlow::Continue(())
     }
 
-    /// Whether samples are to come with the line of thrust, which takes time to compute.
+    /// Whether samples need the line of thrust, which takes time to compute.
     fn wants_thrust_line(&self) -> bool {
         false
     }

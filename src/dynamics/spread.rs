@@ -1,8 +1,8 @@
-//! How sure a motion is: what it has in common with repetitions of it, [other ways to compute it](Model::repetitions) that are as good.
+//! How certain a motion is: what it shares with its repetitions, [equally good ways to compute it](Model::repetitions).
 //!
-//! Where these do not agree on whether it overturns that is **uncertain**: neither overturned nor survived. To which side it overturns,
-//! and whether what survives has come to rest, does not count. For that most repetitions can be spared, because nothing that follows
-//! an impact decides: of what `is_plain`.
+//! If these disagree on whether it overturns, that is **uncertain**: neither overturned nor survived. The side to which it overturns,
+//! and whether a survivor has come to rest, do not count. For this question most repetitions can be spared: those of motions that
+//! nothing after an impact decides (`is_plain`).
 
 use std::ops::ControlFlow;
 use std::thread::{self, JoinHandle};
@@ -14,38 +14,40 @@ use super::history::{HalfCycle, Outcome, Sample, State, Summary};
 use super::model::{Case, Model, Recorder, Repetition, Request, SimulationError};
 use crate::mechanics::sway::Sway;
 
-/// To this part of them peaks are called certain.
+/// Peaks are called certain to within this fraction of them.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
 
-/// The repetitions must agree to this part of that, because still other ways to compute the motion may differ by more.
+/// The repetitions must agree to this fraction of that, because still other ways to compute the motion may differ by more.
 const AGREEMENT: f64 = 0.5;
 
-/// After the last half cycle that peaks above this part of the largest peak nothing is compared.
+/// Half cycles after the last one that peaks above this fraction of the largest peak are not compared.
 const LEAST_PEAK_RATIO: f64 = 1e-2;
 
-/// A motion beside its repetitions: what they agree in can be relied on, and nothing else.
+/// A motion beside its repetitions: only what they agree on can be relied on.
 ///
-/// After the first change of side the order of impacts that almost coincide decides.
+/// After the first change of side, the order of impacts that almost coincide decides how the motion goes
+/// on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
     /// How the repetitions were computed.
     pub repeated: Vec<&'static str>,
-    /// How it ended: itself, then the repetitions.
+    /// Outcomes of the motion itself, then of the repetitions.
     pub outcomes: Vec<Outcome>,
-    /// The half cycles that all have, up to the last that peaks above a hundredth of the largest peak of the motion itself.
+    /// The half cycles that all of them have, up to the last that peaks above a hundredth of the largest peak of the motion
+    /// itself.
     pub half_cycles: Vec<PeakSpread>,
-    /// Half cycles from the first on that are the same: to one side, with peaks that are the same.
+    /// Number of half cycles, from the first on, that are the same: to one side, with the same peaks.
     pub same_until_half_cycle: usize,
-    /// When the first half cycle begins that is not, in seconds; `None` where all are the same.
+    /// When the first half cycle that differs begins, in seconds; `None` where all are the same.
     pub parts_at_s: Option<f64>,
-    /// The largest rotation of a block; `None` where it overturns in one of them.
+    /// The largest rotation of a block; `None` if one of the motions overturns.
     pub largest: Option<PeakSpread>,
 }
 
 /// A largest rotation of a block, in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakSpread {
-    /// That of the motion itself.
+    /// Largest rotation in the motion itself.
     pub own_rad: f64,
     /// The least of all.
     pub min_rad: f64,
@@ -54,7 +56,7 @@ pub struct PeakSpread {
 }
 
 impl PeakSpread {
-    /// Of the motion itself, then its repetitions.
+    /// Peaks of the motion itself, then of its repetitions.
     fn of(peaks_rad: &[f64]) -> Self {
         Self {
             own_rad: peaks_rad[0],
@@ -133,7 +135,7 @@ impl Spread {
     }
 }
 
-/// The repetitions of a motion, computed on threads of their own beside it. Where the motion itself fails nobody waits for them: they
+/// The repetitions of a motion, computed on threads of their own beside it. If the motion itself fails nobody waits for them: they
 /// end with the program.
 #[derive(Debug)]
 pub struct Repetitions(Vec<(&'static str, JoinHandle<Result<Summary, SimulationError>>)>);
@@ -149,7 +151,7 @@ pub enum SpreadError {
         /// Why.
         error: SimulationError,
     },
-    /// A repetition came to no end, which is a defect of the program.
+    /// A repetition crashed, which is a defect of the program.
     #[error("the repetition with {0} crashed")]
     Crashed(&'static str),
 }
@@ -181,7 +183,7 @@ impl Repetitions {
     }
 }
 
-/// Whether a history overturns, as far as that is known.
+/// Whether a structure overturns, as far as that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// It does not, to the end of the simulation.
@@ -221,7 +223,7 @@ impl Verdict {
     }
 }
 
-/// What a repetition says against a history that ended like this; `None` where it agrees.
+/// How a repetition contradicts a history that ended like this; `None` if it agrees.
 pub(crate) fn objection(
     own: Outcome,
     name: &str,
@@ -237,7 +239,7 @@ pub(crate) fn objection(
     }
 }
 
-/// Why it is uncertain whether histories overturn, which are repeated where that may matter. Those that failed are not.
+/// Why it is uncertain whether histories overturn. They are repeated where that may matter; those that failed are not.
 pub(crate) fn doubts<E>(
     model: &dyn Model,
     cases: &[Case],
@@ -278,14 +280,14 @@ fn until_decided(model: &dyn Model, cases: &[Case]) -> Vec<Result<Summary, Simul
     cases.iter().map(alone).collect()
 }
 
-/// Where slip and crushing took more than this part of the barrier of elastic joints, these lie otherwise than it was found.
+/// If slip and crushing took more than this fraction of the barrier, elastic joints no longer lie as they did when it was found.
 const GONE: f64 = 0.01;
 
-/// What survives without ever reaching this part of the energy barrier of its first mechanism is not repeated.
+/// A survivor that never reached this fraction of the energy barrier of its first mechanism is not repeated.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
 
-/// Whether repetitions can be spared: it never moved, it overturned before it changed side, up to which all ways agree, or it
-/// survived far from overturning.
+/// Whether repetitions can be spared: the structure never moved, it overturned before its first change of side, up to which
+/// all ways agree, or it survived far from overturning.
 fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     match own.outcome {
         Outcome::NeverMoved => true,
@@ -298,7 +300,7 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
             let elastic = row.and_then(|row| Some((row, row.elastic.as_ref()?)));
             let ratio = match elastic {
                 None => own.peak_potential_over_barrier,
-                // What gives way falls before the barrier of rigid joints.
+                // Elastic joints overturn below the barrier of rigid joints.
                 Some((row, elastic)) => {
                     let barrier_j = model.elastic_barrier_j(request.gravity_m_s2);
                     let gone_j = elastic.friction_j + elastic.crushed_j;
@@ -311,25 +313,25 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     }
 }
 
-/// On ground that is quiet for good, what has less than this part of the energy barrier of its first mechanism cannot
-/// overturn any more. Rows overturn by other mechanisms as well: 125 histories of random rows that did never had less than 0.45 of the
+/// On ground that stays quiet, a structure with less than this fraction of the energy barrier of its first mechanism cannot overturn
+/// any more. Rows overturn by other mechanisms as well: 125 histories of random rows that overturned never had less than 0.45 of the
 /// barrier on quiet ground before.
 const SAFE: f64 = 0.25;
 
-/// What has less than this part of the largest energy that it had turns no block as far as it did.
+/// With less than this fraction of the largest energy that it had, a structure turns no block as far as it did.
 const DECAYED: f64 = 0.1;
 
-/// A history that may be ended early comes to rest before its end if so many of its last half cycle fit into the time that is left:
-/// half cycles shorten as those of a block whose impacts leave 0.95 of the energy, or faster.
+/// A history that may be ended early comes to rest before its end if this many times its last half cycle fit into the time that is
+/// left: half cycles shorten at least as fast as those of a block whose impacts leave 0.95 of the energy.
 const HALF_CYCLES_LEFT: f64 = 40.0;
 
-/// Histories as a study of many cases needs them: one that cannot overturn any more, and has ample time to come to rest, is ended there
-/// as one that comes to rest. With when each was, in seconds; `None` where the history was followed to its end.
+/// Histories for a study of many cases. One that cannot overturn any more, and has ample time to come to rest, is ended there and
+/// counts as coming to rest. Also returns when each was ended, in seconds; `None` where the history was followed to its end.
 pub(crate) fn until_safe(
     model: &dyn Model,
     cases: &[Case],
 ) -> (Vec<Result<Summary, SimulationError>>, Vec<Option<f64>>) {
-    // What does not depend on how it is computed is computed fast.
+    // If the result does not depend on how it is computed, the fast way serves.
     if model.is_faster_together() || model.repetitions().is_empty() {
         return (model.simulate_all(cases), vec![None; cases.len()]);
     }
@@ -384,7 +386,7 @@ impl UntilSafe {
             self.half_cycle_s = now_s - since_s;
             self.sways = Some((sway, now_s));
         }
-        // The one under way may be longer than the one before, which the ground drove.
+        // The half cycle under way may be longer than the one before, which the ground drove.
         self.half_cycle_s
             .max(now_s - self.sways.map_or(now_s, |(_, since_s)| since_s))
     }
@@ -393,7 +395,8 @@ impl UntilSafe {
 impl Recorder for UntilSafe {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let half_cycle_s = self.longest_half_cycle_s(sample);
-        // What has slipped stands lower, and what gives way falls before the barrier of rigid joints: their energy says nothing.
+        // A row that has slipped stands lower, and elastic joints overturn below the barrier of rigid joints: their energy says
+        // nothing.
         let slips = !sample.offsets_m.is_empty() || !sample.pressures.is_empty();
         let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
         self.largest_ratio = self.largest_ratio.max(ratio);

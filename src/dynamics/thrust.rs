@@ -8,7 +8,7 @@ use crate::mechanics::chain::Demand;
 /// Taken from the output samples: peaks between them are missed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ThrustRecord {
-    /// Largest excess of the thrust line in parts of the thickness, and when it was first reached, in seconds.
+    /// Largest excess of the thrust line over the thickness, and when it was first reached, in seconds.
     pub largest_excess: Peak,
     /// Largest friction coefficient needed to prevent sliding.
     pub largest_friction: Peak,
@@ -35,9 +35,9 @@ impl Peak {
     }
 }
 
-/// Levels of the excess, in parts of the thickness, for the shares of time. They grade the assumption and do not
-/// bound the error of the motion: peaks with free hinges differed by 3 % for seven voussoirs with an excess of
-/// 0.05, and by 23 % for a continuous semicircle with one of 0.02.
+/// Levels of the excess, over the thickness, for the shares of time. They grade the assumption and do not bound
+/// the error of the motion: peaks with free hinges differed by 3 % for seven voussoirs with an excess of 0.05,
+/// and by 23 % for a continuous semicircle with one of 0.02.
 pub const EXCESS_LEVELS: [f64; 2] = [0.01, 0.05];
 
 impl ThrustRecord {

@@ -1,4 +1,4 @@
-//! What a motion hangs on: the same with properties that nobody knows better.
+//! What a motion depends on: the same motion with other values of properties that nobody knows better.
 
 use std::panic;
 use std::thread::{self, JoinHandle};
@@ -7,7 +7,7 @@ use super::ground::GroundMotion;
 use super::history::Summary;
 use super::model::{Model, Request, SimulationError};
 
-/// A model beside another one, with a property that is as likely.
+/// A copy of a model with a property that is equally likely.
 #[derive(Debug)]
 pub struct Variation {
     /// What is different, in words that follow "with".
@@ -16,7 +16,7 @@ pub struct Variation {
     pub model: Result<Box<dyn Model>, String>,
 }
 
-/// What became of a variation.
+/// The outcome of a variation.
 #[derive(Clone, Debug)]
 pub struct Varied {
     /// What is different.
@@ -25,7 +25,7 @@ pub struct Varied {
     pub result: Result<Summary, String>,
 }
 
-/// The motions of variations, computed on threads of their own. Where the motion itself fails nobody waits for them.
+/// The motions of variations, computed on threads of their own. If the motion itself fails nobody waits for them.
 #[derive(Debug)]
 pub struct Variations(Vec<(String, Result<Running, String>)>);
 
