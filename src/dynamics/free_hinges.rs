@@ -1,7 +1,7 @@
 //! Motion of a row of rigid blocks whose joints open and shut anywhere, at any time.
 //!
-//! What moves the blocks, behind the driver of rows, is a stepper: `landing`, whose steps end where corners land, or `sliding`, in whose
-//! equal steps joints may slip too.
+//! The driver of rows moves the blocks by a stepper: `landing`, whose steps end where corners land, or `sliding`, in whose equal steps
+//! joints may slip too.
 
 mod landing;
 mod model;
@@ -22,14 +22,14 @@ use crate::mechanics::joints::Placement;
 
 /// The shortest step over the longest one, where it is not given.
 const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
-/// How much longer the steps of studies of many cases are than those of a run. Of the second peaks of 73 random arches 8 are then off
-/// by more than 1 % of those of the shortest steps, and 5 with the steps of a run.
+/// How much longer the steps of studies of many cases are than those of a run. Of the second peaks of 73 random arches 8 then differ
+/// by more than 1 % from those with the shortest steps, and 5 with the steps of a run.
 const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
-/// Impacts within the shortest step after which the next landings are merged: without end they would stop time.
+/// Impacts within the shortest step after which the next landings are merged: an endless series would stop time.
 const CROWDED_IMPACTS: usize = 50;
 /// The time after an impact in which a repetition merges landings, over the shortest step.
 const MERGED_RATIO: f64 = 4.0;
-/// Steps that a motion may have: a month of computing. Much shorter ones are lost in the rounding of the time.
+/// The most steps that a motion may have: a month of computing. Much shorter ones are lost in the rounding of the time.
 const MOST_STEPS: f64 = 1e12;
 
 /// How a motion is computed.
@@ -37,7 +37,7 @@ const MOST_STEPS: f64 = 1e12;
 pub struct Settings {
     /// Longest step in seconds.
     pub longest_step_s: f64,
-    /// Where landings crowd within this time, in seconds, they are taken as one.
+    /// Landings that crowd within this time, in seconds, are taken as one.
     pub shortest_step_s: f64,
     /// Number of impacts within the shortest step after which landings crowd.
     pub merged_after: usize,
@@ -50,8 +50,8 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Steps that end at landings: on a size of 10 m at most about 0.35 ms. With other sizes they follow the square root of size
-    /// over gravity. The shortest step is a thirtieth of that.
+    /// Steps that end at landings: at most about 0.35 ms for a size of 10 m. For other sizes they follow the square root of size
+    /// over gravity. The shortest step is a thirtieth of the longest.
     #[must_use]
     pub fn to_landings(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let longest_step_s = 3.4e-4 * (row.size_m() / gravity_m_s2).sqrt();
@@ -65,7 +65,7 @@ impl Settings {
         }
     }
 
-    /// Equal steps, for joints that slip: 0.1 ms on a size of 10 m.
+    /// Equal steps, for joints that slip: 0.1 ms for a size of 10 m.
     #[must_use]
     pub fn equal(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let step_s = 1e-4 * (row.size_m() / gravity_m_s2).sqrt();
@@ -95,7 +95,8 @@ impl Settings {
         }
     }
 
-    /// The same with the steps that it takes multiplied. They end at output times as well: where these limit them, they vary too.
+    /// The same with the steps that it takes multiplied. Steps also end at output times: where these limit them, the output step
+    /// is multiplied as well.
     fn with_steps_times(&self, factor: f64) -> Self {
         let limits = |step_s: f64| step_s < 2.0 * self.longest_step_s;
         let times = |step_s| {
@@ -121,8 +122,8 @@ impl Settings {
         self.with_steps_times(2.0)
     }
 
-    /// The same with the landings that follow an impact within four shortest steps merged with each other. Real impacts last: in which
-    /// order landings follow within that time nobody knows.
+    /// The same with the landings that follow an impact within four shortest steps merged with each other. Real impacts take time:
+    /// nobody knows in which order landings follow within it.
     fn with_landings_merged(&self) -> Self {
         Self {
             shortest_step_s: (MERGED_RATIO * self.shortest_step_s).min(self.longest_step_s),
@@ -189,7 +190,7 @@ pub enum FreeHingeError {
         1e2 * .error, 0.2 * .longest_step_s
     )]
     Energy {
-        /// By how much of the larger of the barrier and the largest kinetic energy.
+        /// Its error, over the larger of the barrier and the largest kinetic energy.
         error: f64,
         /// The longest step, in seconds.
         longest_step_s: f64,
@@ -236,14 +237,14 @@ pub fn simulate(
     motion(task, settings, initial_rad, recorder)
 }
 
-/// The same of any task.
+/// The same for any task.
 fn motion(
     task: Task<'_>,
     settings: &Settings,
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, FreeHingeError> {
-    // One of any lifetime serves for as long as the task.
+    // A recorder of any lifetime serves for as long as the task.
     let recorder = recorder.map(|recorder| recorder as _);
     check(task.gravity_m_s2, settings)?;
     let Some(coefficient) = settings.friction_coefficient else {

@@ -264,8 +264,8 @@ impl Program {
         }
     }
 
-    /// Solves for the rates that the joints allow, on top of `lag`: by how much each coordinate is short of zero, per time, in m/s.
-    /// Rates are judged to within `tolerance` m/s.
+    /// Solves for the rates that the joints allow, with `lag` added to them: how far each coordinate is from zero, per time, in
+    /// m/s. Rates are judged to within `tolerance` m/s.
     pub fn solve(&mut self, lag: impl Fn(usize) -> Vector3<f64>, tolerance: f64) -> Solution {
         for joint in 0..self.drive.len() {
             self.drive[joint] = self.rate(joint, &self.free) + lag(joint);

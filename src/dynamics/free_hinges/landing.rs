@@ -1,17 +1,16 @@
-//! One computation of such a motion, step by step.
+//! The motion of a row with free hinges, in steps that end at landings.
 //!
-//! Steps are those of the leapfrog: a kick by gravity and the ground, after which the velocities are the nearest ones that
-//! the joints allow ([`crate::mechanics::contact`]), and a drift of the gaps. A step ends exactly where a corner lands, however
-//! short that makes it; there the velocity is completed with the old mechanism and then projected on what the shut corners
+//! Steps are those of the leapfrog: a kick by gravity and the ground, after which the velocities are the nearest ones that the
+//! joints allow ([`crate::mechanics::contact`]), and a drift of the gaps. A step ends exactly where a corner lands, however
+//! short that makes it. There the velocity is completed with the old mechanism and then projected onto what the shut corners
 //! allow, the perfectly inelastic impact of Moreau.
 //!
-//! An impact shuts more than the corner that was aimed at. Four open corners of an arch have one degree of freedom, so that
-//! all four land at one instant; in numbers the others are left open by the rounding of the closure. They belong to the
-//! impact, and so does every corner open by less than a billionth of the thickness: one projection after the other is not the
-//! projection on all, and the difference does not fall with the step. Nothing is merged by time but where impacts crowd
-//! without end.
+//! An impact shuts more than the corner that was aimed at. Four open corners of an arch have one degree of freedom, so all four
+//! land at one instant; in numbers, rounding of the closure leaves the others open. They belong to the impact, and so does
+//! every corner open by less than a billionth of the thickness: one projection after the other is not the projection onto all,
+//! and the difference does not fall with the step. Landings are merged by time only where impacts crowd without end.
 //!
-//! Pins move on arcs. What the straight drift of two bodies would part them by over the coming step is taken from their last
+//! Pins move on arcs. How far the straight drift of two bodies would part them over the coming step is taken from their last
 //! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
 
 mod observation;
@@ -31,26 +30,26 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::{Placement, SHUT_RATIO};
 
-/// An arch whose ends miss each other by more than this part of the thickness of a joint is in error.
+/// An arch whose ends miss each other by more than this fraction of the thickness of a joint is in error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
-/// Below this part of the thickness of a joint the closure error is left alone.
+/// Below this fraction of the thickness of a joint the closure error is left alone.
 const CLOSURE_RATIO: f64 = 1e-13;
-/// Corners that are open by less than this part of the thickness belong to an impact.
+/// Corners that are open by less than this fraction of the thickness belong to an impact.
 const LANDED_RATIO: f64 = 1e-9;
-/// The last three open corners of an arch belong to an impact when all are open by less than this part of the thickness: they
-/// must meet three equations of closure, which none but the shut joints do.
+/// The last three open corners of an arch belong to an impact when all are open by less than this fraction of the thickness:
+/// they must meet three equations of closure, which only shut joints do.
 const LAST_THREE_RATIO: f64 = 1e-6;
 /// Passes in which the step that ends at a landing is found.
 const LANDING_PASSES: usize = 30;
-/// The same, once the landing is known to within this part of the step.
+/// The search also ends once the landing is known to within this fraction of the step.
 const BRACKET_RATIO: f64 = 1e-12;
 /// Rounds of landings in a merged step after which all corners that can land are looked for at once.
 const LANDING_ROUNDS: usize = 8;
-/// A landing by this part of a step earlier or later than expected needs no other pass.
+/// A landing by this fraction of a step earlier or later than expected needs no other pass.
 const LANDING_TOLERANCE: f64 = 1e-6;
-/// A row has overturned when it is lower than at rest by this part of weight times size.
+/// A row has overturned when it is lower than at rest by this fraction of weight times size.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
-/// Joints with less than this part of the largest normal force are not pressed.
+/// Joints with less than this fraction of the largest normal force are not pressed.
 const LOADED: f64 = 1e-6;
 
 /// Blocks that moved as one in the last drift.
@@ -137,7 +136,7 @@ pub(super) struct LandingStepper<'a> {
     placement: Placement,
     backup: Placement,
     program: Program,
-    /// For what must not touch the active set.
+    /// For solutions that must not change the active set.
     auxiliary: Program,
     pieces: Vec<Piece>,
     next_pieces: Vec<Piece>,
@@ -232,7 +231,7 @@ impl<'a> LandingStepper<'a> {
         self.weigh_pieces();
     }
 
-    /// The same, from rest or at rest with the initial rotations.
+    /// A stepper that starts from rest, or released at rest with the initial rotations.
     pub(super) fn released(
         task: Task<'a>,
         settings: &'a Settings,
@@ -276,7 +275,7 @@ impl<'a> LandingStepper<'a> {
             .iter()
             .filter(|corners| **corners != [true; 2])
             .count();
-        // Fewer than three hinges do not hold an arch: it needs those of the beginning.
+        // Fewer than three hinges do not hold an arch: then the initial active set stays.
         if self.row.supports() == Supports::Left || open >= 3 {
             self.program.start_from(&active);
         }
@@ -303,7 +302,7 @@ impl<'a> LandingStepper<'a> {
         let mut step = duration_s(self.first_fall()).clamp(floor, longest);
         // No corner lands within `safe`, some do within `late`.
         let (mut safe, mut late) = (0.0, f64::INFINITY);
-        // The rates before the step are those of one that goes back by as much as the last one went on.
+        // The rates before the step are those of a step of negative length whose kick ends where the last one did.
         let mut earlier = 2.0 * (self.kicked_s - self.course.time);
         for pass in 1.. {
             self.note_rates();
@@ -311,7 +310,7 @@ impl<'a> LandingStepper<'a> {
             let fall = self.first_fall();
             let lands = duration_s(fall);
             let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
-            // Rounding may say otherwise of a step that was seen to be safe.
+            // Rounding may say otherwise of a step that was found safe before.
             if met || (lands > step && step == longest) || step == safe {
                 return Ok(Step {
                     expected_s: step,
@@ -352,7 +351,7 @@ impl<'a> LandingStepper<'a> {
         })
     }
 
-    /// Whether the step before ended at an impact after so many within the shortest step that the next ones are merged.
+    /// Whether the last step ended at an impact, after so many within the shortest step that the next ones are merged.
     fn is_crowded(&self) -> bool {
         self.has_just_landed() && self.crowd.impacts > self.settings.merged_after
     }
@@ -362,8 +361,8 @@ impl<'a> LandingStepper<'a> {
         self.kicked_s == self.course.time && self.course.summary.impacts > 0
     }
 
-    /// Length of the step at whose end this corner lands, as its rate changes evenly with the length: from that of the step last
-    /// solved and that of the one before.
+    /// Length of the step at whose end this corner lands, if its rate changes linearly with the length: through the rates of the
+    /// step last solved and of the one before.
     fn landing(&self, fall: &Fall, step: f64, earlier: f64) -> f64 {
         let change = fall.rate_m_s - self.earlier_rates[fall.joint][fall.edge];
         let acceleration = change / (step - earlier);
@@ -379,7 +378,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Corners that may not close: those that touch.
+    /// Marks the corners that touch: they may not close.
     fn touch_shut(&mut self) {
         for (touching, gaps) in self.touching.iter_mut().zip(self.placement.gaps_m()) {
             *touching = gaps.map(|gap| gap == 0.0);
@@ -404,7 +403,8 @@ impl<'a> LandingStepper<'a> {
         )
     }
 
-    /// The rest of the last kick, up to the instant of the positions, with what touches there; the impulse of the ground in it.
+    /// Applies the rest of the last kick, up to the instant of the positions, with the corners that touch there. Returns the
+    /// impulse of the ground in it.
     fn half_kick(&mut self) -> Vector2<f64> {
         let time = self.course.time;
         let (impulse, ground) = self.impulse(self.kicked_s, time);
@@ -507,7 +507,7 @@ impl<'a> LandingStepper<'a> {
         first
     }
 
-    /// A step within which all corners that would land come to touch.
+    /// Solves a step within which all corners that would land come to touch.
     fn merge(&mut self, step: f64) -> Result<(), FreeHingeError> {
         if self.kicked_s < self.course.time {
             self.complete_kick()?;
@@ -533,7 +533,7 @@ impl<'a> LandingStepper<'a> {
             if self.landed.is_empty() {
                 break;
             }
-            // Landings travel along the row: where they go on, the program is told of all corners that can land.
+            // Landings travel along the row: if they go on, the program gets all corners that can land.
             if round >= LANDING_ROUNDS {
                 let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
                 let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
@@ -622,7 +622,7 @@ impl<'a> LandingStepper<'a> {
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.ground_work -= self.impulse(from_s, to_s).1.dot(&mean);
-        // In a shorter time rounding of the velocities is more than what forces do.
+        // In a shorter time the rounding of the velocities exceeds the effect of the forces.
         if step.merged || to_s - from_s < self.settings.shortest_step_s {
             return;
         }
@@ -666,7 +666,7 @@ impl<'a> LandingStepper<'a> {
         let error_m = self.placement.closure_error();
         let of_row = &mut self.course.of_row;
         of_row.closure_error_m = of_row.closure_error_m.max(error_m);
-        // Also when it is not a number.
+        // NaN is an error, too.
         if error_m <= LARGEST_CLOSURE_RATIO * self.thinnest {
             self.weigh_pieces();
             Ok(())
@@ -710,8 +710,9 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Takes up the closure error by the open joints, in positions only, while that at least halves it: the displacement of
-    /// least kinetic norm, as far as the first corner shuts. That one stays shut, and the others take up the rest.
+    /// Takes up the closure error at the open joints, in positions only, while that at least halves it. Each displacement
+    /// has the least kinetic norm and goes as far as the first corner shuts. That one stays shut, and the others take up
+    /// the rest.
     fn close(&mut self) {
         self.free.fill(Twist::ZERO);
         self.jumps.fill(Twist::ZERO);
@@ -944,7 +945,7 @@ mod tests {
                 stepper.touch_shut();
                 stepper.landing.fill([0.0; 2]);
                 stepper.solve_step(settings.longest_step_s).unwrap();
-                // It cannot tell near rest, where the impulses are not unique.
+                // The solver cannot decide near rest, where the impulses are not unique.
                 let judge = judged(&stepper);
                 compared += usize::from(judge.is_some());
                 let velocities = stepper.program.velocities();
@@ -961,7 +962,8 @@ mod tests {
                 fastest > 0.05 && stepper.course.summary.impacts > 3,
                 "{fastest}"
             );
-            // The judge stops where its objective is known to 1e-14, which leaves velocities of a metre a second some 1e-7.
+            // The solver stops where its objective is known to 1e-14, which leaves errors of some 1e-7 in velocities of a metre a
+            // second.
             assert!(worst < 2e-8 && compared > 250, "{worst} {compared}");
         }
     }

@@ -20,28 +20,28 @@ use crate::mechanics::sway::Sway;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
 ///
-/// Joints carry no tension and do not slide; impacts are perfectly inelastic. Nothing is asked of it but the
-/// blocks: which hinges open, and what an impact leaves, follow.
+/// Joints carry no tension and do not slide; impacts are perfectly inelastic. The blocks alone are given: which
+/// hinges open, and what an impact leaves, follow from them.
 #[derive(Clone, Debug)]
 pub struct FreeHinges {
     rigid: RigidRow,
     options: RowOptions,
     /// Whether it serves a study of many cases, whose steps are longer where none is given.
     many_cases: bool,
-    /// The other settings with which a repetition is computed.
+    /// Changes the settings, for a repetition.
     repeated: Option<fn(&Settings) -> Settings>,
 }
 
-/// What was asked of the model.
+/// Options of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RowOptions {
-    /// The longest step, in seconds (1e-9 to 1); without it, it follows the size of the row.
+    /// The longest step, in seconds (1e-9 to 1); if `None`, it follows the size of the row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
-    /// Where landings crowd within this time, in seconds, they are taken as one; without it, a thirtieth of the longest step.
+    /// Landings that crowd within this time, in seconds, are taken as one; if `None`, a thirtieth of the longest step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shortest_step_s: Option<f64>,
-    /// Coulomb's coefficient of friction at every joint, in 0.001 to 1000; without it joints do not slip.
+    /// Coulomb's coefficient of friction at every joint, in 0.001 to 1000; if `None`, joints do not slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
 }
@@ -52,7 +52,7 @@ impl RowOptions {
     /// Joints of stone have 0.5 to 0.8. Beyond the upper end nothing slips, and below the lower one nothing stands.
     pub(crate) const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
 
-    /// Refuses steps and coefficients that are none.
+    /// Refuses steps and coefficients that are not valid.
     pub(crate) fn checked(self) -> Result<Self, ArgumentError> {
         for (argument, value, range) in [
             ("longest_step_s", self.longest_step_s, Self::STEP_S),
@@ -90,7 +90,7 @@ impl RowOptions {
     }
 }
 
-/// An energy balance that is wrong by more than this part of the largest energy of the motion is worth a word.
+/// An energy balance that is wrong by more than this fraction of the largest energy of the motion is mentioned.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
 /// One that is wrong by more than this is an error.
 const LARGEST_ENERGY_ERROR: f64 = 1e-2;
@@ -98,10 +98,10 @@ const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 /// Why there is no such model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FreeHingesError {
-    /// The blocks are none, or make no row.
+    /// There are no blocks, or they do not make a row.
     #[error(transparent)]
     Row(#[from] RowError),
-    /// The row does not stand, or that could not be told.
+    /// The row does not stand, or this could not be determined.
     #[error(transparent)]
     Stability(#[from] StabilityError),
     /// An argument is not allowed.
@@ -113,7 +113,7 @@ pub enum FreeHingesError {
 }
 
 impl FreeHinges {
-    /// Any row that stands.
+    /// A model of any row that stands.
     ///
     /// # Errors
     /// When the row cannot carry its own weight.
@@ -137,7 +137,7 @@ impl FreeHinges {
     /// The drums of a column.
     ///
     /// # Errors
-    /// When the drums make no row, or the column cannot carry its own weight.
+    /// When the drums do not make a row, or the column cannot carry its own weight.
     pub fn of_column(column: &Column) -> Result<Self, FreeHingesError> {
         Self::new(column.row()?)
     }
@@ -157,8 +157,8 @@ impl FreeHinges {
         })
     }
 
-    /// The same for a study of many cases: where no step is given and no joint slips, steps are longer, as long as most answers stay
-    /// the same. In what they do not, repetitions disagree.
+    /// The same for a study of many cases. If no step is given and no joint slips, steps are as long as most answers allow without
+    /// changing. Where answers do change, repetitions disagree.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
         self.many_cases = true;

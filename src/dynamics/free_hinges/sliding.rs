@@ -2,8 +2,8 @@
 //!
 //! The state is the position of every block, its velocity half a step before, and the offset at which every joint stuck last. A step
 //! is that of the leapfrog: a kick by gravity and ground, the velocities that the joints allow ([`crate::mechanics::coulomb`]), and a
-//! drift. What gaps and offsets are short of zero is made up for in the step after, and so is the curvature of the motion, known
-//! from the velocity before: no other correction keeps the row together.
+//! drift. The next step makes up for what gaps and offsets are off zero by, and for the curvature of the motion, known from the
+//! velocity before. No other correction is needed to keep the row together.
 //!
 //! Steps do not end at landings: an impact happens within a step, and its time is known to within one.
 
@@ -27,17 +27,17 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::slip::{Contact, Faces, Position};
 
-/// Rates are found to within this part of the fastest motion, and of what gravity does in a step.
+/// Rates are found to within this fraction of the fastest motion, and of what gravity does in a step.
 const RATE_TOLERANCE: f64 = 1e-9;
-/// Impulses that jump are solved for again where the proximal term leaves rates above this part of the fastest motion.
+/// Impulses that jump are solved for again if the proximal term leaves rates above this fraction of the fastest motion.
 const DRAWN: f64 = 1e-6;
-/// Corners land when they were farther apart than this part of the thickness of their joint.
+/// Corners land if they were farther apart than this fraction of the thickness of their joint.
 const APART_RATIO: f64 = 1e-9;
-/// Joints with less than this part of the largest normal force are not pressed.
+/// Joints with less than this fraction of the largest normal force are not pressed.
 const LOADED: f64 = 1e-6;
-/// Bounds of friction that are wrong by less than this part of the largest one have converged.
+/// Bounds of friction that are wrong by less than this fraction of the largest one have converged.
 const CONVERGED: f64 = 1e-9;
-/// Bounds of friction that are wrong by more than this part of the largest one are an error.
+/// Bounds of friction that are wrong by more than this fraction of the largest one are an error.
 const LARGEST_BOUND_ERROR: f64 = 0.05;
 
 pub(super) struct SlidingStepper<'a> {
@@ -50,29 +50,29 @@ pub(super) struct SlidingStepper<'a> {
     positions: Vec<Position>,
     velocities: Vec<Vector3<f64>>,
     contacts: Vec<Contact>,
-    /// Where every joint stuck last.
+    /// Offset at which every joint stuck last.
     stuck: Vec<f64>,
-    /// By how much the coordinates of every joint are short of zero at the end of the step.
+    /// How far the coordinates of every joint will be from zero at the end of the step, per time, apart from their rates.
     lags: Vec<Vector3<f64>>,
     /// Rates of the coordinates in the motion before the step.
     rates_before: Vec<Vector3<f64>>,
-    /// Time up to which the kicks have gone.
+    /// Time up to which the kicks have acted.
     kicked_s: f64,
     last_step: f64,
     program: Program,
-    /// For what must not touch the modes.
+    /// For solutions that must not change the modes.
     auxiliary: Program,
     modes_before: Vec<Mode>,
     /// Whether no joint is open.
     stands: bool,
     sliding: Sliding,
     ground_work: f64,
-    /// By what the row may still be held.
+    /// When the row was highest, with the energy that friction took: up to then it may be held.
     summit: Summit,
     /// Energy that friction took outside impacts.
     held_back: f64,
     overturned: bool,
-    /// The least energy so far, without what the ground did.
+    /// The least energy so far, without the work of the ground.
     least_energy: f64,
     quiet_since_s: f64,
     friction_demand: f64,
@@ -162,8 +162,8 @@ impl<'a> SlidingStepper<'a> {
         0.5 * self.program.twice_kinetic_j()
     }
 
-    /// By how much the coordinates would be short of zero at the end of a step, did the joints move on as in the last
-    /// solution, besides what their rates make of it: what they are now, and the curvature of the motion.
+    /// How far the coordinates would be from zero at the end of a step, per time, if the joints moved on as in the
+    /// last solution, apart from the effect of their rates: what they are now, and the curvature of the motion.
     fn lag(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
@@ -172,12 +172,12 @@ impl<'a> SlidingStepper<'a> {
             let v = self.program.velocity(block) * step;
             Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z)
         };
-        // That of the block before, where it was needed.
+        // Position of the block before, where it was needed.
         let mut left = Some(Position::HELD);
         for joint in 0..self.faces.len() {
             let now = self.contacts[joint].coordinates_m;
             let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
-            // A joint that moves as one has none, whatever straight lines say.
+            // A joint that moves as one has no curvature, whatever straight lines say.
             let mut right = None;
             if self.program.modes()[joint] != Mode::WHOLE {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
@@ -231,7 +231,7 @@ impl<'a> SlidingStepper<'a> {
             let lands =
                 (0..2).any(|end| mode.pressed[end] && !before.pressed[end] && gaps[end] > least);
             landed |= lands;
-            // One that was parted and lands on one corner has not shut.
+            // A joint that was parted and lands on one corner has not shut.
             let shuts = lands && (mode.pressed == [true; 2] || before.pressed != [false; 2]);
             if shuts {
                 let edge = only(before.pressed.map(|pressed| !pressed));
@@ -285,7 +285,7 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// By what the row slid along its supports, left and right.
+    /// How far the row slid along its supports, left and right.
     fn slides(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
             let along = self.row.joints()[joint].along();
@@ -312,15 +312,17 @@ impl<'a> SlidingStepper<'a> {
         })
     }
 
-    /// Compares the energy in the middle of a step, less the work of the ground, with the least so far: what grows beyond it has been
-    /// created. There the leapfrog knows velocities and heights, and in equal steps without impulses at the joints the sum stays.
+    /// Compares the energy in the middle of a step, less the work of the ground, with the least so far: growth beyond that was
+    /// created by the computation. In mid-step the leapfrog knows velocities and heights, and their sum stays constant in equal steps
+    /// without impulses at the joints.
     fn audit(&mut self, energy: f64) {
         let left = energy - self.ground_work;
         self.course.note_defect(left - self.least_energy);
         self.least_energy = self.least_energy.min(left);
     }
 
-    /// Velocities at the instant of the positions, from those half a step before, in the auxiliary program; the kinetic energy there.
+    /// Solves for the velocities at the instant of the positions, from those half a step before, in the auxiliary program.
+    /// Returns the kinetic energy there.
     fn synchronise(&mut self) -> f64 {
         let (kick, _) = self.kick(self.course.time);
         self.auxiliary
@@ -343,7 +345,7 @@ impl<'a> SlidingStepper<'a> {
         0.5 * self.auxiliary.twice_kinetic_j()
     }
 
-    /// Tells of joints that opened in a step from this time on, with this energy, before which none was open.
+    /// Reports the joints that opened in a step that began at this time, with this energy and with no joint open.
     fn report_uplift(&mut self, from_s: f64, energy_j: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
@@ -364,13 +366,13 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Horizontal displacement of the centre of gravity times the mass, without what the row slid along the ground.
+    /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground.
     fn displacement(&self) -> f64 {
         let on_ground = match (self.row.supports(), self.row.supports_go_on()) {
             (Supports::Left, [base, _]) => [base; 2],
             (Supports::Both, both) => both,
         };
-        // What slips along a face that ends leaves it.
+        // On a face that ends a block slides off, so its slide counts.
         let slides = self.slides().into_iter().zip(on_ground);
         let slid: f64 = slides
             .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
@@ -462,7 +464,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         for (joint, impulse) in self.program.impulses().iter().enumerate() {
             let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
             taken -= impulse.dot(&mean);
-            // Friction of joints that stick does no work but that of an impact.
+            // Friction at a joint that sticks does no work, except in an impact.
             if let Along::Slip(_) = self.program.modes()[joint].along {
                 let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
                 // Below the tolerance of the rates its sign is rounding.
@@ -480,7 +482,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         self.kicked_s = to_s;
         self.last_step = step;
         let landed = self.find_landings();
-        // What friction takes at a blow holds nothing back.
+        // Energy that friction takes in an impact holds nothing back.
         self.held_back += if landed { 0.0 } else { rubbed };
         self.drift(step);
         if landed {

@@ -48,7 +48,7 @@ pub trait HybridSystem<const N: usize> {
     /// Magnitudes of the state's components in the motion to come, to which tolerances refer.
     fn scale(&self, mode: Self::Mode, state: &State<N>) -> State<N>;
 
-    /// A good first step from here in seconds, and the longest one that a search for guards can bear.
+    /// A good first step from here in seconds, and the longest one that the search for guards allows.
     fn step_sizes_s(
         &self,
         mode: Self::Mode,
@@ -71,7 +71,7 @@ pub trait HybridSystem<const N: usize> {
         state: &State<N>,
     ) -> GuardValue;
 
-    /// The guard that has fired already where a piece begins or a mode is entered, if any.
+    /// The guard that has already fired when a piece begins or a mode is entered, if any.
     fn fired_at_once(
         &self,
         mode: Self::Mode,
@@ -108,7 +108,7 @@ pub struct Transition<M, G, const N: usize> {
     pub after: State<N>,
 }
 
-/// Listener to a simulation. Steps and transitions come in the order of time; to break ends the simulation.
+/// Listener to a simulation. Steps and transitions come in the order of time; breaking ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
     /// A stretch of motion without event.
     fn step(
@@ -423,11 +423,11 @@ fn land<S: HybridSystem<N>, const N: usize>(
     Ok(landed)
 }
 
-/// Largest part of a step that may be cut off by interpolation alone. Its error is of the second order
-/// in this part (of the third in what matters to guards) on top of the fourth in the step.
+/// Largest fraction of a step that may be cut off by interpolation alone. Its error is of the second order
+/// in this fraction (of the third in what matters to guards) on top of the fourth in the step.
 const INTERPOLATED: f64 = 2e-4;
 
-/// Largest part of a step that may be closed along the tangent on landing.
+/// Largest fraction of a step that may be closed along the tangent on landing.
 const CLOSED_BY_TANGENT: f64 = 1e-4;
 
 /// A guard's value at an instant.

@@ -36,7 +36,7 @@ pub struct Step<const N: usize> {
     pub end_slope: State<N>,
 }
 
-/// What an integration is asked for.
+/// The task of an integration.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<const N: usize> {
     /// Start, in seconds.
@@ -74,7 +74,7 @@ pub enum IntegratorError {
     },
 }
 
-/// Steps of one call of the solver: far more than any stretch of motion needs.
+/// Largest number of steps of one call of the solver: far more than any stretch of motion needs.
 const MAX_STEPS: u32 = 1_000_000;
 
 /// Integrates `slope(time_s, state)` as the task says, and shows every accepted step to `watch`, which
@@ -124,7 +124,7 @@ pub fn integrate<const N: usize>(
     );
     match solver.integrate() {
         Ok(stats) => {
-            // The first is the slope at the start.
+            // The first evaluation is the slope at the start, which is given.
             cost.evaluations += u64::from(stats.num_eval) - 1;
             cost.steps += u64::from(stats.accepted_steps);
             let last = solver.y_out().last().expect("the start is always stored");
@@ -144,7 +144,7 @@ pub fn integrate<const N: usize>(
     }
 }
 
-/// A task as `ode_solvers` wants it.
+/// A task in the form that `ode_solvers` needs.
 struct Problem<'a, F, W, const N: usize> {
     task: &'a Task<N>,
     /// One over the scale: this is multiplied by much more often than it is computed.

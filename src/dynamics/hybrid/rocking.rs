@@ -2,7 +2,7 @@
 //!
 //! | mode | moves by | until |
 //! |---|---|---|
-//! | rest | not at all | the ground, seen against gravity, passes the incipient acceleration on either side |
+//! | rest | not at all | the ground acceleration, over effective gravity, passes the incipient one on either side |
 //! | rocking | the equation of motion of one mechanism | its hinges close, or it overturns |
 //! | overturned | - | - |
 //!
@@ -26,7 +26,7 @@ pub enum Mode<'a, M> {
     Rocking {
         /// To which side.
         sway: Sway,
-        /// Impacts since it last left the rest: the index of the link.
+        /// Impacts since it last left rest: the index of the link.
         impacts: usize,
         /// The mechanism.
         link: &'a Link<M>,
@@ -35,7 +35,7 @@ pub enum Mode<'a, M> {
     Overturned {
         /// To which side.
         sway: Sway,
-        /// Impacts since it last left the rest.
+        /// Impacts since it last left rest.
         impacts: usize,
         /// The mechanism.
         link: &'a Link<M>,
@@ -78,13 +78,13 @@ pub enum Guard {
 /// The coordinate `q`, its rate, and the work done by the ground since time zero.
 pub type RockingState = State<3>;
 
-/// A push lifts the structure off when it is this many times the incipient one: by enough above rounding
+/// A push lifts the structure off when it is this many times the incipient one: far enough above rounding
 /// for the mechanism to open. At the very threshold it could close again at once, over and over.
 const UPLIFT_FACTOR: f64 = 1.0 + 1e-12;
 
-/// Likewise over the acceleration at which the equation of motion of the first mechanism changes sign. That is
-/// the incipient one up to rounding, which grows relative to it as the arch gets thinner, and exceeds the
-/// first factor in arches that hardly stand.
+/// Likewise for the acceleration at which the equation of motion of the first mechanism changes sign. It
+/// equals the incipient one up to rounding, which grows relative to it as the arch gets thinner, and exceeds
+/// the first factor in arches that hardly stand.
 const OPENING_FACTOR: f64 = 1.0 + 1e-13;
 
 /// A structure on moving ground.
@@ -405,7 +405,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let (reach_rad, _) = self.reach(link, state);
         let height = reach_rad / link.critical_rad;
         // Time until q is back at zero if the acceleration stayed as it is. As the weight lessens with q,
-        // it takes longer by up to two thirds of the height; a step shall reach just beyond.
+        // it takes longer by up to two thirds of the height; a step should reach just beyond.
         let (q, rate) = (state[0], state[1]);
         let acceleration = self.slope(mode, piece, time_s, state)[1];
         let back_s = (rate + (rate * rate - 2.0 * acceleration * q).sqrt()) / -acceleration;
@@ -414,9 +414,9 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         } else {
             fall_s
         };
-        // A hop is a parabola but for terms of the relative size of its height: the sixth derivative,
-        // which the method feels, is of the order of its square. The error of a step h is taken as
-        // height^2 (h/hop)^6.
+        // Apart from terms of the relative size of its height, a hop is a parabola: the sixth derivative,
+        // to which the method is sensitive, is of the order of the square of that size. The error of a step
+        // h is taken as height^2 (h/hop)^6.
         let part = (relative_tolerance / (height * height))
             .powf(1.0 / 6.0)
             .min(1.0);
@@ -523,7 +523,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
                 (lost, *state)
             }
             (Guard::Closing, Mode::Rocking { sway, impacts, .. }) => {
-                // The closing rate is negative, but for rounding at the end of a vanishing hop.
+                // The closing rate is negative, except for rounding at the end of a vanishing hop.
                 let closing_rate = (-state[1]).max(0.0);
                 let Some(link) = self.chain.link_from(sway.before(impacts), impacts + 1) else {
                     return (Mode::Rest, still);

@@ -1,4 +1,4 @@
-//! Every chain of mechanisms is a model: its histories, by the hybrid engine.
+//! Every chain of mechanisms is a model; the hybrid engine computes its histories.
 
 use std::ops::ControlFlow;
 
@@ -261,7 +261,7 @@ fn posture<C: MechanismChain>(
 /// A mechanism that closes, and what follows.
 struct Closing<'a, C: MechanismChain> {
     sway: Sway,
-    /// Impacts since the structure last left the rest, this one included: index of the next link.
+    /// Impacts since the structure last left rest, this one included: index of the next link.
     impacts: usize,
     before: &'a Link<C::Mechanism>,
     /// `None` if the impact stops the structure because no mechanism can follow.
@@ -448,7 +448,7 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
         }
         if let Mode::Rest = transition.to {
             self.last_rest_s = Some(transition.time_s);
-            // At rest the energy is zero: the balance that is left is the defect so far, carried on.
+            // At rest the energy is zero: the remaining balance is the defect so far, carried on.
         }
         ControlFlow::Continue(())
     }
@@ -500,7 +500,7 @@ struct Sampler<'r> {
     held: Option<Sample>,
     /// Reused, so that samples need no allocation.
     spare: Option<Sample>,
-    /// Positions of the hinges, likewise.
+    /// Positions of the hinges, also reused.
     positions: Vec<Vector2<f64>>,
     thrust: ThrustRecord,
     /// The same up to the last sample before the unstable equilibrium.

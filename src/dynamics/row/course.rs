@@ -1,4 +1,4 @@
-//! The course of a motion, whichever stepper moves the row: its clock, what it tells, peaks, half cycles, energy and outcome.
+//! The course of a motion, whichever stepper moves the row: its clock, reports, peaks, half cycles, energy and outcome.
 
 use std::mem;
 use std::time::{Duration, Instant};
@@ -17,22 +17,22 @@ use crate::mechanics::chain::{Demand, Hinge};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
-/// Sways below this part of the size do not count as a change of side.
+/// Sways below this fraction of the size do not count as a change of side.
 pub(in crate::dynamics) const SWAY_RATIO: f64 = 1e-9;
-/// At rest, the kinetic energy is below this part of weight times size ...
+/// At rest, the kinetic energy is below this fraction of weight times size ...
 pub(in crate::dynamics) const REST_ENERGY_RATIO: f64 = 1e-9;
-/// ... for this part of the time in which the size falls free: longer than at any turning point.
+/// ... for this many times the square root of size over gravity: longer than at any turning point.
 pub(in crate::dynamics) const REST_TIME_RATIO: f64 = 0.5;
 /// A block that has turned by this, in radians, has overturned ...
 pub(in crate::dynamics) const OVERTURNED_RAD: f64 = 0.8;
-/// ... and one that has moved by this part of the size, besides what the row slid along a support.
+/// ... and so has one that has moved by this fraction of the size, apart from the slide of the row along a support.
 pub(in crate::dynamics) const OVERTURNED_RATIO: f64 = 0.6;
-/// Heights that come back by less than this part of weight times size, on the way down, are no way back.
+/// On the way down, a rise of less than this fraction of weight times size is no return.
 pub(in crate::dynamics) const LEAST_RETURN: f64 = 1e-3;
-/// Motions whose energies are below this part of weight times size are none: their balance is rounding.
+/// Energies below this fraction of weight times size are no motion: their balance is rounding.
 const LEAST_ENERGY_RATIO: f64 = 1e-6;
-/// A row has slipped when friction took more than this part of the barrier of its first mechanism. It then stands lower than it did,
-/// and its potential energy tells nothing about that barrier.
+/// A row has slipped when friction took more than this fraction of the barrier of its first mechanism. It then stands lower than
+/// before, and its potential energy says nothing about that barrier.
 const SLIPPED_RATIO: f64 = 0.01;
 
 /// How long a motion is computed, and in which steps.
@@ -90,27 +90,27 @@ pub(in crate::dynamics) struct Task<'a> {
     pub barrier_j: Option<f64>,
 }
 
-/// What has happened so far.
+/// The motion so far.
 pub(in crate::dynamics) struct Course<'a> {
     pub time: f64,
     /// Potential energy above the undeformed row.
     pub potential: f64,
-    /// Horizontal displacement of the centre of gravity times the mass, without what the row slid along the ground.
+    /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground.
     pub sway: f64,
     /// Whether a joint has opened or slipped.
     pub moved: bool,
-    /// Mass times displacement below which a sway changes no side.
+    /// Mass times displacement below which a sway does not change the side.
     pub least_sway_kg_m: f64,
     /// Weight times size.
     pub energy_unit: f64,
-    /// Joints that shut in a step, also where they open again at once, with the edge that landed; both, where none is named.
+    /// Joints that shut in a step, even if they open again at once, with the edge that landed; both landed if none is named.
     pub shut: Vec<Hinge>,
-    /// Joints that open at once, with the edge about which they turn; none where they part.
+    /// Joints that open at once, with the edge about which they turn; no edge if they part.
     pub opened: Vec<Hinge>,
     pub summary: Summary,
     pub of_row: RowSummary,
     task: Task<'a>,
-    /// Potential energy below which the row has overturned, where that tells.
+    /// Potential energy below which the row has overturned; minus infinity if the stepper decides by other signs.
     fallen: f64,
     peak_potential: f64,
     cycle: Option<HalfCycle>,
@@ -120,7 +120,7 @@ pub(in crate::dynamics) struct Course<'a> {
     recorder: Option<&'a mut dyn Recorder>,
     /// Whether the recorder broke.
     stopped: bool,
-    /// The sample that is made, again and again.
+    /// The sample, reused each time.
     sample: Sample,
     /// The motion of the ground from the last sample on.
     pieces: &'a [Piece],
@@ -144,7 +144,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
     fn turns(&self) -> impl Iterator<Item = (f64, f64)>;
     /// Gaps of a joint at intrados and extrados.
     fn gaps(&self, joint: usize) -> [f64; 2];
-    /// Where a joint is pressed, or pressed last, on the given edge.
+    /// Where a joint is pressed, or was last pressed, on the given edge.
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64>;
     fn momentum(&self) -> Vector2<f64>;
     /// Whether a joint slips.
@@ -160,23 +160,23 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         let shut = sample.hinges.is_empty() && !self.slips();
         shut || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
-    /// Since when it stands still for good, once the ground does.
+    /// Since when it stands still for good, once the ground is still.
     fn rests_since(&self) -> Option<f64>;
-    /// When the row passed its last way back, once it has overturned.
+    /// When the row passed its last point of return, once it has overturned.
     fn overturned_s(&self) -> Option<f64> {
         let course = self.course();
         (course.potential < course.fallen).then_some(course.highest_s)
     }
-    /// What has happened, at the end.
+    /// The course of the motion, at the end.
     fn into_course(self) -> Course<'a>;
 
-    /// The side to which the row sways, that of its centre of gravity; where that is at its undeformed place the one to which it goes.
+    /// The side to which the centre of gravity sways; if that is at its undeformed place, the side to which it moves.
     fn heading(&self) -> Sway {
         let sway = self.course().sway;
         towards(if sway == 0.0 { self.momentum().x } else { sway })
     }
 
-    /// What a row that moves does.
+    /// The state of a row that moves.
     fn moving(&self) -> State {
         match self.overturned_s() {
             Some(_) => State::Overturned(self.heading()),
@@ -184,7 +184,8 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         }
     }
 
-    /// Tells that all joints were shut before this time, with this energy, rotations and rates, and that some have opened since.
+    /// Reports that all joints were shut before this time, with this energy, rotations and rates, and that some have opened
+    /// since.
     fn tell_uplift(
         &mut self,
         time_s: f64,
@@ -209,7 +210,8 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         self.course_mut().tell(&event);
     }
 
-    /// Tells that corners have landed: whether the row moves on, the kinetic energies before and taken, and what friction took of it.
+    /// Reports that corners have landed: whether the row moves on, the kinetic energy before and the part taken, and how much of
+    /// that friction took.
     fn tell_impact(
         &mut self,
         moves: bool,
@@ -228,7 +230,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
         let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
-        // What lands undeformed came from the other side.
+        // A row that lands undeformed came from the other side.
         let undeformed = rotations_rad.iter().all(|angle| *angle == 0.0);
         let sway = if moves { self.heading() } else { Sway::Right };
         let event = Event {
@@ -336,7 +338,7 @@ impl Summit {
         }
     }
 
-    /// Notes a height; what rises again by `least` from where it was lowest has not come down.
+    /// Notes a height. If it rises again by `least` from where it was lowest, it had not come down for good.
     pub(in crate::dynamics) fn note(&mut self, time: f64, height: f64, least: f64) {
         self.lowest = self.lowest.min(height);
         if height >= self.highest || height >= self.lowest + least {
@@ -360,7 +362,7 @@ pub(in crate::dynamics) fn equal_step(time: f64, until: f64, longest: f64) -> f6
     left / (left / longest - 1e-9).ceil().max(1.0)
 }
 
-/// The edge of the only one of two corners of a joint, intrados and extrados.
+/// The edge of the only corner of a joint, intrados or extrados, for which this is true; else `None`.
 pub(in crate::dynamics) fn only(corners: [bool; 2]) -> Option<Edge> {
     match corners {
         [true, false] => Some(Edge::Intrados),
@@ -381,7 +383,7 @@ pub(in crate::dynamics) fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hi
 }
 
 /// How far the thrust lies towards the extrados from the middle of a joint, by the impulses at its corners, over the thickness; `None`
-/// where none presses. The solver takes a pull below its tolerance for none.
+/// if neither presses. A pull below the tolerance of the solver counts as zero.
 pub(in crate::dynamics) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
     let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));
     let normal = intrados + extrados;
@@ -389,7 +391,7 @@ pub(in crate::dynamics) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Opti
 }
 
 impl<'a> Course<'a> {
-    /// Below the potential energy `fallen` the row has overturned; `None` where the stepper tells by other signs.
+    /// Below the potential energy `fallen` the row has overturned; `None` if the stepper decides by other signs.
     pub(in crate::dynamics) fn new(
         task: Task<'a>,
         fallen: Option<f64>,
@@ -454,7 +456,8 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// How and when the motion ended, if it has: when it overturned, if it did, and since when it stands still for good, if it does.
+    /// How and when the motion ended, if it has. The arguments are when it overturned, if it did, and since when it stands still
+    /// for good, if it does.
     pub(in crate::dynamics) fn ending(
         &self,
         overturned_s: Option<f64>,
@@ -479,13 +482,13 @@ impl<'a> Course<'a> {
         (time >= self.task.clock.end_s).then_some((Outcome::StillRocking, time))
     }
 
-    /// Whether anybody is told of samples and events.
+    /// Whether a recorder receives samples and events.
     pub(in crate::dynamics) const fn is_followed(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// The row is released at rest, with these rotations, this potential energy and this displacement of its centre of gravity times
-    /// the mass.
+    /// Notes that the row is released at rest, with these rotations, this potential energy and this displacement of its centre of
+    /// gravity times the mass.
     pub(in crate::dynamics) fn released(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
@@ -501,8 +504,8 @@ impl<'a> Course<'a> {
         self.rising = true;
     }
 
-    /// Peaks, half cycles and energy after a step, from the rotations of the blocks, the potential and kinetic energy, and the
-    /// displacement of the centre of gravity times the mass.
+    /// Updates peaks, half cycles and energy after a step, from the rotations of the blocks, the potential and kinetic energy,
+    /// and the displacement of the centre of gravity times the mass.
     pub(in crate::dynamics) fn observe(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
@@ -570,7 +573,7 @@ impl<'a> Course<'a> {
         *worst = worst.max(energy / self.energy_unit);
     }
 
-    /// The sample to write to, of which all is known but blocks and joints; whether it is to come with the line of thrust.
+    /// The sample to write to, complete except for blocks and joints, and whether it needs the line of thrust.
     fn blank_sample(&mut self) -> (Sample, bool) {
         let mut sample = mem::replace(&mut self.sample, Sample::at_rest(0.0));
         while let [_, rest @ ..] = self.pieces
@@ -601,7 +604,7 @@ impl<'a> Course<'a> {
         )
     }
 
-    /// Hands on a sample that is written.
+    /// Passes on a complete sample.
     fn record(&mut self, sample: Sample, kinetic: f64) {
         self.sample = sample;
         let sample = &mut self.sample;
@@ -615,7 +618,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Hands on an event that begins a phase.
+    /// Passes on an event that begins a phase.
     fn tell(&mut self, event: &Event) {
         self.phase += 1;
         if let Some(recorder) = &mut self.recorder {
@@ -623,7 +626,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Sums up, and tells of the end, if it is one.
+    /// Makes the summary, and reports the end if the row rests or has overturned.
     pub(in crate::dynamics) fn end(mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.end_cycle(None);
         let Task { barrier_j, .. } = self.task;
@@ -650,7 +653,7 @@ impl<'a> Course<'a> {
             Outcome::NeverMoved | Outcome::StillRocking => None,
         };
         if let (Some((kind, state)), Some(recorder)) = (ending, self.recorder) {
-            // It ends here anyway.
+            // The history ends here anyway.
             let _ = recorder.event(&Event {
                 time_s: self.time,
                 kind,

@@ -17,13 +17,13 @@ pub(in crate::dynamics) struct RigidRow {
     row: Row,
     /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
     incipient_g: [Option<f64>; 2],
-    /// The same where they do.
+    /// The same where joints slip.
     with_friction_g: Option<[Option<f64>; 2]>,
-    /// Its first mechanism, where that has one degree of freedom that is known: four links, or one block.
+    /// Its first mechanism, if that has one known degree of freedom: four links, or one block.
     first: Option<FirstMechanism>,
 }
 
-/// What the motion of the first mechanism is known by.
+/// How the motion of the first mechanism is known.
 #[derive(Clone, Debug)]
 enum FirstMechanism {
     /// Four links.
@@ -44,7 +44,7 @@ impl RigidRow {
         ];
         let first = match row.supports() {
             Supports::Left => Some(FirstMechanism::Base),
-            // An impact model is asked for, and not used: the first mechanism comes before any impact.
+            // The impact model is required, but not used: the first mechanism comes before any impact.
             Supports::Both => FourLinkRow::new(&row, ImpactModel::MaxRestitution)
                 .ok()
                 .map(FirstMechanism::FourLinks),
@@ -62,7 +62,7 @@ impl RigidRow {
         &self.row
     }
 
-    /// The push that starts it to that side, in units of gravity; `None` if no push does.
+    /// The push that starts it to that side, in units of gravity; `None` if no push starts it.
     pub(in crate::dynamics) fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
         let [right, left] = self.with_friction_g.unwrap_or(self.incipient_g);
         match sway {
@@ -71,10 +71,10 @@ impl RigidRow {
         }
     }
 
-    /// The same row with the push that starts it to either side where joints slip, if they do, by limit analysis.
+    /// The same row, with the push that starts it to either side if joints slip, by limit analysis.
     ///
     /// # Errors
-    /// When the row slides apart under its own weight, or that could not be told.
+    /// When the row slides apart under its own weight, or this could not be determined.
     pub(in crate::dynamics) fn with_friction(
         mut self,
         coefficient: Option<f64>,
@@ -105,7 +105,7 @@ impl RigidRow {
                 Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
             }
             Some(FirstMechanism::Base) | None => match (self.row.blocks(), self.row.joints()) {
-                // One block turns about the nearer edge of its base, up to where its centre is above that.
+                // One block turns about the nearer edge of its base, up to where its centre is above that edge.
                 ([block], [base]) => {
                     let rise = |edge: Edge| {
                         let arm_m = block.centre_m - base.corner_m(edge);
@@ -119,7 +119,7 @@ impl RigidRow {
         }
     }
 
-    /// Rotations of the blocks when the first mechanism is open so far.
+    /// Rotations of the blocks when the first mechanism is open this far.
     pub(in crate::dynamics) fn released(
         &self,
         initial: Initial,

@@ -1,4 +1,4 @@
-//! What is noted and told on the way: energies and their balance, impacts and samples.
+//! What is recorded and reported on the way: energies and their balance, impacts and samples.
 
 use nalgebra::Vector2;
 
@@ -13,9 +13,10 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 
-/// At rest, kinetic and potential energy are below this part of weight times size.
+/// At rest, kinetic and potential energy are below this fraction of weight times size.
 const REST_ENERGY_RATIO: f64 = 1e-9;
-/// Joints that open at less than this part of the fastest rate do not count as opened by an impact.
+/// Joints that open at less than this fraction of the fastest rate do not count as opened by an
+/// impact.
 const LEAST_OPENING: f64 = 1e-9;
 
 pub(super) fn kinetic(pieces: &[Piece]) -> f64 {
@@ -57,7 +58,7 @@ impl LandingStepper<'_> {
         self.course.note_defect(defect.abs());
     }
 
-    /// Tells the course of the motion about the state after a step.
+    /// Reports the state after a step to the course of the motion.
     fn observe(&mut self) {
         self.course.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
         let potential = self.height_energy();
@@ -97,7 +98,7 @@ impl LandingStepper<'_> {
         self.tell_impact(!self.stands, [before_j, taken_j], None);
     }
 
-    /// Tells of joints that opened in a step from this time on, before which all were shut.
+    /// Reports the joints that opened in a step that began at this time with all joints shut.
     fn report_uplift(&mut self, from_s: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
