@@ -9,7 +9,7 @@ use crate::scenario::Quantity;
 use crate::studies::ending::check_finite;
 use crate::studies::runner::Study;
 
-/// The boundaries at a value of x, as magnitudes: the mirror image of a pulse has the same.
+/// The boundaries at a value of x, as magnitudes: a mirrored pulse has the same boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Boundary {
     /// Peak acceleration below which the structure does not move, in g.
@@ -19,16 +19,16 @@ pub struct Boundary {
     pub impact_free_g: Option<f64>,
 }
 
-/// What was found at a value of x.
+/// The result at a value of x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundaryRow {
     /// The value of x.
     pub x: f64,
-    /// The boundaries; `None` where there is no arch of four links; or why they could not be found.
+    /// The boundaries; `None` if there is no arch of four links; or why they could not be found.
     pub result: Result<Option<Boundary>, String>,
 }
 
-/// The boundaries of a map, a case for each value of x.
+/// The boundaries of a map, one case for each value of x.
 #[derive(Clone, Copy, Debug)]
 pub struct ImpactFreeBoundary<'m> {
     map: &'m OverturningMap<'m>,
@@ -38,7 +38,7 @@ impl<'m> ImpactFreeBoundary<'m> {
     /// The boundaries of a map; `None` if its y is not the amplitude, or its hinges are free.
     #[must_use]
     pub fn new(map: &'m OverturningMap<'m>) -> Option<Self> {
-        // The amplitude, where it is one of the axes, goes upwards.
+        // If the amplitude is one of the axes, it is y.
         let has_edge = map.axes()[1].quantity == Quantity::Amplitude && !map.has_free_hinges();
         has_edge.then_some(Self { map })
     }
@@ -47,7 +47,7 @@ impl<'m> ImpactFreeBoundary<'m> {
         let amplitudes_g = &self.map.values()[1];
         let index = x * amplitudes_g.len();
         let pulse = self.map.pulse(index);
-        // The cells' amplitudes are tried too, so that no cell contradicts the boundary.
+        // The amplitudes of the cells are tried too, so that no cell contradicts the boundary.
         let tried_g: Vec<f64> = amplitudes_g.iter().map(|value| value.abs()).collect();
         let found = self.map.ask_mechanisms(index, |model, request| {
             let Some(pulse) = pulse else {
@@ -94,8 +94,8 @@ impl Study for ImpactFreeBoundary<'_> {
     }
 }
 
-/// A map with its boundaries, if any, as one study: first the cells, then the boundaries. Threads, parts and
-/// resuming serve both.
+/// A map with its boundaries, if it has any, as one study: first the cells, then the boundaries. Threads, parts
+/// and resuming work for both.
 #[derive(Clone, Copy, Debug)]
 pub struct MapWithBoundary<'m> {
     map: &'m OverturningMap<'m>,

@@ -29,7 +29,7 @@ use crate::scenario::{
     Axis, Ground, ModelError, Motion, PulseGround, Quantity, Scaling, Scenario, Structure,
 };
 
-/// What became of a cell.
+/// The result of a cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CellResult {
@@ -65,35 +65,35 @@ pub struct CellRow {
     pub x: f64,
     /// Value along y.
     pub y: f64,
-    /// What became of it.
+    /// The result.
     pub result: CellResult,
-    /// How many outcomes it has with all its repetitions: one, if it does not depend on how it is computed. To which side it
-    /// overturns does not count; whether it has come to rest does. Or why a repetition failed. `None` where that was not
-    /// asked, or there is no history.
+    /// The number of different outcomes of the history and all its repetitions: one, if the outcome does not depend on the
+    /// computation. The side of overturning does not count, but coming to rest does. Or why a repetition failed. `None` if
+    /// repetitions were not requested, or there is no history.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spread: Option<Result<usize, String>>,
 }
 
-/// The cells of a map: cell `i` has the `i / m`-th value of x and the `i % m`-th of y, of which there are `m`.
+/// The cells of a map: cell `i` has the `i / m`-th value of x and the `i % m`-th value of y, where y has `m` values.
 #[derive(Debug)]
 pub struct OverturningMap<'a> {
     scenario: &'a Scenario,
     axes: [&'a Axis; 2],
     values: [Vec<f64>; 2],
-    /// Whether each cell tells how many outcomes it has when it is computed in other ways.
+    /// Whether the number of outcomes of each cell, when it is repeated in other ways, is found.
     spread: bool,
-    /// The structures and pulses that serve more than one cell.
+    /// The structures and pulses that several cells share.
     structures: Shared<Result<Standing, ModelError>>,
     pulses: Shared<ScalablePulse>,
-    /// The scenario, and those that keys of other tables make of it.
+    /// The scenario, and its variants with other values for keys of other tables.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
 }
 
-/// What stands in cells.
+/// The model of a cell.
 #[derive(Clone, Debug)]
 enum Standing {
-    /// Four links of an arch, of any size.
+    /// An arch of four links, of any size.
     Arch(FourLinkArch),
     Model(Arc<dyn Model>),
 }
@@ -107,7 +107,7 @@ impl Standing {
     }
 }
 
-/// Values that depend on no axis or on one, for each of its values; each is made when first asked for.
+/// Values that depend on one axis or on none. Each is computed when first needed.
 #[derive(Debug)]
 struct Shared<T> {
     axis: Option<usize>,
@@ -120,7 +120,7 @@ impl<T: Clone> Shared<T> {
             [false, false] => (None, 1),
             [true, false] => (Some(0), counts[0]),
             [false, true] => (Some(1), counts[1]),
-            // Each serves a single cell.
+            // Every value would serve a single cell, so none is kept.
             [true, true] => (None, 0),
         };
         Self {
@@ -129,7 +129,7 @@ impl<T: Clone> Shared<T> {
         }
     }
 
-    /// Which of them serves a cell; `None` where it serves no other.
+    /// The index of the value for a cell; `None` if values are not shared.
     fn place(&self, place: [usize; 2]) -> Option<usize> {
         let index = self.axis.map_or(0, |axis| place[axis]);
         (index < self.values.len()).then_some(index)
@@ -144,10 +144,10 @@ impl<T: Clone> Shared<T> {
 }
 
 impl<'a> OverturningMap<'a> {
-    /// The map of a scenario that starts from rest, of which at least one cell makes sense.
+    /// The map of a scenario that starts from rest; at least one cell must be valid.
     ///
     /// # Errors
-    /// In words, what to change.
+    /// Explains what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("map")?;
         let map = Self::new(scenario).ok_or_else(|| {
@@ -225,7 +225,7 @@ impl<'a> OverturningMap<'a> {
         self.scenario.motion().hinges().has_joints()
     }
 
-    /// Whether each cell tells how many outcomes it has when it is computed in other ways.
+    /// Whether the number of outcomes of each cell, when it is repeated in other ways, is found.
     #[must_use]
     pub const fn has_spread(&self) -> bool {
         self.spread
@@ -237,7 +237,7 @@ impl<'a> OverturningMap<'a> {
         self.scenario.ground_motion().has_vertical()
     }
 
-    /// The scenario of a cell, but for what the keys of `[map]` itself say.
+    /// The scenario of a cell, without the quantities that are keys of `[map]` itself.
     fn variant(&self, index: usize) -> Result<Arc<Scenario>, String> {
         let Some(variants) = &self.variants else {
             return Ok(Arc::clone(&self.base));
@@ -253,8 +253,8 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// Why no cell has a scenario, where that is so: keys of other tables that there are not, or numbers that they do
-    /// not allow.
+    /// The reason if no cell has a valid scenario: keys of other tables that do not exist, or values that they do not
+    /// allow.
     #[must_use]
     pub fn fault(&self) -> Option<String> {
         let mut first = None;
@@ -278,7 +278,7 @@ impl<'a> OverturningMap<'a> {
         [self.values[0][x], self.values[1][y]]
     }
 
-    /// The value that a quantity has in a cell, where it varies.
+    /// The value of a quantity in a cell, if it varies.
     fn value(&self, index: usize, quantity: Quantity) -> Option<f64> {
         let axis = self
             .axes
@@ -287,7 +287,7 @@ impl<'a> OverturningMap<'a> {
         Some(self.coordinates(index)[axis])
     }
 
-    /// What stands in a cell.
+    /// The model of a cell.
     fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
         let make = || {
             let structure = self.structure(index, scenario);
@@ -311,7 +311,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// What asks mechanisms in a cell for a motion, answered by `ask`, or what becomes of the cell without it; `None` of a row.
+    /// Asks the mechanisms of a cell by `ask`. Returns the answer; the result of a cell without a model; or `None` for a row of blocks.
     pub(super) fn ask_mechanisms<T>(
         &self,
         index: usize,
@@ -353,7 +353,7 @@ impl<'a> OverturningMap<'a> {
         motion
     }
 
-    /// The pulse of a cell, of any amplitude; `None` under a record, or where the cell has no scenario.
+    /// The pulse of a cell, of any amplitude; `None` for a record, or if the cell has no valid scenario.
     pub(super) fn pulse(&self, index: usize) -> Option<ScalablePulse> {
         let scenario = self.variant(index).ok()?;
         let Some(Ground::Pulse(pulse)) = scenario.ground() else {
@@ -375,7 +375,7 @@ impl<'a> OverturningMap<'a> {
         }))
     }
 
-    /// The ground motion of a cell, or why there is none.
+    /// The ground motion of a cell, or why it has none.
     fn motion(&self, index: usize, scenario: &Scenario) -> Result<GroundMotion, String> {
         if let (Some(Ground::Pulse(pulse)), Some(scalable)) = (scenario.ground(), self.pulse(index))
         {
@@ -392,7 +392,7 @@ impl<'a> OverturningMap<'a> {
         }
     }
 
-    /// What stands in a cell, and what shakes it.
+    /// The model of a cell, with its ground motion and request.
     fn case(&self, index: usize) -> Result<(Standing, Case), CellResult> {
         let scenario = self.variant(index).map_err(CellResult::Failed)?;
         let standing = self.standing(index, &scenario)?;
@@ -400,7 +400,7 @@ impl<'a> OverturningMap<'a> {
         Ok((standing, (ground, scenario.request_from_rest())))
     }
 
-    /// What becomes of cells with the same structure, and how many outcomes each has when it is computed in other ways.
+    /// The endings of cells with the same structure, and how many outcomes each has when it is repeated in other ways.
     fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Ended> {
         if self.spread {
             let ended = all_outcomes(model, cases).into_iter();
@@ -429,13 +429,13 @@ impl<'a> OverturningMap<'a> {
     }
 }
 
-/// How the history of a cell ends, and how many outcomes it has where that was asked, or why there is none.
+/// How the history of a cell ends, and how many outcomes it has if that was requested; or why it has no history.
 type Ended = Result<(Ending, Option<Outcomes>), String>;
 
-/// How many outcomes a cell has when it is computed in several ways, or why that is not known.
+/// How many outcomes a cell has when it is repeated in several ways, or why that is unknown.
 type Outcomes = Result<usize, String>;
 
-/// How histories end, and how many outcomes each has with all its repetitions, none of which is spared or cut short.
+/// How histories end, and how many outcomes each has with all its repetitions; none is left out or cut short.
 fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<(Ending, Outcomes), String>> {
     let repetitions = model.repetitions().into_iter();
     let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
@@ -489,7 +489,7 @@ impl Study for OverturningMap<'_> {
         self.rows(&[index]).remove(0)
     }
 
-    /// Cells with one structure, where its model computes several motions at once.
+    /// Cells with the same structure, if its model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let together = self.scenario.motion().is_faster_together();
         together.then(|| self.structures.place(self.place(index)))?

@@ -1,4 +1,4 @@
-//! `map.html`: a map with a cursor that tells the numbers of a cell, and the command that runs it.
+//! `map.html`: a map with a cursor that shows the numbers of a cell, and the command that runs it.
 
 use std::fmt::Write as _;
 
@@ -66,7 +66,7 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -
         .iter()
         .map(|kind| u8::try_from(index(kind)).unwrap_or(0));
     let column = |name: &str, value: &dyn Fn(&CellRow) -> Option<f64>| {
-        // What a cell does not have is not a number, which the page leaves out.
+        // NaN stands for a missing value, which the page does not show.
         let values = rows.iter().map(|row| value(row).unwrap_or(f64::NAN));
         let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
         json!({ "name": name, "values": BASE64_STANDARD.encode(bytes) })
@@ -108,8 +108,8 @@ fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -
     })
 }
 
-/// The command that runs a cell, with places for its two values: the whole scenario on standard input, so that it does
-/// not matter where the page is and which keys the scenario file gives its dimensions by.
+/// The command that runs a cell, with placeholders for its two values. The whole scenario goes to standard input, so the
+/// command works wherever the page is, and whichever keys define the dimensions in the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
     let scenario = map.scenario();
     let mut table = scenario.to_json();
@@ -157,7 +157,7 @@ fn command(map: &OverturningMap<'_>) -> String {
     }
     let mut text = table.as_object().map_or(String::new(), toml_text);
     for place in places {
-        // Numbers have no quotation marks.
+        // Numbers need no quotation marks.
         text = text.replace(&format!("= \"{place}\""), &format!("= {place}"));
     }
     format!("archrock run -{set} --out cell <<'END'\n{text}END\n")

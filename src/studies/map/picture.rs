@@ -12,7 +12,7 @@ use crate::scenario::{Axis, Quantity, Spacing};
 use crate::studies::kind::{self, Kind};
 use crate::studies::results::Look;
 
-/// What a cell is coloured by.
+/// The kind by which a cell is coloured.
 pub(super) fn kind_of(result: &CellResult, look: Look) -> Kind {
     if let (true, CellResult::Ended(ending)) = (look.by_peak, result)
         && let (Outcome::Rest | Outcome::StillRocking, Some(peak)) =
@@ -42,7 +42,7 @@ pub(super) fn label(axis: &Axis) -> &str {
     }
 }
 
-/// The scale of an axis and the edges of the cells along it, halfway between their values, which are multiplied.
+/// The scale of an axis and the edges of its cells, halfway between the values; the values are multiplied by `factor`.
 fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
     let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
@@ -52,7 +52,7 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let from = |place: f64| if logarithmic { place.exp() } else { place };
     let places: Vec<_> = values.iter().map(|value| to(*value)).collect();
     let (first, last) = (places[0], places[places.len() - 1]);
-    // A single value gets room of its own size.
+    // A single value gets a cell as wide as the value itself.
     let [before, after] = match places[..] {
         [only] => [0.5 * only.abs().max(1e-9); 2],
         [first, second, ..] => [
@@ -69,7 +69,7 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
         .map(from)
         .collect();
     let (low, high) = (edges[0], edges[edges.len() - 1]);
-    // Half a cell beyond the ends there may be nothing that could be.
+    // Half a cell beyond the ends there may be impossible values.
     let low = if values[0] >= 0.0 { low.max(0.0) } else { low };
     let high = match axis.quantity {
         Quantity::Embrace => high.min(180.0),
@@ -88,7 +88,7 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     (scale, edges)
 }
 
-/// Draws the map. Boundaries are of maps whose y is the amplitude.
+/// Draws the map. Only maps whose y is the amplitude have boundaries.
 #[must_use]
 pub fn draw(
     title: &str,
@@ -100,11 +100,11 @@ pub fn draw(
     drawn(title, map, rows, boundaries, look).picture
 }
 
-/// The picture of a map, and where its cells are.
+/// The picture of a map, and the positions of its cells.
 pub(super) struct Drawn {
     pub(super) picture: String,
     pub(super) height_px: f64,
-    /// Edges of the columns from the left, and of the lines from below.
+    /// Edges of the columns from the left, and of the rows from below.
     pub(super) edges_px: [Vec<f64>; 2],
 }
 
@@ -153,7 +153,7 @@ pub(super) fn drawn(
             }
         }
         if !path.is_empty() {
-            // The stroke closes the seams between cells.
+            // The stroke closes the gaps between cells.
             drawing.path(kind.name, &path, kind.fill, Stroke::new(kind.fill, 0.4, ""));
         }
     }
@@ -197,7 +197,7 @@ pub(super) fn drawn(
     }
 }
 
-/// Strikes out the cells whose outcome depends on how they are computed.
+/// Hatches the cells whose outcome depends on how they are computed.
 fn hatch(drawing: &mut Drawing, axes: &Axes, edges: [&[f64]; 2], rows: &[CellRow]) {
     let [x_edges, y_edges] = edges;
     let mut path = String::new();
@@ -220,7 +220,7 @@ const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
 const INCIPIENT: Stroke = Stroke::new(color::BLUE, 2.0, "7 4");
 const IMPACT_FREE: Stroke = Stroke::new(color::BLACK, 2.2, "");
 
-/// What the colours mean, and the lines that are on these axes.
+/// The legend of the colours, and of the lines that appear on these axes.
 fn legend(
     map: &OverturningMap<'_>,
     kinds: &[Kind],

@@ -1,4 +1,4 @@
-//! What an overturning map tells: its table, its boundaries, its words.
+//! Reports an overturning map: its table, its boundaries and its words.
 
 use super::boundary::{Boundary, BoundaryRow, MapRow};
 use super::{CellResult, CellRow, OverturningMap, page, picture};
@@ -16,7 +16,7 @@ const SUMMARY: &str = "map.json";
 const BOUNDARY: &str = "no_impact.csv";
 
 impl OverturningMap<'_> {
-    /// Files and words of all rows.
+    /// The files and words for all rows.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -45,7 +45,7 @@ impl OverturningMap<'_> {
         })
     }
 
-    /// A row per cell: x varies slowly, y fast.
+    /// The columns for one row per cell: x varies slowly, y fast.
     fn columns(&self) -> Vec<Column<'_, CellRow>> {
         let [x, y] = self.axes().map(|axis| axis.key.as_str());
         let mut all = vec![
@@ -71,7 +71,7 @@ impl OverturningMap<'_> {
         all
     }
 
-    /// The boundaries that were found, a row per value of x.
+    /// The boundaries that were found, one row per value of x.
     fn boundary_table(&self, boundaries: &[BoundaryRow]) -> Result<Vec<u8>, OutputError> {
         type Row = (f64, Boundary);
         let rows: Vec<Row> = found(boundaries).collect();
@@ -84,13 +84,13 @@ impl OverturningMap<'_> {
     }
 }
 
-/// The boundaries that there are, with their x.
+/// The boundaries that were found, with their x.
 pub(super) fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
     let rows = boundaries.iter();
     rows.filter_map(|row| Some((row.x, row.result.as_ref().ok().copied()??)))
 }
 
-/// The outcome of a cell, as it stands in the table.
+/// The outcome of a cell, as in the table.
 #[must_use]
 pub const fn outcome(result: &CellResult) -> &'static str {
     match result {
@@ -101,7 +101,7 @@ pub const fn outcome(result: &CellResult) -> &'static str {
     }
 }
 
-/// The number of outcomes of a cell with its repetitions, as it stands in the table.
+/// The column with the number of outcomes of a cell and its repetitions.
 const SPREAD: &str = "spread";
 
 /// How many cells have an outcome that depends on how they are computed.
@@ -113,7 +113,7 @@ pub(super) fn is_doubtful(row: &CellRow) -> bool {
     matches!(row.spread, Some(Ok(2..)))
 }
 
-/// What is to be remarked of the cells: which failed, and of which a repetition or a boundary did; which are uncertain.
+/// The remarks on the cells: those that failed, those with a failed repetition or boundary, and those that are uncertain.
 fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRow]) -> Remarks {
     let [x_name, y_name] = map.axes().map(|axis| axis.key.as_str());
     let mut remarks = Remarks::default();
@@ -137,7 +137,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRo
     remarks
 }
 
-/// How many cells came to what, what is doubtful about them, and what failed.
+/// How many cells had each outcome, what is doubtful about them, and what failed.
 fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> String {
     let words = |cell: &CellRow| match &cell.result {
         CellResult::Ended(ending)
@@ -170,10 +170,10 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
 }
 
 impl Look {
-    /// The factors that make p t_p of durations, and a / A_L of amplitudes.
+    /// The factors that turn durations into p t_p, and amplitudes into a / A_L.
     ///
     /// # Errors
-    /// Says what a map needs for that.
+    /// Explains what the map lacks for that.
     pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
         let map = scenario.map().ok_or("there is no map")?;
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {

@@ -1,4 +1,4 @@
-//! Several models of motion of one structure side by side: what each says, which to believe, and by how much the others differ.
+//! Several models of motion of one structure side by side: the result of each, which to believe, and how far the others differ.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::spread::Verdict;
 use crate::scenario::Hinges;
 
-/// The runs of one structure with different models of motion, with what their motions came to, as a table, and what follows.
+/// A table of the runs of one structure with different models of motion and their results, followed by the conclusion.
 #[must_use]
 pub fn compared(runs: &[Run<'_>], histories: &[Summary]) -> String {
     let rows: Vec<[String; 3]> = runs
@@ -44,7 +44,7 @@ fn ends(history: &Summary) -> String {
     }
 }
 
-/// The model that takes the least for granted, and what the others make of its answer.
+/// The model with the fewest assumptions, and how the others differ from its answer.
 fn believed(runs: &[Run<'_>], histories: &[Summary]) -> String {
     let trust = |run: &Run<'_>| match run.scenario.motion().hinges() {
         Hinges::Four => 0,

@@ -1,9 +1,9 @@
-//! The frames of a moving picture: a history thinned to what can be seen.
+//! The frames of an animation: a history thinned to what the eye can see.
 
 use crate::dynamics::history::{JointPressure, OpenHinge, Sample, State};
 use crate::mechanics::geometry::pose::Pose;
 
-/// What is seen at an instant.
+/// One frame: everything visible at an instant.
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
     pub(super) time_s: f64,
@@ -29,11 +29,11 @@ impl Frame {
     }
 }
 
-/// Every second, fourth, eighth ... sample, so that there are no more than a given number, and the last one.
+/// Every sample, or every second, fourth, eighth ... one, so that there are no more than a given number; and the last one.
 #[derive(Clone, Debug)]
 pub(super) struct Film {
     most: usize,
-    /// One of so many samples is kept.
+    /// One sample in this many is kept.
     every: usize,
     samples: usize,
     frames: Vec<Frame>,
@@ -41,7 +41,7 @@ pub(super) struct Film {
 }
 
 impl Film {
-    /// An empty film, of at most this many frames and the last one.
+    /// An empty film, of at most this many frames plus the last one.
     pub(super) const fn new(most: usize) -> Self {
         Self {
             most,
@@ -72,7 +72,7 @@ impl Film {
         self.last = Some(frame);
     }
 
-    /// The frames in the order of time.
+    /// The frames in order of time.
     pub(super) fn frames(&self) -> Vec<&Frame> {
         let later = |last: &&Frame| {
             self.frames

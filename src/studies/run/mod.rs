@@ -1,4 +1,4 @@
-//! A run: one history of a scenario, by its model of motion, in tables, pictures, a page, a summary and words.
+//! A run: one history of a scenario, with its model of motion, as tables, pictures, a page, a summary and words.
 
 mod comparison;
 mod film;
@@ -53,38 +53,38 @@ const JOINTS: &str = "joints.csv";
 const EVENTS: &str = "events.csv";
 const IMPACTS: &str = "impacts.csv";
 const PICTURE: &str = "history.svg";
-/// Written last: a folder that has it is complete.
+/// Written last: a folder that contains it is complete.
 const SUMMARY: &str = "summary.json";
-/// Several models of motion in one picture, in the folder around theirs.
+/// Several models of motion in one picture; it lies in the folder that contains theirs.
 pub const OVERLAY: &str = "overlay.svg";
 
-/// All files that there may be, in the order in which they are told.
+/// All files that a run may write, in the order in which they are listed.
 pub const FILES: [&str; 10] = [
     ROTATIONS, REPORT, SNAPSHOTS, POSES, JOINTS, EVENTS, IMPACTS, PICTURE, OVERLAY, SUMMARY,
 ];
 
-/// What a run is asked for besides the history; by default as the program does it without options.
+/// Options of a run; the defaults are those of the program without options.
 #[derive(Clone, Debug)]
 pub struct Wanted {
     /// Width of the pictures, and the size of their text.
     pub figure: Figure,
-    /// Whether rotations go into a file.
+    /// Whether rotations are written to a file.
     pub rotations: bool,
-    /// Whether these have columns without dimension; of mechanisms only.
+    /// Whether that file has dimensionless columns; for mechanisms only.
     pub dimensionless: bool,
-    /// Whether what is computed in steps is repeated, to see what depends on them.
+    /// Whether computations in steps are repeated, to see what depends on the steps.
     pub spread: bool,
-    /// Whether there is a page with the structure in motion.
+    /// Whether to write a page with an animation of the structure.
     pub report: bool,
-    /// When the deformed structure is drawn, in seconds.
+    /// The times at which the deformed structure is drawn, in seconds.
     pub snapshots_s: Vec<f64>,
-    /// What displacements are multiplied by there.
+    /// The factor on the displacements in these drawings.
     pub exaggeration: f64,
-    /// Whether there is a table of where every body is.
+    /// Whether to write a table of the poses of all bodies.
     pub poses: bool,
-    /// The models of all runs that are told together, with the own one.
+    /// The models of all runs that are reported together, including this one.
     pub beside: Vec<Hinges>,
-    /// Places in the undeformed structure, in metres, whose displacements are told: at most [`MOST_POINTS`].
+    /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MOST_POINTS`].
     pub points_m: Vec<Vector2<f64>>,
 }
 
@@ -105,25 +105,25 @@ impl Default for Wanted {
     }
 }
 
-/// How far a run is.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stage {
-    /// It has come to this time, in seconds.
+    /// The simulation has reached this time, in seconds.
     Reached(f64),
-    /// It is over, and its repetitions are not.
+    /// The history is complete, and its repetitions are being computed.
     Repeating,
 }
 
-/// What a run tells.
+/// The results of a run.
 #[derive(Debug)]
 pub struct RunResults {
     /// For people.
     pub words: String,
     /// For programs, as in `summary.json`.
     pub summary: Value,
-    /// For a picture together with other models.
+    /// Curves for a picture of several models.
     pub curves: Curves,
-    /// What the motion came to.
+    /// The summary of the motion.
     pub history: Summary,
 }
 
@@ -149,10 +149,10 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// A run of a scenario.
+    /// Prepares the run of a scenario.
     ///
     /// # Errors
-    /// In words, when its structure has no such model of motion, or what is wanted does not go with it.
+    /// Explains that the structure has no such model of motion, or that an option does not fit it.
     pub fn new(scenario: &'a Scenario, wanted: Wanted) -> Result<Self, String> {
         if wanted.dimensionless && scenario.motion().hinges().has_joints() {
             return Err(
@@ -180,7 +180,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The name of its model for people.
+    /// The name of its model in words.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         self.scenario.motion().words()
@@ -195,7 +195,7 @@ impl<'a> Run<'a> {
             SNAPSHOTS => !self.wanted.snapshots_s.is_empty(),
             POSES => self.wanted.poses,
             JOINTS => self.model.row().is_some(),
-            // Elastic joints know none.
+            // Elastic joints have no impacts.
             IMPACTS => self.model.shape().pressing == 0,
             OVERLAY => false,
             _ => true,
@@ -203,8 +203,8 @@ impl<'a> Run<'a> {
         FILES.into_iter().filter(wanted).collect()
     }
 
-    /// Simulates it. Its files go into a folder that was opened for them, the rotations of one that has no file for them
-    /// elsewhere.
+    /// Simulates the scenario. The files go into a folder that was opened for them. Rotations go to `rotations` instead, if it is
+    /// given.
     ///
     /// # Errors
     /// When the motion cannot be computed, or a result not written.
@@ -253,7 +253,7 @@ impl<'a> Run<'a> {
         }
         let row = history.row.as_ref();
         if let Some(longest_step) = row.and_then(|row| row.longest_step.0) {
-            // What a computation takes is told here, and belongs to no result.
+            // The cost of a computation is reported here; the results do not contain it.
             summary["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
         }
         if let Some(mut folder) = folder {
@@ -276,7 +276,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The structure with other properties that are as likely, unless nobody asks how sure the run is.
+    /// The structure with other properties that are as likely as its own; empty if repetitions are not wanted.
     fn variations(&self) -> Result<Vec<Variation>, RunError> {
         if !self.wanted.spread {
             return Ok(Vec::new());
@@ -285,7 +285,7 @@ impl<'a> Run<'a> {
         variations.map_err(|error| SimulationError::computation(error).into())
     }
 
-    /// What the pictures are of.
+    /// The subject of the pictures.
     fn subject<'s>(&'s self, title: &'s str) -> Subject<'s> {
         let incipient_g = |sway| self.model.incipient_acceleration_g(sway);
         Subject {
@@ -297,7 +297,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Several runs that differ in their models of motion, with their curves, as one picture.
+/// One picture of several runs that differ in their models of motion, with their curves.
 #[must_use]
 pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
     let names: Vec<_> = runs.iter().map(Run::name).collect();
@@ -311,7 +311,7 @@ pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
     overlay::draw(first.wanted.figure, &subject, &named)
 }
 
-/// What is drawn of a structure at an instant, as a model moves it.
+/// The drawable parts of a structure, as a model moves them.
 #[must_use]
 pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     match model.row() {
@@ -325,7 +325,7 @@ fn write(folder: &mut Folder, name: &str, what: &str, text: &str) -> Result<(), 
     written.map_err(OutputError::io(format!("cannot write {what}")))
 }
 
-/// What is collected of a history for its words and pictures.
+/// What is collected from a history for its words and pictures.
 struct Shown {
     picture: Box<dyn Picture>,
     report: Option<Report>,
@@ -336,7 +336,7 @@ struct Shown {
 }
 
 impl Shown {
-    /// Page and snapshots are only for a folder.
+    /// The page and the snapshots are collected only if there is a folder.
     fn new(run: &Run<'_>, has_folder: bool) -> Self {
         let (model, wanted) = (&*run.model, &run.wanted);
         let snapshots = has_folder && !wanted.snapshots_s.is_empty();
@@ -373,7 +373,7 @@ impl Shown {
         self.picture.event(event);
     }
 
-    /// Writes the pictures, and the page with what was said; adds to that what is to be said of the snapshots.
+    /// Writes the pictures, and the page with the text so far; then adds the notes about the snapshots to that text.
     fn write(
         &self,
         run: &Run<'_>,
@@ -407,7 +407,7 @@ impl Shown {
     }
 }
 
-/// A table that is written while the motion is computed.
+/// A table that is written during the computation.
 type Running<'f, R> = TableWriter<'static, R, Box<dyn io::Write + 'f>>;
 
 /// The tables of a run.
@@ -493,7 +493,7 @@ impl<'f> Tables<'f> {
         }
     }
 
-    /// Ends the tables and returns the number of samples.
+    /// Completes the tables and returns the number of samples.
     fn finish(self) -> Result<usize, OutputError> {
         let mut samples = 0;
         for table in self.of_samples {
@@ -506,12 +506,12 @@ impl<'f> Tables<'f> {
     }
 }
 
-/// Where samples and events go.
+/// Passes samples and events on to the tables and pictures.
 struct Recording<'r, 'f> {
     tables: Tables<'f>,
     shown: &'r mut Shown,
     watch: &'r mut dyn FnMut(Stage),
-    /// Why a table could not be written, which ends the history.
+    /// The error of a table that could not be written, which ends the history.
     written: Result<(), OutputError>,
 }
 
@@ -535,7 +535,7 @@ impl Recorder for Recording<'_, '_> {
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         self.shown.event(event);
-        // Of a history that was ended because a table failed, the end is no event of the tables.
+        // If a failed table ended the history, that end is not an event.
         if self.written.is_err() {
             return ControlFlow::Break(());
         }

@@ -6,7 +6,7 @@ use crate::output::envelope::Envelope;
 use crate::output::panels::{Curve, Panels, Subject};
 use crate::output::svg::{CURVES, Figure, Key, Sign};
 
-/// What any model tells of a history, thinned.
+/// The curves that every model has, thinned.
 #[derive(Clone, Debug, Default)]
 pub struct Curves {
     rotation_rad: Envelope,
@@ -15,7 +15,7 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Of a history without samples yet.
+    /// Curves without samples yet.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -42,8 +42,8 @@ impl Curves {
     }
 }
 
-/// The picture of histories with their names: the ground, the largest rotation of a body, upwards while the structure
-/// sways right and downwards while it sways left, and the energy.
+/// The picture of named histories: the ground, the largest rotation of a body, and the energy. The rotation is drawn upwards
+/// while the structure sways right, and downwards while it sways left.
 #[must_use]
 pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]) -> String {
     let ends_s = histories.iter().map(|(_, curves)| curves.end_s);

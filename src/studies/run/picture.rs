@@ -18,7 +18,7 @@ pub(super) trait Picture {
     /// Takes an event. Events come in the order of time.
     fn event(&mut self, _event: &Event) {}
 
-    /// The picture, with what the history came to.
+    /// Draws the picture, with the summary of the history.
     fn draw(
         &self,
         figure: Figure,
@@ -28,15 +28,15 @@ pub(super) trait Picture {
     ) -> String;
 }
 
-/// Where the excess of the thrust line is cut off, in parts of the thickness: a structure that falls has
+/// The excess of the thrust line is cut off at this value, in thicknesses: a falling structure has
 /// values that would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;
 
-/// A half cycle that comes near the unstable equilibrium, or passes it.
+/// A half cycle that comes near the unstable equilibrium or passes it.
 #[derive(Clone, Copy, Debug)]
 struct FarCycle {
     phase: usize,
-    /// The body that carries the coordinate.
+    /// The body whose rotation is the coordinate.
     body: usize,
     from_s: f64,
     to_s: f64,
@@ -44,10 +44,10 @@ struct FarCycle {
     unstable_rad: f64,
 }
 
-/// From this part of the unstable rotation on, or of the barrier, that limit is drawn.
+/// The limit is drawn if a motion reaches this fraction of the unstable rotation or of the barrier.
 pub(super) const FAR: f64 = 0.25;
 
-/// The look of the unstable rotation of a body: in the colour of its curve.
+/// The stroke for the unstable rotation of a body, in the colour of its curve.
 const fn unstable(body: usize) -> Stroke {
     Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
 }
@@ -64,14 +64,14 @@ pub(super) struct Timeline {
     phase_from_s: f64,
     /// Half cycles that went far.
     far: Vec<FarCycle>,
-    /// What the structure does at first, and then.
+    /// The states of the structure over time.
     doing: States,
     impacts_s: Vec<f64>,
     end_s: f64,
 }
 
 impl Timeline {
-    /// An empty one, for bodies of these names.
+    /// An empty timeline for bodies of these names.
     pub(super) fn new(bodies: &[String]) -> Self {
         Self {
             bodies: bodies.to_vec(),
@@ -90,7 +90,7 @@ impl Timeline {
         }
     }
 
-    /// Notes how far a half cycle goes, when it goes far.
+    /// Notes how far a half cycle goes, if it goes far.
     fn note_if_far(&mut self, sample: &Sample) {
         if sample.phase != self.phase {
             (self.phase, self.phase_from_s) = (sample.phase, sample.time_s);
@@ -99,7 +99,7 @@ impl Timeline {
         else {
             return;
         };
-        // The body that carries the coordinate is that at the end the structure leans away from.
+        // The coordinate is the rotation of the body at the end from which the structure leans away.
         let body = match sway {
             Sway::Right => 0,
             Sway::Left => sample.rotations_rad.len() - 1,
@@ -187,7 +187,7 @@ impl Picture for Timeline {
             ("Thrust outside / t", "excess", &self.excess_ratio),
         ] {
             let curve = Curve::new(name, envelope.points(), MAIN);
-            // A panel without anything to be seen would only take room.
+            // An empty panel would only take up room.
             if !curve.is_flat() {
                 panels.curves(label, 125.0, &[curve], doing);
             }

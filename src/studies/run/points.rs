@@ -1,4 +1,4 @@
-//! Points of blocks that are watched, such as the crown: how far they are displaced.
+//! Observed points of blocks, such as the crown, and their displacements.
 
 use std::fmt::Write as _;
 
@@ -14,10 +14,10 @@ use crate::output::svg::{CURVES, Key, Sign};
 use crate::output::table::{Cell, Column, several};
 use crate::output::{OutputError, finite};
 
-/// The most points that are watched at once: each has two curves in the pictures, of different looks.
+/// The largest number of points: each has two curves in the pictures, all of different looks.
 pub const MOST_POINTS: usize = CURVES.len() / 2;
 
-/// Watches points of a structure, and keeps how far they are displaced from where they were in the undeformed structure, relative to
+/// Observes points of a structure, and records their displacements from the undeformed structure, relative to
 /// the ground.
 #[derive(Clone, Debug)]
 pub(super) struct Points {
@@ -28,31 +28,31 @@ pub(super) struct Points {
 #[derive(Clone, Debug)]
 struct Watched {
     point: Point,
-    /// In its columns; empty where there is only one.
+    /// Its name in columns; empty if it is the only point.
     name: String,
-    /// To the right, and upwards.
+    /// To the right and upwards.
     displacements: [Displacement; 2],
 }
 
 #[derive(Clone, Debug, Default)]
 struct Displacement {
     millimetres: Envelope,
-    /// The farthest, with its time.
+    /// The largest displacement, with its time.
     farthest_m: f64,
     time_s: f64,
 }
 
-/// Axes of displacements, in columns and for people: towards the positive and the negative.
+/// The axes of displacements in columns, with words for the positive and the negative direction.
 const AXES: [(&str, [&str; 2]); 2] = [
     ("x", ["to the right", "to the left"]),
     ("y", ["up", "down"]),
 ];
 
 impl Points {
-    /// Points of a structure, by their places when it is undeformed, in metres.
+    /// Points of a structure, given by their undeformed positions in metres.
     ///
     /// # Errors
-    /// In words, when one is not in the structure, or there are too many.
+    /// Explains that one is outside the structure, or that there are too many.
     pub(super) fn new(scene: Scene, places_m: &[Vector2<f64>]) -> Result<Self, String> {
         if places_m.len() > MOST_POINTS {
             return Err(format!(
@@ -97,7 +97,7 @@ impl Points {
         }
     }
 
-    /// Their columns in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; of several
+    /// Their columns in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; for several points
     /// `point_1_x_m` and so on.
     pub(super) fn columns(&self) -> Vec<Column<'static, Sample>> {
         let column = |watched: &Watched| {
@@ -112,7 +112,7 @@ impl Points {
         self.watched.iter().map(column).collect()
     }
 
-    /// How far they came, a line each.
+    /// Their largest displacements, one line each.
     pub(super) fn words(&self) -> String {
         let mut text = String::new();
         for watched in &self.watched {
@@ -182,7 +182,7 @@ impl Points {
         keys.extend(strokes.map(|(name, stroke)| (name.as_str(), Sign::Line(stroke))));
     }
 
-    /// Names of their curves, to the right and upwards.
+    /// Names of their curves, for the displacements to the right and upwards.
     pub(super) fn names(&self) -> Vec<[String; 2]> {
         let named = self.watched.iter().map(|watched| {
             let place = place(watched.point.at_m);
@@ -191,7 +191,7 @@ impl Points {
         named.collect()
     }
 
-    /// The bodies that they move with while these hinges are open.
+    /// The bodies that carry them while these hinges are open.
     pub(super) fn bodies(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
         let watched = self.watched.iter();
         watched
@@ -199,7 +199,7 @@ impl Points {
             .collect()
     }
 
-    /// What a page shows of them: places, and named curves in millimetres.
+    /// What the page shows of them: positions, and named curves in millimetres.
     pub(super) fn on_page(&self, curve: impl Fn(&[(f64, f64)]) -> String) -> Value {
         let point = |(watched, names): (&Watched, [String; 2])| {
             let curves = watched
@@ -224,10 +224,10 @@ fn displacement_m(scene: &Scene, point: &Point, sample: &Sample) -> Vector2<f64>
     mark.moved(&sample.poses, 1.0) - point.at_m
 }
 
-/// A place as it is typed.
+/// A position as people would type it.
 fn place(at_m: Vector2<f64>) -> String {
     let text = |x: f64| {
-        // To a millimetre, without what that leaves of zeros.
+        // Rounded to a millimetre, without trailing zeros.
         let rounded = (1e3 * x).round() / 1e3;
         if rounded == 0.0 {
             "0".to_owned()

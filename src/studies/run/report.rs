@@ -1,7 +1,7 @@
-//! `report.html`: a history as a page of its own: the structure moving, curves over time, what happened in words.
+//! `report.html`: a history as a self-contained page: the structure in motion, curves over time, and the report in words.
 //!
-//! One file that needs no network. Numbers of frames are whole multiples of a unit, in 16 bits; what is drawn is thinned
-//! so that the page stays below half a megabyte for rows of a few dozen blocks.
+//! It is one file that needs no network. The numbers of frames are multiples of a unit, in 16 bits. Everything drawn is
+//! thinned, so that the page stays below half a megabyte for rows of a few dozen blocks.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -23,19 +23,19 @@ use crate::output::page::{escaped, filled, script_safe};
 use crate::output::scene::{FARTHEST, Mark, Scene};
 use crate::scenario::Scenario;
 
-/// Bytes that the frames of a page may take.
+/// Largest size of the frames of a page, in bytes.
 const FRAME_BYTES: usize = 280_000;
-/// The most frames that a page has, enough for a sample every hundredth of a second of ten.
+/// Largest number of frames of a page: one every hundredth of a second, for ten seconds.
 const MOST_FRAMES: usize = 1001;
-/// The fewest, of however many blocks.
+/// Smallest limit on the number of frames, whatever the number of blocks.
 const FEWEST_FRAMES: usize = 101;
-/// Columns that a curve is thinned to.
+/// Number of columns to which a curve is thinned.
 const CURVE_COLUMNS: usize = 700;
-/// Coordinates are rounded to this part of the size of the structure.
+/// Coordinates are rounded to this fraction of the size of the structure.
 const COORDINATE_RATIO: f64 = 5e-5;
-/// The largest whole number that a rotation or displacement is written as.
+/// The largest integer that stands for a rotation or displacement.
 const MOST: f64 = 32767.0;
-/// Written where a section is not pressed.
+/// The code for a section without compression.
 const NO_THRUST: i16 = i16::MIN;
 
 /// Collects the samples of a history, thinned, for its page.
@@ -53,12 +53,12 @@ pub struct Report {
 }
 
 impl Report {
-    /// An empty one, for the structure of a scenario as a model moves it.
+    /// An empty report, for the structure of a scenario as a model moves it.
     #[must_use]
     pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
         let pressing = model.shape().pressing;
-        // Rotation and displacement of a body, a section, what presses, time, ground and the rest, in base 64.
+        // Rotation and displacement of each body, each section, each pressed joint, time, ground and the rest, in base 64.
         let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections().len() + pressing) + 24) / 3;
         let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);
         Self {
@@ -74,7 +74,7 @@ impl Report {
         }
     }
 
-    /// The same with these points watched.
+    /// The same report with these points observed.
     pub(super) fn watching(self, points: Points) -> Self {
         Self {
             points: Some(points),
@@ -98,8 +98,8 @@ impl Report {
             .push(time_s, excess_ratio.min(LARGEST_EXCESS));
     }
 
-    /// The page of a scenario and what `run` says of it: a first line with the outcome, then others; those that go on from
-    /// the one before begin with four spaces.
+    /// The page for a scenario and the words of `run`: first a line with the outcome, then the other lines. A line that continues
+    /// the one before begins with four spaces.
     #[must_use]
     pub fn page(
         &self,
@@ -152,11 +152,11 @@ impl Report {
         )
     }
 
-    /// Everything that is drawn.
+    /// All data that the page draws.
     fn data(&self, ground: &GroundMotion, frames: &[&Frame], history: &Summary) -> Value {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
-        // Frames with the same hinges share a layout; the joints of a row are written frame by frame.
+        // Frames with the same hinges share a layout; the joints of a row are written for each frame.
         let is_row = self.scene.joint(0).is_some();
         let mut layouts: Vec<Vec<Hinge>> = Vec::new();
         let mut written = Vec::new();
@@ -229,7 +229,7 @@ impl Report {
         })
     }
 
-    /// Outlines and hinges.
+    /// The outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], unit_m: f64) -> Value {
         let pieces = self.scene.pieces(hinges).into_iter().map(|piece| {
             let coordinates = piece
@@ -265,7 +265,7 @@ impl Report {
         })
     }
 
-    /// What changes from frame to frame.
+    /// The data that change from frame to frame.
     fn frames(
         &self,
         ground: &GroundMotion,
@@ -295,7 +295,7 @@ impl Report {
         let codes = frames.iter().flat_map(|frame| {
             let mut codes = vec![0; joints];
             for open in &frame.hinges {
-                // A row whose blocks move as few bodies has its hinges in the layout.
+                // If a row moves as a few linked bodies, its hinges are in the layout instead.
                 if let Hinge::Joint { joint, edge } = open.hinge
                     && let Some(code) = codes.get_mut(joint)
                 {
@@ -337,7 +337,7 @@ impl Report {
     }
 }
 
-/// A part of a whole in eight bits; only zero becomes zero.
+/// A fraction in eight bits; only zero becomes zero.
 fn eighth(part: f64) -> u8 {
     #[expect(
         clippy::cast_possible_truncation,
@@ -348,7 +348,7 @@ fn eighth(part: f64) -> u8 {
     bits
 }
 
-/// How a hinge is open; 0 is shut.
+/// The code of an open joint; 0 means shut.
 const fn edge_code(edge: Option<Edge>) -> u8 {
     match edge {
         Some(Edge::Intrados) => 1,
@@ -357,12 +357,12 @@ const fn edge_code(edge: Option<Edge>) -> u8 {
     }
 }
 
-/// -1 for what stands still.
+/// The number of a body; -1 for parts that stand still.
 fn body_number(body: Option<usize>) -> i64 {
     body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
 }
 
-/// Values as whole multiples of a unit, which is such that the largest fits.
+/// Values as integer multiples of a unit, which is chosen so that the largest fits.
 fn whole(values: impl Iterator<Item = f64> + Clone) -> (Vec<i16>, f64) {
     let most = values
         .clone()
@@ -388,7 +388,7 @@ fn floats(values: impl Iterator<Item = f64>) -> String {
     encoded(values.map(|value| (value as f32).to_le_bytes()))
 }
 
-/// All times, then all values.
+/// The times of a curve, followed by its values.
 fn curve(points: &[(f64, f64)]) -> String {
     let times_s = points.iter().map(|point| point.0);
     floats(times_s.chain(points.iter().map(|point| point.1)))

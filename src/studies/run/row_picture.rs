@@ -1,4 +1,4 @@
-//! `history.svg` of a row of blocks: a history at a glance, with the joints that are open.
+//! `history.svg` for a row of blocks: a history at a glance, with the joints that are open.
 
 use std::fmt::Write as _;
 
@@ -14,13 +14,13 @@ use crate::output::panels::{
 };
 use crate::output::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
 
-/// Columns that all curves of rotations are thinned to together, so that long rows do not make huge files.
+/// Number of columns for all curves of rotations together, so that long rows do not make huge files.
 const COLUMNS_OF_ALL: usize = 16_000;
-/// Columns that one of them has at least.
+/// Least number of columns for one of them.
 const LEAST_COLUMNS: usize = 200;
-/// Height of the row of a joint below which it is not divided.
+/// Height of the strip of a joint below which it is not divided by edges.
 const NARROW_PX: f64 = 5.0;
-/// Columns of the joints: about one to a pixel.
+/// Number of columns in the panel of joints: about one per pixel.
 const JOINT_COLUMNS: usize = 800;
 
 /// Collects the samples of a history, thinned, and draws them.
@@ -28,9 +28,9 @@ const JOINT_COLUMNS: usize = 800;
 pub(super) struct RowTimeline {
     rotations_rad: Vec<Envelope>,
     energy: Envelope,
-    /// Slips in millimetres, where joints slip.
+    /// Slips in millimetres, if joints slip.
     slips_mm: Vec<Envelope>,
-    /// Whether energies are parts of a barrier; else J.
+    /// Whether energies are relative to a barrier; otherwise they are in J.
     in_barriers: bool,
     joints: OpenJoints,
     /// Names of the hinges at the two edges.
@@ -39,7 +39,7 @@ pub(super) struct RowTimeline {
 }
 
 impl RowTimeline {
-    /// An empty one, for this row.
+    /// An empty timeline for this row.
     pub(super) fn new(row: &Row) -> Self {
         let blocks = row.blocks().len();
         let columns = (COLUMNS_OF_ALL / blocks).clamp(LEAST_COLUMNS, COLUMNS);
@@ -92,7 +92,7 @@ impl Picture for RowTimeline {
         let doing = Some(&doing);
         panels.ground(110.0, subject, doing);
 
-        // The block that turns most is drawn above the others.
+        // The block that rotates most is drawn on top of the others.
         let largest = summary.largest_body();
         let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
         let rotations: Vec<Curve> = others
@@ -121,7 +121,7 @@ impl Picture for RowTimeline {
                 ("others", Sign::Line(BLOCK)),
             ]);
         }
-        // Without anything to be seen these would only take room.
+        // An empty panel would only take up room.
         if self.joints.any() {
             #[expect(clippy::cast_precision_loss, reason = "few joints")]
             let (height, highest) = (
@@ -161,7 +161,7 @@ impl Picture for RowTimeline {
                 "Energy (J)"
             };
             let mut curves = vec![energy];
-            // Far above the curve it would hide that.
+            // A barrier far above the curve would flatten it.
             let over_barrier = summary.peak_potential_over_barrier;
             if over_barrier.is_some_and(|peak| peak >= FAR) {
                 let ends = [(0.0, 1.0), (self.end_s, 1.0)];
@@ -180,7 +180,7 @@ impl Picture for RowTimeline {
     }
 }
 
-/// The half cycles, and the end.
+/// The states: the half cycles, and the end.
 fn doing(summary: &Summary) -> States {
     let end = match summary.outcome {
         Outcome::Rest => Some(State::Rest),
@@ -201,7 +201,7 @@ const BARRIER: Stroke = Stroke::new(color::VERMILION, 1.0, "1 3");
 const LARGEST: Stroke = Stroke::new(color::BLUE, 1.8, "");
 const BLOCK: Stroke = Stroke::new(color::BLACK, 0.5, "");
 
-/// How an open joint is drawn: name, colour, and where in its row, from its lower to its upper end.
+/// How an open joint is drawn: name, colour, and the lower and upper end of the mark in its strip.
 #[derive(Clone, Copy)]
 struct Kind {
     name: &'static str,
@@ -209,7 +209,7 @@ struct Kind {
     part: [f64; 2],
 }
 
-/// The ways in which a joint is open, each with its bit.
+/// The ways in which a joint can be open, each with its bit.
 const KINDS: [(Kind, u8); 3] = [
     (
         Kind {
@@ -237,14 +237,14 @@ const KINDS: [(Kind, u8); 3] = [
     ),
 ];
 
-/// Which joints are open over time, thinned to columns: in each, all ways in which a joint is open in its samples.
+/// The open joints over time, thinned to columns. A column has all ways in which a joint is open in any of its samples.
 #[derive(Clone, Debug)]
 struct OpenJoints {
     count: usize,
-    /// Samples in a column, and those in the last.
+    /// Number of samples in a column, and in the last one.
     group: usize,
     in_last: usize,
-    /// When each column begins.
+    /// The time at which each column begins.
     starts_s: Vec<f64>,
     /// Bits of [`KINDS`], column by column.
     bits: Vec<u8>,
@@ -261,12 +261,12 @@ impl OpenJoints {
         }
     }
 
-    /// Whether any is ever open.
+    /// Whether any joint is ever open.
     fn any(&self) -> bool {
         self.bits.iter().any(|bits| *bits != 0)
     }
 
-    /// Whether any is ever open in this way.
+    /// Whether any joint is ever open in this way.
     fn has(&self, bit: u8) -> bool {
         self.bits.iter().any(|bits| bits & bit != 0)
     }
@@ -293,7 +293,7 @@ impl OpenJoints {
         }
     }
 
-    /// Joins the columns by pairs.
+    /// Merges the columns in pairs.
     fn halve(&mut self) {
         self.group *= 2;
         self.starts_s = self.starts_s.iter().copied().step_by(2).collect();
@@ -310,7 +310,7 @@ impl OpenJoints {
         #[expect(clippy::cast_precision_loss, reason = "few joints")]
         let row_px = axes.frame.height / self.count as f64;
         for (kind, bit) in KINDS {
-            // Parts of rows that are too narrow would be pale.
+            // Divided strips this narrow would look pale.
             let part = if row_px < NARROW_PX {
                 [-0.5, 0.5]
             } else {
@@ -347,7 +347,7 @@ mod tests {
     use crate::dynamics::history::OpenHinge;
     use nalgebra::Vector2;
 
-    /// A sample in which joint 1 of 3 is open at the intrados, and joint 2 parted if asked.
+    /// A sample in which joint 1 of 3 is open at the intrados; if `parted`, joint 2 is open at both edges.
     fn sample(time_s: f64, parted: bool) -> Sample {
         let hinge = |joint, edge| OpenHinge {
             hinge: Hinge::Joint { joint, edge },

@@ -1,13 +1,13 @@
-//! What makes a history dimensionless, as papers plot it.
+//! The scales that make a history dimensionless, as papers plot it.
 
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::sway::Sway;
 
-/// What makes a history dimensionless, as papers plot it.
+/// The scales that make a history dimensionless, as papers plot it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// `p`, that of the equivalent block at the unstable equilibrium (see
-    /// [`crate::mechanics::equivalent`]); a column's own.
+    /// `p` of the equivalent block at the unstable equilibrium (see
+    /// [`crate::mechanics::equivalent`]); for a column, its own `p`.
     pub frequency_rad_s: f64,
     /// `g A_L`, the acceleration that starts the structure.
     pub incipient_m_s2: f64,

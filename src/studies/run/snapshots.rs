@@ -13,18 +13,18 @@ use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 pub(super) struct Snapshots {
     scene: Scene,
     exaggeration: f64,
-    /// The times that are asked for, in seconds, with the nearest sample so far.
+    /// The requested times, in seconds, each with the nearest sample so far.
     taken: Vec<(f64, Option<Sample>)>,
     end_s: f64,
 }
 
-/// Pictures in a row, at most.
+/// Largest number of pictures side by side.
 const COLUMNS: usize = 3;
-/// A picture is at least so wide.
+/// Least width of a picture.
 const LEAST_PX: f64 = 180.0;
 
 impl Snapshots {
-    /// Of a structure at these times in seconds, displacements drawn times `exaggeration`.
+    /// Snapshots of a structure at these times in seconds, with displacements multiplied by `exaggeration`.
     pub(super) fn new(scene: Scene, times_s: &[f64], exaggeration: f64) -> Self {
         Self {
             scene,
@@ -48,13 +48,13 @@ impl Snapshots {
         }
     }
 
-    /// Chosen times after the end of the history, in seconds: they show its last instant.
+    /// Requested times after the end of the history, in seconds; their pictures show its last instant.
     pub(super) fn beyond_s(&self) -> Vec<f64> {
         let times = self.taken.iter().map(|(time_s, _)| *time_s);
         times.filter(|time_s| *time_s > self.end_s).collect()
     }
 
-    /// The largest stress of a joint that is drawn, in Pa.
+    /// The largest joint stress in any of the pictures, in Pa.
     fn largest_pa(&self) -> f64 {
         let samples = self.taken.iter().filter_map(|(_, sample)| sample.as_ref());
         let pressures = samples.flat_map(|sample| &sample.pressures);
@@ -62,7 +62,7 @@ impl Snapshots {
         stresses_pa.fold(0.0, f64::max)
     }
 
-    /// That of the thinnest joint, in metres.
+    /// The thickness of the thinnest joint, in metres.
     fn thickness_m(&self) -> f64 {
         let sections = self.scene.sections().iter();
         let thicknesses_m = sections.map(|section| section.across_m.norm());
@@ -78,7 +78,7 @@ impl Snapshots {
         let cell_px = figure.width_px() / columns as f64;
         let [low_m, high_m] = self.scene.bounds_m();
         let (width_m, height_m) = (high_m.x - low_m.x, high_m.y - low_m.y);
-        // Room for the sway, and not higher than wide.
+        // Leaves room for the sway; no higher than wide.
         let scale = ((cell_px - 30.0) / (1.25 * width_m)).min(cell_px / (1.1 * height_m));
         let tall_px = 1.1 * scale * height_m;
         let mut drawing = Drawing::new(figure);
@@ -166,15 +166,15 @@ impl Snapshots {
     }
 }
 
-/// The highest wedge of stress, over the thickness of the thinnest joint.
+/// Height of the highest stress wedge, relative to the thickness of the thinnest joint.
 const WEDGE_RATIO: f64 = 0.6;
-/// Its colour.
+/// The colour of stress wedges.
 const PRESSED: &str = "#e3c3dc";
 
 /// Colours of the bodies of a four-link mechanism.
 const LINKS: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];
 
-/// Places metres on the sheet.
+/// The position of the structure on the sheet.
 struct Place {
     middle_m: Vector2<f64>,
     at: Vector2<f64>,

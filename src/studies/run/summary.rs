@@ -16,16 +16,17 @@ use crate::scenario::{Ground, Scenario};
 
 /// The summary of a run as JSON.
 ///
-/// Of mechanisms, `peak_rotation_over_critical` is the largest rotation over that at the unstable equilibrium of the mechanism
-/// that moved. `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (times the duration of the pulse) and
-/// `peak_acceleration_over_incipient` (of the ground, over `g A_L`).
+/// For mechanisms, `peak_rotation_over_critical` is the largest rotation relative to that at the unstable equilibrium of the
+/// mechanism that moved. `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (`p` times the duration of the pulse) and
+/// `peak_acceleration_over_incipient` (of the ground, relative to `g A_L`).
 ///
-/// Of a row of blocks, `peak_potential_over_barrier` is the largest potential energy over that at which the first mechanism
-/// overturns, where that is known. Normal forces and friction are those outside impacts; `largest_friction_demand` is that of
-/// the samples, as in `rotations.csv`. `energy_defect_ratio` is over weight times size (the mean radius of an arch, half the
-/// diagonal of a column), `energy_defect_over_largest` over the larger of the barrier, where that is known, and the largest
-/// kinetic energy. Where joints slip: `slips_m` at the end and `largest_slips_m` of every joint, `friction_j` taken, and, with
-/// free hinges, what did not converge. `impacts` is null with elastic joints, whose contact lasts. `spread` is left out where the run was not repeated; where a repetition failed it says why, as `failed`.
+/// For a row of blocks, `peak_potential_over_barrier` is the largest potential energy relative to that at which the first mechanism
+/// overturns, if that is known. Normal forces and friction are those outside impacts; `largest_friction_demand` is the largest
+/// among the samples, as in `rotations.csv`. `energy_defect_ratio` is relative to weight times size (the mean radius of an arch, half the
+/// diagonal of a column), `energy_defect_over_largest` to the larger of the barrier, if that is known, and the largest
+/// kinetic energy. If joints slip: `slips_m` at the end and `largest_slips_m` for every joint, `friction_j` dissipated, and, with
+/// free hinges, what did not converge. `impacts` is null with elastic joints, because their contact lasts. `spread` is left out if the
+/// run was not repeated; if a repetition failed, it holds the reason as `failed`.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -65,7 +66,7 @@ pub fn summary(
     Ok(Value::Object(object.0))
 }
 
-/// What is told so far.
+/// The JSON object so far.
 #[derive(Default)]
 struct Object(Map<String, Value>);
 
@@ -74,7 +75,7 @@ impl Object {
         self.0.insert(name.to_owned(), value);
     }
 
-    /// A number or none, which is finite.
+    /// Adds a finite number, or null.
     fn number(&mut self, name: &str, value: impl Into<Option<f64>>) -> Result<(), OutputError> {
         let value = value.into();
         finite(name, value.as_slice())?;
@@ -94,7 +95,7 @@ impl Object {
         }
     }
 
-    /// How it ended.
+    /// Adds how the history ended.
     fn ending(&mut self, history: &Summary) -> Result<(), OutputError> {
         self.put("outcome", json!(history.outcome.name()));
         self.number("outcome_time_s", history.outcome_time_s)?;
@@ -106,7 +107,7 @@ impl Object {
         Ok(())
     }
 
-    /// What starts it.
+    /// Adds the accelerations that start the structure.
     fn incipient(&mut self, model: &dyn Model) {
         let [right, left] =
             [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
@@ -114,7 +115,7 @@ impl Object {
         self.put("incipient_acceleration_g", both);
     }
 
-    /// What is told of mechanisms.
+    /// Adds the results that only mechanisms have.
     fn mechanisms(
         &mut self,
         scenario: &Scenario,
@@ -159,7 +160,7 @@ impl Object {
         Ok(())
     }
 
-    /// What is told of elastic joints.
+    /// Adds the results that only elastic joints have.
     fn elastic(&mut self, elastic: &ElasticSummary) -> Result<(), OutputError> {
         let largest = &elastic.largest_stress;
         self.number("largest_compressive_stress_pa", largest.stress_pa)?;
@@ -180,7 +181,7 @@ impl Object {
         Ok(())
     }
 
-    /// What is told of a row of blocks.
+    /// Adds the results that only rows of blocks have.
     fn row(
         &mut self,
         scenario: &Scenario,
@@ -205,7 +206,7 @@ impl Object {
         self.put("half_cycles", half_cycles.into());
         if let Some(elastic) = &row.elastic {
             self.elastic(elastic)?;
-        // None where it was released beyond where it overturns.
+        // There is none if the row was released beyond the point where it overturns.
         } else if history.cost.steps > 0 {
             self.number("least_normal_n", row.least_normal_n)?;
         }
@@ -247,7 +248,7 @@ impl Object {
     }
 }
 
-/// How its motion ends with other properties: a list of what is different (`with`), `outcome`, `outcome_time_s`, `overturning_sway`,
+/// How the motion ends with other properties: a list of what differs (`with`), `outcome`, `outcome_time_s`, `overturning_sway`,
 /// `first_peak_rad` and `largest_peak_rotation_rad`; or `failed`, with the reason.
 ///
 /// # Errors

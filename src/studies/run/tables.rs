@@ -11,9 +11,9 @@ use crate::output::table::{Cell, Column, column, numbers, row_number, several};
 use super::Scales;
 use super::words::taken_j;
 
-/// Columns of `rotations.csv`, a row per sample: time, ground, `phase` (events so far), `state`, rotations and rates of all
-/// bodies; `thrust_excess_ratio` of mechanisms or `open_joints` of rows, whose line of thrust stays inside;
-/// `friction_demand`; the vertical acceleration where the ground has one.
+/// Columns of `rotations.csv`, one row per sample: time, ground, `phase` (events so far), `state`, rotations and rates of all
+/// bodies; for mechanisms `thrust_excess_ratio`, for rows `open_joints`, because their line of thrust stays inside;
+/// `friction_demand`; the vertical acceleration if the ground has one.
 ///
 /// With scales, three columns follow the others: `p_t` (time times `p`), `acceleration_over_incipient`
 /// (ground acceleration over `g A_L`) and `rotation_over_critical` (see [`Sample::rotation_over_critical`]).
@@ -65,11 +65,11 @@ pub(super) fn rotations(
     all
 }
 
-/// Columns of `poses.csv`, a row per sample: `time_s`, then for each body `x_..._m`, `y_..._m`, `rotation_..._rad`.
+/// Columns of `poses.csv`, one row per sample: `time_s`, then for each body `x_..._m`, `y_..._m`, `rotation_..._rad`.
 ///
-/// The body's point that is at the origin when undeformed is at `(x, y)`, relative to the ground; the origin is the centre
-/// of a circular arch, the middle of a column's base. A corner that was at `c` is at `(x, y) + R c`, where `R` turns
-/// anticlockwise by the rotation.
+/// `(x, y)` is the current position, relative to the ground, of the body's point that is at the origin when undeformed. The
+/// origin is the centre of a circular arch, or the middle of a column's base. A corner that was at `c` is at `(x, y) + R c`,
+/// where `R` turns anticlockwise by the rotation.
 pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
     let names = bodies.iter().flat_map(|body| {
         let body = std::slice::from_ref(body);
@@ -88,15 +88,15 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
     ]
 }
 
-/// Columns of `joints.csv`, a row per sample: `time_s`, the gaps of all joints at both edges, `gap_0_intrados_m`,
-/// `gap_0_extrados_m` and so on; where joints slip, then `slip_0_m` and so on: the offset of the right face towards the
-/// extrados (of a column: of the upper face to the right). Where joints are elastic, then what each bears: `normal_0_n` (compression is
-/// positive), `shear_0_n` (positive where it keeps the right face from slipping towards the extrados), `eccentricity_0_ratio` (how far
-/// the normal force lies towards the extrados from the middle, over the thickness; empty where nothing presses),
-/// `contact_0_ratio` (the part that presses) and the stresses `stress_0_intrados_pa` and `stress_0_extrados_pa`.
+/// Columns of `joints.csv`, one row per sample: `time_s`, then the gaps of all joints at both edges, `gap_0_intrados_m`,
+/// `gap_0_extrados_m` and so on. If joints slip, then `slip_0_m` and so on: the offset of the right face towards the
+/// extrados (in a column: of the upper face to the right). If joints are elastic, then the action of each: `normal_0_n` (compression is
+/// positive), `shear_0_n` (positive if it keeps the right face from slipping towards the extrados), `eccentricity_0_ratio` (distance of
+/// the normal force from the middle towards the extrados, relative to the thickness; empty without compression),
+/// `contact_0_ratio` (the compressed fraction) and the stresses `stress_0_intrados_pa` and `stress_0_extrados_pa`.
 ///
 /// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
-/// joint is an arc: thickness times relative rotation, plus the smaller gap.
+/// joint is measured along the arc: thickness times relative rotation, plus the smaller gap.
 pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     let shape = model.shape();
     let gaps = (0..shape.joints)
@@ -132,7 +132,7 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     ]
 }
 
-/// Columns of `events.csv`, a row per transition.
+/// Columns of `events.csv`, one row per transition.
 ///
 /// | column | |
 /// |---|---|
@@ -144,12 +144,12 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
 /// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
 /// | `energy_j` | kinetic and potential, just after |
 /// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`impacts`]; empty at rest |
-/// | `joints_open`, `edges_open` | of a row of blocks: joints that are open or open now, and the edge about which each turns (`both`: it parts), with spaces between |
+/// | `joints_open`, `edges_open` | of a row of blocks: joints that are open or open now, and the edge about which each turns (`both`: it parts), separated by spaces |
 ///
-/// A column has no columns for hinges. A structure that is released starts in the first mechanism
-/// without a row: its hinges are in `impacts.csv`, as those that close first.
+/// For a column there are no columns of hinges. A structure that is released starts in the first mechanism
+/// without a row: `impacts.csv` has its hinges, as the first to close.
 ///
-/// Rows of blocks have thousands of impacts, and bodies by the hundred: columns of these are left out.
+/// Rows of blocks have thousands of impacts and hundreds of bodies, so the columns of bodies are left out.
 pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         column("time_s", |event: &Event| event.time_s),
@@ -181,18 +181,18 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
     all
 }
 
-/// Columns of `impacts.csv` of mechanisms, a row per event that is an impact.
+/// Columns of `impacts.csv` for mechanisms, one row per impact.
 ///
-/// The mechanism after is the one that the impact leads to, with the energy that it would keep, also where
-/// that is so little that the structure comes to rest. Where no mechanism can follow the hinges are left
-/// empty. A column has no columns for hinges.
+/// The mechanism after is the one to which the impact leads, with the energy that it would keep, even if this
+/// is so little that the structure comes to rest. If no mechanism can follow, the hinges are
+/// empty. For a column there are no columns of hinges.
 ///
-/// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after from the left, in degrees from the left
-/// springing, and `hinge_a_edge` ... where they are in the section, `intrados` or `extrados`; `closed_a_deg` and
-/// `closed_a_edge` ... the same of the mechanism before, in the first row the first of all.
+/// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after, from the left, in degrees from the left
+/// springing; `hinge_a_edge` ... are their edges, `intrados` or `extrados`. `closed_a_deg` and
+/// `closed_a_edge` ... are the same for the mechanism before; in the first row, for the first mechanism of all.
 ///
 /// The impulses at its hinges act on the part towards the crown, in the frame of the ground; they are empty
-/// where the restitution coefficient is prescribed.
+/// if the restitution coefficient is prescribed.
 pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>> {
     let (bodies, sections) = (model.bodies(), sections(model));
     let rates = |moment: &str| columns(&bodies, "rate", &format!("{moment}_rad_s"));
@@ -247,10 +247,10 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
     ]
 }
 
-/// Columns of `impacts.csv` of rows, a row per event that is an impact: `impact` (from 1), `time_s`, `joints_shut` and
-/// `joints_opened` (numbers with spaces between), each with its edges in the same order (`edges_shut`: which landed,
-/// `edges_opened`: about which they turn; `both` where both landed or the joint parts), `energy_before_j`,
-/// `energy_after_j` and `energy_taken_j`, kinetic energies, and where joints slip `friction_j`, the part that friction took.
+/// Columns of `impacts.csv` for rows, one row per impact: `impact` (from 1), `time_s`, `joints_shut` and
+/// `joints_opened` (numbers separated by spaces), each with its edges in the same order (`edges_shut`: those that landed,
+/// `edges_opened`: those about which they turn; `both` if both landed or the joint parts), the kinetic energies `energy_before_j`,
+/// `energy_after_j` and `energy_taken_j`, and if joints slip `friction_j`, the part that friction took.
 pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         row_number("impact"),
@@ -277,7 +277,7 @@ fn opened(event: &Event) -> &[Hinge] {
     impact(event).map_or(&[], |impact| &impact.opened)
 }
 
-/// A column of a quantity of the impact that an event is.
+/// A column with a quantity of the impact; empty for other events.
 fn of_impact<C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&Impact) -> C + 'static,
@@ -285,21 +285,21 @@ fn of_impact<C: Into<Cell<'static>>>(
     column(name, move |event: &Event| impact(event).map(&cell))
 }
 
-/// Hinges of a mechanism in the names of columns, from the left.
+/// Names of the hinges of a mechanism in columns, from the left.
 const HINGES: [&str; 4] = ["a", "b", "c", "d"];
 
-/// Names of columns, some for each of this many hinges.
+/// Names of columns, several for each of this many hinges.
 fn by_hinge(sections: usize, names: impl Fn(&str) -> Vec<String>) -> Vec<String> {
     let hinges = HINGES.iter().take(sections);
     hinges.flat_map(|hinge| names(hinge)).collect()
 }
 
-/// How many hinges of the mechanisms of a model are at sections.
+/// The number of hinges of a model's mechanisms that are at sections.
 fn sections(model: &dyn MechanismModel) -> usize {
     hinge_cells(&model.hinges_after(0, Sway::Right), 0).len()
 }
 
-/// Columns of this many hinges, place and edge.
+/// The columns of place and edge for this many hinges.
 fn hinges(
     what: &str,
     sections: usize,
@@ -317,8 +317,8 @@ fn hinges(
     })
 }
 
-/// Angles, in degrees from the left springing, and edges of the hinges that are at sections of an arch; filled up with
-/// empty cells to so many.
+/// Angles, in degrees from the left springing, and edges of the hinges at sections of an arch, followed by empty cells
+/// up to this number.
 fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'static str>)> {
     let sections = hinges.iter().filter_map(|hinge| match hinge {
         Hinge::Section { angle_rad, edge } => {
@@ -331,7 +331,7 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
     cells
 }
 
-/// Numbers of the joints that hinges are at, with spaces between.
+/// Numbers of the joints of these hinges, separated by spaces.
 fn joint_numbers(hinges: &[Hinge]) -> String {
     let numbers = hinges.iter().filter_map(|hinge| match hinge {
         Hinge::Joint { joint, .. } => Some(joint.to_string()),
@@ -340,7 +340,7 @@ fn joint_numbers(hinges: &[Hinge]) -> String {
     numbers.collect::<Vec<_>>().join(" ")
 }
 
-/// Edges of these joints, with spaces between.
+/// Edges of these joints, separated by spaces.
 fn joint_edges(hinges: &[Hinge]) -> String {
     let names = hinges.iter().filter_map(|hinge| match hinge {
         Hinge::Joint { edge, .. } => Some(edge.map_or("both", Edge::name)),

@@ -1,4 +1,4 @@
-//! The verdict of a run in a line: what happened, how sure that is, and what it hangs on.
+//! The verdict of a run in one line: what happened, how sure that is, and on what it depends.
 
 use super::words::{in_percent, needs};
 use crate::dynamics::history::{Outcome, Summary};
@@ -7,7 +7,7 @@ use crate::dynamics::thrust::EXCESS_LEVELS;
 use crate::dynamics::variation::Varied;
 use crate::scenario::{Hinges, Scenario};
 
-/// What a run is judged by.
+/// The evidence for the verdict on a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evidence<'a> {
     pub(super) scenario: &'a Scenario,
@@ -17,7 +17,7 @@ pub(super) struct Evidence<'a> {
 }
 
 impl Evidence<'_> {
-    /// Whether it overturns, as far as that is known.
+    /// Whether the structure overturns, as far as this is known.
     pub(super) fn verdict(&self) -> Verdict {
         let own = Verdict::from(self.history.outcome);
         let others = self
@@ -95,7 +95,7 @@ impl Evidence<'_> {
         }
     }
 
-    /// What the repetitions say, or the line of thrust of four links.
+    /// How sure the outcome is, from the repetitions or from the line of thrust of four links.
     fn how_sure(&self) -> Option<String> {
         if self.history.outcome == Outcome::NeverMoved {
             return None;
@@ -119,7 +119,7 @@ impl Evidence<'_> {
         Some(grade.to_owned())
     }
 
-    /// What it hangs on: friction that stone may not have, and properties with which it ends otherwise.
+    /// On what the outcome depends: friction that stone may not have, and properties that change the ending.
     fn doubts(&self) -> Vec<String> {
         let own = Verdict::from(self.history.outcome);
         let mut doubts = Vec::new();

@@ -1,4 +1,4 @@
-//! What a run says: what happened, when, and what it compares with.
+//! Reports a run in words: what happened, when, and how it compares.
 
 use std::fmt::Write as _;
 
@@ -18,7 +18,7 @@ use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::by_body;
 use crate::scenario::{Ground, Hinges, Scenario, Series, Structure};
 
-/// What stands above the words of runs of a scenario: its title, and the records that shake it, a line each.
+/// The heading of the words for the runs of a scenario: its title, and the records that shake it, one line each.
 #[must_use]
 pub fn heading(scenario: &Scenario) -> String {
     let title = scenario.title();
@@ -33,7 +33,7 @@ pub fn heading(scenario: &Scenario) -> String {
     text
 }
 
-/// What a run says: the verdict, what happened, what that compares with, how sure it is, and how it was computed.
+/// The report of a run: the verdict, what happened, how that compares, how sure it is, and how it was computed.
 pub(super) fn words(
     evidence: &Evidence<'_>,
     model: &dyn Model,
@@ -87,7 +87,7 @@ pub(super) fn words(
     text
 }
 
-/// How far the model can be trusted, and the friction that it takes for granted.
+/// How far the model can be trusted, and the friction that it presupposes.
 fn trusted(scenario: &Scenario, model: &dyn Model, history: &Summary, beside: &[Hinges]) -> String {
     let Some(thrust) = &history.thrust else {
         return String::new();
@@ -116,10 +116,10 @@ fn trusted(scenario: &Scenario, model: &dyn Model, history: &Summary, beside: &[
     )
 }
 
-/// Coefficients of friction of stone on stone, from the least to the largest that may be counted on.
+/// Coefficients of friction of stone on stone: the smallest and the largest that can be relied on.
 const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
 
-/// The friction that a motion without sliding needs, where stone may not have it.
+/// The friction that a motion without sliding needs, if stone may not have it.
 pub(super) fn needs(scenario: &Scenario, history: &Summary) -> Option<String> {
     let slips = scenario.motion().friction_coefficient().is_some();
     let needed = history
@@ -137,12 +137,12 @@ pub(super) fn needs(scenario: &Scenario, history: &Summary) -> Option<String> {
     (needed > low).then(|| format!("needs a friction of {needed:.2}"))
 }
 
-/// A part in percent, rounded down, so that what was not reached is not said to be.
+/// A fraction in percent, rounded down, so that a limit that was not reached does not read as reached.
 pub(super) fn in_percent(part: f64) -> f64 {
     (100.0 * part).floor()
 }
 
-/// How well the motion was computed, and in how many steps.
+/// How accurately the motion was computed, and in how many steps.
 fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String {
     if history.outcome == Outcome::NeverMoved {
         return String::new();
@@ -173,7 +173,7 @@ fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String
     text
 }
 
-/// What its motion hangs on: how it ends with other properties.
+/// How the motion ends with other properties.
 fn variations(own: &Summary, varied: &[Varied]) -> String {
     let mut text = String::new();
     for Varied { name, result } in varied {
@@ -211,7 +211,7 @@ pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
     peaks.find(|peak_rad| *peak_rad > STRAIGHT_RAD)
 }
 
-/// What is said of the motion of mechanisms.
+/// The report on the motion of mechanisms.
 fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notable) -> String {
     let mut text = String::new();
     if let Some((time_s, impact)) = &impacts.first {
@@ -240,20 +240,20 @@ fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notabl
     text
 }
 
-/// How far it went: that it `passed` the point from which gravity alone overturns it, or what part of the way.
+/// How far the motion went: it `passed` the point from which gravity alone overturns the structure, or reached a part of the way.
 fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
     match outcome {
-        // How far it fell on until the run ended says nothing; it may have overturned by another mechanism.
+        // How far it fell before the run ended means nothing; it may have overturned by another mechanism.
         Outcome::Overturned(_) => format!("  {passed}\n"),
         _ => {
-            // Rounded down, so that what was not reached is not said to be.
+            // Rounded down, so that a limit that was not reached does not read as reached.
             let percent = (1e3 * peak).floor() / 10.0;
             format!("  reached {percent:.1} % of {of}\n")
         }
     }
 }
 
-/// What is said of the motion of a row.
+/// The report on the motion of a row.
 fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
     let mut text = String::new();
     if let Some((time_s, impact)) = &impacts.first {
@@ -307,10 +307,10 @@ fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
     text
 }
 
-/// From here on the thrust of a row at rest lies close to the edge of a joint, over its thickness from the middle.
+/// At this distance from the middle, in thicknesses of a joint, the thrust of a row at rest is close to the edge.
 const NEAR_EDGE_RATIO: f64 = 0.4;
 
-/// What is said of joints that give way.
+/// The report on elastic joints.
 fn of_elastic_joints(scenario: &Scenario, elastic: &ElasticSummary) -> String {
     let Stress {
         stress_pa,
@@ -340,13 +340,13 @@ fn of_elastic_joints(scenario: &Scenario, elastic: &ElasticSummary) -> String {
     text
 }
 
-/// Half cycles that the words of a run tell of.
+/// Number of half cycles that are described.
 const FIRST: usize = 3;
 
-/// What turns by no more than this slides straight on: printed, it is zero.
+/// A block that rotates by no more than this slides straight on: in print, the rotation is zero.
 const STRAIGHT_RAD: f64 = 5e-7;
 
-/// Impacts that the words of a run tell of, with their times.
+/// Impacts that are described, with their times.
 #[derive(Default)]
 pub(super) struct Notable {
     first: Option<(f64, Impact)>,
@@ -369,17 +369,17 @@ impl Notable {
     }
 }
 
-/// Energy that an impact took, in J.
+/// Energy lost in an impact, in J.
 pub(super) fn taken_j(impact: &Impact) -> f64 {
     impact.energy_before_j - impact.energy_after_j
 }
 
-/// How it ended.
+/// How the history ended.
 fn outcome(history: &Summary) -> String {
     let time_s = history.outcome_time_s;
     let elastic = history.row.as_ref().and_then(|row| row.elastic.as_ref());
     let impacts = match history.impacts {
-        // Elastic joints know none.
+        // Elastic joints have no impacts.
         _ if elastic.is_some() => String::new(),
         0 => " without impact".to_owned(),
         1 => " after 1 impact".to_owned(),
@@ -396,7 +396,7 @@ fn outcome(history: &Summary) -> String {
     }
 }
 
-/// What starts the structure to either side, beside what the ground reaches.
+/// The acceleration that starts the structure to either side, compared with that of the ground.
 fn incipient(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String {
     let sides = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
     let least_g = sides
@@ -421,12 +421,12 @@ fn incipient(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Strin
     }
 }
 
-/// What the ground reaches, beside what starts the structure.
+/// The peak of the ground acceleration, compared with what starts the structure.
 fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
     let ground = scenario.ground_motion();
     let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.gravity_m_s2();
     let whole_g = ground.peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2();
-    // A record goes on where a motion ends.
+    // A record may continue after the motion ends.
     let until = match history.outcome {
         _ if peaks_g.x >= whole_g => "",
         Outcome::Overturned(_) => " until it overturned",
@@ -451,7 +451,7 @@ fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
     reaches
 }
 
-/// Warns of a run that ends before the ground does.
+/// Warns if the run ends before the ground motion does.
 fn cut_short(scenario: &Scenario, history: &Summary) -> String {
     let ground = scenario.ground_motion();
     if history.end_s >= scenario.simulation().duration_s && ground.end_s() > history.end_s {
@@ -465,7 +465,7 @@ fn cut_short(scenario: &Scenario, history: &Summary) -> String {
     String::new()
 }
 
-/// How far the motion can be trusted to be that of four links, or of a column on its toe; `None` where it did not rock.
+/// How far the motion can be trusted to be that of four links, or of a column on its toe; `None` if it did not rock.
 fn trust(thrust: &ThrustRecord, structure: &Structure, beside: &[Hinges]) -> Option<String> {
     let [_, near] = thrust.shares_within()?;
     let Peak { value, time_s } = thrust.largest_excess;
@@ -490,7 +490,7 @@ fn trust(thrust: &ThrustRecord, structure: &Structure, beside: &[Hinges]) -> Opt
         Some(arch) if arch.voussoirs().is_none() => "give `voussoirs` and ",
         _ => "",
     };
-    // Nobody is told to do what is done.
+    // No advice to do what is already done.
     let compare = if beside.contains(&Hinges::Free) {
         String::new()
     } else {
@@ -503,12 +503,12 @@ fn trust(thrust: &ThrustRecord, structure: &Structure, beside: &[Hinges]) -> Opt
     ))
 }
 
-/// Slips below this part of the thickness of a joint are not worth a word.
+/// Slips below this fraction of the thickness of a joint are not reported.
 const LEAST_SLIP_RATIO: f64 = 1e-6;
-/// Joints that the words tell of.
+/// Number of joints whose slips are reported.
 const SLIPPED: usize = 4;
 
-/// Which joints slipped, what is left of it, and what friction took.
+/// Which joints slipped, the slip that remains, and the energy lost in friction.
 fn slips(row: &Row, sliding: &Sliding, outcome: Outcome) -> String {
     let joints = row.joints().iter().zip(&sliding.largest_offsets_m);
     let mut slipped: Vec<(usize, f64, f64)> = joints
@@ -561,7 +561,7 @@ fn slips(row: &Row, sliding: &Sliding, outcome: Outcome) -> String {
     text
 }
 
-/// What an impact did.
+/// The joints that close and open at an impact.
 fn landing(impact: &Impact) -> String {
     let mut text = String::new();
     for (hinges, one, many) in [
@@ -579,7 +579,7 @@ fn landing(impact: &Impact) -> String {
     text
 }
 
-/// Numbers of the joints that hinges are at; neighbours as `3-7`.
+/// Numbers of the joints of these hinges; neighbours as `3-7`.
 fn joints(hinges: &[Hinge]) -> String {
     let mut runs: Vec<(usize, usize)> = Vec::new();
     for hinge in hinges {
@@ -602,7 +602,7 @@ fn cycle(cycle: &HalfCycle) -> String {
     format!("{} {:.6}", cycle.sway.name(), cycle.peak_rad)
 }
 
-/// What the repetitions leave as it is.
+/// Which results the repetitions confirm.
 fn sure(spread: &Spread) -> String {
     let repeated = spread.repeated.join("; ");
     let mut text = if spread.same_outcome() {

@@ -1,8 +1,8 @@
-//! The overturning spectrum: how strong a pulse must be to overturn a structure of some size.
+//! The overturning spectrum: how strong a pulse must be to overturn a structure of a given size.
 //!
-//! Beside an arch stands its equivalent free-standing column, which has the same `A_L` and the same frequency
-//! parameter, and the restitution of the scenario if that is prescribed, else Housner's: how much of the arch is
-//! told by that one block.
+//! An arch is compared with its equivalent free-standing column. The column has the same `A_L` and the same frequency
+//! parameter, and the restitution of the scenario if that is prescribed, otherwise Housner's. The comparison shows how
+//! well this single block represents the arch.
 
 pub mod picture;
 mod told;
@@ -37,10 +37,10 @@ pub enum NoSpectrum {
          the sign of its amplitude is used, durations and amplitudes are those of [spectrum]"
     )]
     NoPulse,
-    /// There is no size to compare with.
+    /// There is no equivalent block to measure the size.
     #[error("the structure has no unstable equilibrium, hence no equivalent block")]
     NoBlock,
-    /// There is no such arch.
+    /// The structure does not rock as four links.
     #[error(transparent)]
     Limit(#[from] FourLinkError),
 }
@@ -50,7 +50,7 @@ named! {
     pub enum StructureKind {
         /// The arch.
         Arch = "arch",
-        /// The column, or that which is equivalent to the arch.
+        /// The column, or the equivalent column of the arch.
         Column = "column",
     }
 }
@@ -60,44 +60,44 @@ named! {
 pub struct Overturning {
     /// Peak acceleration over `g A_L`.
     pub over_incipient: f64,
-    /// Number of impacts before.
+    /// Number of impacts before overturning.
     pub impacts: usize,
-    /// To which side.
+    /// The side to which it overturns.
     pub sway: Sway,
 }
 
-/// A point of a spectrum: a structure of some size.
+/// A point of a spectrum: a structure of a given size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointRow {
-    /// Which structure.
+    /// The structure.
     pub structure: StructureKind,
     /// `p t_p`.
     pub p_t: f64,
     /// Duration of the pulse, in seconds.
     pub duration_s: f64,
-    /// Least peak acceleration over `g A_L` that overturns without impact, bisected; `None` where no amplitude
-    /// does that a scenario may have.
+    /// Least peak acceleration over `g A_L` that overturns without impact, by bisection; `None` if no amplitude that
+    /// a scenario may have does so.
     pub no_impact_over_incipient: Option<f64>,
-    /// The least that overturns at all: the least of those tried, or the one without impact where that is less.
-    /// `None` if it is larger than all that are tried.
+    /// The least that overturns at all: the least of those tried, or the one without impact if that is smaller.
+    /// `None` if none of those tried overturns.
     pub minimum: Option<Overturning>,
-    /// How many of the accelerations tried left the structure rocking at the end. They count as survived.
+    /// Number of tried accelerations that left the structure still rocking at the end. They count as survived.
     pub still_rocking: usize,
-    /// What could not be computed. It counts as survived.
+    /// Histories and searches that could not be computed. They count as survived.
     pub failures: Vec<Failure>,
 }
 
-/// What could not be computed of a point.
+/// A computation that failed at a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
-    /// Peak acceleration of the history over `g A_L`; `None`: the search for the least without impact.
+    /// Peak acceleration of the history over `g A_L`; `None` if the search for the least without impact failed.
     pub over_incipient: Option<f64>,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
 impl PointRow {
-    /// The least that overturns, where it does so after impacts and is less than what overturns without.
+    /// The least that overturns, if it does so after impacts and is less than the least that overturns without impact.
     #[must_use]
     pub fn minimum_after_impacts(&self) -> Option<f64> {
         let least = self.minimum?.over_incipient;
@@ -106,7 +106,7 @@ impl PointRow {
     }
 }
 
-/// The points of a spectrum: structure by structure, sizes ascending.
+/// The points of a spectrum: one structure after the other, with ascending sizes.
 #[derive(Debug)]
 pub struct OverturningSpectrum<'a> {
     scenario: &'a Scenario,
@@ -118,13 +118,13 @@ pub struct OverturningSpectrum<'a> {
     over_incipient: Vec<f64>,
 }
 
-/// Time from the end of a pulse to that of a history, in units of `1/p`. Near the unstable equilibrium a motion
-/// dwells for some forty of its time scales before rounding decides; once it has come back, the ground is still
-/// and every impact takes energy. What rocks on then, as slender columns do for long, is as good as saved.
+/// Time from the end of a pulse to the end of a history, in units of `1/p`. Near the unstable equilibrium a motion
+/// dwells for some forty of these units before rounding decides. If it comes back, the ground is still by then
+/// and every impact takes energy. A motion that still rocks at the end, as slender columns do for long, is as good as safe.
 const END_P_T: f64 = 50.0;
 
 impl<'a> OverturningSpectrum<'a> {
-    /// The points of a scenario's spectrum, by default of what [`crate::scenario::Spectrum::default`] says.
+    /// The points of a scenario's spectrum; without a table `[spectrum]`, those of [`crate::scenario::Spectrum::default`].
     ///
     /// # Errors
     /// When the scenario has no spectrum.
@@ -182,13 +182,13 @@ impl<'a> OverturningSpectrum<'a> {
         &self.p_t
     }
 
-    /// The peak accelerations over `g A_L` that are tried.
+    /// The peak accelerations over `g A_L` to try.
     #[must_use]
     pub fn over_incipient(&self) -> &[f64] {
         &self.over_incipient
     }
 
-    /// How a pulse of another amplitude ends.
+    /// How the history under a pulse of another amplitude ends.
     fn ending(
         &self,
         model: &dyn MechanismModel,
@@ -223,7 +223,7 @@ impl Study for OverturningSpectrum<'_> {
         let duration_s = p_t / self.frequency_rad_s;
         let pulse = PulseGround {
             duration_s,
-            // When it begins does not matter, and so no time is lost.
+            // The start of the pulse does not matter, so the history need not wait for it.
             start_s: 0.0,
             ..self.pulse.clone()
         };
@@ -240,7 +240,7 @@ impl Study for OverturningSpectrum<'_> {
             still_rocking: 0,
             failures: Vec::new(),
         };
-        // What a scenario may have; the sequence ascends, so that the two go side by side.
+        // Only amplitudes that a scenario may have. The sequence ascends, so the two lists run in parallel.
         let tried_g: Vec<f64> = self
             .over_incipient
             .iter()
@@ -271,7 +271,7 @@ impl Study for OverturningSpectrum<'_> {
                 reason,
             }),
         }
-        // One by one, and never by bisection: above the least there are others that do not overturn.
+        // One by one, not by bisection: some amplitudes above the least do not overturn.
         for (over_incipient, amplitude_g) in self.over_incipient.iter().copied().zip(tried_g) {
             if amplitude_g >= below_g {
                 break;
@@ -284,7 +284,7 @@ impl Study for OverturningSpectrum<'_> {
                 }) => {
                     row.minimum = Some(Overturning {
                         over_incipient,
-                        // Mechanisms count theirs.
+                        // Mechanisms always count their impacts.
                         impacts: impacts.unwrap_or(0),
                         sway,
                     });

@@ -26,8 +26,8 @@ const COLUMN: Look = Look {
 
 const RADIUS_PX: f64 = 3.0;
 
-/// Draws the spectrum: overturning without impact as curves, and weaker pulses that overturn after impacts as
-/// points.
+/// Draws the spectrum: curves for overturning without impact, and points for weaker pulses that overturn after
+/// impacts.
 #[must_use]
 pub fn draw(
     figure: Figure,
@@ -88,7 +88,7 @@ pub fn draw(
     for (look, rows, _) in &structures {
         drawing.within(&axes.frame, |drawing| curves(drawing, &axes, look, rows));
     }
-    // Circles on the edge of the frame are whole.
+    // Circles at the edge of the frame are drawn whole.
     for (look, rows, _) in &structures {
         for row in *rows {
             let least = row.minimum_after_impacts();
@@ -101,8 +101,8 @@ pub fn draw(
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
-/// Peak accelerations to be drawn, ascending: from the least tried to the largest result, unless that is beyond
-/// all that were tried and beyond the half as much again of the least result.
+/// Peak accelerations to be drawn, ascending: from the least tried to the largest result. Results are cut off at the
+/// largest acceleration tried, or at one and a half times the least result if that is larger.
 fn heights(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> Vec<f64> {
     let tried = spectrum.over_incipient();
     let last = tried[tried.len() - 1];
@@ -124,13 +124,13 @@ fn heights(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow]) -> Vec<f64> {
 
 fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[PointRow]) {
     let edge = |row: &PointRow| row.no_impact_over_incipient;
-    // Where there is no value the curve breaks.
+    // The curve is interrupted where there is no value.
     for run in rows.chunk_by(|a, b| edge(a).is_some() == edge(b).is_some()) {
         let places: Vec<_> = run
             .iter()
             .filter_map(|row| Some(axes.place(row.p_t, edge(row)?)))
             .collect();
-        // A single point is not a curve.
+        // A single point is drawn as a short line.
         let name = format!("{} no-impact", look.name);
         if let [only] = places[..] {
             let reach = Vector2::new(6.0, 0.0);
@@ -141,7 +141,7 @@ fn curves(drawing: &mut Drawing, axes: &Axes, look: &Look, rows: &[PointRow]) {
     }
 }
 
-/// The logarithmic scale that holds ascending positive values; a single one gets room.
+/// The logarithmic scale that holds ascending positive values; a single value gets a margin.
 fn scale(values: &[f64]) -> Scale {
     let (low, high) = (values[0], values[values.len() - 1]);
     if high > 1.01 * low {

@@ -1,4 +1,4 @@
-//! What an overturning spectrum tells: its table, its summary, its words.
+//! Reports an overturning spectrum: its table, its summary and its words.
 
 use super::{OverturningSpectrum, PointRow, picture};
 use crate::output::table::{Column, column, csv};
@@ -10,7 +10,7 @@ use crate::studies::results::Results;
 const SUMMARY: &str = "spectrum.json";
 
 impl OverturningSpectrum<'_> {
-    /// Files and words of all rows.
+    /// The files and words for all rows.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -34,7 +34,7 @@ impl OverturningSpectrum<'_> {
     }
 }
 
-/// A row per point: structure by structure, sizes ascending.
+/// The columns for one row per point: one structure after the other, with ascending sizes.
 fn columns() -> [Column<'static, PointRow>; 9] {
     let least = |row: &PointRow| row.minimum;
     [
@@ -58,7 +58,7 @@ fn columns() -> [Column<'static, PointRow>; 9] {
     ]
 }
 
-/// What failed: where, and why.
+/// The points that failed, with the reasons.
 fn remarks(rows: &[PointRow]) -> Remarks {
     let mut remarks = Remarks::default();
     for row in rows {
@@ -75,7 +75,7 @@ fn remarks(rows: &[PointRow]) -> Remarks {
     remarks
 }
 
-/// Counts the points by outcome, and says what is uncertain.
+/// Counts the points by outcome, and reports what is uncertain.
 fn words(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], remarks: &Remarks) -> String {
     let count = |wanted: fn(Option<usize>) -> bool| {
         let impacts = rows
