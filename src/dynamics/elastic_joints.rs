@@ -1,7 +1,7 @@
 //! Motion of a row of rigid blocks with elastic joints.
 //!
-//! `motion` is the leapfrog, of one or several histories side by side; `stepper` what each of them is told and judged by, behind the
-//! driver of all rows.
+//! `motion` is the leapfrog of one or several histories side by side; `stepper` drives and judges each of them, for the driver of
+//! all rows.
 
 mod error;
 mod model;

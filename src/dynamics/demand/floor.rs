@@ -1,14 +1,14 @@
 //! The spectrum at a height in a building, Circolare 7/2019, C7.2.3, [C7.2.5] to [C7.2.8].
 //!
-//! In addition, on the safe side, peak and ordinates are here at least those of the ground at every period; the clause has that
-//! for periods above the first only, so that it falls below the ground where a building sways little.
+//! In addition, on the safe side, peak and ordinates are here at least those of the ground at every period. The clause requires
+//! that only for periods above the first, so its spectrum falls below that of the ground where a building sways little.
 
 use serde::Serialize;
 
 use super::ground::GroundSpectrum;
 use super::{damping_factor, displacement_m};
 
-/// Periods around that of a mode between which its ordinate is the largest, over that.
+/// Periods, over that of a mode, between which the ordinate of the mode is the largest.
 pub const PLATEAU: [f64; 2] = [0.8, 1.1];
 
 /// A mode of a building, in the state that it is in.
@@ -34,8 +34,9 @@ impl Mode {
             * (1.0 + 0.0004 * damping * damping).sqrt()
     }
 
-    /// By how much what is in resonance with it, of this damping, exceeds the floor, [C7.2.6]. The damping of the mode
-    /// counts as a fraction here, as in the transfer of a harmonic motion; in per cent it would be no amplification.
+    /// By how much an oscillator of this damping, in resonance with the mode, exceeds the floor, [C7.2.6]. The damping
+    /// of the mode counts as a fraction here, as in the transfer of a harmonic motion; in per cent there would be no
+    /// amplification.
     #[must_use]
     pub fn amplification(&self, damping_percent: f64) -> f64 {
         1.1 * damping_factor(damping_percent) / (self.damping_percent / 100.0).sqrt()
@@ -64,7 +65,7 @@ pub struct FloorSpectrum {
 }
 
 impl FloorSpectrum {
-    /// That of a building on that ground; `None` without modes.
+    /// The spectrum in a building on that ground; `None` without modes.
     #[must_use]
     pub fn new(ground: GroundSpectrum, modes: Vec<Mode>) -> Option<Self> {
         (!modes.is_empty()).then_some(Self { ground, modes })
@@ -104,15 +105,15 @@ impl FloorSpectrum {
         PLATEAU[1] * self.first_period_s()
     }
 
-    /// The displacement that is demanded there, in metres.
+    /// The displacement that is demanded at that period, in metres.
     #[must_use]
     pub fn resonance_m(&self, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         let acceleration_g = self.acceleration_g(self.first_period_s(), damping_percent);
         displacement_m(acceleration_g, self.resonance_s(), gravity_m_s2)
     }
 
-    /// The displacement that is demanded of a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`, and beyond the resonance
-    /// with the first mode at least what it is there.
+    /// The displacement that is demanded of a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`. Beyond the resonance
+    /// with the first mode it is at least that at resonance.
     #[must_use]
     pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         let acceleration_g = self.acceleration_g(period_s, damping_percent);

@@ -58,7 +58,7 @@ impl Soil {
     }
 }
 
-/// Period `T_F` (Tab. 3.2.VII), in seconds, of all soils.
+/// Period `T_F` (Tab. 3.2.VII), in seconds, for all soils.
 pub const T_F_S: f64 = 10.0;
 
 named! {
@@ -98,7 +98,7 @@ pub struct Hazard {
     pub tc_star_s: f64,
 }
 
-/// What the soil and the relief make of it.
+/// Soil and topography of a site.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
     /// Subsoil category.
@@ -152,7 +152,7 @@ impl GroundSpectrum {
             return refused("f0", f0, allowed);
         }
         let t_d_s = 4.0 * ag_g + 1.6;
-        // False also for what is not a number.
+        // False also for NaN.
         if !(ag_g > 0.0 && t_d_s <= t_e_s) {
             let allowed = format!(
                 "above 0 and at most {} on soil {}, so that T_D = 4 a_g/g + 1.6 is at most T_E = {} s (NTC 2018, § 3.2.3.2)",
@@ -234,8 +234,8 @@ impl GroundSpectrum {
         0.025 * self.peak_g() * gravity_m_s2 * self.t_c_s * self.t_d_s
     }
 
-    /// The largest spectral displacement up to a period: beyond `T_E` it falls, and what softens on its way has passed that
-    /// period.
+    /// The largest spectral displacement up to a period: beyond `T_E` it falls, and a structure that softens on its way has
+    /// passed that period.
     #[must_use]
     pub fn largest_displacement_m(
         &self,

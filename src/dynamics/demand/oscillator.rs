@@ -1,15 +1,15 @@
 //! The response spectrum of a record: peaks of damped oscillators, exact for accelerations that are joined by straight lines
 //! (Nigam and Jennings, "Calculation of response spectra from strong-motion earthquake records", Bulletin of the Seismological
-//! Society of America 59, 1969), but for what lies between samples.
+//! Society of America 59, 1969), except for peaks between steps.
 
 use std::f64::consts::PI;
 
-/// The spectral displacement of samples, times in seconds, increasing, and accelerations: the largest displacement, relative to
-/// the ground, of an oscillator of this period and damping that is at rest before the first sample, up to the last. In the unit of
-/// the accelerations, times s2.
+/// The spectral displacement for samples: increasing times in seconds, and accelerations. It is the largest displacement relative
+/// to the ground, up to the last sample, of an oscillator of this period and damping that is at rest before the first one. Its
+/// unit is that of the accelerations, times s2.
 ///
-/// Between samples at equal steps the motion goes on by one linear map. A peak between two of them is missed by at most the
-/// part `(pi h / T)^2 / 2` of it for the step `h`: steps are cut until that is below a thousandth.
+/// Over equal steps the motion goes on by one linear map. A peak between two steps is missed by at most the fraction
+/// `(pi h / T)^2 / 2` of it for the step `h`: steps are cut until that is below a thousandth.
 #[must_use]
 pub fn peak_displacement(samples: &[(f64, f64)], period_s: f64, damping_percent: f64) -> f64 {
     let omega = 2.0 * PI / period_s;
@@ -40,7 +40,7 @@ pub fn peak_displacement(samples: &[(f64, f64)], period_s: f64, damping_percent:
     peak
 }
 
-/// Displacement and velocity of an oscillator after a step.
+/// Coefficients of displacement and velocity of an oscillator after a step.
 #[derive(Clone, Copy, Debug)]
 struct Advance {
     /// Of displacement and velocity before.

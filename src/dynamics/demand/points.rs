@@ -12,13 +12,13 @@ pub struct PointSpectrum {
     damping_percent: f64,
 }
 
-/// Why points make no spectrum. Rows are counted from 0.
+/// Why points do not make a spectrum. Rows are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum PointError {
     /// There are none, or one.
     #[error("has fewer than two rows; give a row for each corner of the spectrum")]
     TooFew,
-    /// A period is negative, or no number.
+    /// A period is negative, or not a number.
     #[error("the period {period_s:?} s must be a number of at least 0")]
     Period {
         /// Which.
@@ -57,7 +57,7 @@ impl PointError {
     }
 }
 
-/// A period at which nothing is known.
+/// A period outside those given.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("the spectrum is given from {:?} to {:?} s, and is needed at {period_s:?} s: add rows", .given_s[0], .given_s[1])]
 pub struct Beyond {
@@ -115,7 +115,7 @@ impl PointSpectrum {
     /// # Errors
     /// When there is no row for it.
     pub fn peak_g(&self) -> Result<f64, Beyond> {
-        // No damping changes it.
+        // It is the same at every damping.
         self.acceleration_g(0.0, self.damping_percent)
     }
 

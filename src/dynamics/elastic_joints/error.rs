@@ -11,7 +11,7 @@ use crate::mechanics::stability::StabilityError;
 /// Why there is no such model.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ElasticJointsError {
-    /// The row does not stand even with rigid joints, or that could not be told.
+    /// The row does not stand even with rigid joints, or this could not be determined.
     #[error(transparent)]
     Stability(#[from] StabilityError),
     /// An argument is not allowed.
@@ -67,7 +67,7 @@ pub enum ElasticJointError {
         1e2 * .error, 0.3 * .longest_step_s
     )]
     Energy {
-        /// By how much of the larger of the barrier and the largest kinetic energy.
+        /// Its error, over the larger of the barrier and the largest kinetic energy.
         error: f64,
         /// The longest step, in seconds.
         longest_step_s: f64,

@@ -18,54 +18,54 @@ use crate::mechanics::elastic_joint::{
 };
 use crate::mechanics::sway::Sway;
 
-/// Rigid blocks in a row, an arch or a stack, whose joints give way elastically, without tension, slip, and crush.
+/// Rigid blocks in a row, an arch or a stack, whose joints carry no tension, deform elastically, slip, and crush.
 ///
-/// It starts from its equilibrium under its own weight. No impact takes energy at an instant, and the hinge of a joint lies inside its
-/// edge: such a row falls before its twin with rigid joints ([`FreeHinges`](crate::FreeHinges)) does.
+/// It starts from its equilibrium under its own weight. No impact takes energy in an instant, and the hinge of a joint lies inside its
+/// edge: such a row overturns before its twin with rigid joints ([`FreeHinges`](crate::FreeHinges)) does.
 #[derive(Clone, Debug)]
 pub struct ElasticJoints {
     rigid: RigidRow,
     properties: ElasticProperties,
     options: ElasticOptions,
     structure: ElasticStructure,
-    /// A gravity, and where it rests under that.
+    /// A gravity, and the equilibrium at rest under it.
     rest: (f64, Rest),
-    /// Energy under that gravity beyond which it overturns, once somebody asked.
+    /// Energy under that gravity beyond which it overturns, once requested.
     barrier_j: Arc<OnceLock<Option<f64>>>,
-    /// By what a repetition multiplies the longest step.
+    /// Factor on the longest step, for a repetition.
     steps_times: f64,
 }
 
 /// How the motion is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElasticOptions {
-    /// The longest step, in seconds (1e-9 to 1); without it, a quarter (undamped) to a half of what is proved to be stable.
+    /// The longest step, in seconds (1e-9 to 1); if `None`, a quarter (undamped) to a half of what is proved to be stable.
     pub longest_step_s: Option<f64>,
 }
 
 impl ElasticOptions {
     /// With shorter steps a run takes forever.
     pub(crate) const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
-    /// Steps that a motion may have: some hours of computing.
+    /// The most steps that a motion may have: some hours of computing.
     pub(crate) const MOST_STEPS: f64 = 1e9;
 }
 
-/// The longest step over the longest stable one: without damping, and with as much as below. Undamped vibration that opens and shuts
-/// joints needs the shorter steps for an energy balance within a hundredth of the barrier.
+/// The longest step over the longest stable one: without damping, and with the damping below. Undamped vibration that opens and
+/// shuts joints needs the shorter steps for an energy balance within a hundredth of the barrier.
 const STEP_RATIO: [f64; 2] = [0.25, 0.5];
-/// Damping of the fastest vibration, as a part of the critical one, with which the longer steps do.
+/// Damping of the fastest vibration, as a fraction of the critical one, with which the longer steps are enough.
 const DAMPED: f64 = 0.3;
-/// An energy balance that is wrong by more than this part of the largest energy of the motion is an error.
+/// An energy balance that is wrong by more than this fraction of the largest energy of the motion is an error.
 const LARGEST_ENERGY_ERROR: f64 = 1e-2;
-/// Histories side by side.
+/// Number of histories side by side.
 const SIDE_BY_SIDE: usize = 8;
-/// By what the stiffness is multiplied and divided to see what hangs on it.
+/// By what the stiffness is multiplied and divided to see what depends on it.
 const OTHER_STIFFNESS: f64 = 3.0;
-/// Gravity under which the rest is found first.
+/// Gravity under which the equilibrium at rest is found first.
 const GRAVITY_M_S2: f64 = 9.81;
 
 impl ElasticJoints {
-    /// Any row that stands, with such joints.
+    /// A model of any row that stands, with such joints.
     ///
     /// # Errors
     /// When a property is out of range, or the row cannot carry its own weight: with the reason.
@@ -110,7 +110,7 @@ impl ElasticJoints {
         self.rigid.row()
     }
 
-    /// What its joints are like.
+    /// Properties of its joints.
     #[must_use]
     pub const fn properties(&self) -> &ElasticProperties {
         &self.properties
@@ -122,10 +122,10 @@ impl ElasticJoints {
         &self.structure
     }
 
-    /// Where it rests under this gravity.
+    /// Its equilibrium at rest under this gravity.
     ///
     /// # Errors
-    /// When it does not, with the reason.
+    /// When it does not rest, with the reason.
     pub fn rest(&self, gravity_m_s2: f64) -> Result<Rest, ElasticJointError> {
         let (known_m_s2, rest) = &self.rest;
         if gravity_m_s2 == *known_m_s2 {
@@ -153,7 +153,8 @@ impl ElasticJoints {
         self.steps_times * self.options.longest_step_s.unwrap_or_else(default_s)
     }
 
-    /// The same structure with other properties that are as likely: stiffer, softer, and with the stress summed otherwise.
+    /// The same structure with other properties that are equally likely: stiffer, softer, and with the stress summed in another
+    /// way.
     #[must_use]
     pub fn variations(&self) -> Vec<Variation> {
         let softer = 1.0 / OTHER_STIFFNESS;
@@ -250,7 +251,7 @@ impl ElasticJoints {
         }
     }
 
-    /// Refuses a motion whose energy is not balanced.
+    /// Refuses a motion whose energy does not balance.
     fn judged(
         &self,
         mut summary: Summary,
@@ -258,7 +259,7 @@ impl ElasticJoints {
         gravity_m_s2: f64,
     ) -> Result<Summary, SimulationError> {
         let row = summary.row.as_mut().expect("a row has its summary");
-        // Stacks have no first mechanism of one degree of freedom whose barrier is known; how they are pushed over is.
+        // Stacks have no first mechanism with one degree of freedom and a known barrier; the energy to push them over is known.
         if row.energy_error > LARGEST_ENERGY_ERROR
             && self.barrier_j(gravity_m_s2).is_none()
             && let Some(barrier_j) = self.elastic_barrier_j(gravity_m_s2)
@@ -328,7 +329,7 @@ impl Model for ElasticJoints {
     ) -> Result<Summary, SimulationError> {
         let task = self.task(ground, request)?;
         let rest = self.rest(request.gravity_m_s2)?;
-        // One of any lifetime serves for as long as the task.
+        // A recorder of any lifetime serves for as long as the task.
         let recorder = recorder.map(|recorder| recorder as _);
         let stepper = ElasticStepper::new(task, self.start(&rest), recorder);
         self.judged(course::run(stepper)?, &rest, request.gravity_m_s2)

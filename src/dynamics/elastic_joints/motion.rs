@@ -1,4 +1,4 @@
-//! Bodies with elastic joints that move, several motions side by side: the leapfrog.
+//! Bodies with elastic joints in motion, several motions side by side: the leapfrog.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -45,15 +45,15 @@ pub(super) struct Motion<'a, const L: usize> {
     pub structure: &'a ElasticStructure,
     gravity_m_s2: f64,
     arch: Arch,
-    /// The last one is what all supports are fixed to.
+    /// The last one is the ground, to which all supports are fixed.
     bodies: Vec<Moving<Lanes<L>>>,
     memories: Vec<Memory<Lanes<L>>>,
-    /// Of each joint, and in it of each place.
+    /// Of each place of each joint, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
     spent: Spent<Lanes<L>>,
 }
 
-/// Energies that went since the beginning, in J.
+/// Energies spent since the beginning, in J.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spent<R> {
     pub friction_j: R,
@@ -63,7 +63,7 @@ pub(super) struct Spent<R> {
     pub ground_j: R,
 }
 
-/// A step, by lane. All zero, a lane stays as it is.
+/// A step, by lane. A lane in which all is zero stays as it is.
 #[derive(Clone, Copy)]
 pub(super) struct Step<const L: usize> {
     /// Time from place to place, in s.
@@ -72,7 +72,7 @@ pub(super) struct Step<const L: usize> {
     pub kick_s: Lanes<L>,
     /// Damping time over the time from place to place.
     pub damping: Lanes<L>,
-    /// What the ground gains in velocity in the time of the kick, in m/s.
+    /// Velocity that the ground gains in the time of the kick, in m/s.
     pub shift_m_s: [Lanes<L>; 2],
 }
 
@@ -100,25 +100,25 @@ impl<const L: usize> Step<L> {
 /// A support along whose joint the whole structure may slide.
 pub(super) struct Slide {
     pub joint: usize,
-    /// 1 where the structure is behind the joint, -1 where it is before.
+    /// 1 where the structure is after the joint, -1 where it is before.
     pub sense: f64,
-    /// Whether the support goes on beyond the joint.
+    /// Whether the support extends beyond the joint.
     pub goes_on: bool,
     /// How far the centre of gravity moves to the right as the joint slips.
     pub along_x: f64,
 }
 
-/// What is known of motions at an instant.
+/// Quantities of motions at an instant.
 #[derive(Clone, Copy)]
 pub(super) struct Observed<R> {
     pub kinetic_j: R,
-    /// Of gravity, above the undeformed structure.
+    /// Potential energy of gravity, above the undeformed structure.
     pub potential_j: R,
     pub elastic_j: R,
     pub spent: Spent<R>,
     /// Horizontal displacement of the centre of gravity times the mass.
     pub sway_kg_m: R,
-    /// Square of the largest displacement of a body beside what the structure slid along either support.
+    /// Square of the largest displacement of a body, apart from the slide of the structure along either support.
     pub farthest_m2: R,
     /// Largest rotation.
     pub turned_rad: R,
@@ -179,7 +179,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
     }
 
-    /// One step of all lanes, with the widest vectors of the processor: these change no bit.
+    /// One step of all lanes, with the widest vectors of the processor: these do not change a bit of the result.
     pub(super) fn step(&mut self, step: &Step<L>, shaken: bool) {
         if L == 1 {
             return self.leap(step, shaken);
@@ -199,7 +199,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         self.press(step.damping);
     }
 
-    /// Velocities half a step after the places.
+    /// Takes the velocities to half a step after the places.
     #[inline(always)]
     fn kick(&mut self, step: &Step<L>, shaken: bool) {
         let structure = self.structure;
@@ -238,7 +238,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
     }
 
-    /// Forces at the places; the joints remember.
+    /// Forces at the places; updates the memories of the joints.
     #[inline(always)]
     fn press(&mut self, damping: Lanes<L>) {
         let zero = Lanes([0.0; L]);
@@ -275,7 +275,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
     }
 
-    /// What is known at the places, where velocities are those after half a kick more.
+    /// Quantities at the places, with the velocities after half a kick more.
     pub(super) fn observe(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
         let zero = Lanes([0.0; L]);
         let structure = self.structure;
@@ -360,7 +360,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         (body.angle_rad.0[lane], body.rate_rad_s.0[lane])
     }
 
-    /// By how much a joint has slipped for good in a lane, in m.
+    /// Permanent slip of a joint in a lane, in m.
     pub(super) fn slipped_m(&self, joint: usize, lane: usize) -> f64 {
         self.memories[joint].slipped_m.0[lane]
     }
@@ -389,7 +389,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         own.iter().map(move |fibre| fibre.lane(lane))
     }
 
-    /// Where a body is in a lane.
+    /// The place of a body in a lane.
     pub(super) fn place(&self, body: usize, lane: usize) -> Place<Lanes<1>> {
         let Place { moved_m, turn } = self.bodies[body].place;
         Place {
@@ -413,7 +413,7 @@ impl<'a> Motion<'a, 1> {
     }
 }
 
-/// A step as what is compiled once for every kind of vectors.
+/// A step, to be compiled once for every kind of vectors.
 struct Leap<'m, 'a, const L: usize> {
     motion: &'m mut Motion<'a, L>,
     step: &'m Step<L>,
@@ -429,8 +429,8 @@ impl<const L: usize> WithSimd for Leap<'_, '_, L> {
     }
 }
 
-/// Cosine less one, and sine, after turning further: the series leaves less than rounding for steps below 0.01 rad, and what is beyond
-/// happens to nothing that stands.
+/// Cosine less one, and sine, after turning further. The error of the series is less than rounding for steps below 0.01 rad; larger
+/// ones do not happen to a structure that stands.
 #[inline(always)]
 fn turned<const L: usize>([cos, sin]: [Lanes<L>; 2], by: Lanes<L>) -> [Lanes<L>; 2] {
     let one = Lanes([1.0; L]);

@@ -1,4 +1,4 @@
-//! Steps of motions side by side, and what each of them is told and judged by.
+//! Steps motions side by side, and reports and judges each of them.
 
 use nalgebra::Vector2;
 
@@ -18,19 +18,19 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
 
-/// Steps from one look at a motion to the next: a little more than the period of the fastest vibration.
+/// Steps from one observation of a motion to the next: a little more than the period of the fastest vibration.
 const STRIDE: usize = 8;
-/// At rest a row may still vibrate, with energies below this part of the elastic energy under its own weight: by less than a third of
-/// what that bends it ...
+/// At rest a row may still vibrate, with energies below this fraction of the elastic energy under its own weight: by less than a
+/// third of its deflection under it ...
 const REST_STRAIN_RATIO: f64 = 0.1;
-/// ... or below this part of the barrier of its first mechanism.
+/// ... or below this fraction of the barrier of its first mechanism.
 const REST_BARRIER_RATIO: f64 = 0.03;
-/// Sways within this part of the mean displacement under the weight of the structure change no side.
+/// Sways within this fraction of the mean displacement under the weight of the structure do not change the side.
 const SIDE_RATIO: f64 = 0.1;
-/// A joint that presses on less than this part of its length is drawn as a hinge.
+/// A joint that presses on less than this fraction of its length is drawn as a hinge.
 const HINGE_RATIO: f64 = 0.5;
 
-/// What all motions of a group start from.
+/// The common start of all motions of a group.
 #[derive(Clone, Copy)]
 pub(super) struct Start<'a> {
     pub structure: &'a ElasticStructure,
@@ -43,17 +43,17 @@ struct Lane<'a> {
     course: Course<'a>,
     velocity: GroundVelocity<'a>,
     quiet_s: f64,
-    /// Until when it steps without being asked.
+    /// Time up to which it steps without pause.
     until_s: f64,
-    /// Steps since it was looked at.
+    /// Steps since it was last observed.
     strides: usize,
-    /// Time up to which the kicks have gone, and the velocity of the ground then.
+    /// Time up to which the kicks have acted, and the velocity of the ground then.
     kicked_s: f64,
     ground_m_s: Vector2<f64>,
     /// Energy, potential and elastic, at rest.
     rest_j: Option<f64>,
     rest_sway_kg_m: f64,
-    /// Energies at rest, at most.
+    /// The largest energies that count as rest.
     still_j: f64,
     barrier_j: f64,
     quiet_since_s: f64,
@@ -61,7 +61,7 @@ struct Lane<'a> {
     rest_time_s: f64,
     marks: Marks,
     overturned: bool,
-    /// Why it cannot go on.
+    /// The error for which it cannot go on.
     lost: Option<ElasticJointError>,
     summit: Summit,
     elastic: ElasticSummary,
@@ -74,7 +74,7 @@ pub(super) struct Group<'a, const L: usize> {
     start: Start<'a>,
     motion: Motion<'a, L>,
     lanes: [Option<Lane<'a>>; L],
-    /// Along what the row may slide as a whole.
+    /// Supports along which the row may slide as a whole.
     slides: Vec<Slide>,
     mass_kg: f64,
 }
@@ -126,7 +126,7 @@ impl<'a> Lane<'a> {
         step
     }
 
-    /// A kick that lasts up to a time, and the velocity of the ground then, which stays when it is quiet for good.
+    /// A kick that lasts up to a time, and the velocity of the ground then, which is constant once the ground is quiet for good.
     fn kick(&self, to_s: f64) -> (Step<1>, Vector2<f64>) {
         let ground_m_s = if self.is_shaken() {
             self.velocity.at(to_s)
@@ -196,7 +196,7 @@ impl<'a, const L: usize> Group<'a, L> {
         self.note(lane, &seen);
     }
 
-    /// Steps until a motion has been looked at.
+    /// Steps until a motion has been observed.
     pub(super) fn stride(&mut self) {
         let longest_step_s = self.start.longest_step_s;
         let damping_time_s = self.start.structure.damping_time_s();
@@ -225,7 +225,7 @@ impl<'a, const L: usize> Group<'a, L> {
         }
     }
 
-    /// From the velocities to the places.
+    /// The half kick from the velocities to the places.
     fn half_kick(&self) -> Step<L> {
         let mut half = Step::none();
         for (index, lane) in self.lanes.iter().enumerate() {
@@ -236,7 +236,7 @@ impl<'a, const L: usize> Group<'a, L> {
         half
     }
 
-    /// Notes what is known of the motion of a lane.
+    /// Notes the observed quantities of the motion of a lane.
     fn note(&mut self, index: usize, seen: &Observed<Lanes<L>>) {
         let Some(lane) = &mut self.lanes[index] else {
             return;
@@ -282,7 +282,7 @@ impl<'a, const L: usize> Group<'a, L> {
             let slipped_m = self.motion.slipped_m(joint, index);
             lane.sliding.offsets_m[joint] = slipped_m;
             *largest = largest.max(slipped_m.abs());
-            // What slips along a face that ends leaves it.
+            // On a face that ends a block slides off: it has fallen once it slipped by the length of the face.
             match self
                 .slides
                 .iter()
@@ -301,15 +301,15 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.summit
             .note(time, potential + taken, LEAST_RETURN * course.energy_unit);
         let vibrates = kinetic < lane.still_j && potential < lane.still_j;
-        // What is still but stands higher than it did holds by friction.
+        // A row that is still but stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
             lane.quiet_since_s = time;
             course.moved = true;
         }
     }
 
-    /// Lets a lane step on, or returns its motion if that has ended. It steps without a pause up to the next mark of its clock, as if
-    /// samples were made.
+    /// Lets a lane step on, or returns its motion if that has ended. The lane steps without a pause up to the next mark of its clock,
+    /// as if samples were made.
     pub(super) fn go_on(&mut self, index: usize) -> Option<Result<Summary, ElasticJointError>> {
         let lane = self.lanes[index].as_mut()?;
         if lane.strides > 0 {
@@ -356,7 +356,7 @@ impl<'a> Lane<'a> {
     }
 }
 
-/// One motion alone, which may be told of.
+/// One motion alone, which may be recorded.
 pub(super) struct ElasticStepper<'a> {
     group: Group<'a, 1>,
 }
@@ -388,7 +388,7 @@ impl<'a> ElasticStepper<'a> {
         pair.map(|body| self.group.motion.place(body.min(ground), 0))
     }
 
-    /// What a joint bears by its elastic stress.
+    /// Forces and stresses of a joint, by its elastic stress.
     fn pressure(&self, index: usize) -> JointPressure {
         let structure = self.group.start.structure;
         let joint = &structure.joints()[index];
@@ -435,7 +435,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         lane.into_course(slips)
     }
 
-    /// Some steps, up to the next look at the motion.
+    /// Some steps, up to the next observation of the motion.
     fn step(&mut self, until: f64) -> Result<(), ElasticJointError> {
         let stood = !self.course().moved;
         self.lane_mut().until_s = until;

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use crate::bisection::{Width, bisect};
 
-/// Parts of the Arias intensity between which the significant duration is counted (Trifunac and Brady, 1975).
+/// Fractions of the Arias intensity between which the significant duration is counted (Trifunac and Brady, 1975).
 pub const SIGNIFICANT: [f64; 2] = [0.05, 0.95];
 
 /// A largest magnitude, and when it is reached.
@@ -30,7 +30,7 @@ impl PeakMotion {
     }
 }
 
-/// How strong a record is.
+/// The strength of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intensity {
     /// Peak ground acceleration, in m/s2.
@@ -41,15 +41,15 @@ pub struct Intensity {
     pub displacement_m: PeakMotion,
     /// Arias intensity, pi / (2 g) times the integral of the squared acceleration, in m/s (Arias, 1970).
     pub arias_m_s: f64,
-    /// When 5 % and 95 % of the Arias intensity are reached, in s; both the first time where the ground stays still.
+    /// When 5 % and 95 % of the Arias intensity are reached, in s; both are the first time if the ground stays still.
     pub significant_s: [f64; 2],
-    /// Velocity in m/s and displacement in m at each sample, and the part of the Arias intensity so far.
+    /// Velocity in m/s and displacement in m at each sample, and the fraction of the Arias intensity reached.
     pub course: Vec<[f64; 3]>,
 }
 
 impl Intensity {
-    /// That of samples, times in s, increasing but where the acceleration jumps, and accelerations in m/s2; gravity in m/s2 counts for the Arias
-    /// intensity.
+    /// The intensity of samples: times in s, which increase except where the acceleration jumps, and accelerations in m/s2. Gravity, in
+    /// m/s2, enters the Arias intensity.
     #[must_use]
     pub fn of(samples: &[(f64, f64)], gravity_m_s2: f64) -> Self {
         let mut intensity = Self {
@@ -87,7 +87,7 @@ impl Intensity {
         intensity
     }
 
-    /// From the 5 % to the 95 % of the Arias intensity, in s.
+    /// From 5 % to 95 % of the Arias intensity, in s.
     #[must_use]
     pub fn significant_duration_s(&self) -> f64 {
         let [from_s, to_s] = self.significant_s;
@@ -133,7 +133,7 @@ impl Line {
         }
     }
 
-    /// Velocity, displacement and the integral of the squared acceleration, so long after those at its start.
+    /// Velocity, displacement and the integral of the squared acceleration, this long after the given ones at its start.
     fn advance(&self, [velocity, displacement, squares]: [f64; 3], after_s: f64) -> [f64; 3] {
         let (s, a, m) = (after_s, self.acceleration, self.slope);
         [
@@ -150,7 +150,7 @@ impl Line {
     }
 }
 
-/// The real roots of c + b x + a x^2; none of a constant.
+/// The real roots of c + b x + a x^2; none for a constant.
 fn roots([c, b, a]: [f64; 3]) -> Vec<f64> {
     if a == 0.0 {
         return if b == 0.0 { Vec::new() } else { vec![-c / b] };
@@ -159,7 +159,7 @@ fn roots([c, b, a]: [f64; 3]) -> Vec<f64> {
     if discriminant < 0.0 {
         return Vec::new();
     }
-    // The two that do not cancel.
+    // The two roots without cancellation.
     let q = -0.5 * (b + discriminant.sqrt().copysign(b));
     if q == 0.0 {
         vec![0.0]

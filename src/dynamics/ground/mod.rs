@@ -125,7 +125,7 @@ impl GroundMotion {
     /// The same motion with both components of the acceleration times a factor, from -1e9 to 1e9.
     ///
     /// # Errors
-    /// When the factor is not such a number.
+    /// When the factor is outside that range.
     pub fn scaled(&self, factor: f64) -> Result<Self, ArgumentError> {
         within("factor", factor, -1e9..=1e9)?;
         let pieces = self.pieces.iter().map(|piece| Piece {

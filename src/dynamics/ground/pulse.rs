@@ -449,7 +449,7 @@ mod tests {
         assert!((ground.peaks_m_s2(f64::INFINITY).x - 1.0).abs() < 1e-14);
     }
 
-    /// Integral of the acceleration by Gauss-like quadrature on the pieces (Simpson, 2000 intervals).
+    /// Integral of the acceleration by Simpson's rule on the pieces (2000 intervals).
     fn final_velocity(ground: &GroundMotion) -> f64 {
         let integral = |piece: &Piece| {
             let (n, width) = (2000, piece.end_s - piece.start_s);

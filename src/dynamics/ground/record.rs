@@ -45,7 +45,8 @@ impl GroundMotion {
     /// Times are at most 1e9 in magnitude, accelerations 1e12.
     ///
     /// # Errors
-    /// When both components are empty, one has a single sample, or times and accelerations are not like that.
+    /// When both components are empty, one has a single sample, or a time or an acceleration is out of
+    /// bounds.
     pub fn record(
         horizontal: &[(f64, f64)],
         vertical: &[(f64, f64)],
@@ -67,7 +68,8 @@ impl GroundMotion {
         Ok(Self::polylines(horizontal, vertical, start_s))
     }
 
-    /// The same of samples that are known to be like that; where the acceleration jumps, there are two of one time.
+    /// The same for samples that are known to be in bounds; where the acceleration jumps, two samples have the same
+    /// time.
     pub(crate) fn polylines(
         horizontal: &[(f64, f64)],
         vertical: &[(f64, f64)],
@@ -112,7 +114,7 @@ fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundErr
                 index,
                 fault,
             })?;
-        // Products that are a step apart may round to a hair less.
+        // Times that are multiples of a step may round to a hair less than a step apart.
         if time_s - before_s < 0.999 * MIN_STEP_S {
             return Err(GroundError::Order {
                 argument,

@@ -152,7 +152,7 @@ impl Shape {
 
     /// The times at which a wave train of the given length and period has its extrema.
     pub(super) fn extrema_s(&self, length_s: f64, period_s: f64) -> Vec<f64> {
-        // The rate of change up to a positive factor, and a bound of the slope of that.
+        // The rate of change up to a positive factor, and a bound of the slope of this function.
         let (zero_with_rate, steepest): (Box<dyn Fn(f64) -> f64>, f64) = match *self {
             Self::Beat(sines) => {
                 let steepest = sines

@@ -43,8 +43,9 @@ impl<'a> GroundVelocity<'a> {
         self.at_starts_m_s[index] + pieces[index].velocity_gained_m_s(time_s)
     }
 
-    /// Where the ground is at these times, which ascend from zero on, in m from where it was at time zero: Simpson's
-    /// rule over the parts between times and corners, which is exact for records and constant accelerations.
+    /// Displacements of the ground at these times, which ascend from zero on, in m from its position at time zero.
+    /// They follow by Simpson's rule over the parts between times and corners, which is exact for records and
+    /// constant accelerations.
     #[must_use]
     pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let (mut at_m, mut from_s) = (Vector2::zeros(), 0.0);
