@@ -6,27 +6,27 @@
 //! `P(overturns | x) = Phi(ln(x / theta) / beta)`,
 //!
 //! with the median `theta` and the dispersion `beta` of largest likelihood (Baker, "Efficient analytical
-//! fragility function fitting using dynamic structural analysis", Earthquake Spectra 31(1), 2015): for
-//! every case the logarithm of the probability of what it did, added up. With `eta = a + b ln x`,
-//! `b = 1 / beta` and `theta = exp(-a / b)` this is probit regression. Its log-likelihood is concave in
-//! `a` and `b`, so Newton's method finds the one maximum from anywhere, and whether there is one is
-//! known beforehand: in one dimension there is none if and only if the cases of either kind lie on two
-//! sides of a point (Silvapulle, "On the existence of maximum likelihood estimators for the binomial
-//! response models", Journal of the Royal Statistical Society B 43, 1981).
+//! fragility function fitting using dynamic structural analysis", Earthquake Spectra 31(1), 2015). The
+//! log-likelihood is the sum, over all cases, of the logarithm of the probability of the observed outcome.
+//! With `eta = a + b ln x`, `b = 1 / beta` and `theta = exp(-a / b)` this is probit regression. Its
+//! log-likelihood is concave in `a` and `b`, so Newton's method finds the only maximum from any start.
+//! Whether there is a maximum is known in advance: in one dimension there is none if and only if the cases
+//! of either kind lie on two sides of a point (Silvapulle, "On the existence of maximum likelihood estimators
+//! for the binomial response models", Journal of the Royal Statistical Society B 43, 1981).
 //!
 //! # Uncertainty
 //!
 //! There are two sets of standard errors. The plain one is the inverse of the observed information, and
-//! assumes all cases independent. Those of one record are not: a record that is harmless for its
-//! intensity is so at every scale, and adding levels without adding records adds less than it seems. The
-//! other set allows for any dependence within a record (Liang and Zeger, "Longitudinal data analysis using
-//! generalized linear models", Biometrika 73, 1986): the scores of the likelihood are summed record by
-//! record, and their spread takes the place of the one that independence promises. The factor
-//! `G / (G - 1)` for `G` records is the usual one for few of them (Cameron and Miller, "A practitioner's
+//! assumes that all cases are independent. Cases of one record are not: a record that is harmless for its
+//! intensity is harmless at every scale, so more levels without more records add less information than they
+//! seem to. The other set allows for any dependence within a record (Liang and Zeger, "Longitudinal data
+//! analysis using generalized linear models", Biometrika 73, 1986): the scores of the likelihood are summed
+//! for each record, and their scatter replaces the one that independence would give. The factor
+//! `G / (G - 1)` for `G` records is the usual correction for few of them (Cameron and Miller, "A practitioner's
 //! guide to cluster-robust inference", Journal of Human Resources 50(2), 2015). It does not suffice for
 //! very few: with less than some thirty records these errors, too, tend to be small.
 //!
-//! Both are first-order: they are for samples large enough that the errors are small against the
+//! Both are first-order: they need samples so large that the errors are small compared with the
 //! dispersion.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -36,18 +36,18 @@ use thiserror::Error;
 
 use crate::argument::plain;
 
-/// What a record did at one intensity.
+/// The outcome of a record at one intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// Intensity of the ground motion, positive, in any unit: that of the median.
+    /// Intensity of the ground motion, positive, in any unit; the median has the same unit.
     pub intensity: f64,
     /// Whether the structure overturned.
     pub overturned: bool,
-    /// Which record: cases of the same one are not independent.
+    /// The record: cases of the same record are not independent.
     pub record: usize,
 }
 
-/// How many of the cases of one intensity overturned.
+/// The share of cases at one intensity that overturned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fraction {
     /// The intensity.
@@ -67,36 +67,36 @@ pub struct Errors {
     pub dispersion: f64,
 }
 
-/// A lognormal fragility curve, and how certain it is. All numbers are finite.
+/// A lognormal fragility curve with its uncertainty. All numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fragility {
     /// The intensity `theta` at which half of the cases overturn.
     pub median: f64,
     /// The dispersion `beta`: standard deviation of the logarithm of the intensity that overturns.
     pub dispersion: f64,
-    /// Standard errors if all cases were independent.
+    /// Standard errors under the assumption that all cases are independent.
     pub independent: Errors,
-    /// Standard errors that allow for any dependence within a record. None with one record.
+    /// Standard errors that allow for any dependence within a record; `None` with one record.
     pub clustered: Option<Errors>,
     /// The largest logarithm of the likelihood.
     pub log_likelihood: f64,
     line: Line,
-    /// Covariance of the line's level and slope if all cases were independent.
+    /// Covariance of the line's level and slope under the assumption that all cases are independent.
     covariance: Matrix2<f64>,
-    /// The same with dependence within records.
+    /// The same, allowing for dependence within records.
     clustered_covariance: Option<Matrix2<f64>>,
 }
 
 /// Why there is no fragility curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoFit {
-    /// An intensity without a finite logarithm.
+    /// An intensity has no finite logarithm.
     #[error("intensity {intensity}: must be positive and finite")]
     Intensity {
         /// The intensity.
         intensity: f64,
     },
-    /// No cases at all.
+    /// There are no cases.
     #[error("no cases to fit a fragility curve to: run records at several intensities")]
     NoObservations,
     /// Every case survives.
@@ -131,8 +131,8 @@ pub enum NoFit {
         /// Number of those that overturned.
         overturned: usize,
     },
-    /// The fraction that overturns jumps from none to all, between two levels or at one: any dispersion is
-    /// less likely than a smaller one.
+    /// The fraction that overturns jumps from none to all, between two levels or at one level: whatever the
+    /// dispersion, a smaller one is likelier.
     #[error(
         "no case overturns below an intensity of {} and none survives above {}: the median is about there, and the \
          dispersion is too small for these levels; add closer ones there",
@@ -142,10 +142,10 @@ pub enum NoFit {
     Separated {
         /// Highest intensity of a case that survived.
         survived_up_to: f64,
-        /// Lowest intensity of a case that overturned, not below the other.
+        /// Lowest intensity of a case that overturned; at least the other intensity.
         overturned_from: f64,
     },
-    /// The likeliest curve is level or falls.
+    /// The likeliest curve is horizontal or falls.
     #[error(
         "the fraction that overturns does not increase with the intensity: the geometric mean intensity of \
          cases that overturn is {}, of those that survive {}; add intensities at which few and at which most cases \
@@ -159,8 +159,8 @@ pub enum NoFit {
         /// Geometric mean intensity of the cases that overturned.
         overturned: f64,
     },
-    /// The fraction grows, but so little, or within so narrow a range, that the parameters or their errors
-    /// are beyond the range of numbers.
+    /// The fraction grows so little, or within so narrow a range, that the parameters or their errors
+    /// exceed the range of numbers.
     #[error(
         "the fraction that overturns hardly grows with the intensity, and the likeliest curve cannot be \
          computed; add intensities at which few and at which most cases overturn"
@@ -169,15 +169,15 @@ pub enum NoFit {
 }
 
 impl Fragility {
-    /// The probability that a ground motion of intensity `x` overturns the structure. None do at zero.
+    /// The probability that a ground motion of intensity `x` overturns the structure; zero at zero intensity.
     #[must_use]
     pub fn probability(&self, x: f64) -> f64 {
         normal_probability(self.line.at(logarithm(x)))
     }
 
-    /// Between which probabilities the curve lies at the intensity `x`, with 95 % confidence at each
-    /// intensity on its own: `Phi(eta -+ 1.96 s)`, with `s` the standard error of `eta`, the larger one of
-    /// those with and without dependence within records.
+    /// The 95 % confidence band of the curve at the intensity `x`, for each intensity on its own:
+    /// `Phi(eta -+ 1.96 s)`, where `s` is the standard error of `eta`, the larger of those with and without
+    /// dependence within records.
     #[must_use]
     pub fn band(&self, x: f64) -> (f64, f64) {
         let log = logarithm(x);
@@ -194,15 +194,15 @@ impl Fragility {
     }
 }
 
-/// Two-sided 95 % of the normal distribution.
+/// Number of standard deviations for two-sided 95 % of the normal distribution.
 const QUANTILE_95: f64 = 1.959_963_984_540_054;
 
-/// `ln x`, at the ends of the positive numbers where `x` is beyond them, which keeps it finite.
+/// `ln x`, with `x` limited to the range of positive numbers, so that the logarithm is finite.
 fn logarithm(x: f64) -> f64 {
     x.clamp(f64::MIN_POSITIVE, f64::MAX).ln()
 }
 
-/// Cases by intensity, lowest first. Intensities are the same only if they are exactly equal.
+/// Cases by intensity, lowest first. Only exactly equal intensities are the same.
 pub(super) fn by_intensity<T: Copy>(
     mut cases: Vec<T>,
     intensity: impl Fn(T) -> f64,
@@ -242,7 +242,7 @@ pub fn fit(observations: &[Observation]) -> Result<Fragility, NoFit> {
     Fragility::new(&best, observations).ok_or(NoFit::Undetermined)
 }
 
-/// Fails without cases of both kinds, at two intensities at least, all of them valid.
+/// Fails unless there are cases of both kinds, at two or more intensities, all valid.
 fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
     let valid = |intensity: f64| intensity > 0.0 && intensity.is_finite();
     if let Some(level) = levels.iter().find(|level| !valid(level.intensity)) {
@@ -276,7 +276,7 @@ fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
     }
 }
 
-/// A level in terms of the likelihood.
+/// The cases of a level, as the likelihood needs them.
 struct LogLevel {
     intensity: f64,
     log: f64,
@@ -296,7 +296,7 @@ impl From<&Fraction> for LogLevel {
 }
 
 impl LogLevel {
-    /// Of the outcomes of its cases, at the linear predictor `eta`.
+    /// The log-probability of the outcomes of its cases, at the linear predictor `eta`.
     fn log_probability(&self, eta: f64) -> LogProbability {
         let fall = LogProbability::at(eta);
         let survival = LogProbability::at(-eta);
@@ -308,15 +308,15 @@ impl LogLevel {
     }
 }
 
-/// Difference of two mean logarithms, in parts of the range of all, that rounding can make.
+/// Difference between two mean logarithms, relative to the whole range, that rounding can cause.
 const ROUNDING: f64 = 1e-12;
 
-/// Fails where the likelihood has no maximum with a slope above zero.
+/// Fails if the likelihood has no maximum with a positive slope.
 ///
-/// If no survivor lies above a case that overturned, a steeper line is always likelier. And the line's
-/// slope has the sign of the derivative of the likelihood by it where it is zero and the level the
-/// likeliest one. With `n` cases that is `n phi(a)` times how far the mean logarithm of the intensities
-/// that overturned lies above that of those that did not.
+/// If no survivor lies above a case that overturned, a steeper line is always likelier. The sign of the
+/// line's slope is that of the derivative of the likelihood by the slope, taken at zero slope and the
+/// likeliest level. With `n` cases this derivative is `n phi(a)` times the mean logarithm of the intensities
+/// that overturned minus that of the intensities that did not.
 fn demand_overlap_and_growth(levels: &[LogLevel]) -> Result<(), NoFit> {
     let last_survival = levels.iter().rfind(|level| level.survived > 0.0);
     let first_fall = levels.iter().find(|level| level.overturned > 0.0);
@@ -367,8 +367,8 @@ impl Line {
     }
 }
 
-/// The likelihood at a line. Its pivot is the mean of the logarithms weighted by their information, which
-/// makes the information about level and slope a diagonal matrix: narrow ranges lose no digits.
+/// The likelihood of a line. The pivot is the mean of the logarithms weighted by their information; this
+/// makes the information about level and slope a diagonal matrix, so that narrow ranges lose no digits.
 struct Likelihood {
     line: Line,
     logarithm: f64,
@@ -378,14 +378,14 @@ struct Likelihood {
     information: Vector2<f64>,
 }
 
-/// Newton steps: some ten are usual. Levels that almost coincide, among others hundreds of decades away,
-/// have taken 114.
+/// Largest number of Newton steps: about ten are usual. Levels that almost coincide, among others hundreds of
+/// decades away, have taken 114.
 const STEPS: usize = 1000;
 
-/// Halvings of a step that does not climb.
+/// Largest number of halvings of a step that does not climb.
 const HALVINGS: usize = 60;
 
-/// The squared length of a Newton step, in standard errors of what it changes, that ends the search.
+/// Squared length of a Newton step, in standard errors of level and slope, that ends the search.
 const SHORT: f64 = 1e-20;
 
 impl Likelihood {
@@ -418,8 +418,8 @@ impl Likelihood {
         likelihood
     }
 
-    /// The largest one, by Newton's method with step halving from equal chances everywhere. None if it is
-    /// too far to be found.
+    /// The largest likelihood, by Newton's method with step halving, starting from equal chances everywhere.
+    /// `None` if it is too far away to be found.
     fn largest(levels: &[LogLevel]) -> Option<Self> {
         let equal_chances = Line {
             pivot: levels[0].log,
@@ -432,7 +432,7 @@ impl Likelihood {
             if best.score.dot(&step) <= SHORT {
                 return Some(best);
             }
-            // Near the maximum the gain of a good step is less than rounding.
+            // Near the maximum a good step gains less than the rounding error.
             let least = best.logarithm * (1.0 + ROUNDING);
             best = std::iter::successors(Some(step), |step| Some(step * 0.5))
                 .take(HALVINGS)
@@ -444,7 +444,7 @@ impl Likelihood {
 }
 
 impl Fragility {
-    /// The curve of a line, with its errors to first order; None if a number is out of range.
+    /// The curve of a line, with its first-order errors; `None` if a number is out of range.
     fn new(best: &Likelihood, observations: &[Observation]) -> Option<Self> {
         let line = best.line;
         let covariance = Matrix2::from_diagonal(&best.information.map(f64::recip));
@@ -480,15 +480,15 @@ impl Fragility {
     }
 }
 
-/// Standard error of a quantity of the given gradient by level and slope.
+/// Standard error of a quantity with this gradient by level and slope.
 fn standard_error(covariance: &Matrix2<f64>, gradient: &Vector2<f64>) -> f64 {
     let variance = gradient.dot(&(covariance * gradient));
-    // That of few records may be singular, and rounding takes it below zero. What overflowed stays so.
+    // With few records the matrix may be singular, and rounding may make the variance negative. Infinity stays.
     variance.clamp(0.0, f64::INFINITY).sqrt()
 }
 
-/// Covariance of level and slope with any dependence within records, from the one without: the sandwich
-/// `C M C G / (G - 1)`, where `M` sums the squares of the `G` records' scores. None with one record.
+/// Covariance of level and slope with any dependence within records, from the covariance without: the sandwich
+/// `C M C G / (G - 1)`, where `M` sums the squares of the `G` records' scores. `None` with one record.
 fn clustered_covariance(
     line: &Line,
     covariance: &Matrix2<f64>,
@@ -511,7 +511,7 @@ fn clustered_covariance(
     (records > 1).then(|| covariance * squares * covariance * factor)
 }
 
-/// Derivatives by level and slope of the logarithm of the probability of what one case did.
+/// Derivatives by level and slope of the log-probability of the outcome of one case.
 fn score(line: &Line, case: &Observation) -> Vector2<f64> {
     let log = case.intensity.ln();
     let eta = line.at(log);
@@ -528,20 +528,20 @@ fn normal_probability(eta: f64) -> f64 {
     0.5 * libm::erfc(-eta * FRAC_1_SQRT_2)
 }
 
-/// The logarithm of a probability and its derivatives by the linear predictor `eta`.
+/// The logarithm of a probability, and its derivatives by the linear predictor `eta`.
 struct LogProbability {
     value: f64,
     /// First derivative.
     slope: f64,
-    /// Negative second derivative, above zero: it is concave.
+    /// Negative second derivative; it is positive because the logarithm is concave.
     bend: f64,
 }
 
-/// Where the tail of the normal distribution begins: below, `Phi` underflows sooner or later, and `h + eta`
+/// Where the tail of the normal distribution begins: further down `Phi` eventually underflows, and `h + eta`
 /// loses digits.
 const TAIL: f64 = -5.0;
 
-/// Terms of the continued fraction in the tail, enough for all digits where it begins.
+/// Terms of the continued fraction in the tail, enough for all digits where the tail begins.
 const TERMS: u32 = 40;
 
 impl LogProbability {
@@ -641,7 +641,7 @@ mod tests {
     fn logarithms_of_the_normal_distribution_keep_their_digits() {
         for (eta, value, slope, bend) in REFERENCE {
             let at = LogProbability::at(eta);
-            // At -5, h + eta = 0.19 has lost a digit and a half; exp(-x^2 / 2) loses one at 7.5.
+            // At -5, h + eta = 0.19 has lost a digit and a half; exp(-x^2 / 2) loses one digit at 7.5.
             assert_close(at.value, value, 1e-14);
             assert_close(at.slope, slope, 2e-14);
             assert_close(at.bend, bend, 1e-13);

@@ -1,4 +1,4 @@
-//! Incremental dynamic analysis: how far each record drives the structure as it gets stronger.
+//! Incremental dynamic analysis: the response to each record as it gets stronger.
 
 use super::picture::{intensity_label, intensity_scale};
 use super::told::Heading;
@@ -7,15 +7,15 @@ use crate::dynamics::history::Outcome;
 use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::studies::ending::Verdict;
 
-/// Records that get curves of their own looks and names.
+/// Number of records whose curves have looks and names of their own.
 const NAMED: usize = CURVES.len();
-/// Where what overturns is drawn, in parts of the width.
+/// Where overturned cases are drawn, as a fraction of the width.
 const OVERTURNED: f64 = 1.0;
-/// How far what survives may be drawn.
+/// How far to the right surviving cases may be drawn, as a fraction of the width.
 const SURVIVED: f64 = 0.94;
 
-/// Draws the intensity against the peak rotation, over the critical one where that is known: a curve for every record, also
-/// mirrored where that counts, and at the right end what overturns. What is uncertain is marked where its history went.
+/// Draws the intensity against the peak rotation, relative to the critical one if that is known. Every record has a curve, also
+/// when mirrored if mirrored cases count. Overturned cases are at the right end; an uncertain case is marked where its own history went.
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let mut drawing = Drawing::new(figure);
@@ -112,7 +112,7 @@ const MANY: Stroke = Stroke::new(color::BLUE, 0.9, "");
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
-/// Whether the history itself overturned, certain or not.
+/// Whether the history itself overturned, whether certain or not.
 fn goes_over(case: &CaseRow) -> bool {
     let ending = case.result.as_ref();
     ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
@@ -123,7 +123,7 @@ fn name(case: &CaseRow) -> String {
     format!("{}{mirrored}", case.record)
 }
 
-/// The cases that count of each record, weakest first.
+/// The cases of each record that count, weakest first.
 fn records(results: &SuiteFragility) -> Vec<Vec<&CaseRow>> {
     let counts = |case: &&CaseRow| results.mirrored_count || !case.mirrored;
     let cases: Vec<&CaseRow> = results.cases.iter().filter(counts).collect();

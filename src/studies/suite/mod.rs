@@ -1,4 +1,4 @@
-//! A suite of records: a history for every record at every level, and the fragility that they add up to.
+//! A suite of records: a history for every record at every level, and the fragility that follows from them.
 
 pub mod fragility;
 mod ida;
@@ -18,23 +18,23 @@ use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{Case, Model};
 use crate::scenario::{Measure, ModelError, Scenario, Suite};
 
-/// A record that shakes the structure, and how that ended.
+/// A record that shakes the structure, and how its history ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseRow {
     /// The file.
     pub record: String,
     /// Whether the record is mirrored.
     pub mirrored: bool,
-    /// What it is multiplied by, above 0.
+    /// The factor on the record, above 0.
     pub scale: f64,
-    /// Its peak as scaled, in units of gravity.
+    /// Its peak after scaling, in units of gravity.
     pub peak_g: f64,
     /// How its history ended, or why it could not be computed.
     pub result: Result<Ending, String>,
 }
 
 impl CaseRow {
-    /// The level, as the suite measures it.
+    /// The level, in the measure of the suite.
     #[must_use]
     pub const fn level(&self, measure: Measure) -> f64 {
         match measure {
@@ -43,7 +43,7 @@ impl CaseRow {
         }
     }
 
-    /// Whether it overturned, as far as that is known; `None` if there is no history.
+    /// Whether it overturned, as far as this is known; `None` if there is no history.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
@@ -56,14 +56,14 @@ impl CaseRow {
         self.verdict() == Some(Verdict::Survives) && self.result.as_ref().is_ok_and(rocking)
     }
 
-    /// Whether it did the same as another one to the other side, to the last bit.
+    /// Whether its result is exactly that of another case, to the other side.
     fn is_mirror_image_of(&self, other: &Self) -> bool {
         let ended = self.result.as_ref().map(Ending::mirrored);
         ended.ok() == other.result.as_ref().ok().cloned()
     }
 }
 
-/// The cases of a suite: the levels of a record follow one another, then those of the record mirrored, then the
+/// The cases of a suite: first the levels of a record, then those of the mirrored record, then the
 /// next record.
 #[derive(Debug)]
 pub struct RecordSuite<'a> {
@@ -74,10 +74,10 @@ pub struct RecordSuite<'a> {
 }
 
 impl<'a> RecordSuite<'a> {
-    /// The suite of a scenario that starts from rest.
+    /// The suite of a scenario, which must start from rest.
     ///
     /// # Errors
-    /// In words, what to change.
+    /// Explains what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
         let suite = scenario.suite().ok_or_else(|| {
@@ -90,7 +90,7 @@ impl<'a> RecordSuite<'a> {
         Self::new(scenario, suite).map_err(|error| error.to_string())
     }
 
-    /// What its results say of the scenario.
+    /// What the results report about the scenario.
     #[must_use]
     pub fn heading(&self) -> Heading {
         Heading::of(self.scenario, self.suite)
@@ -158,7 +158,7 @@ impl Study for RecordSuite<'_> {
 }
 
 impl RecordSuite<'_> {
-    /// The level of a case, its record, and whether that is mirrored.
+    /// The level of a case, the index of its record, and whether the record is mirrored.
     fn place(&self, index: usize) -> (f64, usize, bool) {
         let level = self.levels[index % self.levels.len()];
         let shake = index / self.levels.len();
@@ -183,7 +183,7 @@ impl RecordSuite<'_> {
     }
 }
 
-/// The cases of one intensity. Those that failed are not among the others.
+/// The cases of one intensity. Failed cases are counted separately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FragilityRow {
     /// The intensity.
@@ -192,26 +192,26 @@ pub struct FragilityRow {
     pub cases: usize,
     /// Number of those that certainly overturned.
     pub overturned: usize,
-    /// Number of those of which that is uncertain.
+    /// Number of those for which overturning is uncertain.
     pub uncertain: usize,
     /// Number of those that had neither overturned nor come to rest.
     pub still_rocking: usize,
     /// Number of cases whose history could not be computed.
     pub failed: usize,
-    /// What the curve says, if there is one.
+    /// The curve at this intensity, if there is one.
     pub curve: Option<CurvePoint>,
-    /// What it says with uncertain cases as overturned.
+    /// The same with uncertain cases counted as overturned.
     pub curve_with_uncertain: Option<CurvePoint>,
 }
 
-/// A fragility curve at an intensity.
+/// The values of a fragility curve at an intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     /// The probability of overturning.
     pub probability: f64,
-    /// Lower end of its band of 95 % confidence.
+    /// Lower end of its 95 % confidence band.
     pub low: f64,
-    /// Upper end of that.
+    /// Upper end of that band.
     pub high: f64,
 }
 
@@ -228,13 +228,13 @@ impl CurvePoint {
 }
 
 impl FragilityRow {
-    /// The part of the cases that certainly overturned.
+    /// The fraction of the cases that certainly overturned.
     #[must_use]
     pub fn fraction(&self) -> Option<f64> {
         self.part(self.overturned)
     }
 
-    /// The part of those that overturned or may have.
+    /// The fraction of the cases that overturned or may have.
     #[must_use]
     pub fn fraction_with_uncertain(&self) -> Option<f64> {
         self.part(self.overturned + self.uncertain)
@@ -245,41 +245,41 @@ impl FragilityRow {
     }
 }
 
-/// What a record does as it gets stronger.
+/// The response to a record as it gets stronger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordSurvival<'a> {
     /// The file.
     pub record: &'a str,
     /// Whether it is mirrored.
     pub mirrored: bool,
-    /// What it does.
+    /// The strengths that the structure survives.
     pub survival: Survival,
 }
 
-/// What all cases say together. Those that are still rocking have not overturned; those that failed do not
+/// The results of all cases together. Cases that are still rocking have not overturned; failed cases do not
 /// count. Uncertain cases are taken both ways: as survived, and as overturned.
 ///
-/// Both signs of a record count, as cases of one record, which are not independent. Where every mirrored case is the mirror
-/// image of the other to the last bit, as with four links on a symmetric structure, it is no further evidence and does
-/// not count. With free hinges rounding and the order of impacts that almost coincide break that symmetry.
+/// Both signs of a record count, as cases of one record, which are not independent. If every mirrored case is exactly the
+/// mirror image of the other, as with four links on a symmetric structure, it adds no evidence and does not count.
+/// With free hinges this symmetry is broken by rounding and by the order of impacts that almost coincide.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SuiteFragility {
-    /// What the intensities are.
+    /// The measure of the intensities.
     pub measure: Measure,
     /// All cases.
     pub cases: Vec<CaseRow>,
     /// Whether mirrored cases count.
     pub mirrored_count: bool,
-    /// By intensity, lowest first.
+    /// The intensities, lowest first.
     pub levels: Vec<FragilityRow>,
-    /// The curve with uncertain cases as survived, if there is one.
+    /// The curve with uncertain cases counted as survived, if there is one.
     pub fit: Result<Fragility, NoFit>,
-    /// The curve with uncertain cases as overturned, if there is one.
+    /// The curve with uncertain cases counted as overturned, if there is one.
     pub fit_with_uncertain: Result<Fragility, NoFit>,
 }
 
 impl SuiteFragility {
-    /// What these cases say.
+    /// The results of these cases.
     #[must_use]
     pub fn new(measure: Measure, cases: Vec<CaseRow>) -> Self {
         let mirrored_count = !mirrored_are_images(&cases);
@@ -328,13 +328,13 @@ impl SuiteFragility {
         }
     }
 
-    /// Whether it is uncertain of any case that counts whether it overturned.
+    /// Whether it is uncertain for any case that counts whether it overturned.
     #[must_use]
     pub fn has_uncertain(&self) -> bool {
         self.levels.iter().any(|level| level.uncertain > 0)
     }
 
-    /// Where each record first overturns and is survived again, by intensity; mirrored ones only where these differ.
+    /// The intensities at which each record first overturns, and is survived again; mirrored records only if their results differ.
     #[must_use]
     pub fn survivals(&self) -> Vec<RecordSurvival<'_>> {
         let shakes = self
@@ -367,7 +367,7 @@ impl SuiteFragility {
         names(&self.cases).len()
     }
 
-    /// Names of the records of whose cases all certainly overturned, or all certainly survived, as `wanted`.
+    /// Names of the records whose cases all certainly overturned, or all certainly survived, as `wanted`.
     #[must_use]
     pub fn always(&self, wanted: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
@@ -381,7 +381,7 @@ impl SuiteFragility {
     }
 }
 
-/// Whether every mirrored case did the same as the record itself, to the other side.
+/// Whether every mirrored case has the result of the original, to the other side.
 fn mirrored_are_images(cases: &[CaseRow]) -> bool {
     let key = |case: &CaseRow| (case.record.clone(), case.scale.to_bits());
     let own: BTreeMap<_, &CaseRow> = cases

@@ -40,7 +40,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
-/// How a curve is drawn.
+/// The look of a curve.
 struct Look {
     name: &'static str,
     label: &'static str,
@@ -58,7 +58,7 @@ const CURVE_WITH_UNCERTAIN: Look = Look {
     line: Stroke::new(color::BLUE, 2.0, "7 4"),
 };
 
-/// The curves that are drawn: with uncertain cases as survived, and, where there are such, as overturned.
+/// The curves to draw: with uncertain cases counted as survived, and, if there are any, also as overturned.
 fn curves(results: &SuiteFragility) -> Vec<(&Fragility, Look)> {
     let with_uncertain = (&results.fit_with_uncertain, CURVE_WITH_UNCERTAIN);
     let with_uncertain = results.has_uncertain().then_some(with_uncertain);
@@ -69,7 +69,7 @@ fn curves(results: &SuiteFragility) -> Vec<(&Fragility, Look)> {
         .collect()
 }
 
-/// What the intensities are, in words.
+/// The measure of the intensities, in words.
 pub(super) const fn intensity_label(measure: Measure) -> &'static str {
     match measure {
         Measure::Scale => "scale factor",
@@ -77,7 +77,7 @@ pub(super) const fn intensity_label(measure: Measure) -> &'static str {
     }
 }
 
-/// From below the lowest level to above the highest.
+/// The scale from a little below the lowest level to a little above the highest.
 pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow], figure: Figure) -> Scale {
     let ends = [levels.first(), levels.last()];
     let [low, high] = ends.map(|level| level.map_or(1.0, |level| level.intensity));
@@ -90,7 +90,7 @@ pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow], figure
     }
 }
 
-/// What is drawn, and the curves in words or why there are none; returns where that ends.
+/// Draws the legend, with the curves in words or the reason why there are none; returns the position of its lower end.
 fn legend(drawing: &mut Drawing, figure: Figure, top: f64, results: &SuiteFragility) -> f64 {
     let cases: usize = results.levels.iter().map(|level| level.cases).sum();
     let text = format!("fraction of {}, {cases} cases", records_in_words(results));
@@ -118,10 +118,10 @@ const POINT: Stroke = Stroke::new(color::VERMILION, 1.8, "");
 const BAND: &str = "#d6e8f4";
 const BETWEEN: &str = "#9cc7e3";
 
-/// This many points make a smooth curve.
+/// Number of points of a smooth curve.
 const POINTS: u32 = 200;
 
-/// Values along an axis, above zero.
+/// Positive values along an axis.
 fn along(scale: &Scale) -> impl Iterator<Item = f64> {
     let scale = *scale;
     (0..=POINTS)
@@ -129,7 +129,7 @@ fn along(scale: &Scale) -> impl Iterator<Item = f64> {
         .filter(|x| *x > 0.0)
 }
 
-/// The band of 95 % of the curves together, and the one between them.
+/// Draws the joint 95 % band of the curves, and the area between them.
 fn draw_bands(drawing: &mut Drawing, axes: &Axes, curves: &[(&Fragility, Look)]) {
     let mut fill = |name: &str, color: &'static str, ends: &dyn Fn(f64) -> [f64; 2]| {
         let (low, mut high): (Vec<_>, Vec<_>) = along(&axes.x)

@@ -1,4 +1,4 @@
-//! What a suite of records tells: its table, the fragility of the structure, its words.
+//! Reports a suite of records: its table, the fragility of the structure, and its words.
 
 use serde_json::{Value, json};
 
@@ -15,12 +15,12 @@ use crate::studies::survival;
 
 const FRAGILITY: &str = "fragility.json";
 
-/// What the results of a suite say of its scenario. That can be had from the resolved text alone, so that parts
-/// are joined where the records are not.
+/// What the results of a suite report about its scenario. The text of the resolved scenario is enough for that, so parts
+/// can be joined where the records are not at hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heading {
     scenario: Value,
-    /// What the intensities are.
+    /// The measure of the intensities.
     pub measure: Measure,
     pub(super) spacing: Spacing,
 }
@@ -36,7 +36,7 @@ impl Heading {
         }
     }
 
-    /// The heading of a scenario, every default resolved; `None` if that is not the text of one with a suite.
+    /// The heading from the text of a scenario with every default filled in; `None` if it has no suite.
     #[must_use]
     pub fn of_resolved(scenario: &str) -> Option<Self> {
         let scenario: Value = toml::from_str(scenario).ok()?;
@@ -57,7 +57,7 @@ impl Heading {
         })
     }
 
-    /// Files and words of all rows.
+    /// The files and words for all rows.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -79,7 +79,7 @@ impl Heading {
         })
     }
 
-    /// A row per case.
+    /// The columns for one row per case.
     fn case_columns(&self) -> Vec<Column<'static, CaseRow>> {
         let mut all = vec![
             column("record", |case: &CaseRow| shown(&case.record)),
@@ -96,7 +96,7 @@ impl Heading {
         all
     }
 
-    /// A row per level. Missing values are left empty.
+    /// The columns for one row per level. Missing values are empty.
     fn level_columns(&self) -> Vec<Column<'static, FragilityRow>> {
         type Curve = fn(&FragilityRow) -> Option<CurvePoint>;
         let probability = |[probability, low, high]: [&'static str; 3], curve: Curve| {
@@ -121,7 +121,7 @@ impl Heading {
         let names = ["probability", "probability_low", "probability_high"];
         all.extend(probability(names, |level| level.curve));
         if self.has_joints() {
-            // The number of uncertain cases, and what counts them as overturned.
+            // The number of uncertain cases, and the columns that count them as overturned.
             all.extend([
                 column("uncertain", |level: &FragilityRow| level.uncertain),
                 column(
@@ -152,7 +152,7 @@ impl Heading {
     }
 }
 
-/// How many records there are.
+/// The number of records, in words.
 pub(super) fn records_in_words(results: &SuiteFragility) -> String {
     match results.record_count() {
         1 => "1 record".to_owned(),
@@ -233,7 +233,7 @@ fn curve_to_json(fit: &Result<Fragility, NoFit>) -> Result<Value, OutputError> {
     Ok(json)
 }
 
-/// What is to be remarked of the cases: which failed or are uncertain, and why.
+/// The remarks on the cases: those that failed or are uncertain, with the reasons.
 fn remarks(results: &SuiteFragility) -> Remarks {
     let mut remarks = Remarks::default();
     for case in &results.cases {
@@ -250,13 +250,13 @@ fn remarks(results: &SuiteFragility) -> Remarks {
 /// A curve in words, or why there is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct CurveInWords {
-    /// How uncertain cases are taken: `, 2 uncertain cases taken as survived`; empty where there are none.
+    /// How uncertain cases are counted: `, 2 uncertain cases taken as survived`; empty if there are none.
     pub(super) taken: String,
     /// The curve, or the reason.
     pub(super) curve: Result<String, String>,
 }
 
-/// The curve in words; where cases are uncertain, first with these as survived, then as overturned.
+/// The curve in words; if cases are uncertain, first with these counted as survived, then as overturned.
 pub(super) fn curves_in_words(results: &SuiteFragility) -> Vec<CurveInWords> {
     let uncertain: usize = results.levels.iter().map(|level| level.uncertain).sum();
     let curve = |fit: &Result<Fragility, NoFit>, how: &str| CurveInWords {
@@ -277,12 +277,12 @@ pub(super) fn curves_in_words(results: &SuiteFragility) -> Vec<CurveInWords> {
     curves
 }
 
-/// A curve in words, with its standard errors, the larger ones last.
+/// A curve in words, with its standard errors; those by record come last.
 fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
     let unit = unit(measure);
     let quantity = |value: f64, error: fn(&Errors) -> f64, unit: &str| {
         let independent = error(&fit.independent);
-        // The error has two significant digits at best.
+        // An error has at most two significant digits.
         let digits = digits(independent);
         let by_record = fit.clustered.as_ref().map_or(String::new(), |clustered| {
             format!(" (by record ± {:.digits$}{unit})", error(clustered))
@@ -296,7 +296,7 @@ fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
     )
 }
 
-/// Digits after the point that show two digits of an error.
+/// Number of decimals that show two digits of an error.
 fn digits(error: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
@@ -307,7 +307,7 @@ fn digits(error: f64) -> usize {
     digits
 }
 
-/// What the results say, line by line.
+/// The results in words, line by line.
 fn words(results: &SuiteFragility) -> String {
     let mut lines = vec![counted(results)];
     let column = results.measure.column();
@@ -334,7 +334,7 @@ fn words(results: &SuiteFragility) -> String {
     lines.join("\n  ")
 }
 
-/// How many cases came to what.
+/// The number of cases with each outcome.
 fn counted(results: &SuiteFragility) -> String {
     let words = |case: &CaseRow| case.result.as_ref().map_or((5, "failed"), in_words);
     format!(
@@ -345,7 +345,7 @@ fn counted(results: &SuiteFragility) -> String {
     )
 }
 
-/// What stands behind an intensity.
+/// The unit that follows an intensity.
 const fn unit(measure: Measure) -> &'static str {
     match measure {
         Measure::Scale => "",

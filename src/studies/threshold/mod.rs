@@ -1,8 +1,8 @@
 //! Thresholds: the factors on a ground motion at which structures overturn.
 //!
-//! A stronger motion need not be a worse one: after impacts there are **bands** of factors that overturn with
-//! safe **gaps** between them, and where repetitions disagree **uncertain** ranges. So factors are sampled upwards in equal
-//! strides, and bisection only finds the edge between two neighbours of different verdicts. Ranges that are narrower than a
+//! A stronger motion need not be a worse one: after impacts there are **bands** of factors that overturn, with
+//! safe **gaps** between them. Where repetitions disagree there are **uncertain** ranges. So factors are sampled upwards in equal
+//! strides, and bisection only finds the edge between two neighbours with different verdicts. Ranges narrower than a
 //! stride may be missed.
 
 pub mod picture;
@@ -26,15 +26,15 @@ use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::dynamics::spread::doubts;
 
-/// How closely an edge is enclosed, as a part of its factor: far closer than any motion of the ground is known,
-/// and wide enough that the errors of the integration do not decide.
+/// Relative width to which an edge is bisected: far less than the uncertainty of any ground motion,
+/// and wide enough that integration errors do not decide.
 pub const EDGE_WIDTH: f64 = 1e-4;
 
-/// Steps of the search for an edge whose histories are computed together, where a model is faster so: seven.
+/// Number of bisection steps whose histories, seven, are computed together if the model is faster that way.
 const STEPS_AHEAD: usize = 3;
 
-/// The factors that are sampled: from the first to the last, each larger than the one before by a stride, or by
-/// less where that reaches the last.
+/// The factors to sample, from the first to the last. Each is larger than the one before by a stride, or by
+/// less if that reaches the last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Factors {
     from: f64,
@@ -43,7 +43,7 @@ pub struct Factors {
 }
 
 impl Default for Factors {
-    /// From a tenth to ten times, in strides of 2 %.
+    /// From 0.1 to 10, in strides of 2 %.
     fn default() -> Self {
         Self {
             from: 0.1,
@@ -54,8 +54,8 @@ impl Default for Factors {
 }
 
 impl Factors {
-    /// Factors `from`, at least 1e-6, `to`, above that and at most 1e6, in strides of `stride` times the factor,
-    /// 1e-4 to 1.
+    /// Factors from `from`, at least 1e-6, to `to`, which is larger and at most 1e6. Each stride is `stride`, 1e-4 to 1,
+    /// times the factor.
     ///
     /// # Errors
     /// When a number is not allowed.
@@ -79,16 +79,16 @@ impl Factors {
         self.to
     }
 
-    /// How much larger than a factor the next is, as a part of it.
+    /// The relative step from one factor to the next.
     #[must_use]
     pub const fn stride(&self) -> f64 {
         self.stride
     }
 
-    /// All of them, ascending.
+    /// All factors, ascending.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
-        // A last stride that is only rounding is dropped.
+        // A last stride that is due to rounding only is dropped.
         let end = self.to * (1.0 - 1e-9);
         let next = |factor: &f64| Some(factor * (1.0 + self.stride));
         let mut values: Vec<f64> = std::iter::successors(Some(self.from), next)
@@ -99,30 +99,30 @@ impl Factors {
     }
 }
 
-/// The history on the ground motion times a factor.
+/// The history under the ground motion multiplied by a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorSample {
     /// The factor.
     pub factor: f64,
-    /// How it ended, or why there is none.
+    /// How it ended, or why there is no history.
     pub result: Result<Ending, NoHistory>,
-    /// Largest magnitude of the rotation of any body; `None` where there is no history.
+    /// Largest magnitude of the rotation of any body; `None` if there is no history.
     pub peak_rotation_rad: Option<f64>,
 }
 
 /// Why there is no history at a factor.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoHistory {
-    /// The ground falls as fast as a free body, which is beyond the model.
+    /// The ground accelerates downwards as fast as a free fall, which the model does not cover.
     #[error("{0}")]
     GroundFalls(String),
-    /// It could not be computed.
+    /// The history could not be computed.
     #[error("{0}")]
     Failed(String),
 }
 
 impl FactorSample {
-    /// Histories at some factors, in their order.
+    /// Histories for several factors, in their order.
     fn all_of(
         model: &dyn Model,
         ground: &GroundMotion,
@@ -162,7 +162,7 @@ impl FactorSample {
         }
     }
 
-    /// Whether the structure overturns, as far as that is known; `None` where there is no history.
+    /// Whether the structure overturns, as far as this is known; `None` if there is no history.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
@@ -172,39 +172,39 @@ impl FactorSample {
 named! {
     /// Why a range of factors ends where it does.
     pub enum RangeEnd {
-        /// Beyond it the outcome is another.
+        /// Beyond it the verdict differs.
         Edge = "edge",
-        /// No factor beyond it was asked for.
+        /// Factors beyond it were not requested.
         Sampled = "sampled",
-        /// Beyond it there is no history.
+        /// Beyond it there are no histories.
         Unknown = "unknown",
     }
 }
 
-/// A range of factors of one outcome. The histories at both ends were simulated, and have that outcome.
+/// A range of factors with one verdict. The histories at both ends were simulated, and have that verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FactorRange {
     /// Its least factor.
     pub from: f64,
     /// Its largest factor.
     pub to: f64,
-    /// Why it begins there.
+    /// Why it begins where it does.
     pub from_end: RangeEnd,
-    /// Why it ends there.
+    /// Why it ends where it does.
     pub to_end: RangeEnd,
 }
 
-/// What a model of motion says of all factors.
+/// The result of a model of motion for all factors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Threshold {
     /// Name of the model.
     pub model: String,
-    /// The histories at all factors, ascending; where the search for an edge failed or met the third verdict, that history
-    /// is among them.
+    /// The histories for all factors, ascending. If the search for an edge failed or met the third verdict, its last history
+    /// is included.
     pub samples: Vec<FactorSample>,
     /// The ranges of one verdict, ascending.
     pub ranges: Vec<(Verdict, FactorRange)>,
-    /// What its lowest factor hangs on, where that was asked for.
+    /// The lowest factors of structures with other properties, if they were requested.
     pub varied: Vec<VariedThreshold>,
 }
 
@@ -216,13 +216,13 @@ impl Threshold {
             .collect()
     }
 
-    /// Where it overturns, ascending.
+    /// The ranges that overturn, ascending.
     #[must_use]
     pub fn bands(&self) -> Vec<FactorRange> {
         self.of(Verdict::Overturns)
     }
 
-    /// Where it survives between bands, ascending.
+    /// The ranges between bands that survive, ascending.
     #[must_use]
     pub fn gaps(&self) -> Vec<FactorRange> {
         let bands = self.bands();
@@ -235,13 +235,13 @@ impl Threshold {
         gaps
     }
 
-    /// Where it is uncertain whether it overturns, ascending.
+    /// The ranges for which overturning is uncertain, ascending.
     #[must_use]
     pub fn uncertain(&self) -> Vec<FactorRange> {
         self.of(Verdict::Uncertain)
     }
 
-    /// The least factor at which it certainly overturns; `None` if it never does.
+    /// The least factor that certainly overturns; `None` if none does.
     #[must_use]
     pub fn lowest_factor(&self) -> Option<f64> {
         self.bands().first().map(|band| band.from)
@@ -251,20 +251,20 @@ impl Threshold {
 /// Why thresholds were not found.
 #[derive(Debug, Error)]
 pub enum ThresholdError {
-    /// What is asked of the histories is not possible.
+    /// The request for the histories is not valid.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
-    /// The caller broke off, or there are no threads.
+    /// The caller cancelled, or threads could not be started.
     #[error(transparent)]
     Runner(#[from] RunnerError),
 }
 
-/// The factors on the ground motion at which each of the models, given with its name, overturns.
+/// The factors on the ground motion by which each of the named models overturns.
 ///
-/// `watch` is told of the progress as by [`Runner::rows`]: first over all factors, then over the edges as well.
+/// `watch` receives the progress as in [`Runner::rows`]: first over all factors, then over the edges as well.
 ///
 /// # Errors
-/// When `watch` breaks, threads cannot be started, or the request is not possible. Histories that fail are
+/// When `watch` breaks, threads cannot be started, or the request is not valid. Histories that fail are
 /// among the results.
 pub fn thresholds(
     models: &[(&str, &dyn Model)],
@@ -281,14 +281,14 @@ pub fn thresholds(
         ground,
         request,
     };
-    // Model by model.
+    // The cases of one model follow those of another.
     let sampled = models.len() * factors.len();
     let model_of = |index: usize| index / factors.len();
     let family = |index| {
         let together = models[model_of(index)].1.is_faster_together();
         together.then_some(model_of(index))
     };
-    // What has no family comes alone.
+    // A case without a family comes alone.
     let samples_of = |indices: &[usize]| {
         let of_them = indices.iter().map(|index| factors[index % factors.len()]);
         shaking.samples(model_of(indices[0]), &of_them.collect::<Vec<_>>())
@@ -344,8 +344,8 @@ impl Shaking<'_> {
         FactorSample::all_of(self.models[model].1, self.ground, self.request, factors)
     }
 
-    /// The edge between neighbours of different verdicts; or the two on both sides of a history of the third verdict that the
-    /// search met; or the history at which it failed.
+    /// The edge between neighbours with different verdicts. If the search meets a history with the third verdict, the two edges
+    /// on either side of it; if a history fails, that history.
     fn search(&self, (model, below, above): Change<'_>) -> Found {
         let width = Width::Relative(EDGE_WIDTH);
         let together = self.models[model].1.is_faster_together();
@@ -356,7 +356,7 @@ impl Shaking<'_> {
             let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
             let place = known(&ahead).unwrap_or_else(|| {
                 ahead = self.samples(model, &next_middles(low, high, width, steps));
-                // It is asked first.
+                // The first of them is needed now.
                 0
             });
             match ahead[place].verdict() {
@@ -393,10 +393,10 @@ impl Shaking<'_> {
     }
 }
 
-/// Neighbouring samples of a model, given by its index, of different verdicts.
+/// Neighbouring samples of a model, given by its index, with different verdicts.
 type Change<'a> = (usize, &'a FactorSample, &'a FactorSample);
 
-/// Samples, and pairs of neighbouring factors of different verdicts, closely together.
+/// Samples, and pairs of close factors with different verdicts.
 #[derive(Default)]
 struct Found {
     samples: Vec<FactorSample>,

@@ -10,20 +10,20 @@ use crate::output::svg::{
 use crate::studies::ending::Verdict;
 use crate::studies::kind::{self, Kind};
 
-/// Room for the labels of the edges above a strip.
+/// Height of the labels of the edges above a strip.
 const EDGE_LABELS: f64 = 58.0;
 const STRIP: f64 = 28.0;
-/// Distance of labels that stand side by side.
+/// Distance between labels side by side.
 const LABEL_ADVANCE: f64 = 15.0;
 
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
 const EDGE: Stroke = Stroke::new(color::GREY, 0.8, "");
 const HATCH: Stroke = Stroke::new("#ffffff", 1.2, "");
-/// Distance of the lines of a hatch, along the strip.
+/// Distance between the lines of a hatch, along the strip.
 const HATCH_PX: f64 = 6.0;
 
-/// Draws the outcome over the factor as a strip for each model, with the edges of the bands, and the largest
-/// rotation below. `peak_g` is the peak acceleration of the ground at the factor 1.
+/// Draws the outcome against the factor, as a strip for each model with the edges of the bands, and below it
+/// the largest rotation. `peak_g` is the peak ground acceleration at the factor 1.
 #[must_use]
 pub fn draw(
     figure: Figure,
@@ -88,7 +88,7 @@ pub fn draw(
                 let [bottom, top] = [axes.y.low, axes.y.high].map(|y| axes.place(edge, y));
                 drawing.line(bottom, top, Stroke::new(stroke.color, 0.5, "2 3"));
             }
-            // Where there is no rotation to show the curve breaks.
+            // The curve is interrupted where there is no rotation to show.
             for run in threshold
                 .samples
                 .chunk_by(|a, b| rotation.peak(a).is_some() == rotation.peak(b).is_some())
@@ -103,12 +103,12 @@ pub fn draw(
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
-/// What the curves of the models look like.
+/// The strokes of the models' curves.
 fn curves() -> impl Iterator<Item = Stroke> {
     CURVES.into_iter().cycle()
 }
 
-/// The name of its model for people.
+/// The name of its model in words.
 fn name(threshold: &Threshold) -> String {
     threshold.model.replace('_', " ")
 }
@@ -119,12 +119,12 @@ fn kind_of(sample: &FactorSample) -> Kind {
     Kind::of(outcome(sample), impacts)
 }
 
-/// Which rotation is drawn.
+/// The rotation to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rotation {
-    /// The largest over the critical one.
+    /// The largest rotation relative to the critical one.
     OverCritical,
-    /// The largest in radians, because a model does not know a critical one.
+    /// The largest rotation in radians, because some model has no critical one.
     Plain,
 }
 
@@ -156,7 +156,7 @@ impl Rotation {
         }
     }
 
-    /// Up to the largest that was survived. What overturns goes beyond.
+    /// The scale up to the largest rotation that was survived. Overturning cases go beyond it.
     fn scale(self, thresholds: &[Threshold]) -> Scale {
         let least = match self {
             Self::OverCritical => 1.0,
@@ -180,7 +180,7 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
         let ends = ends.into_iter().filter(|(_, end)| *end == RangeEnd::Edge);
         ends.map(|(factor, _)| factor)
     });
-    // Where a band and an uncertain range meet, one of the two factors that enclose the edge is enough.
+    // Where a band meets an uncertain range, one of the two factors that enclose the edge is enough.
     ends.filter(move |factor| {
         let anew = factor - told > 2.0 * EDGE_WIDTH * factor || told.is_nan();
         told = *factor;
@@ -188,10 +188,10 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The outcomes of a model along its factors, and the edges of its bands above.
+/// Draws the outcomes of a model along the factors, with the edges of its bands above.
 fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let edges: Vec<f64> = edges(threshold).collect();
-    // Where one colour ends and the next begins: at the edge, if there is one, or halfway.
+    // The border between two colours: at the edge, if there is one, otherwise halfway.
     let border = |below: &FactorSample, above: &FactorSample| {
         let edge = edges
             .iter()
@@ -265,8 +265,8 @@ fn hatch(drawing: &mut Drawing, frame: &Frame) {
     });
 }
 
-/// Places for labels near the given ascending places, side by side between `left` and `right`; fewer where
-/// there is not room for all.
+/// Positions for labels near the given ascending positions, side by side between `left` and `right`; fewer if
+/// there is not enough room for all.
 fn spread(places: &[f64], left: f64, right: f64) -> Vec<f64> {
     #[expect(
         clippy::cast_possible_truncation,

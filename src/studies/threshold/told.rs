@@ -1,4 +1,4 @@
-//! What thresholds of overturning tell: their table, their JSON, their words.
+//! Reports thresholds of overturning: their table, JSON and words.
 
 use std::fmt::Write as _;
 
@@ -25,7 +25,7 @@ pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"
 /// Checks that a scenario has a ground motion to scale, and starts from rest.
 ///
 /// # Errors
-/// In words, what to change.
+/// Explains what to change.
 pub fn check(scenario: &Scenario) -> Result<(), String> {
     scenario.check_from_rest("threshold")?;
     if scenario.ground().is_some() {
@@ -40,7 +40,7 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
     )
 }
 
-/// Files and words of the thresholds of scenarios that differ in their models only; and the JSON among the files.
+/// Files and words for the thresholds of scenarios that differ only in their models; one of the files is JSON.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -70,7 +70,7 @@ pub fn tell(
     })
 }
 
-/// The outcome of a sample, also where there is no history.
+/// The outcome of a sample, or what stands for it if there is no history.
 #[must_use]
 pub const fn outcome(sample: &FactorSample) -> &'static str {
     match &sample.result {
@@ -86,7 +86,7 @@ pub fn peak_g(scenario: &Scenario, ground: &GroundMotion) -> f64 {
     ground.peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
 }
 
-/// A factor or an acceleration for people: with four digits, about as many as are certain of an edge.
+/// A factor or an acceleration with four digits, about as many as are certain for an edge.
 #[must_use]
 pub fn rounded(value: f64) -> String {
     let before_point = if value > 0.0 {
@@ -103,7 +103,7 @@ pub fn rounded(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// The samples, model by model, factors ascending.
+/// The samples, model by model, with ascending factors.
 fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (&'a str, &'a FactorSample);
     let rows: Vec<Row<'_>> = thresholds
@@ -137,8 +137,8 @@ fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
     csv(columns, &rows)
 }
 
-/// All that was found, as JSON: per model the least factor that overturns, the bands that overturn, the safe gaps between
-/// them, the uncertain ranges, the steps where it has such, and all samples; beside the edges the peak acceleration of the ground, in units of gravity.
+/// All results as JSON: for each model the least factor that overturns, the bands that overturn, the safe gaps between
+/// them, the uncertain ranges, the steps if the model has any, and all samples. Edges also have the peak ground acceleration, in g.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -237,7 +237,7 @@ fn sample_to_json(sample: &FactorSample) -> Value {
     }
 }
 
-/// What was found: of a record in a line, of a pulse a line per range.
+/// The results in words: one line for a record, one line per range for a pulse.
 fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -> String {
     let mut text = String::new();
     let peak_g = peak_g(scenario, ground);
@@ -275,7 +275,7 @@ fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -
 }
 
 impl Factors {
-    /// Which factors were tried, in words.
+    /// The factors that were tried, in words.
     #[must_use]
     pub fn in_words(&self) -> String {
         format!(
@@ -287,7 +287,7 @@ impl Factors {
     }
 }
 
-/// From which factors it overturns with other properties.
+/// The lowest factors that overturn the structure with other properties, in words.
 fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
     let mut text = String::new();
     for VariedThreshold { name, factor } in &threshold.varied {
@@ -310,7 +310,7 @@ fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
     text
 }
 
-/// A line for each range.
+/// Adds a line for each range.
 fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
     let at = |factor: f64| format!("{} ({} g)", rounded(factor), rounded(factor * peak_g));
     let certainly = if threshold.uncertain().is_empty() {
@@ -337,7 +337,7 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
             "  {what} at the smallest factor already: a smaller --from finds where this {range} begins"
         );
     }
-    // A line for each band, with what follows it.
+    // A line for each band, with the range that follows it.
     let mut lines: Vec<String> = Vec::new();
     for (verdict, range) in &threshold.ranges {
         let to = at(range.to);
@@ -373,7 +373,7 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
     }
 }
 
-/// What is doubtful about the ranges.
+/// Adds what is doubtful about the ranges.
 fn doubts(text: &mut String, threshold: &Threshold) {
     let uncertain = threshold.samples.iter().filter_map(|sample| {
         let reason = sample.result.as_ref().ok()?.uncertain.as_ref()?;

@@ -1,4 +1,4 @@
-//! What a threshold hangs on: that of the same structure with properties that nobody knows better.
+//! What a threshold depends on: the thresholds of the same structure with other properties that are as likely.
 
 use std::ops::ControlFlow;
 
@@ -13,22 +13,22 @@ use crate::studies::runner::{Progress, Runner, RunnerError};
 /// The threshold of a variation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VariedThreshold {
-    /// What is different, in words that follow "with".
+    /// What differs, in words that follow "with".
     pub name: String,
-    /// The factor nearest to the lowest one of the structure itself from which it overturns, to half a percent; `None` where there is
-    /// none within a tenth to ten times that. Or why it is not known.
+    /// The factor from which it overturns, nearest to the lowest factor of the structure itself, to half a percent. `None` if there
+    /// is none within a tenth to ten times that factor. Or why it is unknown.
     pub factor: Result<Option<f64>, String>,
 }
 
-/// So far apart are the factors at which a change is looked for.
+/// Ratio of the factors between which a change is searched for.
 const STRIDE: f64 = 1.25;
-/// How far from the own threshold it is looked for.
+/// Largest ratio to the structure's own threshold in that search.
 const FARTHEST: f64 = 10.0;
-/// How closely it is enclosed.
+/// Relative width to which the change is bisected.
 const WIDTH: f64 = 5e-3;
 
-/// The thresholds of these variations, near the lowest factor of the structure itself; nothing where it has none. Bands that lie
-/// elsewhere are not looked for, and no history is repeated.
+/// The thresholds of these variations, near the lowest factor of the structure itself; empty if it has none. Bands
+/// elsewhere are not searched for, and no history is repeated.
 ///
 /// # Errors
 /// When `watch` breaks, or threads cannot be started.
@@ -70,7 +70,7 @@ fn least_near(
         Ok::<_, SimulationError>(Verdict::from(history.outcome) == Verdict::Overturns)
     };
     let falls = overturns(own)?;
-    // Downwards from what overturns, upwards from what survives.
+    // Downwards if the factor overturns, upwards if it does not.
     let stride = if falls { 1.0 / STRIDE } else { STRIDE };
     let mut last = own;
     loop {

@@ -1,8 +1,8 @@
 //! The dynamic route (C8.7.1.2.1.9): histories of the mechanism under records.
 //!
-//! Whatever mechanism moves after impacts, the displacement of the oscillator is here that of the common centre of gravity: the sum
-//! of the masses times their horizontal displacements over the participating mass `M*` of the mechanism that starts to that side.
-//! For that mechanism it is `d = d_C / e*`, with the common centre of its masses as control point.
+//! Whichever mechanism moves after impacts, the displacement of the oscillator is that of the common centre of gravity: the sum
+//! of the masses times their horizontal displacements, divided by the participating mass `M*` of the mechanism that starts to that
+//! side. For that mechanism it is `d = d_C / e*`, with the common centre of its masses as control point.
 
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
@@ -14,30 +14,30 @@ use crate::dynamics::model::{MechanismModel, Request, SimulationError};
 use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Scenario, Series, StateRule};
 
-/// From so many records on their mean counts, else the largest (NTC 2018, § 7.3.5).
+/// With this many records or more the mean counts, otherwise the largest (NTC 2018, § 7.3.5).
 pub const FOR_THE_MEAN: usize = 7;
-/// What the mean spectrum of records may miss that of the code by, over and under it (§ 3.2.3.6).
+/// Allowed ratios of the mean spectrum of records to that of the code, the least and the largest (§ 3.2.3.6).
 pub const SPECTRUM_MARGIN: [f64; 2] = [0.9, 1.3];
-/// Period from which on spectra are compared, in seconds.
+/// Shortest period at which spectra are compared, in seconds.
 const FROM_S: f64 = 0.15;
-/// Periods at which they are compared.
+/// Number of intervals between the periods at which they are compared.
 const PERIODS: u32 = 60;
-/// Interval at which peaks are looked for, in seconds: one is missed by about half its acceleration, at most a few m/s2, times
-/// the square of half of that.
+/// Interval at which peaks are looked for, in seconds. The error of a peak is about half its acceleration, at most a few m/s2, times
+/// the square of half the interval.
 const STEP_S: f64 = 0.002;
-/// Time after a record, in seconds, in which the last peak is reached.
+/// Time after a record, in seconds, within which the last peak occurs.
 const AFTER_S: f64 = 10.0;
 
-/// The largest displacement of a record to a side.
+/// The largest displacement under a record to one side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
-    /// In metres; means nothing where it overturns to that side.
+    /// In metres; meaningless if the structure overturns to that side.
     pub displacement_m: f64,
     /// Whether it overturned to that side.
     pub overturned: bool,
 }
 
-/// What a record does, acting in either direction; the larger peak counts.
+/// The peaks under a record that acts in either direction; the larger peak counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordPeaks {
     /// The file.
@@ -50,14 +50,14 @@ pub struct RecordPeaks {
     pub peaks: [Peak; 2],
 }
 
-/// What all records say of a side.
+/// The results of all records to one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HistorySide {
     /// The side.
     pub sway: Sway,
-    /// What the first impact after a sway to that side leaves of the energy; `None` where it stops the structure.
+    /// The restitution of the first impact after a sway to that side; `None` if it stops the structure.
     pub restitution: Option<f64>,
-    /// Mean of the peaks, or the largest of few; `None` where one overturns.
+    /// Mean of the peaks, or the largest if there are few records; `None` if one overturns.
     pub demand_m: Option<f64>,
     /// Displacement that may be reached, in metres.
     pub capacity_m: f64,
@@ -65,34 +65,34 @@ pub struct HistorySide {
     pub capacity_over_fc_m: f64,
     /// Ultimate displacement, in metres, which no record may exceed.
     pub d0_m: f64,
-    /// How many records exceed it, as it is and divided by FC.
+    /// The number of records that exceed it, without and with division by FC.
     pub exceeded: [usize; 2],
-    /// Whether it passes, with capacities as they are and divided by FC.
+    /// Whether the side passes, with capacities not divided and divided by FC.
     pub passes: [bool; 2],
 }
 
 /// The histories of a limit state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histories {
-    /// Record by record.
+    /// The results of each record.
     pub records: Vec<RecordPeaks>,
-    /// To each side.
+    /// The results to each side.
     pub sides: Vec<HistorySide>,
-    /// Least and largest ratio of the mean spectrum of the records, at 5 %, to that which is demanded; `None` where the latter is
-    /// not known at these periods.
+    /// Least and largest ratio of the mean 5 % spectrum of the records to the demanded one; `None` if the latter is
+    /// unknown at these periods.
     pub spectrum_ratios: Option<[f64; 2]>,
-    /// The periods between which they are compared, in seconds.
+    /// The shortest and the longest period of the comparison, in seconds.
     pub periods_s: [f64; 2],
 }
 
 impl Histories {
-    /// Whether it passes to all sides, with capacities as they are and divided by FC.
+    /// Whether all sides pass, with capacities not divided and divided by FC.
     #[must_use]
     pub fn passes(&self) -> [bool; 2] {
         [0, 1].map(|divided| self.sides.iter().all(|side| side.passes[divided]))
     }
 
-    /// Whether the mean of the peaks counts, and not the largest.
+    /// Whether the mean of the peaks counts, instead of the largest.
     #[must_use]
     pub fn is_mean(&self) -> bool {
         self.records.len() >= FOR_THE_MEAN
@@ -106,7 +106,7 @@ impl Histories {
     }
 }
 
-/// The histories of a limit state that has records; `None` without any.
+/// The histories of a limit state, if it has records.
 pub(super) fn histories(
     scenario: &Scenario,
     check: &Check,
@@ -127,7 +127,7 @@ pub(super) fn histories(
         .map(|mechanism| Ok((mechanism, mechanism.way.as_ref().map_err(String::clone)?)))
         .collect();
     let ways = ways.map_err(failed)?;
-    // Right and left, as sides are: histories sway to both.
+    // Right and left, the order of the sides: histories sway to both.
     let participating_kg = [0, 1].map(|side: usize| {
         let mechanism = ways.get(side).map(|way| way.0);
         mechanism.map_or(f64::INFINITY, |one| one.participation.participating_mass_kg)
@@ -238,7 +238,7 @@ fn peaks(
     participating_kg: [f64; 2],
 ) -> Result<[Peak; 2], SimulationError> {
     let history = model.history(ground, request)?;
-    // The chain of mechanisms is that of the latest uplift's side.
+    // The chain of mechanisms is the one that begins with the side of the latest uplift.
     let mut first = Sway::Right;
     let links: Vec<Option<(Sway, usize)>> = history
         .events
@@ -278,7 +278,7 @@ fn peaks(
     Ok(peaks)
 }
 
-/// Least and largest ratio of the mean spectrum of records, at 5 %, to another.
+/// Least and largest ratio of the mean 5 % spectrum of records to another spectrum.
 fn spectrum_ratios(
     records: &[Vec<(f64, f64)>],
     spectrum: &Spectrum,

@@ -1,4 +1,4 @@
-//! The mechanism to a side as a chain of rigid bodies: what starts it, its masses, and its capacity curve where it has one.
+//! The mechanism to one side as a chain of rigid bodies: its onset, its masses, and its capacity curve if it has one.
 
 use nalgebra::Vector2;
 
@@ -20,7 +20,7 @@ use crate::mechanics::virtual_work::{
 use crate::scenario::Structure;
 use crate::studies::capacity;
 
-/// A hinge and where it is.
+/// A hinge with its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedHinge {
     /// The hinge.
@@ -29,36 +29,36 @@ pub struct PlacedHinge {
     pub at_m: Vector2<f64>,
 }
 
-/// The mechanism that starts to a side.
+/// The mechanism that starts to one side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
-    /// To which side.
+    /// The side.
     pub sway: Sway,
     /// Its hinges from left to right.
     pub hinges: Vec<PlacedHinge>,
-    /// Its rigid bodies from left to right; their common centre is displaced by one.
+    /// Its rigid bodies from left to right; the virtual displacement of their common centre is one.
     pub bodies: Vec<MovingBody>,
-    /// The body that each block of a row belongs to, where it has no curve.
+    /// The body to which each block of a row belongs; used if there is no curve.
     pub body_of_block: Vec<Option<usize>>,
     /// Load multiplier [C8.7.1.1].
     pub alpha0: f64,
-    /// Masses that take part [C8.7.1.5].
+    /// Participating masses [C8.7.1.5].
     pub participation: Participation,
-    /// Its way to the unstable equilibrium, or why that is not known.
+    /// Its motion up to the unstable equilibrium, or why that is unknown.
     pub way: Result<Way, String>,
 }
 
-/// A mechanism on its way.
+/// The motion of a mechanism up to its unstable equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// The control point is the common centre of its bodies.
+    /// With the common centre of its bodies as control point.
     pub centre: Capacity,
-    /// The control point is the crown; `None` where that does not move to that side.
+    /// With the crown as control point; `None` if the crown does not move to that side.
     pub crown: Option<Capacity>,
 }
 
 impl Way {
-    /// The largest friction coefficient that it needs up to a part of the ultimate displacement.
+    /// The largest friction coefficient needed up to a fraction of the ultimate displacement.
     #[must_use]
     pub fn friction_up_to(&self, part: f64) -> f64 {
         let end_m = part * self.centre.end().oscillator_displacement_m;
@@ -89,7 +89,7 @@ impl Mechanism {
         }
     }
 
-    /// That of a model that moves as one mechanism, to a side.
+    /// The mechanism, to one side, of a model that moves as one mechanism.
     fn of_model(
         structure: &Structure,
         model: &dyn MechanismModel,
@@ -134,7 +134,7 @@ impl Mechanism {
         Some(Self::new(sway, hinges, bodies, Vec::new(), way))
     }
 
-    /// That of a row by limit analysis, at rest.
+    /// The mechanism of a row at rest, from limit analysis.
     fn of_onset(row: &Row, sway: Sway, onset: &RowOnset, why_no_way: &str) -> Self {
         let opens = |joint: usize| onset.openings.iter().any(|open| open.joint == joint);
         let fastest = |block: usize| {
@@ -150,7 +150,7 @@ impl Mechanism {
             if opens(block) {
                 current = None;
             }
-            // What no joint parts from the supports stands still.
+            // A block that no open joint separates from the supports stands still.
             if fastest(block) <= 1e-7 * most {
                 current = None;
                 continue;
@@ -191,8 +191,8 @@ impl Mechanism {
     }
 }
 
-/// The push at which the joints of a row slide to a side, by the associated bound, if they do before any of them opens; zero
-/// where they do under its weight.
+/// The acceleration at which the joints of a row slide to one side, by the associated bound, if they slide before any of them
+/// opens; zero if they slide under the weight of the row.
 fn slides_at_g(row: &Row, sway: Sway) -> Option<f64> {
     match friction::onset(row, FRICTION, sway) {
         Ok(Some(onset)) => onset.sliding_governs().then_some(onset.acceleration_g),
@@ -204,7 +204,7 @@ fn slides_at_g(row: &Row, sway: Sway) -> Option<f64> {
 /// The mechanisms of a structure to these sides.
 ///
 /// # Errors
-/// When it does not stand, no push moves it to a side, or, where it has no curve, joints slide first.
+/// When the structure does not stand, no acceleration moves it to a side, or, if it has no curve, joints slide first.
 pub(super) fn mechanisms(
     structure: &Structure,
     sides: &[Sway],

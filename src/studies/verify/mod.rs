@@ -1,9 +1,9 @@
 //! A check of local mechanisms by the Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018.
 //!
-//! The mechanism that starts to a side is a chain of rigid bodies ([`Mechanism`]): its load multiplier, participating mass and
-//! capacity curve are compared with a spectrum ([`Spectrum`]) at each limit state. This study tells itself: [`to_json`] has every
-//! number, [`words()`] the result, and [`page()`] what another engineer needs to redo it by hand. Where the text of the Circolare
-//! leaves room, what is done is among the [decisions](notes) that the page prints.
+//! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and
+//! capacity curve are compared with a spectrum ([`Spectrum`]) at each limit state. This study has its own reports: [`to_json`] has
+//! every number, [`words()`] the result, and [`page()`] everything that another engineer needs to redo the check by hand. Where the
+//! text of the Circolare leaves a choice, the page prints the [decision](notes) that was taken.
 
 pub mod histories;
 mod mechanism;
@@ -33,16 +33,16 @@ pub use words::words;
 /// Why a scenario cannot be checked.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoCheck {
-    /// There is nothing to compare with.
+    /// There is no demand to compare with.
     #[error(
         "the scenario has no [demand]: give it a table, such as\n\n[demand]\nsoil = \"B\"\ntopography = \"T1\"\n\n\
          [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35"
     )]
     NoDemand,
-    /// There is no mechanism to a side.
+    /// There is no mechanism to one side.
     #[error("there is no mechanism to check: {0}")]
     NoMechanism(String),
-    /// Sliding has a smaller multiplier than the mechanism without it.
+    /// Sliding has a smaller multiplier than the mechanism without sliding.
     #[error(
         "no check is possible to the {}: with a friction coefficient of {} joints slide at {at_g:.4} g at most (associated \
          bound), before a mechanism without sliding forms at {alpha0:.4} g, and the least multiplier counts. Check the other \
@@ -50,14 +50,14 @@ pub enum NoCheck {
         .sway.name(), notes::FRICTION
     )]
     Slides {
-        /// To which side.
+        /// The side.
         sway: Sway,
-        /// The push at which joints slide, in g.
+        /// The acceleration at which joints slide, in g.
         at_g: f64,
         /// Load multiplier of the mechanism without sliding.
         alpha0: f64,
     },
-    /// Without a curve there is only the simplified check.
+    /// Without a capacity curve only the simplified check is possible.
     #[error(
         "no check is possible: {0}. Without a capacity curve there are the damage limit state and the simplified check of SLV \
          with q (C8.7.1.2.1.7), from the parameters of NTC 2018: give [demand.sld] and [demand.slv]"
@@ -66,34 +66,34 @@ pub enum NoCheck {
     /// Histories cannot be computed.
     #[error("the histories of {}_records are not possible: {why}", .state.name())]
     Histories {
-        /// Of which state.
+        /// The limit state.
         state: LimitState,
-        /// Why.
+        /// The reason.
         why: String,
     },
     /// A spectrum of points ends too early.
     #[error("[demand.{}] {beyond}", .state.name())]
     Beyond {
-        /// Of which state.
+        /// The limit state.
         state: LimitState,
-        /// Where it is needed.
+        /// The period at which it is needed.
         beyond: Beyond,
     },
 }
 
-/// The spectrum where the mechanism stands.
+/// The spectrum at the place of the mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
-    /// Of NTC 2018, on the ground.
+    /// By NTC 2018, on the ground.
     Ground(GroundSpectrum),
     /// The same at a height in a building.
     Floor(GroundSpectrum, FloorSpectrum),
-    /// By points.
+    /// Given by points.
     Points(PointDemand),
 }
 
 impl Spectrum {
-    /// The one of a limit state; `None` if that is not asked for.
+    /// The spectrum of a limit state; `None` if the demand does not include that state.
     fn of(demand: &Demand, state: LimitState) -> Option<Self> {
         let code = match demand {
             Demand::Points(points) => return points.get(state).cloned().map(Self::Points),
@@ -113,7 +113,7 @@ impl Spectrum {
         })
     }
 
-    /// That of the ground by the code.
+    /// The spectrum of the code on the ground.
     #[must_use]
     pub const fn ground(&self) -> Option<&GroundSpectrum> {
         match self {
@@ -122,7 +122,7 @@ impl Spectrum {
         }
     }
 
-    /// Acceleration of the hazard `a_g`; of points, the peak, if they begin at the period zero. In g.
+    /// Acceleration of the hazard, `a_g`; for points, their peak, if they begin at period zero. In g.
     #[must_use]
     pub fn ag_g(&self) -> Option<f64> {
         match self {
@@ -131,10 +131,10 @@ impl Spectrum {
         }
     }
 
-    /// Peak acceleration of the structure that carries the mechanism, in g.
+    /// Peak acceleration of the ground, or of the floor that carries the mechanism, in g.
     ///
     /// # Errors
-    /// When it is not among the points.
+    /// When the points do not include it.
     pub fn peak_g(&self) -> Result<f64, Beyond> {
         match self {
             Self::Ground(ground) => Ok(ground.peak_g()),
@@ -155,7 +155,7 @@ impl Spectrum {
         }
     }
 
-    /// Displacement that is demanded of what has softened to a period, in metres; of points, from the period `from_s` on.
+    /// Displacement demand on a mechanism whose period has lengthened to `period_s`, in metres; for points, the largest from the period `from_s` on.
     ///
     /// # Errors
     /// When a period is beyond the points.
@@ -183,12 +183,12 @@ impl Spectrum {
     }
 }
 
-/// What is borne over what is demanded.
+/// The ratio of capacity to demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
-    /// The ground acceleration, as `a_g`, that is borne, in g; `None` where a spectrum of points has no peak.
+    /// The ground acceleration that the structure can bear, as `a_g`, in g; `None` if a spectrum of points has no peak.
     pub ag_capacity_g: Option<f64>,
-    /// That which is demanded, in g.
+    /// The ground acceleration demanded, in g.
     pub ag_g: Option<f64>,
     /// The first over the second.
     pub zeta_e: f64,
@@ -203,84 +203,84 @@ impl Margin {
         }
     }
 
-    /// Whether as much is borne as is demanded.
+    /// Whether the capacity reaches the demand.
     #[must_use]
     pub fn passes(&self) -> bool {
         self.zeta_e >= 1.0
     }
 }
 
-/// The beginning of the motion (SLD).
+/// The check of the onset of motion (SLD).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Activation {
-    /// Spectral acceleration at which it starts, over FC, in g.
+    /// Spectral acceleration at which motion starts, divided by FC, in g.
     pub capacity_g: f64,
-    /// That which is demanded, in g.
+    /// Spectral acceleration demanded, in g.
     pub demand_g: f64,
-    /// One over the other.
+    /// The ratio of the two.
     pub margin: Margin,
 }
 
 /// The simplified check of SLV, by the behaviour factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simplified {
-    /// Activation that it is a multiple of, as `a_g`, in g.
+    /// The activation acceleration that is multiplied, as `a_g`, in g.
     pub activation_ag_g: f64,
     /// The behaviour factor.
     pub behaviour_factor: f64,
-    /// What is borne.
+    /// The result.
     pub margin: Margin,
 }
 
 /// The check by displacements (SLV, SLC).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ByDisplacement {
-    /// Part of the ultimate displacement that the state is at, in metres.
+    /// The fraction of the ultimate displacement that belongs to the state, in metres.
     pub reached_m: f64,
-    /// The same divided: displacement of the oscillator that may be reached, in metres.
+    /// The same after division: displacement of the oscillator that may be reached, in metres.
     pub capacity_m: f64,
-    /// Acceleration there, divided, in g.
+    /// Acceleration at that displacement, after division, in g.
     pub acceleration_g: f64,
-    /// Period there, in seconds.
+    /// Period at that displacement, in seconds.
     pub period_s: f64,
     /// Spectral acceleration at that period, in g.
     pub demand_g: f64,
-    /// Displacement that is demanded, in metres.
+    /// Displacement demand, in metres.
     pub demand_m: f64,
-    /// What it is at least, in metres, beyond the resonance with a building.
+    /// Lower bound of the demand, in metres, at periods beyond resonance with a building.
     pub resonance_m: Option<f64>,
-    /// One over the other, and what counts of it: if it starts later than that, the activation.
+    /// The ratio of displacement capacity to demand.
     pub displacement: Margin,
-    /// The activation, as `a_g` in g, where that is larger.
+    /// The activation acceleration, as `a_g` in g, if it is larger.
     pub activation_ag_g: Option<f64>,
-    /// What is borne.
+    /// The result: the ratio of displacements, or the activation if motion starts only later.
     pub margin: Margin,
-    /// The `a_g` that is borne where the shape of the spectrum follows it, in g; `None` if it is not on the ground, or beyond
-    /// the range of the code.
+    /// The capacity `a_g` if the shape of the spectrum varies with `a_g`, in g; `None` if the mechanism is not on the ground, or
+    /// beyond the range of the code.
     pub ag_following_g: Option<f64>,
-    /// `zeta_E` where the control point is the crown; `None` where that does not move.
+    /// `zeta_E` with the crown as control point; `None` if the crown does not move.
     pub zeta_e_crown: Option<f64>,
 }
 
-/// The checks of a limit state to a side.
+/// The checks of a limit state to one side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SideCheck {
     /// The side.
     pub sway: Sway,
-    /// Of SLD.
+    /// The onset of motion, for SLD.
     pub activation: Option<Activation>,
-    /// Of SLV.
+    /// The simplified check, for SLV.
     pub simplified: Option<Simplified>,
-    /// Of SLV and SLC.
+    /// The check by displacements, for SLV and SLC.
     pub displacement: Option<ByDisplacement>,
 }
 
 named! {
-    /// How a limit state is checked.
+    /// The method by which a limit state is checked.
     pub enum Method {
-        /// The motion does not begin (C8.7.1.2.1.5).
+        /// The motion must not begin (C8.7.1.2.1.5).
         Activation = "activation",
-        /// A multiple of that (C8.7.1.2.1.7).
+        /// A multiple of the activation acceleration (C8.7.1.2.1.7).
         Simplified = "simplified",
         /// By displacements (C8.7.1.2.1.8).
         Displacement = "displacement",
@@ -288,7 +288,7 @@ named! {
 }
 
 impl SideCheck {
-    /// The check that counts: by displacements, if there is a curve.
+    /// The check that governs: by displacements, if there is a curve.
     #[must_use]
     pub fn governing(&self) -> Option<(Method, Margin)> {
         let displacement = self
@@ -300,23 +300,23 @@ impl SideCheck {
     }
 }
 
-/// A limit state.
+/// The check of a limit state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateCheck {
-    /// Which.
+    /// The limit state.
     pub state: LimitState,
-    /// What is demanded.
+    /// The demand.
     pub spectrum: Spectrum,
-    /// What is allowed; `None` of SLD.
+    /// The rule of the limit state; `None` for SLD.
     pub rule: Option<StateRule>,
-    /// To each side that is checked.
+    /// The checks to each side.
     pub sides: Vec<SideCheck>,
-    /// By histories, where there are records.
+    /// The check by histories, if there are records.
     pub histories: Option<Histories>,
 }
 
 impl StateCheck {
-    /// The side that counts, how it is checked and what comes of it; `None` if the state cannot be checked.
+    /// The governing side, its method and its result; `None` if the state cannot be checked.
     #[must_use]
     pub fn governing(&self) -> Option<(Sway, Method, Margin)> {
         let sides = self.sides.iter();
@@ -334,17 +334,17 @@ impl StateCheck {
 /// The check of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// How it is checked.
+    /// The options of the check.
     pub settings: Verify,
-    /// What is demanded.
+    /// The demand.
     pub demand: Demand,
     /// Gravity, in m/s2.
     pub gravity_m_s2: f64,
-    /// Period of the elastic vibration before it moves, in seconds; `None`: held by walls all along.
+    /// Period of the elastic vibration before motion, in seconds; `None`: walls hold the structure all along.
     pub t0_s: Option<f64>,
-    /// The mechanism to each side that is checked.
+    /// The mechanism to each side.
     pub mechanisms: Vec<Mechanism>,
-    /// The limit states that are asked for.
+    /// The limit states of the demand.
     pub states: Vec<StateCheck>,
 }
 
@@ -352,7 +352,7 @@ impl Check {
     /// Checks a scenario.
     ///
     /// # Errors
-    /// When there is no demand, no mechanism, no check for one, or a spectrum of points ends too early.
+    /// When there is no demand, no mechanism or no possible check, or a spectrum of points ends too early.
     pub fn new(scenario: &Scenario) -> Result<Self, NoCheck> {
         let demand = scenario.demand().cloned().ok_or(NoCheck::NoDemand)?;
         let settings = scenario.verify().cloned().unwrap_or_default();
@@ -393,13 +393,13 @@ impl Check {
         Ok(check)
     }
 
-    /// Whether spectra are those of NTC 2018, so that clauses of the Circolare are named.
+    /// Whether spectra are those of NTC 2018; only then are clauses of the Circolare cited.
     #[must_use]
     pub const fn by_the_code(&self) -> bool {
         matches!(self.demand, Demand::Code(_))
     }
 
-    /// The least `zeta_E` of the states that are asked for.
+    /// The least `zeta_E` of all limit states.
     #[must_use]
     pub fn zeta_e(&self) -> f64 {
         let states = self.states.iter().filter_map(StateCheck::governing);
@@ -408,14 +408,14 @@ impl Check {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The largest part of the ultimate displacement that any of the states allows.
+    /// The largest fraction of the ultimate displacement that any limit state allows.
     #[must_use]
     pub fn furthest_part(&self) -> f64 {
         let rules = self.states.iter().filter_map(|one| one.rule);
         rules.map(|rule| rule.part_of_d0).fold(0.0, f64::max)
     }
 
-    /// The mechanism to a side.
+    /// The mechanism to one side.
     #[must_use]
     pub fn mechanism(&self, sway: Sway) -> Option<&Mechanism> {
         self.mechanisms.iter().find(|one| one.sway == sway)
@@ -466,7 +466,7 @@ impl Check {
         })
     }
 
-    /// C8.7.1.2.1.5: held by walls, [C8.7.1.8]; free to vibrate, [C8.7.1.9].
+    /// The check of C8.7.1.2.1.5: [C8.7.1.8] if walls hold the structure, [C8.7.1.9] if it is free to vibrate.
     fn activation(&self, mechanism: &Mechanism, spectrum: &Spectrum) -> Result<Activation, Beyond> {
         let capacity_g = self.activation_g(mechanism);
         let demand_g = match self.t0_s {
@@ -480,7 +480,7 @@ impl Check {
         })
     }
 
-    /// The activation to a side as it was found with the spectrum of SLD, as `a_g` in g; `None` without that state.
+    /// The activation to one side from the spectrum of SLD, as `a_g` in g; `None` without that state.
     fn activation_ag_g(&self, sway: Sway) -> Option<f64> {
         let sld = self
             .states
@@ -490,7 +490,7 @@ impl Check {
         side.activation?.margin.ag_capacity_g
     }
 
-    /// C8.7.1.2.1.7, for SLV.
+    /// The check of C8.7.1.2.1.7, for SLV.
     fn simplified(&self, state: LimitState, sway: Sway, spectrum: &Spectrum) -> Option<Simplified> {
         if state != LimitState::Slv || !self.by_the_code() {
             return None;
@@ -505,7 +505,7 @@ impl Check {
         })
     }
 
-    /// C8.7.1.2.1.8.
+    /// The check of C8.7.1.2.1.8.
     fn by_displacement(
         &self,
         mechanism: &Mechanism,
@@ -559,8 +559,8 @@ impl Check {
         })
     }
 
-    /// Displacement that may be reached on a curve, in metres, the divided acceleration there, in g, the period, in s, and the
-    /// displacement that is demanded, in metres.
+    /// The displacement that may be reached on a curve, in metres; the divided acceleration there, in g; the period, in s; and the
+    /// displacement demand, in metres.
     fn reached(
         &self,
         curve: &Capacity,
@@ -581,8 +581,8 @@ impl Check {
         Ok((capacity_m, acceleration_g, period_s, demand_m))
     }
 
-    /// The divided acceleration of the oscillator at a displacement, in g: on the elastic branch at first, if it is free to
-    /// vibrate [C8.7.1.6].
+    /// The divided acceleration of the oscillator at a displacement, in g. If the structure is free to vibrate, the elastic branch comes
+    /// first [C8.7.1.6].
     fn held_g(&self, curve: &Capacity, displacement_m: f64, divide_acceleration: f64) -> f64 {
         let part = displacement_m / curve.end().oscillator_displacement_m;
         let rigid_g = curve.oscillator_acceleration_g(part) / divide_acceleration;
@@ -596,7 +596,7 @@ impl Check {
         Some(displacement_m / (circular * circular * self.gravity_m_s2))
     }
 
-    /// Where the elastic branch meets the divided curve, in metres and g; `None` if it is held by walls.
+    /// Where the elastic branch meets the divided curve, in metres and g; `None` if walls hold the structure.
     #[must_use]
     pub fn yielding(&self, way: &Way) -> Option<(f64, f64)> {
         let divided = self.settings.confidence_factor;
@@ -611,7 +611,7 @@ impl Check {
     }
 }
 
-/// The least `a_g`, in g, at which the displacement that is demanded reaches a capacity, with `S_S` and `T_D` that follow it;
+/// The least `a_g`, in g, at which the displacement demand reaches a capacity, while `S_S` and `T_D` vary with `a_g`;
 /// `None` beyond the range of the code.
 fn following_g(
     ground: &GroundSpectrum,
@@ -629,7 +629,7 @@ fn following_g(
         let demand_m = spectrum.largest_displacement_m(period_s, damping_percent, gravity_m_s2);
         Some(demand_m >= capacity_m)
     };
-    // On soil D the demand falls for a while as a_g rises: the first time counts.
+    // On soil D the demand falls for a while as a_g rises; the first crossing counts.
     let largest_g = (ground.t_e_s - 1.6) / 4.0;
     let steps = 400;
     let at = |step: i32| largest_g * f64::from(step) / f64::from(steps);

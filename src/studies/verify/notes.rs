@@ -1,13 +1,13 @@
-//! What a check decides, assumes and leaves out, in the words of its page.
+//! The decisions and assumptions of a check, and what it leaves out, in the words of its page.
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{Check, Spectrum};
 use crate::scenario::{CONFIDENCE_FACTOR, Scenario, Sides};
 
-/// Friction coefficient that the Circolare names for walls (C8.7.1.2.1.2).
+/// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
 pub const FRICTION: f64 = 0.577;
 
-/// Where the text leaves room, what this check does; with a name for each.
+/// The decisions where the text leaves a choice, each with its name.
 #[must_use]
 pub fn decisions(check: &Check) -> Vec<(&'static str, String)> {
     let settings = &check.settings;
@@ -132,7 +132,7 @@ fn of_histories(check: &Check) -> String {
     )
 }
 
-/// What is assumed.
+/// The assumptions.
 #[must_use]
 pub fn assumptions(check: &Check) -> Vec<String> {
     let mut lines = vec![
@@ -156,7 +156,7 @@ pub fn assumptions(check: &Check) -> Vec<String> {
     lines
 }
 
-/// Where an assumption does not hold.
+/// The warnings where an assumption does not hold.
 #[must_use]
 pub fn warnings(check: &Check) -> Vec<String> {
     let slides = check.mechanisms.iter().filter_map(|one| {
@@ -195,7 +195,7 @@ pub fn warnings(check: &Check) -> Vec<String> {
     warnings
 }
 
-/// What is left out.
+/// What the check does not cover.
 #[must_use]
 pub fn not_covered(scenario: &Scenario, check: &Check) -> Vec<String> {
     let vertical = match (check.by_the_code(), scenario.structure().thrusts()) {

@@ -1,6 +1,6 @@
-//! The check on one page, which prints on A4: everything that another engineer needs to redo it by hand.
+//! The check on one page that prints on A4: everything that another engineer needs to redo it by hand.
 //!
-//! Every number of it is one of [`super::to_json`]'s, rounded: it stands in an element `data` with its full value.
+//! Every number on it is a rounded number of [`super::to_json`], in an element `data` that holds the full value.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -39,7 +39,7 @@ pub fn tell(scenario: &Scenario, check: &Check) -> Result<Results, OutputError> 
     })
 }
 
-/// The page of a check of a scenario, made on a date.
+/// The page of a check of a scenario, with the date of the check.
 #[must_use]
 pub fn page(scenario: &Scenario, check: &Check, date: &str) -> String {
     let title = scenario.title().unwrap_or("Check of local mechanisms");
@@ -108,7 +108,7 @@ fn date_of(mut days: u64) -> String {
     format!("{year}-{month:02}-{:02}", days + 1)
 }
 
-/// A number with so many decimals, and its full value.
+/// A number with this many decimals, and its full value.
 fn n(value: f64, decimals: usize) -> String {
     let mut text = format!("{value:.decimals$}");
     if text.parse() == Ok(0.0) {
@@ -118,12 +118,12 @@ fn n(value: f64, decimals: usize) -> String {
     format!("<data value=\"{:?}\">{text}</data>", value + 0.0)
 }
 
-/// The same where there is one.
+/// The same for a number that may be missing.
 fn maybe(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "\u{2013}".to_owned(), |value| n(value, decimals))
 }
 
-/// Words with their symbols as formulas have them: `a_g,SLD` with an index, `alpha` as a letter.
+/// Words with symbols set as in formulas: `a_g,SLD` gets an index, `alpha` becomes a letter.
 fn typeset(text: &str) -> String {
     let mut words = escaped(text);
     for (name, letter) in [("alpha_", "\u{3b1}_"), ("xi\u{b2}", "\u{3be}\u{b2}")] {
@@ -133,7 +133,7 @@ fn typeset(text: &str) -> String {
     let mut rest = words.as_str();
     while let Some((before, after)) = rest.split_once('_') {
         set += before;
-        // Only a letter that stands alone has an index.
+        // Only a single letter has an index.
         let mut letters = before.chars().rev();
         let letter = letters.next().is_some_and(char::is_alphabetic);
         let alone = letter && !letters.next().is_some_and(char::is_alphanumeric);
@@ -180,7 +180,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The clause that a formula is of, where clauses are named.
+    /// The clause of a formula, if clauses are cited.
     fn clause(&self, clause: &str) -> String {
         if self.check.by_the_code() {
             format!(" <span class=\"clause\">[{clause}]</span>")
@@ -189,7 +189,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Whether what holds to the right holds, seen in a mirror, to the left.
+    /// Whether the left side is the mirror image of the right side.
     fn is_symmetric(&self) -> bool {
         let [right, left] = &self.check.mechanisms[..] else {
             return false;
@@ -204,7 +204,7 @@ impl Writer<'_> {
             })
     }
 
-    /// What is to be told of each side; of a symmetric structure, of the right.
+    /// The reports on each side; for a symmetric structure, on the right side only.
     fn sides(&self, tell: fn(&Self, &Mechanism, Figure) -> String) -> String {
         let one = self.is_symmetric() || self.check.mechanisms.len() == 1;
         let figure = if one { "78mm" } else { "90mm" };
@@ -749,7 +749,7 @@ impl Writer<'_> {
         text
     }
 
-    /// The displacement that is demanded, with the formula of its spectrum.
+    /// The displacement demand, with the formula of its spectrum.
     fn demanded(&self, state: &StateCheck, one: &ByDisplacement, rule: &StateRule) -> String {
         let damping = rule.damping_percent;
         match &state.spectrum {
@@ -780,7 +780,7 @@ impl Writer<'_> {
 
     // Histories.
 
-    /// Record by record, where there are histories.
+    /// The results of each record, if there are histories.
     fn histories(&self) -> String {
         let mut text = String::new();
         for state in &self.check.states {
@@ -854,10 +854,10 @@ impl Writer<'_> {
     }
 }
 
-/// Points of a spectrum that the page shows.
+/// Largest number of points of a spectrum on the page.
 const MOST_POINTS: usize = 40;
 
-/// Methods of a side with what they compare.
+/// The methods of a side, with the values that they compare.
 fn rows_of(side: &SideCheck) -> Vec<(Method, Margin, (String, String))> {
     let mut rows = Vec::new();
     if let Some(one) = &side.activation {
@@ -878,7 +878,7 @@ fn rows_of(side: &SideCheck) -> Vec<(Method, Margin, (String, String))> {
     rows
 }
 
-/// What the histories of a side come to.
+/// The result of the histories to one side.
 fn history_side(state: LimitState, histories: &Histories, side: &HistorySide) -> String {
     let counted = if histories.is_mean() {
         "mean of the peaks"
@@ -933,7 +933,7 @@ fn parameters(state: LimitState, ground: &GroundSpectrum, gravity_m_s2: f64) -> 
     )
 }
 
-/// The branch of [3.2.2] that a period is on, with its numbers.
+/// The branch of [3.2.2] on which a period lies, with its numbers.
 fn branch(ground: &GroundSpectrum, one: &ByDisplacement, damping_percent: f64) -> String {
     let (t, eta) = (one.period_s, damping_factor(damping_percent));
     let common = format!(

@@ -1,4 +1,4 @@
-//! Pictures of the page: the mechanism, and its capacity beside what is demanded.
+//! Pictures of the page: the mechanism, and its capacity compared with the demand.
 
 use std::f64::consts::PI;
 
@@ -13,10 +13,10 @@ use crate::scenario::{LimitState, Structure};
 
 /// Colours of the bodies, one after another.
 const BODIES: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];
-/// What stands still.
+/// Colour of the parts that stand still.
 const STILL: &str = "#e9e9e9";
 
-/// The mechanism in the undeformed structure: its bodies with their centres, numbered from the left as its hinges are, and their
+/// The mechanism in the undeformed structure: its bodies with their centres, numbered from the left like its hinges, and their
 /// virtual displacements.
 pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mechanism) -> String {
     let pieces = pieces(structure, mechanism);
@@ -81,7 +81,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
     for (name, hinge) in ('A'..='Z').zip(&mechanism.hinges) {
         let at = px(hinge.at_m);
         drawing.circle(&format!("hinge {name}"), at, 3.6, red);
-        // Away from the middle of the picture, so that it stands beside the masonry.
+        // Away from the middle of the picture, so that the label is beside the masonry.
         let away = at - middle;
         let side = if away.x < 0.0 { -13.0 } else { 13.0 };
         let label = at + Vector2::new(side, if away.y < 0.0 { -3.0 } else { 15.0 });
@@ -109,8 +109,8 @@ fn pieces(structure: &Structure, mechanism: &Mechanism) -> Vec<Piece> {
     Scene::new(structure).pieces(&hinges.collect::<Vec<_>>())
 }
 
-/// Acceleration over displacement of the oscillator: its divided curve, the spectra of the states at their damping, and the lines of
-/// their periods.
+/// Acceleration against displacement of the oscillator: its divided curve, the spectra of the limit states at their damping, and the
+/// lines of their periods.
 pub(super) fn capacity(figure: Figure, check: &Check, mechanism: &Mechanism, way: &Way) -> String {
     let divided = check.settings.confidence_factor;
     let states: Vec<&StateCheck> = check

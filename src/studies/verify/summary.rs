@@ -1,4 +1,4 @@
-//! The check as JSON: every number, in full.
+//! The check as JSON: every number, unrounded.
 
 use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
@@ -17,7 +17,7 @@ use crate::scenario::Scenario;
 /// All numbers of a check of a scenario.
 ///
 /// # Errors
-/// When one is not finite, which is a defect.
+/// When a number is not finite, which is a bug in the program.
 pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError> {
     let states: Map<String, Value> = check
         .states
@@ -83,13 +83,13 @@ pub(super) fn verdict(state: &StateCheck) -> &'static str {
 
 /// Sums over the bodies of a mechanism, weights in kN.
 pub(super) struct Sums {
-    /// Of the weights.
+    /// The weights.
     pub(super) weight_kn: f64,
-    /// Of these times the horizontal virtual displacements.
+    /// The weights times the horizontal virtual displacements.
     pub(super) sway_kn: f64,
-    /// Times their squares.
+    /// The weights times their squares.
     pub(super) sway_squared_kn: f64,
-    /// Times the vertical ones.
+    /// The weights times the vertical virtual displacements.
     pub(super) rise_kn: f64,
 }
 

@@ -7,7 +7,7 @@ use super::{Check, Histories, Method, StateCheck, notes};
 use crate::mechanics::sway::Sway;
 use crate::scenario::LimitState;
 
-/// What came of each state, and to which side.
+/// The result for each limit state, with the governing side.
 #[must_use]
 pub fn words(check: &Check) -> String {
     let mut text = String::new();
@@ -63,7 +63,7 @@ fn passed(verdict: &str) -> &'static str {
     }
 }
 
-/// The clause that a method is of, or what it does.
+/// The clause of a method, or what the method does.
 pub(super) const fn of_method(method: Method) -> &'static str {
     match method {
         Method::Activation => "activation",
