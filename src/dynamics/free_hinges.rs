@@ -43,9 +43,9 @@ pub struct Settings {
     pub merged_after: usize,
     /// When to stop at the latest, in seconds.
     pub end_s: f64,
-    /// Time between samples in seconds; without it there are none. Steps end there whether or not samples are asked for.
+    /// Time between samples in seconds; if `None`, there are none. Steps end there whether or not samples are wanted.
     pub output_step_s: Option<f64>,
-    /// Coulomb's coefficient of friction at every joint; without it joints do not slip.
+    /// Coulomb's coefficient of friction at every joint; if `None`, joints do not slip.
     pub friction_coefficient: Option<f64>,
 }
 

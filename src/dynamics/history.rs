@@ -106,7 +106,8 @@ pub struct Sample {
     pub demand: Demand,
     /// Kinetic and potential energy, in J.
     pub energy_j: f64,
-    /// The same over the energy barrier of the mechanism that moves; `None` where no barrier is known.
+    /// The same over the energy barrier of the mechanism that moves, or of the first mechanism of a row of blocks; `None` where
+    /// no barrier is known.
     pub energy_ratio: Option<f64>,
     /// Rotation (anticlockwise) of the body that carries the coordinate, over its rotation at the unstable
     /// equilibrium of the mechanism that moves: below -1 or above 1 gravity overturns the structure. `None`
@@ -116,7 +117,8 @@ pub struct Sample {
     pub gaps_m: Vec<[f64; 2]>,
     /// Line of thrust: how far it lies towards the extrados from the middle of each joint, or of each section of
     /// [`Arch::thrust_sections_rad`](crate::mechanics::arch::Arch::thrust_sections_rad), over the thickness; `None`
-    /// where there is no pressure. Empty unless a [`Recorder`] wants it and the model knows it.
+    /// where there is no pressure. Empty unless a [`Recorder`] wants it and the model knows it; elastic joints
+    /// always give it.
     pub eccentricity_ratios: Vec<Option<f64>>,
     /// Offsets of the joints, in m, of the right face towards the extrados; only for a row whose joints slip.
     pub offsets_m: Vec<f64>,
@@ -188,7 +190,7 @@ pub struct Event {
     pub kind: EventKind,
     /// What the structure does from here on.
     pub state: State,
-    /// Impacts since uplift, which is the index of its mechanism; `None` at rest.
+    /// Impacts since uplift, which is the index of its mechanism; `None` at rest, and for a row of blocks.
     pub mechanism: Option<usize>,
     /// Rotations of the bodies.
     pub rotations_rad: Vec<f64>,
@@ -240,7 +242,7 @@ pub struct Impact {
     pub energy_after_j: f64,
     /// The part of the loss that friction took, in J, if joints slip.
     pub friction_j: Option<f64>,
-    /// Rotation rates of the bodies just before.
+    /// Rotation rates of the bodies just before; empty for a row of blocks.
     pub rates_before_rad_s: Vec<f64>,
     /// Rotation rates of the bodies of the mechanism after.
     pub rates_after_rad_s: Vec<f64>,
@@ -280,10 +282,11 @@ pub struct Summary {
     /// For a row of blocks, its largest potential energy over the barrier of its first mechanism, which may not be the one by
     /// which it overturns. `None` where no barrier is known, or if joints slipped so far that friction took a hundredth of it.
     pub peak_potential_over_barrier: Option<f64>,
-    /// Largest difference between the energy of the structure and its initial energy plus the work of
-    /// the ground minus the losses at impacts, over the energy barrier of the first mechanism.
+    /// Largest difference between the energy of the structure and its initial energy plus the work of the
+    /// ground minus the losses at impacts, over the energy barrier of the first mechanism; for a row of
+    /// blocks, over its weight times its size.
     pub energy_defect_ratio: f64,
-    /// The demands over all samples, if any were made; for a structure that overturns, over those before it
+    /// The demands over all samples, if any were made; for a mechanism that overturns, over those before it
     /// passes the unstable equilibrium for the last time.
     pub thrust: Option<ThrustRecord>,
     /// Work done.
@@ -352,11 +355,12 @@ pub struct RowSummary {
     pub largest_kinetic_j: f64,
     /// Largest potential energy above rest, in J, with that of elastic joints.
     pub largest_potential_j: f64,
-    /// Energy taken by impacts, in J, without what friction takes.
+    /// Energy taken by impacts, in J, without what friction takes; with elastic joints, all that damping, friction and crushing
+    /// took.
     pub energy_taken_j: f64,
     /// Error of the energy balance, over the larger of the largest kinetic energy and the barrier, where that is known.
     pub energy_error: f64,
-    /// Least normal force at a joint outside impacts, in N; infinite without any step.
+    /// Least normal force at a joint outside impacts, in N; infinite without any step, and with elastic joints.
     pub least_normal_n: f64,
     /// Largest error of closure of an arch, in m.
     pub closure_error_m: f64,
@@ -660,7 +664,7 @@ pub const MEMORY_BYTES: u64 = 4_000_000_000;
     in_words(*.needed_bytes), in_words(*.allowed_bytes)
 )]
 pub struct MemoryError {
-    /// What it needs, or needs already.
+    /// Memory that it needs in all, or needs already.
     pub needed_bytes: u64,
     /// What it may take.
     pub allowed_bytes: u64,

@@ -1,4 +1,4 @@
-//! What a motion depends on: the same motion with other values of properties that nobody knows better.
+//! What a motion depends on: the same motion with other values of properties that are not known exactly.
 
 use std::panic;
 use std::thread::{self, JoinHandle};

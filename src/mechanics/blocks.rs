@@ -257,7 +257,7 @@ pub struct Row {
     outlines_m: Vec<Vec<Vector2<f64>>>,
     /// `e x n` of every joint, with `e` the unit vector along the face and `n` the normal towards the right block.
     handedness: f64,
-    /// Whether the left and the right support go on beyond their joints.
+    /// Whether the left and the right support extend beyond their joints.
     supports_go_on: [bool; 2],
 }
 
@@ -622,7 +622,7 @@ impl Row {
         self.supports
     }
 
-    /// Whether the left and the right support go on beyond their joints.
+    /// Whether the left and the right support extend beyond their joints.
     #[must_use]
     pub const fn supports_go_on(&self) -> [bool; 2] {
         self.supports_go_on

@@ -8,10 +8,10 @@
 //!
 //! Shut joints make rigid bodies of the blocks between open joints. The impulses at open joints solve a block-tridiagonal system of
 //! 2x2 blocks, one per open joint; those at the shut joints follow by one running sum of the changes of momentum. The active set is
-//! found from the last one by exchanges of many corners at once, which nearly always succeed. What they leave is left to the dual
-//! method of Goldfarb and Idnani ("A numerically stable dual method for solving strictly convex quadratic programs", Math.
-//! Programming 27, 1983): corners that pull are released, then the corner that closes fastest is stopped. Rows that depend on
-//! others never become active, so rest, where the impulses are not unique, is no special case.
+//! found from the last one by exchanges of many corners at once, which nearly always succeed. The rest is left to the dual method
+//! of Goldfarb and Idnani ("A numerically stable dual method for solving strictly convex quadratic programs", Math. Programming 27,
+//! 1983): corners that pull are released, then the corner that closes fastest is stopped. Rows that depend on others never become
+//! active, so rest, where the impulses are not unique, is no special case.
 //!
 //! Bodies and pivots do not depend on the motion: those to the left of the first change of corners are kept from solution to
 //! solution.

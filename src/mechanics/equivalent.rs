@@ -1,14 +1,14 @@
 //! The equivalent free-standing block of a structure.
 //!
 //! A structure with one degree of freedom has the kinetic energy `M(q) q'^2 / 2`. In the coordinate
-//! `s = int sqrt(M) dq` its mass is one, and it falls through the potential `U = g int S_y dq` by
-//! `s'' = -dU/ds`. So a small disturbance of a motion near `q` grows as `exp(n t)` with
+//! `s = int sqrt(M) dq` its mass is one, and in the potential `U = g int S_y dq` it moves by `s'' = -dU/ds`.
+//! So a small disturbance of a motion near `q` grows as `exp(n t)` with
 //!
 //! `n^2 = -d2U/ds2 = -(U'' - U' M' / (2 M)) / M`,
 //!
-//! a prime being `d/dq`; no choice of the coordinate changes `n`. For Housner's block of half diagonal `R`
-//! and slenderness `alpha`, `n^2 = p^2 cos(alpha - q)` with `p^2 = 3 g / (4 R)`. The equivalent block starts
-//! at the same push, `tan(alpha) = A_L`, and has the same `n`
+//! where a prime is `d/dq`; `n` does not depend on the choice of the coordinate. For Housner's block of half
+//! diagonal `R` and slenderness `alpha`, `n^2 = p^2 cos(alpha - q)` with `p^2 = 3 g / (4 R)`. The equivalent
+//! block starts at the same push, `tan(alpha) = A_L`, and has the same `n`
 //!
 //! - at the unstable equilibrium, where `U' = 0`: `p_c^2 = -U''(q_c) / M(q_c)`, or
 //! - at rest: `p_0^2 = n^2(0) / cos(alpha)`.

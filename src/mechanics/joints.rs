@@ -17,7 +17,7 @@ use crate::mechanics::geometry::field::turned;
 use crate::mechanics::geometry::pose::{Pose, product, unit};
 use crate::mechanics::geometry::ring::Edge;
 
-/// A corner of a joint counts as shut when its gap is below this part of the thickness.
+/// A corner of a joint counts as shut when its gap is below this fraction of the thickness.
 pub const SHUT_RATIO: f64 = 1e-12;
 
 /// The line on which the faces of a joint press each other, in its present position.

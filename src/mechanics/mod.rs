@@ -4,7 +4,7 @@ pub mod blocks;
 pub mod capacity;
 pub mod chain;
 pub mod column;
-// The inside of rows of blocks, public for its tests.
+// Internals of rows of blocks, public for tests only.
 #[doc(hidden)]
 pub mod complementarity;
 #[doc(hidden)]

@@ -16,7 +16,7 @@ use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
-/// Velocities below this part of those without contact count as zero.
+/// Velocities below this fraction of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
 
 /// A joint that opens in a mechanism.

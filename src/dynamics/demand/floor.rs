@@ -11,7 +11,7 @@ use super::{damping_factor, displacement_m};
 /// Periods, over that of a mode, between which the ordinate of the mode is the largest.
 pub const PLATEAU: [f64; 2] = [0.8, 1.1];
 
-/// A mode of a building, in the state that it is in.
+/// A mode of a building, in its present state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mode {
     /// Period, in seconds.

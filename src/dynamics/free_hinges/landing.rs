@@ -8,7 +8,8 @@
 //! An impact shuts more than the corner that was aimed at. Four open corners of an arch have one degree of freedom, so all four
 //! land at one instant; in numbers, rounding of the closure leaves the others open. They belong to the impact, and so does
 //! every corner open by less than a billionth of the thickness: one projection after the other is not the projection onto all,
-//! and the difference does not fall with the step. Landings are merged by time only where impacts crowd without end.
+//! and the difference does not fall with the step. Landings are merged by time only where impacts crowd without end, or in a
+//! repetition.
 //!
 //! Pins move on arcs. How far the straight drift of two bodies would part them over the coming step is taken from their last
 //! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
@@ -615,7 +616,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Books the work of the ground and the forces of a step that was solved, and forms its pieces.
+    /// Records the work of the ground and the forces of a step that was solved, and forms its pieces.
     fn account(&mut self, step: &Step) {
         let before = self.momentum();
         let (from_s, to_s) = self.kicked(step.expected_s);

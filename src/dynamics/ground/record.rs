@@ -128,7 +128,7 @@ fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundErr
     Ok(())
 }
 
-/// Straight lines between samples, asked for from left to right.
+/// Straight lines between samples, read from left to right.
 struct Polyline<'a> {
     samples: &'a [(f64, f64)],
 }

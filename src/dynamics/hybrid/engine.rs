@@ -471,9 +471,9 @@ const HALVINGS: u32 = 20;
 /// The first instant after `start`, up to `end`, at which a guard falls below zero.
 ///
 /// Between two points the guard is taken for the cubic with their values and rates. It lies within the
-/// range of its Bernstein coefficients, and is monotone if they are; so they mostly show that it does
-/// not fire, or that it only falls. Otherwise the interval is halved. A
-/// guard that is negative at the start must rise above zero before it can fire.
+/// range of its Bernstein coefficients, and is monotone if they are; so they mostly show that it does not
+/// fire, or that it only falls. Otherwise the interval is halved. A guard that is negative at the start
+/// must rise above zero before it can fire.
 fn first_crossing(
     start: Point,
     end: Point,

@@ -169,7 +169,7 @@ where
             (self.slope)(self.task.start_s + x, &state)
         };
         *dy = slope.component_mul(&self.per_scale);
-        // A trial step may go too far; its error estimate is then not a number either, so it is rejected and
+        // A trial step may go too far; its error estimate is then NaN as well, so it is rejected and
         // shortened. If that never ends, this is the reason to report.
         self.not_finite.set(!dy.sum().is_finite());
     }

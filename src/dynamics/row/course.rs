@@ -44,7 +44,7 @@ pub(in crate::dynamics) struct Clock {
     pub shortest_step_s: f64,
     /// When to stop at the latest, in seconds.
     pub end_s: f64,
-    /// Time between samples in seconds; without it there are none. Steps end there whether or not samples are asked for.
+    /// Time between samples in seconds; if `None`, there are none. Steps end there whether or not samples are wanted.
     pub output_step_s: Option<f64>,
 }
 

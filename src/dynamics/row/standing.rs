@@ -33,7 +33,7 @@ enum FirstMechanism {
 }
 
 impl RigidRow {
-    /// Any row that stands.
+    /// A row, if it stands.
     ///
     /// # Errors
     /// When the row cannot carry its own weight.

@@ -1,8 +1,8 @@
 //! The stress that a joint bears, summed over its length.
 //!
 //! Forces are divided by the stiffness of the whole joint (N per N/m: metres), until the end. The penetration changes linearly from
-//! edge to edge,
-//! so the part that presses is an interval, found without branches, and Simpson's rule is exact for forces, moments and energies.
+//! edge to edge, so the part that presses is an interval, found without branches, and Simpson's rule is exact for forces, moments
+//! and energies.
 
 use std::f64::consts::PI;
 

@@ -166,8 +166,8 @@ const BALANCED_ON_WAY: f64 = 1e-7;
 
 impl ElasticStructure {
     /// Energy in J that it gains from rest up to where it falls by itself, when it is pushed over slowly to the right (or the left). Its
-    /// centre of gravity is led aside, everything else is in equilibrium, and the push does the work. `None` if no such path is found, or
-    /// if something slips or crushes on it.
+    /// centre of gravity is led aside, everything else is in equilibrium without slip, and the push does the work. `None` if no such path
+    /// is found, or if something crushes on it.
     ///
     /// A structure that moves to a side has to pass through all positions of its centre of gravity. Of all nearby shapes with the same
     /// position, those along the path have the least energy. So a structure with less than the energy at the top cannot pass it.

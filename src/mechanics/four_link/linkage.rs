@@ -121,7 +121,7 @@ impl Linkage {
 
     /// Solves the loop A-B-C-D for the pose at `q`, on the branch continuous with `q = 0`.
     ///
-    /// Not a number where the bars B-C and C-D do not reach each other.
+    /// NaN where the bars B-C and C-D do not reach each other.
     fn bars(&self, q_rad: f64) -> Bars {
         let (sin, cos) = q_rad.sin_cos();
         let left = complex_product(self.left.bar, Vector2::new(cos, -sin));
@@ -144,8 +144,8 @@ impl Linkage {
         }
     }
 
-    /// Rotation rates of the middle and the right body per unit `q'` (that of the left is -1): the
-    /// loop's velocities closed by cross products.
+    /// Rotation rates of the middle and the right body per unit `q'` (that of the left is -1): cross
+    /// products close the loop of velocities.
     fn rates(bars: &Bars) -> (f64, f64) {
         (
             bars.left.perp(&bars.right) * bars.per_cross,
@@ -153,8 +153,8 @@ impl Linkage {
         )
     }
 
-    /// Derivatives of the rates of the middle and the right body with respect to `q`: the loop's
-    /// accelerations, with those along the bars on the right.
+    /// Derivatives of the rates of the middle and the right body with respect to `q`: they close the loop
+    /// of accelerations, in which those along the bars are known.
     fn slopes(bars: &Bars, middle_rate: f64, right_rate: f64) -> (f64, f64) {
         let inward = bars.left + bars.middle * (middle_rate * middle_rate)
             - bars.right * (right_rate * right_rate);

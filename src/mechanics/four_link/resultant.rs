@@ -101,8 +101,8 @@ impl Extremes {
 impl ResultantLine {
     /// The line through three hinges of `mechanism` (A, B and D), under `load`.
     ///
-    /// A mechanism makes the ring statically determinate but for one number: the line passes through
-    /// C as well when the load does no work on the mechanism.
+    /// A mechanism makes the ring statically determinate except for one number: the line passes through C
+    /// as well when the load does no work on the mechanism.
     #[must_use]
     pub fn through_hinges(profile: &dyn Profile, mechanism: &FourLink, load: Field) -> Self {
         let hinges = [0, 1, 3];

@@ -420,7 +420,7 @@ impl<O: Objective> Climber<'_, O> {
         Some((&matrix + matrix.transpose()) * 0.5)
     }
 
-    /// Lets every hinge that presses against a kink pass where the slope beyond goes on upwards.
+    /// Lets every hinge that presses against a kink pass, if the slope beyond still rises in its direction.
     fn cross_kinks(&mut self, mechanism: &FourLink, ends: &[f64]) -> bool {
         let angles = mechanism.hinges_rad();
         let gradient = self.evaluate(mechanism).1;

@@ -275,7 +275,7 @@ impl ThrustLine {
 }
 
 /// The largest of `known` and the demands `at` all sections of a rigid part of the ring, over which they are
-/// smooth but for a few kinks.
+/// smooth except for a few kinks.
 fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Demand) -> Demand {
     let intervals = (SAMPLES * (end_rad - start_rad) / FRAC_PI_2)
         .ceil()

@@ -6,7 +6,7 @@ use super::Material;
 use crate::mechanics::blocks::{Block, Joint};
 use crate::mechanics::geometry::curve::Curve;
 
-/// Points that the curved side of a voussoir is drawn with.
+/// Number of points with which the curved side of a voussoir is drawn.
 const DRAWN_POINTS: u32 = 4;
 
 /// A point of an edge: the piece of it, and the part of the way along that.
