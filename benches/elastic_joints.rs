@@ -1,6 +1,6 @@
-//! How fast elastic joints are: a history alone, and histories side by side.
+//! Speed of elastic joints: a single history, and histories side by side.
 //!
-//! Run with `cargo bench --bench elastic_joints`; a step of a joint is an item.
+//! Run with `cargo bench --bench elastic_joints`; one step of one joint counts as an item.
 
 use std::f64::consts::PI;
 
@@ -37,7 +37,7 @@ fn alone(bencher: Bencher, stiffness_pa_m: f64) {
     bencher.counter(ItemsCount::new(steps)).bench(simulate);
 }
 
-/// The same under 32 pulses from 0.10 to 0.22 g: a row of a map.
+/// The same under 32 pulses from 0.10 to 0.22 g, like a row of a map.
 #[divan::bench(args = [1e10, 1e11])]
 fn side_by_side(bencher: Bencher, stiffness_pa_m: f64) {
     let model = model(stiffness_pa_m);

@@ -1,4 +1,4 @@
-//! How fast free hinges are: steps over a record, a history to rest, maps, the worst step of a long row.
+//! Speed of free hinges: steps over a record, a history to rest, maps, the worst step of a long row.
 //!
 //! Run with `cargo bench --bench free_hinges`.
 
@@ -30,14 +30,14 @@ fn arch(embrace_deg: f64, voussoirs: usize, radius_m: f64) -> Row {
     Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).expect("an arch")
 }
 
-/// A broadband record of 25 s, with half as much vertically: white noise through the filter of Kanai and Tajimi for firm ground
-/// (15.7 rad/s, damping 0.6) and that of Clough and Penzien against drift (1.57 rad/s), under an envelope. The same numbers on
+/// A broadband record of 25 s, half as strong vertically: white noise through the filter of Kanai and Tajimi for firm ground
+/// (15.7 rad/s, damping 0.6) and that of Clough and Penzien against drift (1.57 rad/s), under an envelope. It is the same on
 /// every machine.
 fn record(peak_g: f64) -> GroundMotion {
     let mut state = 1_u64;
     let mut component = |peak_g: f64| -> Vec<(f64, f64)> {
         let (ground, high_pass, damping) = (15.7, 1.57, 0.6);
-        // Displacement and velocity of either filter.
+        // Displacement and velocity of each filter.
         let (mut x, mut v, mut y, mut w) = (0.0, 0.0, 0.0, 0.0);
         let samples: Vec<(f64, f64)> = (0..2500_u32)
             .map(|i| {
@@ -69,13 +69,13 @@ fn record(peak_g: f64) -> GroundMotion {
     GroundMotion::record(&horizontal, &vertical, 0.0).expect("a record")
 }
 
-/// Mean time of a step, with fixed steps of 0.1 ms over a record of 25 s.
+/// Mean time of a step, for fixed steps of 0.1 ms over a record of 25 s.
 #[divan::bench(args = [7, 36, 144], sample_count = 3, sample_size = 1)]
 fn step_over_a_record(bencher: Bencher, voussoirs: usize) {
     steps_over_a_record(bencher, voussoirs, None);
 }
 
-/// The same where joints slip.
+/// The same with joints that slip.
 #[divan::bench(args = [7, 36, 144], sample_count = 3, sample_size = 1)]
 fn step_over_a_record_with_friction(bencher: Bencher, voussoirs: usize) {
     steps_over_a_record(bencher, voussoirs, Some(0.7));
@@ -97,7 +97,7 @@ fn steps_over_a_record(bencher: Bencher, voussoirs: usize, friction_coefficient:
         .bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, None).map(|r| r.end_s));
 }
 
-/// A pulse, and all that follows until rest.
+/// A pulse, and the whole motion until rest.
 #[divan::bench(sample_count = 3, sample_size = 1)]
 fn history_of_the_semicircle(bencher: Bencher) {
     let row = arch(180.0, 36, 5.0);
@@ -107,7 +107,7 @@ fn history_of_the_semicircle(bencher: Bencher) {
     bencher.bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, None).map(|r| r.end_s));
 }
 
-/// A map of 6 x 6 pulses as the study computes it, with its repetitions: cells a second on one core.
+/// A map of 6 x 6 pulses as the study computes it, with its repetitions: cells per second on one core.
 #[divan::bench(args = [7, 36], sample_count = 2, sample_size = 1)]
 fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
     let text = format!(
@@ -126,8 +126,8 @@ fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
     });
 }
 
-/// All four hinges of a long arch shut at once, from the active set of the motion before: the worst that a step
-/// does.
+/// All four hinges of a long arch shut at once, starting from the active set of the motion before: the worst that a
+/// step has to do.
 #[divan::bench(args = [36, 200])]
 fn full_closure(bencher: Bencher, voussoirs: usize) {
     let ring = Ring::new(0.15, PI).expect("a ring");

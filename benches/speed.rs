@@ -1,4 +1,4 @@
-//! How fast it is: the right-hand side, the chain of mechanisms of an arch, whole histories, maps of them.
+//! Speed of four links: the right-hand side, the chain of mechanisms of an arch, whole histories, maps of them.
 //!
 //! The arch is a semicircle of mean radius 5 m and thickness ratio 0.15 whose hinges may sit anywhere.
 //! Run with `cargo bench`.
@@ -55,7 +55,7 @@ fn right_hand_side(bencher: Bencher) {
     bencher.bench(|| rocking.slope(mode, 0, 0.1, divan::black_box(&state)));
 }
 
-/// From the start of a pulse to the end, rest or overturning, in the time that it takes.
+/// From the start of a pulse to the end, which is rest or overturning.
 #[divan::bench(args = [(-0.3, 0.2), (-0.6, 0.5)])]
 fn history_of_a_rectangular_pulse(bencher: Bencher, (amplitude_g, duration_s): (f64, f64)) {
     let ground = pulse(amplitude_g, duration_s);
@@ -69,7 +69,7 @@ fn history_of_a_rectangular_pulse(bencher: Bencher, (amplitude_g, duration_s): (
     });
 }
 
-/// Histories of a grid of rectangular pulses, one after another on one thread: what a study costs.
+/// Histories of a grid of rectangular pulses, one after another on one thread: the cost of a study.
 #[divan::bench(sample_count = 20, sample_size = 1)]
 fn map_of_30_by_30_pulses(bencher: Bencher) {
     let along = |part: u32| f64::from(part) / 29.0;

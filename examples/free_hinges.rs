@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         own.outcome_time_s,
         own.largest_rotation_rad()
     );
-    // What other ways to compute it do not agree in is not known.
+    // Where repetitions computed in other ways disagree, the answer is unknown.
     for other in model.repetitions() {
         let summary = other.model.simulate(&ground, &Request::default(), None)?;
         println!(

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (time_s, impact) in history.impacts().take(5) {
         println!("impact at {time_s:.4} s, r = {:.4}", impact.restitution);
     }
-    // One row a body and sample, as a caller's own plot would take them.
+    // One row per body and sample, as a caller's own plot would take them.
     let bodies = history.bodies.len();
     let rotations_rad = history.samples.rotations_rad.chunks(bodies);
     for (time_s, rotations_rad) in history.samples.time_s.iter().zip(rotations_rad).step_by(50) {

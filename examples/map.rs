@@ -31,7 +31,7 @@ amplitude_g = { from = 0.15, to = 2.4, count = 18, spacing = "logarithmic" }
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scenario = Scenario::parse(SCENARIO, "the scenario of the example")?;
     let map = OverturningMap::new(&scenario).ok_or("the scenario has no map")?;
-    // All processors; to break ends the work.
+    // Uses all processors; a break would end the work.
     let cells = Runner::default().rows(&map, |progress| {
         eprintln!("{} of {} cells", progress.done, progress.all);
         ControlFlow::Continue(())

@@ -1,4 +1,4 @@
-//! A column on a ground motion from an array of the caller's own. Run with
+//! A column on a ground motion that is given as an array. Run with
 //! `cargo run --release --example own_ground_motion`.
 
 #![allow(
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         end_s: 30.0,
         ..Request::default()
     };
-    // Samples may be taken as they come, without keeping any, and the history ended at will.
+    // Samples can be used as they come, without keeping any; the history can be ended at any time.
     let mut largest_rad = 0.0_f64;
     let mut watch = |sample: &Sample| {
         largest_rad = largest_rad.max(sample.rotations_rad[0].abs());

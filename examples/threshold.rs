@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let drums = FreeHinges::of_column(&column.with_drums(4)?)?;
     let models: [(&str, &dyn Model); 2] = [("one block", &rocking), ("four drums", &drums)];
     let ground = GroundMotion::pulse(Pulse::OneSine, 0.2 * 9.81, 0.5, 0.0)?;
-    // From the pulse itself to twenty times as much, in strides of 5 %.
+    // From the pulse itself to twenty times as strong, in strides of 5 %.
     let (factors, request) = (Factors::new(1.0, 20.0, 0.05)?, Request::default());
     let go_on = |_| ControlFlow::Continue(());
     for found in thresholds(

@@ -11,17 +11,17 @@ use archrock::studies::runner::RunnerError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 
-/// What the library refuses, in its words.
+/// A value that the library refuses, with its explanation.
 pub fn refused(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// What would not fit into memory.
+/// An allocation that would exceed the allowed memory.
 pub fn too_large(error: MemoryError) -> PyErr {
     PyMemoryError::new_err(format!("{error}, by `memory_gb`"))
 }
 
-/// What is wrong with a scenario: with places, where a person wrote its text; else the messages alone.
+/// The errors of a scenario: with their places if a person wrote the text, otherwise the messages alone.
 pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
     if placed {
         return errors.to_string();
@@ -30,7 +30,7 @@ pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
     messages.collect::<Vec<_>>().join("\n")
 }
 
-/// What the runner of studies says.
+/// An error of the runner of studies.
 pub fn not_run(error: RunnerError) -> PyErr {
     match error {
         RunnerError::Part(error) => unusable(error),
@@ -57,7 +57,7 @@ pub fn not_written(error: OutputError) -> PyErr {
     }
 }
 
-/// A defect of the library, which must not end the interpreter.
+/// A bug of the library; it must not end the interpreter.
 pub fn panicked(panic: &(dyn Any + Send)) -> PyErr {
     let words = panic
         .downcast_ref::<&str>()

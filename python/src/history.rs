@@ -1,4 +1,4 @@
-//! Histories: simulated with the interpreter's lock free, their columns moved out as arrays.
+//! Histories: simulated while the interpreter's lock is released, with columns moved out as arrays.
 
 use std::mem;
 use std::ops::ControlFlow;
@@ -25,13 +25,13 @@ use serde_json::{Value, json};
 use crate::error::{not_written, panicked, refused, too_large};
 use crate::scenario::{Ground, Scenario};
 
-/// How often a history looks for signals.
+/// Interval at which a history looks for signals.
 const TICK: Duration = Duration::from_millis(100);
 
 /// Lets Ctrl-C end a history.
 struct Signals {
     asked: Instant,
-    /// What a signal raised.
+    /// The exception that a signal raised.
     raised: Option<PyErr>,
 }
 
@@ -43,7 +43,7 @@ impl Signals {
         }
     }
 
-    /// Whether to go on.
+    /// Whether to continue.
     fn go_on(&mut self) -> ControlFlow<()> {
         if self.asked.elapsed() < TICK {
             return ControlFlow::Continue(());
@@ -75,7 +75,7 @@ impl Recorder for Watched {
     }
 }
 
-/// Collects what a page shows.
+/// Collects the data of a page.
 struct Filming {
     report: Report,
     signals: Signals,
@@ -92,7 +92,7 @@ impl Recorder for Filming {
     }
 }
 
-/// Columns of samples, by their names.
+/// Names of the columns of samples.
 const COLUMNS: [&str; 17] = [
     "time_s",
     "ground_acceleration_m_s2",
@@ -117,21 +117,21 @@ const COLUMNS: [&str; 17] = [
 #[pyclass(frozen, module = "archrock._native")]
 pub struct History {
     scenario: Arc<archrock::Scenario>,
-    /// The ground, where it is not the scenario's own.
+    /// The ground, if it is not the scenario's own.
     ground: Option<archrock::scenario::Ground>,
     model: Arc<dyn Model>,
     summary: Summary,
     events: Vec<Event>,
-    /// Number of samples, of bodies, of joints with gaps, of joints that slip, and of joints that tell what they bear.
+    /// Number of samples, of bodies, of joints with gaps, of joints that slip, and of joints with contact forces.
     counts: [usize; 5],
-    /// Displacements of the point that is watched, to the right and upwards, sample by sample.
+    /// Displacements of the observed point, to the right and upwards, for each sample.
     point_m: Mutex<Option<Vec<f64>>>,
-    /// What was not yet asked for.
+    /// The columns that were not taken yet.
     samples: Mutex<Samples>,
     arrays: [PyOnceLock<Py<PyAny>>; COLUMNS.len()],
 }
 
-/// Simulates with the interpreter's lock free. A panic is an error, and so is what a signal raises.
+/// Simulates while the interpreter's lock is released. A panic becomes an error; so does an exception that a signal raises.
 fn simulate<R: Recorder + Send>(
     py: Python<'_>,
     model: &dyn Model,
@@ -155,7 +155,7 @@ fn simulate<R: Recorder + Send>(
 }
 
 impl History {
-    /// The history of a scenario, on other ground than its own if that is given, in so much memory.
+    /// The history of a scenario, on other ground than its own if that is given, within this memory.
     pub fn of(
         py: Python<'_>,
         scenario: &Scenario,
@@ -316,11 +316,11 @@ impl History {
 
     fn whole(&self, take: impl FnOnce(&mut Samples) -> Vec<usize>) -> Vec<i64> {
         let values = take(&mut self.samples.lock().unwrap_or_else(PoisonError::into_inner));
-        // Counts of what is in memory are far below the largest of these.
+        // Counts of things in memory are far below the largest of these.
         values.into_iter().map(|one| one as i64).collect()
     }
 
-    /// The scenario, on the ground that it was simulated on.
+    /// The scenario with the ground on which it was simulated.
     fn shaken(&self) -> Arc<archrock::Scenario> {
         match &self.ground {
             Some(ground) => Arc::new(self.scenario.with_ground(Some(ground.clone()))),
@@ -329,7 +329,7 @@ impl History {
     }
 }
 
-/// Names of states, each at its code.
+/// Names of the states; the index of each is its code.
 const STATES: [&str; 4] = ["rest", "right", "left", "overturned"];
 
 fn code(state: State) -> usize {
@@ -337,7 +337,7 @@ fn code(state: State) -> usize {
     STATES.iter().position(|one| *one == name).unwrap_or(0)
 }
 
-/// A point of a structure, by its place when that is undeformed.
+/// A point of a structure, given by its undeformed position.
 fn in_structure(scene: &Scene, at_m: [f64; 2]) -> PyResult<Point> {
     scene.point(at_m).map_err(|nearest_m| {
         refused(format!(
@@ -347,7 +347,7 @@ fn in_structure(scene: &Scene, at_m: [f64; 2]) -> PyResult<Point> {
     })
 }
 
-/// Values as an array that cannot be written to. It takes them over; nothing is copied.
+/// Values as an array that cannot be written to. The array takes ownership; nothing is copied.
 fn array<'py, T: Element>(
     py: Python<'py>,
     values: Vec<T>,
@@ -392,7 +392,7 @@ fn impact(time_s: f64, impact: &Impact) -> Value {
 
 #[pymethods]
 impl History {
-    /// Names of the states, each at its code in the column `state`.
+    /// Names of the states; the index of each is its code in the column `state`.
     #[classattr]
     const STATES: [&'static str; 4] = STATES;
 
@@ -419,7 +419,7 @@ impl History {
         self.summary.outcome.name()
     }
 
-    /// To which side it overturned.
+    /// The side to which it overturned.
     fn overturning_sway(&self) -> Option<&'static str> {
         match self.summary.outcome {
             Outcome::Overturned(sway) => Some(sway.name()),
@@ -427,7 +427,7 @@ impl History {
         }
     }
 
-    /// When.
+    /// The time of the outcome.
     fn outcome_time_s(&self) -> f64 {
         self.summary.outcome_time_s
     }
@@ -448,12 +448,12 @@ impl History {
         json!(events).to_string()
     }
 
-    /// The scenario, on the ground that it was simulated on.
+    /// The scenario with the ground on which it was simulated.
     fn scenario(&self) -> Scenario {
         Scenario::new(self.shaken())
     }
 
-    /// `summary.json` of the program; with `spread`, a row of blocks is simulated again in its repetitions.
+    /// `summary.json` of the program; with `spread`, the repetitions of a row of blocks are simulated too.
     fn summary_json(&self, py: Python<'_>, spread: bool) -> PyResult<String> {
         let (scenario, model) = (self.shaken(), &*self.model);
         let repeats = spread && model.row().is_some();
@@ -470,7 +470,7 @@ impl History {
         Ok(summary.map_err(not_written)?.to_string())
     }
 
-    /// `report.html`, with these words on it. Simulates it again, with the line of thrust.
+    /// `report.html` with these words on it. Simulates the history again, with the line of thrust.
     fn report(&self, py: Python<'_>, words: &str) -> PyResult<String> {
         let scenario = self.shaken();
         let mut filming = Filming {

@@ -1,7 +1,7 @@
 //! The native part of the Python package `archrock`: the library's own types behind handles, text and arrays.
 //!
 //! It computes nothing itself. Structures, ground motions and scenarios come in as the TOML text of a scenario, so that
-//! the library's reader checks them and its words say what is wrong; what is small goes out as the JSON of the program's
+//! the library's reader checks them and explains what is wrong. Small results go out as the JSON of the program's
 //! results, tables as the program's files, and histories as arrays, which are moved out of Rust and not copied.
 //! The classes that people use are in `package/archrock`.
 
@@ -25,7 +25,7 @@ mod _native {
     #[pymodule_export]
     use crate::studies::{compute_part, merge, save, study, threshold, verify};
 
-    /// Memory that a history may take where nothing else is said, in units of 1e9 bytes.
+    /// Memory that a history may take by default, in units of 1e9 bytes.
     #[pymodule_init]
     fn constants(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("MEMORY_GB", archrock::MEMORY_BYTES as f64 / 1e9)

@@ -18,20 +18,20 @@ use tempfile::TempDir;
 use crate::error::{in_words, refused};
 use crate::history::History;
 
-/// Files of a scenario that are held in memory, by their names in it.
+/// Files of a scenario that are held in memory, by the names that the scenario uses.
 pub type Files = BTreeMap<String, Vec<u8>>;
 
-/// The text of a scenario, and what it reads its files from.
+/// The text of a scenario, and the place of its files.
 struct Text {
     source: Source,
-    /// Holds the files that came with the text, as long as it is read.
+    /// Holds the files that came with the text while it is being read.
     folder: Option<TempDir>,
-    /// Whether a person wrote the text, who can look for a line in it.
+    /// Whether a person wrote the text and can look up a line in it.
     placed: bool,
 }
 
 impl Text {
-    /// A text; `name` stands for its file. With files of its own, it reads no others.
+    /// A text; `name` stands for its file. If files come with it, it reads no others.
     fn new(text: &str, name: Option<&str>, files: &Files) -> PyResult<Self> {
         let placed = name.is_some();
         let name = name.unwrap_or("the arguments");
@@ -66,12 +66,12 @@ impl Text {
         })
     }
 
-    /// Reads it with the library's reader.
+    /// Reads the text with the library's reader.
     fn read<T>(self, read: impl FnOnce(&Source) -> Result<T, ScenarioErrors>) -> PyResult<T> {
         read(&self.source).map_err(|errors| {
             let words = in_words(&errors, self.placed);
             refused(match &self.folder {
-                // Where the files lie for a moment is nobody's business.
+                // The temporary folder of the files is of no interest.
                 Some(folder) => words.replace(&format!("{}/", folder.path().display()), ""),
                 None => words,
             })
@@ -79,11 +79,11 @@ impl Text {
     }
 }
 
-/// A scenario, every default resolved.
+/// A scenario, with every default filled in.
 #[pyclass(frozen, module = "archrock._native")]
 pub struct Scenario {
     pub inner: Arc<archrock::Scenario>,
-    /// Its model of motion, built when first asked for.
+    /// Its model of motion, built when first needed.
     model: OnceLock<Result<Arc<dyn Model>, String>>,
 }
 
@@ -108,7 +108,7 @@ impl Scenario {
         model.as_ref().map_err(refused)
     }
 
-    /// Tells of it as mechanisms, whatever the scenario chooses.
+    /// Asks `tell` about the scenario's mechanisms, even if the scenario uses another model.
     fn of_mechanisms<T: Send>(
         &self,
         py: Python<'_>,
@@ -142,7 +142,7 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
 
 #[pymethods]
 impl Scenario {
-    /// Reads the text of a scenario, with the files that it names or, without any, from the folder of `name`.
+    /// Reads the text of a scenario, with the files that it names. Without such files, they are read from the folder of `name`.
     #[new]
     #[pyo3(signature = (text, name, files, model, changes))]
     fn read(
@@ -176,7 +176,7 @@ impl Scenario {
         self.inner.to_json().to_string()
     }
 
-    /// What stands on the ground, as JSON.
+    /// The structure that stands on the ground, as JSON.
     fn structure_json(&self) -> PyResult<String> {
         serde_json::to_string(self.inner.structure()).map_err(refused)
     }
@@ -185,7 +185,7 @@ impl Scenario {
         self.inner == other.inner
     }
 
-    /// Simulates it, on other ground than its own if that is given, in so much memory, and watches a point of it.
+    /// Simulates it, on other ground than its own if that is given, within this memory, and observes one of its points.
     #[pyo3(signature = (ground, memory_bytes, point=None))]
     fn run(
         &self,
@@ -197,13 +197,13 @@ impl Scenario {
         History::of(py, self, ground, memory_bytes, point)
     }
 
-    /// Bytes that the samples of its history take at most.
+    /// Largest memory that the samples of its history take, in bytes.
     fn memory_bytes(&self, py: Python<'_>) -> PyResult<u64> {
         let shape = self.model(py)?.shape();
         Ok(shape.bytes(self.inner.request().most_samples()))
     }
 
-    /// The push that starts it to either side, as `archrock limit --format json`.
+    /// The acceleration that starts it to either side, as `archrock limit --format json`.
     fn limit_json(&self, py: Python<'_>) -> PyResult<String> {
         let gravity_m_s2 = self.inner.gravity_m_s2();
         if let Some(row) = self.inner.row().map_err(refused)? {
@@ -216,7 +216,7 @@ impl Scenario {
         Ok(json.to_string())
     }
 
-    /// The mechanisms that impacts lead through after a first sway to a side, as `archrock impact --format json`.
+    /// The mechanisms through which impacts lead after a first sway to a side, as `archrock impact --format json`.
     fn chain_json(&self, py: Python<'_>, sway: &str, count: usize) -> PyResult<String> {
         let first = Sway::ALL.iter().copied().find(|one| one.name() == sway);
         let first = first.ok_or_else(|| {
@@ -238,12 +238,12 @@ impl Scenario {
 #[pyclass(frozen, module = "archrock._native")]
 pub struct Ground {
     pub inner: archrock::scenario::Ground,
-    /// Its motion under the gravity of the latest use.
+    /// Its motion for the gravity of the latest use.
     latest: Mutex<Option<(f64, Arc<GroundMotion>)>>,
 }
 
 impl Ground {
-    /// The motion under the given gravity.
+    /// The motion for the given gravity.
     pub fn motion(&self, gravity_m_s2: f64) -> PyResult<Arc<GroundMotion>> {
         let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
         match &*latest {
@@ -257,7 +257,7 @@ impl Ground {
     }
 }
 
-/// Gravity under which a ground motion by itself is read.
+/// Gravity with which a ground motion on its own is read.
 const GRAVITY_M_S2: f64 = 9.81;
 
 /// Times in s and samples, in the unit of their file.
@@ -282,7 +282,7 @@ impl Ground {
         serde_json::to_string(&self.inner).map_err(refused)
     }
 
-    /// Unit of a record's samples; `None` of a pulse.
+    /// Unit of a record's samples; `None` for a pulse.
     fn unit(&self) -> Option<&'static str> {
         match &self.inner {
             archrock::scenario::Ground::Record(record) => Some(record.main.unit.name()),
@@ -290,7 +290,7 @@ impl Ground {
         }
     }
 
-    /// Times and samples of a record as in its file; `None` of a pulse.
+    /// Times and samples of a record as in its file; `None` for a pulse.
     fn samples<'py>(&self, py: Python<'py>) -> Option<TimesAndSamples<'py>> {
         let archrock::scenario::Ground::Record(record) = &self.inner else {
             return None;

@@ -22,7 +22,7 @@ use crate::error::{not_run, not_written, refused, unusable};
 use crate::scenario::Scenario;
 use crate::watched::watched;
 
-/// The files of results, by their names, the last one last.
+/// The files of results with their names; the seal comes last.
 type Files = Vec<(&'static str, Vec<u8>)>;
 
 /// The same for Python.
@@ -53,7 +53,7 @@ fn failed(error: StudyError) -> PyErr {
     }
 }
 
-/// All that there is to see of a scenario's study.
+/// The most complete look for a scenario's study.
 fn look(scenario: Option<&archrock::Scenario>) -> Look {
     let map = scenario.and_then(OverturningMap::new);
     Look {
@@ -62,7 +62,7 @@ fn look(scenario: Option<&archrock::Scenario>) -> Look {
     }
 }
 
-/// On so many threads, or on all processors.
+/// A runner with this many threads, or with as many as there are processors.
 fn runner(threads: Option<u16>) -> Runner {
     Runner {
         threads: threads.and_then(|count| NonZeroUsize::new(count.into())),
@@ -91,7 +91,7 @@ pub fn study<'py>(
     }
 }
 
-/// Computes a shard of a study into the file of a part, or goes on with it, and returns the path of that.
+/// Computes a shard of a study into a part file, or continues it, and returns the path of the file.
 #[pyfunction]
 pub fn compute_part(
     py: Python<'_>,
@@ -121,8 +121,8 @@ pub fn compute_part(
     }
 }
 
-/// Joins the parts of a study: its name and the files of its results. The scenario need only be given where its records
-/// are not found from here.
+/// Joins the parts of a study: returns its name and the files of its results. The scenario is needed only if its records
+/// cannot be found from here.
 #[pyfunction]
 pub fn merge<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Long work beside the interpreter: its lock is free, progress is told, and Ctrl-C ends it at once.
+//! Long work alongside the interpreter: the lock is released, progress is reported, and Ctrl-C ends the work at once.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,16 +14,16 @@ use pyo3::prelude::*;
 
 use crate::error::panicked;
 
-/// How often signals are looked for and progress is told.
+/// Interval at which signals are looked for and progress is reported.
 const TICK: Duration = Duration::from_millis(50);
-/// How long a cancelled study may take to close its files. Cases under way may take longer: they are finished behind the
-/// caller's back, and thrown away.
+/// Time that a cancelled study gets to close its files. Cases under way may take longer: they are finished in the
+/// background, and their results are discarded.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// What the work asks ten times a second: whether to go on.
+/// Receives the progress of the work ten times a second, and tells whether to continue.
 pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
-/// Does the work on a thread of its own while this one waits for signals, and calls `progress(done, all)` on this one.
+/// Does the work on a thread of its own, while this thread waits for signals and calls `progress(done, all)`.
 /// An exception of `progress`, or a signal, cancels the work.
 pub fn watched<T: Send + 'static>(
     py: Python<'_>,
