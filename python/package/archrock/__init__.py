@@ -8,9 +8,9 @@
 >>> history.rotations.shape
 (675, 3)
 
-Everything is computed by the Rust library of that name, to the same bits as by its program. Lengths are in metres,
-times in seconds, accelerations of the ground in units of gravity where names end in ``_g``; x is to the right,
-rotations are positive anticlockwise. What is not allowed is a ``ValueError`` in the library's words.
+Everything is computed by the Rust library of the same name; results are bit-identical to the program's. Lengths are in
+metres, times in seconds, and ground accelerations in units of gravity if their name ends in ``_g``. x is to the right,
+rotations are positive anticlockwise. An invalid value raises ``ValueError`` with the library's explanation.
 """
 
 from importlib.metadata import version as _version

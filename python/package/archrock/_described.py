@@ -1,4 +1,4 @@
-"""What is described by tables of a scenario, and by files that these name."""
+"""Objects that are described by tables of a scenario, and by the files that these name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Self = TypeVar("Self", bound="Described")
 class Described:
     """Tables of a scenario with the contents of the files that they name.
 
-    Such objects do not change. They are equal if they say the same, and can be pickled, with their files.
+    Such objects do not change. They are equal if their contents are, and can be pickled with their files.
     """
 
     __slots__ = ("_files", "_tables", "_text")
@@ -30,7 +30,7 @@ class Described:
 
     @property
     def tables(self) -> Tables:
-        """What it says, every default resolved, with the keys of a scenario (a copy)."""
+        """Its contents with every default filled in, with the keys of a scenario (a copy)."""
         copy: Tables = plain(self._tables)
         return copy
 
@@ -54,7 +54,7 @@ class Described:
         return described
 
     def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
-        """Reads what was described before."""
+        """Reads tables and files that were described before."""
         raise NotImplementedError
 
     def __reduce__(self) -> tuple[Any, ...]:

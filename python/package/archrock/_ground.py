@@ -1,4 +1,4 @@
-"""How the ground moves."""
+"""Ground motions."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ class Ground(Described):
 
     @property
     def kind(self) -> str:
-        """Its kind, as a scenario calls it."""
+        """Its kind, as named in a scenario."""
         return next(iter(self._tables))
 
 
 class Pulse(Ground):
-    """A ground acceleration by formula, positive to the right. Each kind has a constructor.
+    """A ground acceleration given by a formula, positive to the right. Each kind has a constructor.
 
-    Amplitudes are peak accelerations in units of gravity; ``duration_s`` is the length of the part of the pulse that
-    its kind names (see the program's documentation); it begins at ``start_s``. ``vertical_amplitude_g`` is that of a
-    vertical acceleration of the same shape, positive upwards.
+    Amplitudes are peak accelerations in units of gravity. ``duration_s`` is the length of the part of the pulse to which
+    its kind refers (see the program's documentation). The pulse begins at ``start_s``. ``vertical_amplitude_g`` is the peak
+    of a vertical acceleration of the same shape, positive upwards.
 
     >>> Pulse.half_sine(amplitude_g=0.3, duration_s=0.5)
     Pulse.half_sine(amplitude_g=0.3, vertical_amplitude_g=0.0, duration_s=0.5, start_s=0.0)
@@ -50,10 +50,10 @@ class Pulse(Ground):
     __slots__ = ()
 
     def __init__(self, kind: str, **keys: Any) -> None:
-        """The pulse of a kind with these keys of its table.
+        """The pulse of a kind, with these keys of its table.
 
         Raises:
-            ValueError: when a key or number is not allowed, in the library's words.
+            ValueError: when a key or number is not allowed, with the library's explanation.
         """
         self._read({kind: keys}, {})
 
@@ -92,12 +92,12 @@ class Pulse(Ground):
 
     @property
     def duration_s(self) -> float:
-        """Length of the part of the pulse that its kind names."""
+        """Length of the part of the pulse to which its kind refers."""
         return self._value("duration_s")
 
     @property
     def start_s(self) -> float:
-        """When it starts."""
+        """Time at which it starts."""
         return self._value("start_s")
 
     def __repr__(self) -> str:
@@ -124,7 +124,7 @@ class Pulse(Ground):
         start_s: float = 0.0,
         vertical_amplitude_g: float = 0.0,
     ) -> Pulse:
-        """``a`` for ``duration_s``, then ``-a/2`` for twice as long: no velocity is left."""
+        """``a`` for ``duration_s``, then ``-a/2`` for twice as long; the final velocity is zero."""
         return cls._of("step_pair", amplitude_g, duration_s, start_s, vertical_amplitude_g)
 
     @classmethod
@@ -267,26 +267,26 @@ class Pulse(Ground):
 
 
 class Record(Ground):
-    """A recorded ground motion: straight lines between samples, zero outside them.
+    """A recorded ground motion: straight lines between samples, zero before the first and after the last.
 
     Args:
         time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
             array.
         acceleration: accelerations in ``unit``, or whatever ``quantity`` says, shape ``(samples,)``.
-        unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``; ``"m/s"`` or ``"cm/s"`` of velocities.
-        quantity: what the samples are. Between samples of ``"velocity"`` the acceleration is constant.
-        remove_mean: whether accelerations are taken without their mean over the time of the record.
-        name: what it is called in results and messages.
+        unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``; ``"m/s"`` or ``"cm/s"`` for velocities.
+        quantity: the quantity of the samples. Between samples of ``"velocity"`` the acceleration is constant.
+        remove_mean: whether the mean over the time of the record is subtracted from the accelerations.
+        name: its name in results and messages.
         scale: factor on the accelerations; or give ``peak_g``.
-        peak_g: peak acceleration to scale to, in units of gravity.
+        peak_g: peak acceleration to which to scale, in units of gravity.
         start_s: time of the simulation at the record's time zero.
         component: where the accelerations point, ``"horizontal"`` (positive to the right) or ``"vertical"``
             (upwards).
-        vertical: a record of the vertical component beside this one, scaled on its own, on the same clock.
+        vertical: a record of the vertical component for this one, with its own scaling, on the same clock.
 
     Raises:
-        ValueError: when samples are not like that, in the library's words; the line of a sample is its number.
-        TypeError: when they are no numbers.
+        ValueError: when samples are not valid, with the library's explanation; a line number there is that of the sample.
+        TypeError: when samples are not numbers.
     """
 
     __slots__ = ()
@@ -329,7 +329,7 @@ class Record(Ground):
         table: Tables = dict(self._tables["record"])
         if "vertical" in table:
             raise ValueError("`vertical` has a vertical record itself: give one record per direction")
-        # It is on the clock of the horizontal record, and its direction is told by its place.
+        # It uses the clock of the horizontal record, and its place already tells its direction.
         table.pop("start_s", None)
         table.pop("component", None)
         name = table["file"]
@@ -349,9 +349,9 @@ class Record(Ground):
 
         Args:
             path: the file; its contents are kept.
-            vertical: a record of the vertical component beside this one.
-            keys: keys of ``[ground.record]``: of tables at least ``unit``, perhaps ``time_column`` and
-                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, where the ending does not tell it;
+            vertical: a record of the vertical component for this one.
+            keys: keys of ``[ground.record]``: for tables at least ``unit``, perhaps ``time_column`` and
+                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if the file extension does not tell it;
                 ``quantity``, ``remove_mean``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
 
         Raises:
@@ -370,7 +370,7 @@ class Record(Ground):
     def from_obspy(cls, trace: Any, *, unit: Unit, **keys: Any) -> Record:
         """The record of a trace of ObsPy, or of anything with its ``data``, ``stats.delta`` and ``id``.
 
-        Times count from the first sample. A trace does not say its unit: remove the response of the instrument first.
+        Times count from the first sample. A trace does not name its unit: remove the instrument response first.
 
         Args:
             trace: the trace.
@@ -378,7 +378,7 @@ class Record(Ground):
             keys: further arguments of :class:`Record`.
 
         Raises:
-            ValueError: as of :class:`Record`.
+            ValueError: as for :class:`Record`.
         """
         data = np.ma.filled(trace.data, np.nan)
         time = np.arange(len(data)) * float(trace.stats.delta)
@@ -386,7 +386,7 @@ class Record(Ground):
 
     @property
     def name(self) -> str:
-        """What it is called in results and messages."""
+        """Its name in results and messages."""
         name: str = self._tables["record"]["file"]
         return name
 
@@ -399,7 +399,7 @@ class Record(Ground):
 
     @property
     def quantity(self) -> str:
-        """What the samples are: ``"acceleration"`` or ``"velocity"``."""
+        """The quantity of the samples: ``"acceleration"`` or ``"velocity"``."""
         quantity: str = self._tables["record"].get("quantity", "acceleration")
         return quantity
 
@@ -418,7 +418,7 @@ class Record(Ground):
         """Accelerations in :attr:`unit`, not scaled, shape ``(samples,)``.
 
         Raises:
-            ValueError: of a record of velocities.
+            ValueError: for a record of velocities.
         """
         return self._of("acceleration")
 
@@ -427,7 +427,7 @@ class Record(Ground):
         """Velocities in :attr:`unit`, not scaled, shape ``(samples,)``.
 
         Raises:
-            ValueError: of a record of accelerations.
+            ValueError: for a record of accelerations.
         """
         return self._of("velocity")
 
@@ -442,7 +442,7 @@ class Record(Ground):
 
 
 def _csv(time: npt.ArrayLike, acceleration: npt.ArrayLike) -> bytes:
-    """A table of samples, a line each: what the library reads, with the digits of every number."""
+    """A table of samples, one per line, as the library reads it; every number keeps all its digits."""
     times, accelerations = _column("time", time), _column("acceleration", acceleration)
     if len(times) != len(accelerations):
         raise ValueError(

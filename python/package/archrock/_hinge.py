@@ -1,4 +1,4 @@
-"""Hinges, and what opens them."""
+"""Hinges, and the onset of motion that opens them."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Hinge:
-    """Where one part of a structure turns against another, or against the ground.
+    """A place where one part of a structure turns relative to another, or to the ground.
 
     Attributes:
         angle_deg: section of an arch, in degrees from the left springing.
-        edge: ``"intrados"`` or ``"extrados"``; of a joint ``None`` where both edges open.
-        toe: of a column the side of the toe, ``"left"`` or ``"right"``.
-        joint: of a row of blocks the joint, from 0 at the left springing or the base.
+        edge: ``"intrados"`` or ``"extrados"``; for a joint ``None`` if both edges open.
+        toe: for a column the side of the toe, ``"left"`` or ``"right"``.
+        joint: for a row of blocks the joint, from 0 at the left springing or the base.
     """
 
     angle_deg: float | None = None
@@ -33,7 +33,7 @@ class Hinge:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A mechanism of a structure: to which side it sways, and its hinges from left to right."""
+    """A mechanism of a structure: the side to which it sways, and its hinges from left to right."""
 
     sway: str
     hinges: tuple[Hinge, ...]
@@ -45,7 +45,7 @@ class Mechanism:
 
 @dataclass(frozen=True)
 class ChainLink:
-    """An impact in the chain of mechanisms that impacts lead through.
+    """An impact in the chain of mechanisms through which impacts lead.
 
     Attributes:
         index: number of the impact, from 1.
@@ -62,12 +62,12 @@ class ChainLink:
 
 @dataclass(frozen=True)
 class Onset:
-    """A push that starts a structure to one side.
+    """The onset of motion of a structure to one side.
 
     Attributes:
-        acceleration_g: horizontal acceleration of the ground at which it starts, in units of gravity; ``None`` if no
-            push does.
-        hinges: what opens, from left to right.
+        acceleration_g: horizontal ground acceleration at which motion starts, in units of gravity; ``None`` if no
+            acceleration starts it.
+        hinges: the hinges that open, from left to right.
     """
 
     acceleration_g: float | None
@@ -76,12 +76,12 @@ class Onset:
 
 @dataclass(frozen=True)
 class Limit:
-    """Onset of rocking by limit analysis, as ``archrock limit`` tells it.
+    """Onset of rocking by limit analysis, as from ``archrock limit``.
 
     Attributes:
-        right: the push to the right.
-        left: the push to the left.
-        details: all that ``archrock limit --format json`` says.
+        right: the onset to the right.
+        left: the onset to the left.
+        details: everything in the output of ``archrock limit --format json``.
     """
 
     right: Onset

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Impact:
-    """What an impact did.
+    """An impact.
 
     Attributes:
-        time_s: when.
+        time_s: its time.
         sway_before: sway of the mechanism that closed, ``"right"`` or ``"left"``.
         sway_after: sway of the mechanism that opened.
         restitution: kinetic energy after over that before.
@@ -39,7 +39,7 @@ class Impact:
         rates_after_rad_s: rotation rates of the bodies just after.
         closed: the hinges that closed, from left to right.
         opened: the hinges that opened, from left to right.
-        impulses_n_s: impulses ``(x, y)`` at the hinges that opened, where they are known.
+        impulses_n_s: impulses ``(x, y)`` at the hinges that opened, if they are known.
     """
 
     time_s: float
@@ -70,19 +70,19 @@ class Impact:
 
 @dataclass(frozen=True)
 class Event:
-    """An event of a history, and the state just after.
+    """An event of a history, and the state just after it.
 
     Attributes:
-        time_s: when.
+        time_s: its time.
         kind: ``"uplift"``, ``"impact"``, ``"rest"`` or ``"overturned"``.
-        state: what the structure does from here on: ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``.
-        mechanism: impacts since uplift, which is the index of its mechanism; ``None`` at rest.
+        state: the state of the structure from here on: ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``.
+        mechanism: number of impacts since uplift, which is the index of the mechanism; ``None`` at rest.
         rotations_rad: rotations of the bodies.
         rates_rad_s: rotation rates of the bodies just after.
         energy_j: kinetic and potential energy just after.
-        hinges: hinges of its mechanism from left to right, none at rest; of a row of blocks the joints that are open
+        hinges: hinges of the mechanism from left to right, none at rest; for a row of blocks the joints that are open
             from then on.
-        impact: the impact, where the event is one.
+        impact: the impact, if the event is one.
     """
 
     time_s: float
@@ -112,8 +112,8 @@ class Event:
 class History:
     """The motion of a structure: samples as arrays, events, and a summary.
 
-    Arrays are the memory of the history itself, not copies, and cannot be written to: copy what is to be changed.
-    ``samples`` is their number, ``bodies`` that of the names in :attr:`bodies`. Rotations are positive anticlockwise,
+    Arrays use the memory of the history itself, without copies, and cannot be written to: copy an array to change it. In
+    shapes, ``samples`` is the number of samples and ``bodies`` that of :attr:`bodies`. Rotations are positive anticlockwise,
     x to the right, y upwards.
     """
 
@@ -121,7 +121,7 @@ class History:
 
     def __init__(self, native: _native.History, origin: Any, folder: str | None) -> None:
         self._native: _native.History | None = native
-        # What the scenario's files are taken from.
+        # The object from which the scenario's files are taken.
         self._origin = origin
         self._folder = folder
         self._cache: dict[str, Any] | None = None
@@ -162,7 +162,7 @@ class History:
 
     @property
     def state(self) -> npt.NDArray[np.str_]:
-        """What the structure is doing, ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``, shape ``(samples,)``."""
+        """States of the structure, ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``, shape ``(samples,)``."""
         names: npt.NDArray[np.str_] = np.array(_native.History.STATES)[self._column("state")]
         return names
 
@@ -180,7 +180,7 @@ class History:
     def poses(self) -> Floats:
         """Rotation in rad and displacement ``x``, ``y`` in m of every body, shape ``(samples, bodies, 3)``.
 
-        A point of the undeformed structure is turned about the origin, then moved. The origin is the centre of a
+        A point of the undeformed structure is rotated about the origin, then displaced. The origin is the centre of a
         circular arch, or the middle of a column's base.
         """
         return self._column("poses")
@@ -189,7 +189,7 @@ class History:
     def gaps(self) -> Floats:
         """Gaps of the joints of a row of blocks at intrados and extrados in m, shape ``(samples, joints, 2)``.
 
-        No joints with four links or Housner's column.
+        There are no joints with four links or Housner's column.
         """
         return self._column("gaps_m")
 
@@ -197,7 +197,7 @@ class History:
     def offsets(self) -> Floats:
         """Offsets of joints that slip in m, the right face towards the extrados, shape ``(samples, joints)``.
 
-        No joints where they do not slip.
+        There are no joints if joints cannot slip.
         """
         return self._column("offsets_m")
 
@@ -205,21 +205,21 @@ class History:
     def joint_forces(self) -> Floats:
         """Normal and shear force of elastic joints in N, shape ``(samples, joints, 2)``; compression is positive.
 
-        The shear is positive where it keeps the right face from slipping towards the extrados. No joints with other models.
+        The shear is positive if it keeps the right face from slipping towards the extrados. Other models have no joints here.
         """
         return self._column("pressures")[:, :, 0:2]
 
     @property
     def joint_eccentricities(self) -> Floats:
-        """How far the normal force of elastic joints lies towards the extrados from the middle, over the thickness.
+        """Distance of the normal force of elastic joints from the middle towards the extrados, relative to the thickness.
 
-        Shape ``(samples, joints)``; NaN where nothing presses.
+        Shape ``(samples, joints)``; NaN without compression.
         """
         return self._column("pressures")[:, :, 2]
 
     @property
     def joint_contacts(self) -> Floats:
-        """Part of elastic joints that presses, 0 to 1, shape ``(samples, joints)``."""
+        """Compressed fraction of elastic joints, 0 to 1, shape ``(samples, joints)``."""
         return self._column("pressures")[:, :, 3]
 
     @property
@@ -229,9 +229,9 @@ class History:
 
     @property
     def point(self) -> Floats:
-        """Displacement in m, to the right and upwards, of the ``point`` that :func:`simulate` was given.
+        """Displacement in m, to the right and upwards, of the ``point`` given to :func:`simulate`.
 
-        Relative to the ground, from the undeformed structure; shape ``(samples, 2)``, or ``(samples, 0)`` where no point was given.
+        Relative to the ground, from the undeformed structure; shape ``(samples, 2)``, or ``(samples, 0)`` if no point was given.
         """
         return self._column("point_m")
 
@@ -242,7 +242,7 @@ class History:
 
     @property
     def thrust_excess_ratio(self) -> Floats:
-        """How far the line of thrust leaves the structure, over the thickness, shape ``(samples,)``."""
+        """How far the line of thrust leaves the structure, in thicknesses, shape ``(samples,)``."""
         return self._column("thrust_excess_ratio")
 
     @property
@@ -257,7 +257,7 @@ class History:
 
     @property
     def energy_ratio(self) -> Floats:
-        """Energy over the barrier of the mechanism that moves, shape ``(samples,)``; NaN where that is not known."""
+        """Energy over the barrier of the mechanism that moves, shape ``(samples,)``; NaN if that is unknown."""
         return self._column("energy_ratio")
 
     def __len__(self) -> int:
@@ -286,19 +286,19 @@ class History:
 
     @property
     def overturning_sway(self) -> str | None:
-        """To which side it overturned, ``"right"`` or ``"left"``; ``None`` if it did not."""
+        """The side to which it overturned, ``"right"`` or ``"left"``; ``None`` if it did not."""
         sway: str | None = self._once("overturning_sway", lambda native: native.overturning_sway())
         return sway
 
     @property
     def outcome_time_s(self) -> float:
-        """When: the last outward passage of the unstable equilibrium, the last time it came to rest, or the end."""
+        """The time of the outcome: the last outward passage of the unstable equilibrium, the last coming to rest, or the end."""
         time_s: float = self._once("outcome_time_s", lambda native: native.outcome_time_s())
         return time_s
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """All events: the phase that follows the ``i``-th is ``i + 1``."""
+        """All events: phase ``i + 1`` follows event ``i``."""
 
         def make(native: _native.History) -> tuple[Event, ...]:
             return tuple(map(Event._of, json.loads(native.events_json())))
@@ -313,7 +313,7 @@ class History:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """What ``summary.json`` of the program has (a copy); see :meth:`spread`."""
+        """The contents of the program's ``summary.json`` (a copy); see :meth:`spread`."""
 
         def make(native: _native.History) -> str:
             return native.summary_json(False)
@@ -322,9 +322,9 @@ class History:
         return summary
 
     def spread(self) -> dict[str, Any] | None:
-        """How a history with free hinges depends on its steps, as ``spread`` of ``summary.json``; ``None`` of others.
+        """How a history with free hinges depends on its steps, as ``spread`` of ``summary.json``; ``None`` for other histories.
 
-        Simulates it again in other ways that are as good, such as with double steps.
+        Simulates the history again in other, equally good ways, such as with double steps.
 
         Raises:
             ValueError: when one of these fails.
@@ -336,7 +336,7 @@ class History:
 
     @property
     def scenario(self) -> Scenario:
-        """The scenario: to be run again, or as a file of the program."""
+        """The scenario: to be run again, or written as a file of the program."""
         from ._scenario import Scenario
 
         def make(native: _native.History) -> Scenario:
@@ -352,8 +352,8 @@ class History:
     # Elsewhere
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The samples as a table: the columns of ``rotations.csv``, vertical accelerations also of ground that has
-        none, and energies. Needs pandas.
+        """The samples as a table: the columns of ``rotations.csv``, always with vertical accelerations, and energies.
+        Needs pandas.
         """
         import pandas
 
@@ -401,7 +401,7 @@ class History:
         return figure
 
     def report_html(self) -> str:
-        """The page ``report.html`` of the program: the structure in motion, with curves. Needs no network."""
+        """The program's page ``report.html``: the structure in motion, with curves. Needs no network."""
 
         def make(native: _native.History) -> str:
             return native.report(self._words())

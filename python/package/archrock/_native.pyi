@@ -1,4 +1,4 @@
-"""The native part of the package: handles of the library's own types, text and arrays."""
+"""The native part of the package: handles for the library's own types, text and arrays."""
 
 from __future__ import annotations
 

@@ -19,18 +19,18 @@ from ._tables import Tables, to_toml
 
 
 class Scenario(Described):
-    """What is to be simulated, every default resolved: all that a TOML file of the program can say.
+    """What to simulate, with every default filled in: everything that a TOML file of the program can contain.
 
     Args:
         tables: the tables of a scenario, such as ``{"arch": {...}, "ground": {"half_sine": {...}}}``.
-        files: contents of the files that the tables name. Without any, files are read from the working folder.
+        files: contents of the files that the tables name. If none are given, files are read from the working folder.
         model: the model of motion; ``None``: the one that the tables choose.
 
     Raises:
-        ValueError: all that is wrong with it, in the library's words.
+        ValueError: everything that is wrong with it, in the library's words.
 
-    Scenarios are pickled with the contents of the files that they name, unless these lie outside of the scenario's
-    own folder: such files must be there where the scenario is used again.
+    A scenario is pickled with the contents of the files that it names, unless these lie outside the scenario's
+    own folder: such files must exist where the scenario is used again.
     """
 
     __slots__ = ("_folder", "_model", "_native")
@@ -73,16 +73,16 @@ class Scenario(Described):
 
         Args:
             path: the file; records are read from files relative to its folder.
-            model: the model of motion, whatever the file chooses.
-            changes: values that take the place of those in the file, as of the program's ``--set``:
+            model: the model of motion; overrides the choice of the file.
+            changes: values that replace those in the file, as with the program's ``--set``:
                 ``"arch.thickness_ratio=0.12"``.
 
         Raises:
             OSError: when the file cannot be read.
-            TypeError: when that is no path.
-            ValueError: all that is wrong with it, each with line and column.
+            TypeError: when ``path`` is not a path.
+            ValueError: everything that is wrong with it, each with line and column.
         """
-        # Not `open` alone, which takes a number for a file that is open already, and closes it.
+        # `open` alone would also take a number, for the descriptor of an open file, and close that file.
         path = Path(path)
         text = path.read_text(encoding="utf-8")
         return cls.parse(text, str(path), model=model, changes=changes)
@@ -96,10 +96,10 @@ class Scenario(Described):
         model: Model | None = None,
         changes: Sequence[str] = (),
     ) -> Scenario:
-        """Reads the TOML text of a scenario; ``name`` stands for its file, to whose folder records are relative.
+        """Reads the TOML text of a scenario; ``name`` stands for its file, and records are relative to the folder of that.
 
         Raises:
-            ValueError: all that is wrong with it, each with line and column.
+            ValueError: everything that is wrong with it, each with line and column.
         """
         scenario = cls.__new__(cls)
         native = NativeScenario(text, name, {}, model, list(changes))
@@ -125,20 +125,20 @@ class Scenario(Described):
         """The scenario of a structure on a ground.
 
         Args:
-            structure: what stands.
-            ground: how the ground moves.
+            structure: the structure.
+            ground: the ground motion.
             title: free text for the results.
             map: table ``[map]``: two axes.
             spectrum: table ``[spectrum]``.
             suite: table ``[suite]``.
             demand: table ``[demand]``.
             verify: table ``[verify]``.
-            uncertain: table ``[uncertain]``: samples, seed, and for each key such as ``"column.width_m"`` how it is spread.
-            files: contents of files that the tables name.
-            settings: how it is simulated, as of :func:`simulate`.
+            uncertain: table ``[uncertain]``: samples, seed, and the spread of each key such as ``"column.width_m"``.
+            files: contents of the files that the tables name.
+            settings: how to simulate it, as for :func:`simulate`.
 
         Raises:
-            ValueError: all that is wrong with it, in the library's words.
+            ValueError: everything that is wrong with it, in the library's words.
         """
         if not isinstance(structure, Structure):
             raise _not_a_structure(structure)
@@ -158,17 +158,17 @@ class Scenario(Described):
         """Its history.
 
         Args:
-            memory_gb: memory that it may take, in units of 1e9 bytes; see :meth:`memory_gb`.
+            memory_gb: memory that the history may take, in units of 1e9 bytes; see :meth:`memory_gb`.
 
         Raises:
             ValueError: when nothing moves the structure, or the motion cannot be computed.
-            MemoryError: when the history takes more memory than allowed: before it is computed, where that is known.
+            MemoryError: when the history takes more memory than allowed; raised before the computation if that is known.
             KeyboardInterrupt: on Ctrl-C, within a second.
         """
         return History(self._native.run(None, _bytes(memory_gb)), self._files, self._folder)
 
     def memory_gb(self) -> float:
-        """Memory that the samples of its history take at most, in units of 1e9 bytes; events come on top.
+        """Largest memory that the samples of its history take, in units of 1e9 bytes; events need some more.
 
         Raises:
             ValueError: when the structure has no such model of motion.
@@ -176,15 +176,15 @@ class Scenario(Described):
         return self._native.memory_bytes() / 1e9
 
     def limit(self) -> Limit:
-        """The push that starts the structure to either side, by limit analysis, as ``archrock limit``.
+        """The ground acceleration that starts the structure to either side, by limit analysis, as ``archrock limit``.
 
         Raises:
-            ValueError: when it has no such onset that the library could tell.
+            ValueError: when the library cannot find such an onset.
         """
         return Limit._of(json.loads(self._native.limit_json()))
 
     def to_toml(self) -> str:
-        """The scenario as the text of a file of the program, every default written out."""
+        """The scenario as the text of a file of the program, with every default written out."""
         return self._native.to_toml()
 
     def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
@@ -213,7 +213,7 @@ def _restored(
 ) -> Scenario:
     scenario = Scenario.__new__(Scenario)
     name = None if files or folder is None else str(Path(folder) / "scenario.toml")
-    # The tables are resolved: they choose the model themselves.
+    # The tables have all defaults filled in, so they choose the model themselves.
     native = NativeScenario(to_toml(tables), name, files, None, ())
     scenario._take(native, files, folder, model)
     return scenario
@@ -234,7 +234,7 @@ def _names(tables: Tables) -> list[str]:
 
 
 def _contents(tables: Tables, folder: str | None) -> dict[str, bytes]:
-    """The contents of all files that the tables name; none where some are outside of the folder."""
+    """The contents of all files that the tables name; empty if some lie outside the folder."""
     names = _names(tables)
     if any(".." in PurePosixPath(name).parts or Path(name).is_absolute() for name in names):
         return {}
@@ -296,49 +296,49 @@ def simulate(
     point: tuple[float, float] | None = None,
     memory_gb: float = MEMORY_GB,
 ) -> History:
-    """The history of a structure on moving ground, to the same bits as of the program.
+    """The history of a structure on moving ground, bit-identical to the program's.
 
-    The interpreter's lock is free meanwhile: histories on several threads are computed on several processors. A
-    structure keeps what does not depend on the ground, so that many histories of one structure are fastest with one
+    The interpreter's lock is released meanwhile, so histories in several threads run on several processors. A
+    structure keeps results that do not depend on the ground. So many histories of one structure are fastest with a single
     object and the same settings.
 
     Args:
-        structure: what stands.
-        ground: how the ground moves; ``None`` for a release from a rotated position.
+        structure: the structure.
+        ground: the ground motion; ``None`` for a release from a rotated position.
         model: ``"four_links"`` (or Housner's column), or ``"free_hinges"``: blocks whose joints open and shut anywhere,
-            or ``"elastic_joints"``: blocks whose joints give way; these need a stiffness.
+            or ``"elastic_joints"``: blocks with elastic joints; these need a stiffness.
         impact: impact model of four links: ``"max_restitution"``, ``"same_sections"``, ``"mirrored"`` or
             ``"prescribed"``.
         restitution: energy after over before an impact, with ``"prescribed"``.
         initial_sway: side to which it is released from a rotated position, ``"right"`` or ``"left"``.
-        initial_rotation_rad: magnitude of that rotation, of the body that carries the coordinate.
+        initial_rotation_rad: magnitude of that rotation, for the body whose rotation is the coordinate.
         longest_step_s: longest step, with free hinges and elastic joints.
-        shortest_step_s: landings within this time are one, with free hinges.
+        shortest_step_s: landings within this time count as one, with free hinges.
         friction_coefficient: Coulomb's coefficient at every joint, with free hinges and elastic joints; ``None``: joints do not
             slip.
         normal_stiffness_gpa_m: stiffness of elastic joints against penetration, per area, in GPa/m.
-        shear_stiffness_gpa_m: the same against slip; ``None``: 0.4 of that.
-        stone_modulus_gpa: Young's modulus of the blocks, from which the stiffness follows instead.
-        mortar_modulus_gpa: that of the mortar, with ``mortar_thickness_m``.
-        mortar_thickness_m: its thickness.
-        damping_time_s: damping forces are this times the rates of the elastic ones; ``None``: that of the program, 1e-4.
-        compressive_strength_mpa: stress at which elastic joints crush; ``None``: they do not.
-        contact_points: points that bear the stress of a joint; ``None``: all of it does.
+        shear_stiffness_gpa_m: the same against slip; ``None``: 0.4 times the stiffness against penetration.
+        stone_modulus_gpa: Young's modulus of the blocks, from which the stiffness can be derived instead.
+        mortar_modulus_gpa: Young's modulus of the mortar, with ``mortar_thickness_m``.
+        mortar_thickness_m: thickness of the mortar.
+        damping_time_s: damping forces are this time multiplied by the rates of the elastic forces; ``None``: the default, 1e-4.
+        compressive_strength_mpa: stress at which elastic joints crush; ``None``: they do not crush.
+        contact_points: number of points that carry the stress of a joint; ``None``: the whole joint does.
         duration_s: longest time to simulate.
         output_step_s: time between samples.
         relative_tolerance: error that the integrator of four links may make in a step.
-        rest_energy_ratio: energy over energy barrier below which the structure is at rest.
+        rest_energy_ratio: the structure is at rest when its energy falls below this fraction of the energy barrier.
         gravity_m_s2: acceleration of gravity.
-        point: a place in the undeformed structure, ``(x, y)`` in m, whose displacement is told: :attr:`History.point`.
+        point: a point of the undeformed structure, ``(x, y)`` in m, to observe: see :attr:`History.point`.
         memory_gb: memory that the history may take, in units of 1e9 bytes.
 
     Returns:
         The history.
 
     Raises:
-        ValueError: when an argument is not allowed, or the motion cannot be computed, in the library's words.
-        TypeError: when an argument is of another type.
-        MemoryError: when the history takes more memory than allowed: before it is computed, where that is known.
+        ValueError: when an argument is not allowed, or the motion cannot be computed, with the library's explanation.
+        TypeError: when an argument has the wrong type.
+        MemoryError: when the history takes more memory than allowed; raised before the computation if that is known.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
     key = (

@@ -1,4 +1,4 @@
-"""How a motion is simulated: everything of a scenario but structure, ground and studies."""
+"""How a motion is simulated: the contents of a scenario except structure, ground and studies."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ._tables import Tables
 
 
 class Settings(NamedTuple):
-    """Keyword arguments of everything that simulates, with the defaults of the program."""
+    """Keyword arguments of everything that simulates, with the program's defaults."""
 
     model: str = "four_links"
     impact: str = "max_restitution"
@@ -33,7 +33,7 @@ class Settings(NamedTuple):
     gravity_m_s2: float = 9.81
 
     def tables(self) -> Tables:
-        """The tables of a scenario that say so."""
+        """The tables of a scenario for these settings."""
         tables: Tables = {
             "simulation": {
                 "duration_s": self.duration_s,

@@ -1,4 +1,4 @@
-"""What stands on the ground."""
+"""Structures that stand on the ground."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Model = Literal["four_links", "free_hinges", "elastic_joints"]
 
 
 class Structure(Described):
-    """What stands on the ground, of any shape that a scenario knows: its tables as keyword arguments.
+    """A structure of any shape that a scenario allows, with its tables as keyword arguments.
 
     For circular arches and free-standing columns there are :class:`Arch` and :class:`Column`.
 
@@ -33,7 +33,7 @@ class Structure(Described):
             ``piers``, ``fill`` and ``load`` (a list), with their keys; ``blocks`` may name files, which are read now.
 
     Raises:
-        ValueError: when it is no structure that stands; all that is wrong is said at once.
+        ValueError: when it is not a structure that stands; all errors are reported together.
         OSError: when a file cannot be read.
     """
 
@@ -58,7 +58,7 @@ class Structure(Described):
     def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
         arch = tables.get("arch")
         whole = set(tables) == {"arch"} and isinstance(arch, dict)
-        # Where hinges open anywhere, there are no blocks.
+        # If hinges may open anywhere, there are no blocks.
         four = whole and isinstance(arch, dict) and not {"voussoirs", "joints_deg"} & set(arch)
         self._model = "four_links" if four else "free_hinges"
         self._native = NativeScenario(to_toml(tables), None, files, self._model, ())
@@ -76,17 +76,17 @@ class Structure(Described):
         return base
 
     def limit(self) -> Limit:
-        """The push that starts it to either side, by limit analysis, as ``archrock limit``.
+        """The ground acceleration that starts it to either side, by limit analysis, as ``archrock limit``.
 
         Raises:
-            ValueError: when it has no such onset that the library could tell.
+            ValueError: when the library cannot find such an onset.
         """
         return Limit._of(json.loads(self._native.limit_json()))
 
     def chain(self, count: int = 5, sway: Literal["right", "left"] = "right") -> list[ChainLink]:
-        """The mechanisms that the first ``count`` impacts after a sway to the side lead through.
+        """The mechanisms through which the first ``count`` impacts lead, after a first sway to this side.
 
-        They do not depend on the ground motion. The impacts are by the model ``max_restitution``; fewer are told when
+        They do not depend on the ground motion. The impacts follow the model ``max_restitution``; there are fewer if
         one of them stops the structure.
 
         Raises:
@@ -116,13 +116,13 @@ class Arch(Structure):
         thickness_ratio: thickness over mean radius; or give ``thickness_m``.
         embrace_deg: angle from springing to springing, 180 for a semicircle.
         thickness_m: thickness, instead of ``thickness_ratio``.
-        voussoirs: number of equal voussoirs, at whose joints hinges open; ``None``: anywhere.
-        depth_m: length out of plane; ``None``: that of the program, 1.
-        density_kg_m3: density; ``None``: that of the program, 2000.
+        voussoirs: number of equal voussoirs, at whose joints hinges open; ``None``: hinges may open anywhere.
+        depth_m: length out of plane; ``None``: the default, 1.
+        density_kg_m3: density; ``None``: the default, 2000.
         others: further keys of ``[arch]``.
 
     Raises:
-        ValueError: when a number is not allowed, or the arch cannot stand, in the library's words.
+        ValueError: when a number is not allowed, or the arch cannot stand, with the library's explanation.
 
     >>> arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
     >>> round(arch.limit().right.acceleration_g, 8)
@@ -165,16 +165,16 @@ class Column(Structure):
     Args:
         height_m: height.
         width_m: width in the plane of the motion.
-        drums: number of equal drums; or give ``drum_heights_m``. Drums and a taper go with free hinges only.
+        drums: number of equal drums; or give ``drum_heights_m``. Drums and a taper need a model of blocks.
         drum_heights_m: heights of drums from the base up, shape ``(drums,)``.
-        top_width_m: width at the top, where it tapers.
-        pedestal: whether it stands on a pedestal as wide as its base, off which it falls where it slips, instead of on ground that
-            goes on; ``None``: that of the program, on the ground.
-        depth_m: length out of plane; ``None``: that of the program, 1.
-        density_kg_m3: density; ``None``: that of the program, 2000.
+        top_width_m: width at the top, if it tapers.
+        pedestal: whether it stands on a pedestal as wide as its base, and falls off if it slips too far, instead of on level
+            ground; ``None``: the default, on the ground.
+        depth_m: length out of plane; ``None``: the default, 1.
+        density_kg_m3: density; ``None``: the default, 2000.
 
     Raises:
-        ValueError: when a number is not allowed, in the library's words.
+        ValueError: when a number is not allowed, with the library's explanation.
     """
 
     __slots__ = ()

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pandas
 
 Progress = Callable[[int, int], object]
-"""Called with the number of cases that are done and of all; what it raises ends the work."""
+"""Called with the number of cases done and of all cases; an exception that it raises ends the work."""
 
 Values = Any
 """Increasing numbers, anything like an array, or a :func:`span`."""
@@ -37,12 +37,12 @@ def span(
     count: int,
     spacing: Literal["linear", "logarithmic"] = "linear",
 ) -> dict[str, Any]:
-    """Numbers from ``start`` to ``end``, both included, to the bits of the program's ``{ from, to, count, spacing }``."""
+    """Numbers from ``start`` to ``end``, both included, bit-identical to the program's ``{ from, to, count, spacing }``."""
     return {"from": start, "to": end, "count": count, "spacing": spacing}
 
 
 class Files:
-    """Files that the program writes, held in memory."""
+    """Files as the program writes them, held in memory."""
 
     __slots__ = ("_files",)
 
@@ -53,7 +53,7 @@ class Files:
 
     @property
     def files(self) -> dict[str, bytes]:
-        """The files by their names, to the bytes of those that the program writes."""
+        """The files by their names, byte-identical to those that the program writes."""
         return dict(self._files)
 
     def save(self, folder: str | os.PathLike[str]) -> None:
@@ -66,7 +66,7 @@ class Files:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """The JSON file: scenario as resolved, numbers, what failed."""
+        """The JSON file: the scenario with all defaults, numbers, and failures."""
         summary: dict[str, Any] = json.loads(self.files[self._json])
         return summary
 
@@ -111,7 +111,7 @@ class Results(Files):
         """Writes a table of the study, by default its main one, as Parquet. Needs pandas with pyarrow or fastparquet.
 
         Raises:
-            ImportError: when one of them is not there.
+            ImportError: when one of them is not installed.
             OSError: when it cannot be written.
         """
         self.to_pandas(file).to_parquet(path)
@@ -138,7 +138,7 @@ class OverturningMap(Results):
 
     @property
     def axes(self) -> tuple[str, str]:
-        """What varies along x and y, by its key in ``[map]``."""
+        """The quantities along x and y, by their keys in ``[map]``."""
         x, y, *_ = self.columns()
         return x, y
 
@@ -164,27 +164,27 @@ class OverturningMap(Results):
 
     @property
     def outcome(self) -> npt.NDArray[np.str_]:
-        """What became of each cell, as in ``map.csv``, ``uncertain`` included, shape ``(len(x), len(y))``."""
+        """The outcome of each cell, as in ``map.csv``, ``uncertain`` included, shape ``(len(x), len(y))``."""
         return self._plane("outcome")
 
     @property
     def uncertain(self) -> npt.NDArray[np.bool_]:
-        """Of which cells it is uncertain whether they overturn, shape ``(len(x), len(y))``."""
+        """Whether overturning is uncertain, for each cell, shape ``(len(x), len(y))``."""
         return np.asarray(self.outcome == "uncertain")
 
     @property
     def impacts(self) -> npt.NDArray[np.float64]:
-        """Number of impacts of each cell, NaN where there is no history, shape ``(len(x), len(y))``."""
+        """Number of impacts of each cell, NaN without a history, shape ``(len(x), len(y))``."""
         return self._plane("impacts")
 
     @property
     def boundary(self) -> dict[str, npt.NDArray[Any]] | None:
-        """Least amplitudes that start and that overturn without impact, over x; ``None`` where the map has none."""
+        """Least amplitudes that start the structure and that overturn it without impact, against x; ``None`` if the map has none."""
         return self.columns("no_impact.csv") if "no_impact.csv" in self.files else None
 
 
 class Spectrum(Results):
-    """An overturning spectrum: how strong a pulse must be, over size."""
+    """An overturning spectrum: how strong a pulse must be, against the size of the structure."""
 
     __slots__ = ()
 
@@ -194,7 +194,7 @@ class Spectrum(Results):
 
 
 class Suite(Results):
-    """A suite of records, and the fragility curve that its cases add up to."""
+    """A suite of records, and the fragility curve of its cases."""
 
     __slots__ = ()
 
@@ -204,15 +204,15 @@ class Suite(Results):
 
     @property
     def fragility(self) -> dict[str, npt.NDArray[Any]]:
-        """By intensity: cases, how many overturned, and the curve with its 95 % band, as ``fragility.csv``.
+        """For each intensity: cases, how many overturned, and the curve with its 95 % band, as in ``fragility.csv``.
 
-        With free hinges also the number of uncertain cases, and ``..._with_uncertain``: the same with these as overturned.
+        With free hinges also the number of uncertain cases, and ``..._with_uncertain``: the same with these counted as overturned.
         """
         return self.columns("fragility.csv")
 
     @property
     def uncertain(self) -> npt.NDArray[np.bool_]:
-        """Of which cases it is uncertain whether they overturn, one entry a row of ``suite.csv``."""
+        """Whether overturning is uncertain, one entry for each row of ``suite.csv``."""
         return np.asarray(self.columns()["outcome"] == "uncertain")
 
 
@@ -231,7 +231,7 @@ class Threshold(Results):
 
     @property
     def lowest_factor(self) -> float | None:
-        """The least factor at which it overturns; ``None`` if it never does."""
+        """The least factor that overturns it; ``None`` if none does."""
         factor: float | None = self._model()["lowest_factor"]
         return factor
 
@@ -249,13 +249,13 @@ class Threshold(Results):
 
     @property
     def uncertain(self) -> list[dict[str, Any]]:
-        """The ranges in which it is uncertain whether it overturns, ascending, as in ``threshold.json``."""
+        """The ranges in which overturning is uncertain, ascending, as in ``threshold.json``."""
         ranges: list[dict[str, Any]] = self._model()["uncertain"]
         return ranges
 
 
 class Ensemble(Results):
-    """What follows from the numbers of a scenario that are uncertain: how the history of every sample ends and goes."""
+    """The consequences of the uncertain numbers of a scenario: how the history of every sample proceeds and ends."""
 
     __slots__ = ()
 
@@ -264,13 +264,13 @@ class Ensemble(Results):
     _json = "uncertain.json"
 
     def _samples(self, name: str) -> npt.NDArray[Any]:
-        """A column without its first row, which is the scenario itself."""
+        """A column without its first row, which belongs to the scenario itself."""
         column: npt.NDArray[Any] = self.columns()[name][1:]
         return column
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """The uncertain numbers, by their keys."""
+        """The keys of the uncertain numbers."""
         names = list(self.columns())
         return tuple(name for name in names if "." in name)
 
@@ -281,7 +281,7 @@ class Ensemble(Results):
 
     @property
     def what_matters(self) -> dict[str, Any]:
-        """By answer, for each uncertain number its share of the variance and its rank correlation, with intervals."""
+        """For each answer, the share of the variance and the rank correlation of each uncertain number, with intervals."""
         matters: dict[str, Any] = self.summary["what_matters"]
         return matters
 
@@ -293,23 +293,23 @@ class Histories(Ensemble):
 
     @property
     def outcome(self) -> npt.NDArray[np.str_]:
-        """What became of each sample, as in ``samples.csv``."""
+        """The outcome of each sample, as in ``samples.csv``."""
         return self._samples("outcome")
 
     @property
     def peak_rotation(self) -> npt.NDArray[np.float64]:
-        """Largest rotation of any body of each sample, in radians; NaN where there is no history."""
+        """Largest rotation of any body in each sample, in radians; NaN without a history."""
         return self._samples("peak_rotation_rad")
 
     @property
     def probability(self) -> dict[str, float]:
-        """The share of samples that overturn, and its interval of 95 %: ``share``, ``low``, ``high``, ``count``, ``of``."""
+        """The share of samples that overturn, and its 95 % interval: ``share``, ``low``, ``high``, ``count``, ``of``."""
         share: dict[str, float] = self.summary["outcomes"]["overturned"]
         return share
 
     @property
     def bands(self) -> dict[str, npt.NDArray[Any]]:
-        """The rotation over time: that of the scenario itself, 5 %, median and 95 %, as in ``bands.csv``."""
+        """The rotation over time: of the scenario itself, and the 5 %, 50 % and 95 % quantiles, as in ``bands.csv``."""
         return self.columns("bands.csv")
 
 
@@ -322,17 +322,17 @@ class FirstFactors(Ensemble):
 
     @property
     def first_factor(self) -> npt.NDArray[np.float64]:
-        """The first factor of each sample; NaN where none overturns."""
+        """The first factor of each sample; NaN if none overturns it."""
         return self._samples("first_factor")
 
     @property
     def probability(self) -> dict[str, npt.NDArray[Any]]:
-        """The probability of overturning over the factor, with its interval of 95 %, as in ``probability.csv``."""
+        """The probability of overturning against the factor, with its 95 % interval, as in ``probability.csv``."""
         return self.columns("probability.csv")
 
 
 class Fragilities(Ensemble):
-    """An ensemble of the intensities from which on the records of a suite overturn."""
+    """An ensemble of the intensities from which the records of a suite overturn."""
 
     __slots__ = ()
 
@@ -346,7 +346,7 @@ class Fragilities(Ensemble):
 
 
 class Check(Files):
-    """A check by the Circolare 7/2019: numbers and the page to be filed."""
+    """A check by the Circolare 7/2019: its numbers, and the page to be filed."""
 
     __slots__ = ()
 
@@ -354,18 +354,18 @@ class Check(Files):
 
     @property
     def page(self) -> str:
-        """The page, HTML that prints on A4."""
+        """The page, in HTML that prints on A4."""
         return self.files["verify.html"].decode()
 
     @property
     def zeta_e(self) -> float:
-        """What is borne over what is demanded, the least of the limit states asked for."""
+        """The ratio of capacity to demand, the least of all limit states checked."""
         zeta_e: float = self.summary["zeta_e"]
         return zeta_e
 
     @property
     def verdict(self) -> dict[str, str]:
-        """By limit state, ``passed``, ``not_passed`` or ``not_checked``."""
+        """For each limit state ``passed``, ``not_passed`` or ``not_checked``."""
         verdict: dict[str, str] = self.summary["verdict"]
         return verdict
 
@@ -399,7 +399,7 @@ def _study(
 
 
 def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
-    """Whether what is given is a scenario, beside which nothing else goes."""
+    """Whether a complete scenario is given, which allows no other arguments."""
     if isinstance(of, Structure):
         return False
     if not isinstance(of, Scenario):
@@ -420,10 +420,10 @@ def map_scenario(
     spread: bool = False,
     **settings: Any,
 ) -> Scenario:
-    """The scenario of an overturning map: what :func:`overturning_map` computes, to be computed in parts.
+    """The scenario of the map that :func:`overturning_map` computes, to be computed in parts.
 
     Raises:
-        ValueError: as of :func:`overturning_map`.
+        ValueError: as for :func:`overturning_map`.
     """
     table = {**axes, "spread": True} if spread else axes
     return Scenario.of(structure, ground, map=table, **settings)
@@ -449,18 +449,18 @@ def overturning_map(
     ... )
 
     Args:
-        of: what stands, or a scenario with a table ``[map]``, which says everything itself.
-        ground: the ground motion; what does not vary of it stays.
+        of: the structure, or a scenario with a table ``[map]``, which gives everything else.
+        ground: the ground motion; whatever does not vary stays the same.
         axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``mean_radius_m``,
-            ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``, of a record ``scale`` or ``peak_g``,
+            ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``, for a record ``scale`` or ``peak_g``,
             or any number of the scenario by its table and key, such as ``column.width_m``.
-        spread: with free hinges, whether every cell is repeated in full, and its number of outcomes told, as in the column ``spread``.
-        threads: how many threads work; ``None``: as many as there are processors.
-        progress: called on this thread with the numbers of cells that are done and of all.
-        settings: as of :func:`simulate`.
+        spread: with free hinges, whether every cell is repeated in full, and its number of outcomes given in the column ``spread``.
+        threads: number of threads; ``None``: as many as there are processors.
+        progress: called on this thread with the number of cells done and of all cells.
+        settings: as for :func:`simulate`.
 
     Raises:
-        ValueError: when the scenario is none of a map, in the library's words.
+        ValueError: when there is no such map, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
     if _whole(of, {"ground": ground, "axes": axes, "spread": spread, **settings}):
@@ -483,20 +483,20 @@ def spectrum(
     progress: Progress | None = None,
     **settings: Any,
 ) -> Spectrum:
-    """How strong a pulse must be to overturn a structure, over its size.
+    """How strong a pulse must be to overturn a structure, against its size.
 
     Args:
-        of: what stands, or a scenario, which says everything itself.
+        of: the structure, or a scenario, which gives everything else.
         ground: the pulse, whose shape and side are used.
-        p_t: increasing sizes, frequency parameter times duration; ``None``: those of the program.
-        acceleration_over_incipient: increasing peak accelerations over that which starts the structure; ``None``: those
-            of the program.
-        threads: as of :func:`overturning_map`.
-        progress: as of :func:`overturning_map`.
-        settings: as of :func:`simulate`.
+        p_t: increasing sizes, frequency parameter times duration; ``None``: the program's default.
+        acceleration_over_incipient: increasing peak accelerations, relative to the one that starts the structure; ``None``:
+            the program's default.
+        threads: as for :func:`overturning_map`.
+        progress: as for :func:`overturning_map`.
+        settings: as for :func:`simulate`.
 
     Raises:
-        ValueError: when there is no such spectrum, in the library's words.
+        ValueError: when there is no such spectrum, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
     table = {"p_t": p_t, "acceleration_over_incipient": acceleration_over_incipient}
@@ -517,10 +517,10 @@ def suite_scenario(
     both_signs: bool = True,
     **settings: Any,
 ) -> Scenario:
-    """The scenario of a suite of records: what :func:`suite` computes, to be computed in parts.
+    """The scenario of the suite that :func:`suite` computes, to be computed in parts.
 
     Raises:
-        ValueError: as of :func:`suite`.
+        ValueError: as for :func:`suite`.
     """
     layout, files = _record_files(records)
     table = {
@@ -544,20 +544,20 @@ def suite(
     progress: Progress | None = None,
     **settings: Any,
 ) -> Suite:
-    """How likely records of some strength overturn a structure: a history for every record at every level.
+    """How likely records of a given strength overturn a structure: a history for every record at every level.
 
     Args:
-        of: what stands, or a scenario with a table ``[suite]``, which says everything itself.
-        records: the records, in one unit, each with a name of its own.
-        peaks_g: increasing peak accelerations that each record is scaled to; or give ``scales``.
+        of: the structure, or a scenario with a table ``[suite]``, which gives everything else.
+        records: the records, all in one unit, each with its own name.
+        peaks_g: increasing peak accelerations to which each record is scaled; or give ``scales``.
         scales: increasing factors on each record.
-        both_signs: whether every record is also run mirrored; ``None``: it is.
-        threads: as of :func:`overturning_map`.
-        progress: as of :func:`overturning_map`.
-        settings: as of :func:`simulate`.
+        both_signs: whether every record is also run mirrored; ``None``: yes.
+        threads: as for :func:`overturning_map`.
+        progress: as for :func:`overturning_map`.
+        settings: as for :func:`simulate`.
 
     Raises:
-        ValueError: when there is no such suite, in the library's words.
+        ValueError: when there is no such suite, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
     others = {"records": records, "peaks_g": peaks_g, "scales": scales, "both_signs": both_signs}
@@ -587,20 +587,20 @@ def threshold(
     progress: Progress | None = None,
     **settings: Any,
 ) -> Threshold:
-    """By which factors a ground motion overturns a structure.
+    """The factors by which a ground motion overturns a structure.
 
     Args:
-        of: what stands, or a scenario, which says structure, ground and settings itself.
+        of: the structure, or a scenario, which gives structure, ground and settings.
         ground: the ground motion to be scaled.
         from_factor: smallest factor.
         to_factor: largest factor.
         stride: relative step from one factor to the next; narrower bands and gaps may be missed.
-        threads: as of :func:`overturning_map`.
-        progress: as of :func:`overturning_map`; first of all factors, then of the edges as well.
-        settings: as of :func:`simulate`.
+        threads: as for :func:`overturning_map`.
+        progress: as for :func:`overturning_map`; first over all factors, then over the edges as well.
+        settings: as for :func:`simulate`.
 
     Raises:
-        ValueError: when an argument is not allowed, in the library's words.
+        ValueError: when an argument is not allowed, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
     if _whole(of, {"ground": ground, **settings}):
@@ -619,18 +619,18 @@ def ensemble(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Histories:
-    """What follows from the table ``[uncertain]`` of a scenario: a history for every sample.
+    """The consequences of the table ``[uncertain]`` of a scenario: a history for every sample.
 
-    From which factor on samples overturn, and under which records, :func:`compute_part` and :func:`merge` answer, as of the studies
-    ``"uncertain_threshold"`` and ``"uncertain_suite"``.
+    To find the factor from which samples overturn, or the records that overturn them, use :func:`compute_part` and :func:`merge`
+    with the studies ``"uncertain_threshold"`` and ``"uncertain_suite"``.
 
     Args:
         scenario: a scenario with a table ``[uncertain]``.
-        threads: as of :func:`overturning_map`.
-        progress: as of :func:`overturning_map`, of samples.
+        threads: as for :func:`overturning_map`.
+        progress: as for :func:`overturning_map`, for samples.
 
     Raises:
-        ValueError: when nothing of it is uncertain, or nothing moves it, in the library's words.
+        ValueError: when nothing in it is uncertain, or nothing moves the structure, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
     if not isinstance(scenario, Scenario):
@@ -655,16 +655,16 @@ def verify(
     0.487
 
     Args:
-        of: what stands, or a scenario with a table ``[demand]``, which says everything itself.
-        demand: the table ``[demand]``: soil, relief, the hazard of each limit state, and where in a building it stands. A
+        of: the structure, or a scenario with a table ``[demand]``, which gives everything else.
+        demand: the table ``[demand]``: soil, topography, the hazard of each limit state, and the position in a building. A
             spectrum by points is the path of its file, or a pair of periods in s and accelerations in g.
         title: free text for the page.
-        slv_records: records for the dynamic route at SLV, in one unit, each with a name of its own.
+        slv_records: records for the dynamic route at SLV, all in one unit, each with its own name.
         slc_records: the same at SLC.
         how: keys of ``[verify]``: ``confidence_factor``, ``behaviour_factor``, ``sides``, ``free_standing``.
 
     Raises:
-        ValueError: when there is nothing to check, or a number is out of the range of the code, in the library's words.
+        ValueError: when there is nothing to check, or a number is outside the range of the code, with the library's explanation.
         OSError: when a file cannot be read.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
@@ -676,7 +676,7 @@ def verify(
     if demand is None:
         raise ValueError("a check needs a demand")
     table, files = _with_points(demand)
-    # One record may shake it at both states.
+    # The same record may be used at both limit states.
     given = {id(record): record for some in records.values() for record in some or ()}
     if given:
         told, held = _record_files(list(given.values()))
@@ -710,7 +710,7 @@ def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, b
 
 
 def _record_files(records: Sequence[Record]) -> tuple[dict[str, Any], dict[str, bytes]]:
-    """How the files of records are read, and their contents by name."""
+    """How to read the files of records, and their contents by name."""
     for record in records:
         if not isinstance(record, Record):
             raise TypeError(f"`records` are Records, not {type(record).__name__}")
@@ -746,27 +746,27 @@ def compute_part(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Computes one part of a study into a file, or goes on with one that was interrupted.
+    """Computes one part of a study into a file, or continues an interrupted one.
 
-    The parts may be computed anywhere, in any order and several times; :func:`merge` joins them, and so does the
-    program's ``merge``, to the bytes that one process writes.
+    The parts may be computed anywhere, in any order and more than once; :func:`merge` joins them, and so does the
+    program's ``merge``. The result is byte-identical to that of one process.
 
     Args:
         scenario: the scenario with the table of the study.
-        study: ``"map"``, ``"spectrum"``, ``"suite"``, or of samples ``"uncertain"``, ``"uncertain_threshold"`` and
+        study: ``"map"``, ``"spectrum"``, ``"suite"``, or for samples ``"uncertain"``, ``"uncertain_threshold"`` and
             ``"uncertain_suite"``.
-        shard: which part of how many, from 1: ``(2, 4)``.
-        folder: where the file goes; made if need be.
-        threads: as of :func:`overturning_map`.
-        progress: as of :func:`overturning_map`.
+        shard: the number of the part, from 1, and the number of parts: ``(2, 4)``.
+        folder: folder of the file; created if necessary.
+        threads: as for :func:`overturning_map`.
+        progress: as for :func:`overturning_map`.
 
     Returns:
         The path of the file.
 
     Raises:
-        ValueError: when the scenario has no such study, or the file is that of another.
+        ValueError: when the scenario has no such study, or the file belongs to another.
         OSError: when the file cannot be written.
-        KeyboardInterrupt: on Ctrl-C, within a second; what is done is kept.
+        KeyboardInterrupt: on Ctrl-C, within a second; completed cases are kept.
     """
     if not isinstance(scenario, Scenario):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
@@ -784,10 +784,10 @@ def merge(
 
     Args:
         parts: their paths.
-        scenario: that of the parts; needed for maps under records that are not in the working folder.
+        scenario: the scenario of the parts; needed for maps with records that are not in the working folder.
 
     Raises:
-        ValueError: when they are not all there, or not of one study, or of another scenario.
+        ValueError: when parts are missing, or do not belong to one study or to this scenario.
         OSError: when one cannot be read.
     """
     if not isinstance(scenario, (Scenario, type(None))):

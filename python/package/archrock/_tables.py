@@ -1,4 +1,4 @@
-"""Tables of a scenario: as dictionaries in Python, as TOML text for the library, which checks them."""
+"""Tables of a scenario: dictionaries in Python, TOML text for the library, which checks them."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Tables = dict[str, Any]
 
 
 def plain(value: Any) -> Any:
-    """A value in the types of TOML: NumPy's numbers and arrays, tuples and mappings as Python's own.
+    """A value in the types of TOML: NumPy's numbers and arrays, tuples and mappings become Python's own.
 
     Keys whose value is ``None`` are left out.
 
     Raises:
-        TypeError: when it is none of these.
+        TypeError: when the value has another type.
     """
     if isinstance(value, (bool, str)):
         return value
@@ -47,7 +47,7 @@ def plain_table(value: Any) -> Tables:
     """A table in plain types.
 
     Raises:
-        TypeError: when it is no mapping, or has values of other types.
+        TypeError: when it is not a mapping, or has values of other types.
     """
     if not isinstance(value, Mapping):
         raise TypeError(f"tables are mappings of keys to values, not {type(value).__name__}")
@@ -56,10 +56,10 @@ def plain_table(value: Any) -> Tables:
 
 
 def to_toml(tables: Mapping[str, Any]) -> str:
-    """The TOML text of tables, each in a line of its own.
+    """The TOML text of tables, one line each.
 
     Raises:
-        TypeError: as of :func:`plain_table`.
+        TypeError: as for :func:`plain_table`.
     """
     entries = plain_table(tables).items()
     return "".join(f"{_quoted(key)} = {_value(one)}\n" for key, one in entries)
@@ -79,7 +79,7 @@ def _value(value: Any) -> str:
 
 
 def _quoted(text: str) -> str:
-    text.encode("utf-8")  # A text that is no Unicode has no place in a file.
+    text.encode("utf-8")  # A text that is not valid Unicode cannot be written to a file.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
