@@ -1,4 +1,4 @@
-"""Speed of the package: histories on two threads against one, and what a call costs beyond its history.
+"""Speed of the package: histories on two threads compared with one, and the cost of a call in addition to its history.
 
     python benches/speed.py [HISTORIES]
 """
@@ -14,7 +14,7 @@ from archrock import Arch, Column, Pulse, simulate
 
 
 def on_threads(count: int, histories: int) -> tuple[float, float]:
-    """Seconds that so many histories take on so many threads, by the clock and of the processors."""
+    """Wall-clock seconds and processor seconds for this many histories on this many threads."""
     arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
     pulses = [Pulse.half_sine(0.2 + 0.3 * index / histories, 0.3) for index in range(histories)]
     simulate(arch, pulses[0], output_step_s=0.05)
@@ -27,11 +27,11 @@ def on_threads(count: int, histories: int) -> tuple[float, float]:
 
 
 def of_a_call() -> float:
-    """Microseconds of a call whose history is two samples of a column that never moves."""
+    """Microseconds per call, for a history of two samples of a column that never moves."""
     column, pulse = Column(4.0, 0.8), Pulse.half_sine(1e-6, 1e-3)
 
     def calls(count: int = 5000) -> float:
-        # Time of the processor: other programs do not count.
+        # Processor time: other programs do not count.
         begun = time.process_time()
         for _ in range(count):
             simulate(column, pulse, duration_s=1e-3, output_step_s=1e-3)
@@ -42,11 +42,11 @@ def of_a_call() -> float:
 
 
 def main(histories: int) -> None:
-    """Measures and prints."""
+    """Measures and prints the speeds."""
     print(f"a call, its history of two samples included: {of_a_call():.2f} us")
     (one, of_one), (two, of_two) = (on_threads(count, histories) for count in (1, 2))
     print(f"{histories} histories: {one:.2f} s on one thread, {two:.2f} s on two, {one / two:.2f} times as fast")
-    # Where other programs take the processors, only this tells whether threads are in each other's way.
+    # If other programs use the processors, only this shows whether threads hinder each other.
     print(f"time of the processors: {of_one:.2f} s on one thread, {of_two:.2f} s on two")
 
 

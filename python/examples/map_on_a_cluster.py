@@ -1,10 +1,10 @@
-"""An overturning map on a Dask cluster: parts on its workers, retried where one dies, then joined.
+"""An overturning map on a Dask cluster: workers compute the parts, parts of a worker that dies are retried, then all are joined.
 
     python map_on_a_cluster.py [ADDRESS]
 
-Without the address of a scheduler it starts two workers of its own. The parts are computed by any worker in any order;
-the joined files are, byte for byte, those of one process, and of `archrock map`. Workers need the package, and nothing
-else: a part comes back as the contents of its file, so there need be no folder that all of them see.
+Without the address of a scheduler it starts two workers of its own. Any worker computes any part, in any order; the
+joined files are byte-identical to those of one process, and of `archrock map`. Workers need only the package: a part
+comes back as the contents of its file, so no shared folder is necessary.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def part(scenario: Scenario, shard: tuple[int, int]) -> tuple[str, bytes]:
 
 
 def shards(count: int) -> list[tuple[int, int]]:
-    """A study in that many parts."""
+    """The parts of a study that is divided into this many."""
     return [(index, count) for index in range(1, count + 1)]
 
 
@@ -50,7 +50,7 @@ def joined(parts: Iterable[tuple[str, bytes]], scenario: Scenario) -> Results:
 
 
 def compute(client: Client, scenario: Scenario, count: int) -> Results:
-    """The map of a scenario, in that many parts. Several to a worker even out what they take."""
+    """The map of a scenario, in this many parts. Several parts per worker even out the load."""
     sent = client.scatter(scenario, broadcast=True)
     tasks = client.map(lambda shard, of: part(of, shard), shards(count), of=sent, retries=3, pure=False)
     parts = []

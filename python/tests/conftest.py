@@ -1,4 +1,4 @@
-"""What the tests share: the program, whose results are those of the package."""
+"""What the tests share: the program, with whose results those of the package are compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arrays: anything array-like goes in, memory itself comes out."""
+"""Arrays: anything array-like goes in; arrays that come out are the memory itself."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def read_only(values: Any) -> Any:
 
 
 class ArrayLike:
-    """Something that is no array and becomes one, as series of pandas and arrays of Dask do."""
+    """An object that is not an array but converts to one, like series of pandas and arrays of Dask."""
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
         return np.array(ACCELERATION, dtype=dtype)
@@ -84,7 +84,7 @@ def test_arrays_are_taken_and_not_copied(arch: Arch, pulse: Pulse) -> None:
         again = getattr(history, name)
         assert again.__array_interface__["data"] == array.__array_interface__["data"], name
         assert array.dtype == np.float64 and array.flags.c_contiguous and array.flags.aligned
-        # NumPy did not allocate it: it is owned by what has taken it over from Rust.
+        # NumPy did not allocate it: its owner is the object that took it over from Rust.
         owner = array
         while isinstance(owner.base, np.ndarray):
             owner = owner.base
@@ -99,7 +99,7 @@ def test_arrays_outlive_their_history(arch: Arch, pulse: Pulse) -> None:
     rotations, expected = history.rotations, history.rotations.tolist()
     del history
     gc.collect()
-    # Whatever was free is written over.
+    # Overwrites any memory that was freed.
     for _ in range(20):
         simulate(arch, pulse, duration_s=0.5)
     assert rotations.tolist() == expected

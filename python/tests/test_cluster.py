@@ -42,7 +42,7 @@ def test_a_map_of_a_cluster_that_loses_a_worker_is_that_of_one_process(monkeypat
         assert len(done) == 12
         computed_by = {pid for _, pid in done}
         assert victim not in {worker["pid"] for worker in _workers(client).values()}
-        # The parts that it had are lost with it, and were computed again by others.
+        # Its parts were lost with it, and other workers computed them again.
         assert victim not in computed_by and len(computed_by) >= 1
         merged = example.joined((part for part, _ in done), scenario)
         again = example.compute(client, scenario, 5)

@@ -1,4 +1,4 @@
-"""Elastic joints and watched points."""
+"""Elastic joints and observed points."""
 
 from __future__ import annotations
 

@@ -26,5 +26,5 @@ def test_the_notebook_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "starts to rock at 0.1443 g" in text
     assert "first impact at 1.0279 s" in text
     assert "overturns from" in text and "half of the records overturn it at" in text
-    # Moving report, map, curves.
+    # An animated report, a map, curves.
     assert {"text/html", "image/svg+xml", "image/png"} <= kinds

@@ -1,4 +1,4 @@
-"""Structures, grounds, scenarios and histories as objects: natural use, words of errors, copies and comparison."""
+"""Structures, grounds, scenarios and histories as objects: natural use, error messages, copies and comparison."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_other_shapes_by_their_tables(tmp_path: Path) -> None:
     assert "piers" in on_piers.tables
     history = simulate(on_piers, Pulse.half_sine(0.3, 0.3), model="free_hinges", duration_s=0.3)
     assert history.rotations.shape[1] == len(history.bodies) > 10
-    # Blocks from a file, which is kept: the structure goes anywhere.
+    # Blocks from a file, whose contents are kept: the structure can be used anywhere.
     angles = np.linspace(np.pi, 0.0, 9)
     corners = [(r * np.cos(a), r * np.sin(a)) for a in angles for r in (4.6, 5.4)]
     joints = tmp_path / "joints.csv"
@@ -103,7 +103,7 @@ def test_scenarios_change_as_by_the_program() -> None:
 
 
 def test_what_is_sent_does_not_need_its_files(tmp_path: Path) -> None:
-    """Pickles hold the files; what is read back on a machine without them is simulated to the same bits."""
+    """Pickles hold the files; read back on a machine without them, they are simulated with bit-identical results."""
     (tmp_path / "r.at2").write_bytes((SCENARIOS / "synthetic.at2").read_bytes())
     text = '[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.record]\nfile = "r.at2"\npeak_g = 0.5\n'
     (tmp_path / "s.toml").write_text(text)
@@ -197,7 +197,7 @@ def test_histories_are_sent_whole(arch: Arch, pulse: Pulse) -> None:
 
 
 def test_a_trace_of_obspy_is_a_record() -> None:
-    """A stand-in with what is used of a trace: ObsPy itself is no dependency."""
+    """A stand-in with the used parts of a trace: ObsPy itself is not a dependency."""
     data = np.ma.masked_array(np.array([0.0, 0.1, -0.2, 0.0], dtype=np.float32), mask=False)
     trace = SimpleNamespace(data=data, stats=SimpleNamespace(delta=0.02), id="IT.MZAR..HGE")
     record = Record.from_obspy(trace, unit="m/s2", peak_g=0.4)
@@ -281,7 +281,7 @@ def test_settings_that_are_not_allowed(arch: Arch, pulse: Pulse) -> None:
 
 
 def test_a_number_is_no_file() -> None:
-    # Taken for a file that is open, it would be closed.
+    # A number that is taken for an open file would close that file.
     with open(os.devnull, encoding="ascii") as file:
         for path in (file.fileno(), 1, 2.5, None):
             with pytest.raises(TypeError):

@@ -1,4 +1,4 @@
-"""Beside other work: threads, Ctrl-C, memory, and arguments that nobody means."""
+"""Alongside other work: threads, Ctrl-C, memory, and arguments that nobody intends."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from archrock import (
 
 
 def test_the_lock_of_the_interpreter_is_free_while_computing() -> None:
-    """Another thread runs on, at its own pace, while a history is computed."""
+    """Another thread keeps running, at its own pace, while a history is computed."""
     arch = Arch(5.0, 0.15, 180.0, voussoirs=24)
     pulse = Pulse.rectangular(-0.30, 0.20)
     ticks: list[float] = []
@@ -54,7 +54,7 @@ def test_the_lock_of_the_interpreter_is_free_while_computing() -> None:
     over.set()
     ticking.join()
     within = [at for at in ticks if begun <= at <= begun + took_s]
-    # Were the lock held, there would be none.
+    # If the lock were held, there would be none.
     assert took_s > 0.05 and len(within) > 5
 
 
@@ -132,14 +132,14 @@ def test_memory_is_steady_over_ten_thousand_calls() -> None:
     calls(1_000)
     before = resident_bytes()
     calls(10_000)
-    # A history has some 8 kB: kept, they would take 80 MB.
+    # A history has some 8 kB; if the histories were kept, they would take 80 MB.
     assert resident_bytes() - before < 4_000_000
 
 
 def test_a_history_too_large_for_memory_is_refused(arch: Arch, pulse: Pulse) -> None:
     drums = Column(40.0, 8.0, drums=400)
     long: dict[str, Any] = {"model": "free_hinges", "duration_s": 1_000.0, "output_step_s": 0.005}
-    # At least the four numbers and more of every drum in every sample, each of eight bytes.
+    # At least four numbers for every drum in every sample, eight bytes each.
     needed_gb = Scenario.of(drums, pulse, **long).memory_gb()
     assert 400 * 200_000 * 5 * 8 / 1e9 < needed_gb < 20.0
     with pytest.raises(MemoryError, match=f"takes {needed_gb:.1f} GB of memory, and 4.0 GB are allowed"):
@@ -168,7 +168,7 @@ ODD: list[Any] = [
 
 
 def refused(call: Callable[[], Any]) -> bool:
-    """Whether a call raises an exception of those that are promised; anything else is let through."""
+    """Whether a call raises one of the promised exceptions; any other is let through."""
     try:
         call()
     except (ValueError, TypeError, OSError, OverflowError, MemoryError):
@@ -223,7 +223,7 @@ def test_arguments_that_nobody_means_are_exceptions(arch: Arch, pulse: Pulse) ->
         for _ in range(30):
             some = {name: rng.choice([value, rng.choice(ODD)]) for name, value in good.items()}
             outcomes[refused(lambda call=call, some=some: call(**some))] += 1  # type: ignore[misc]
-    # Some odd arguments are allowed, such as None where nothing need be given.
+    # Some odd arguments are allowed, such as None for an optional one.
     assert outcomes[True] > 1500 and outcomes[False] > 50
 
 

@@ -1,4 +1,4 @@
-"""The package computes what the program does, to the last bit."""
+"""The package computes the same as the program, to the last bit."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ KINDS = (
 
 
 def any_structure(rng: random.Random, free: bool) -> Structure | None:
-    """A structure, if these numbers make one that stands."""
+    """A structure, if these numbers give one that stands."""
     size: dict[str, Any] = {}
     if rng.random() < 0.5:
         size = {"depth_m": rng.uniform(0.5, 3.0), "density_kg_m3": rng.uniform(1500.0, 2600.0)}
@@ -111,7 +111,7 @@ def any_case(rng: random.Random, free: bool) -> tuple[Structure, Ground | None, 
 
 
 def assert_same(history: History, folder: Path, name: str) -> None:
-    """Asserts that a history is that of the program's files, number by number."""
+    """Asserts that a history is equal to the program's files, number by number."""
     with open(folder / "rotations.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     table = history.to_pandas()
@@ -122,14 +122,14 @@ def assert_same(history: History, folder: Path, name: str) -> None:
         if column == "state":
             assert cells == list(table["state"]), name
         else:
-            # Equal as numbers of 64 bits, signs of zeros too.
+            # Equal as 64-bit numbers, including the signs of zeros.
             told = np.array([float(cell) for cell in cells])
             assert told.tobytes() == np.asarray(table[column], dtype=float).tobytes(), (name, column)
             compared += 1
     assert compared >= 6
 
     summary = json.loads((folder / "summary.json").read_text())
-    # The time that the longest step of free hinges took belongs to no result.
+    # The time that the longest step of free hinges took is not part of the result.
     assert summary.pop("longest_step_us", 1.0) > 0.0
     assert summary == history.summary, name
 
@@ -152,7 +152,7 @@ def test_a_hundred_random_scenarios_have_the_bits_of_the_program(
         try:
             history = simulate(structure, ground, **settings)
         except ValueError as error:
-            # What cannot be computed is refused by both; the words are tested elsewhere.
+            # Both refuse what cannot be computed; other tests check the words.
             assert str(error)
             continue
         scenario = history.scenario
@@ -160,7 +160,7 @@ def test_a_hundred_random_scenarios_have_the_bits_of_the_program(
         (tmp_path / f"{name}.toml").write_text(scenario.to_toml())
         for file, contents in scenario.files.items():
             (tmp_path / file).write_bytes(contents)
-        # The same by way of a file.
+        # The same, read from a file.
         assert Scenario.read(tmp_path / f"{name}.toml").run() == history, name
         histories[name] = history
     assert {history.outcome for history in histories.values()} >= {"rest", "overturned"}
@@ -183,7 +183,7 @@ def test_gaps_are_those_of_joints_csv(program: Program, tmp_path: Path) -> None:
     joints = np.loadtxt(tmp_path / "out" / "joints.csv", delimiter=",", skiprows=1)
     assert np.array_equal(joints[:, 1:].reshape(history.gaps.shape), history.gaps)
     assert history.gaps.max() > 0.0
-    # With half and double steps, as the program does unasked.
+    # With half and double steps, as the program does by default.
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert history.spread() == summary["spread"]
 
@@ -231,7 +231,7 @@ def test_limit_and_chain_are_those_of_the_program(program: Program, tmp_path: Pa
 
 
 def test_defaults_are_those_of_the_program(arch: Arch, pulse: Pulse) -> None:
-    """A scenario without the tables that have defaults, against the signature of the function."""
+    """A scenario without the tables that have defaults, compared with the signature of the function."""
     text = (
         "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n"
         "[ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n"
@@ -248,7 +248,7 @@ def test_defaults_are_those_of_the_program(arch: Arch, pulse: Pulse) -> None:
 
 
 def test_a_record_of_arrays_is_that_of_a_file(program: Program, tmp_path: Path, arch: Arch) -> None:
-    """Units, scales, vertical components and clocks, by arrays and as the program reads them from files."""
+    """Units, scales, vertical components and clocks, from arrays and as the program reads them from files."""
     rng = random.Random(3)
     time = [index * 0.01 for index in range(200)]
     across = [rng.gauss(0.0, 1.0) for _ in time]

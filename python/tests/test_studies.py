@@ -1,4 +1,4 @@
-"""Studies: files to the bytes of the program's, parts, progress, results as arrays."""
+"""Studies: files byte-identical to the program's, parts, progress, results as arrays."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def assert_files(results: Results, folder: Path) -> None:
 
 
 def by_program(program: Program, folder: Path, command: str, text: str, *options: object) -> Path:
-    """The folder of results of a scenario, its records beside it."""
+    """The folder with the results of a scenario, whose records lie beside it."""
     folder.mkdir(exist_ok=True)
     (folder / "s.toml").write_text(text)
     ran = program(command, folder / "s.toml", "--out", folder / "out", *options)
@@ -121,7 +121,7 @@ def test_an_ensemble_is_that_of_the_program(program: Program, tmp_path: Path) ->
 
 
 def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
-    """Records that are held in memory, against the same files."""
+    """Records held in memory, compared with the same records in files."""
     column = Column(4.0, 0.8)
     records = [Record.read(path) for path in sorted(RECORDS.glob("wave-*.at2"))[:4]]
     levels = span(0.3, 3.0, 6, "logarithmic")
@@ -170,7 +170,7 @@ def test_parts_join_to_the_bytes_of_the_whole(program: Program, tmp_path: Path, 
     scenario = map_scenario(arch, COSINE, AXES, duration_s=20.0)
     whole = overturning_map(scenario)
     parts = [compute_part(scenario, "map", (index, 3), tmp_path) for index in (3, 1, 2)]
-    # A part that is there is not computed again.
+    # A part that exists is not computed again.
     before = parts[0].read_bytes()
     assert compute_part(scenario, "map", (3, 3), tmp_path) == parts[0]
     assert parts[0].read_bytes() == before
