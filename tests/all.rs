@@ -1,5 +1,5 @@
-//! All integration tests, as one program: what they share is compiled once, and the library is linked once.
-//! A file of tests is a line here; `cargo test --test all limit::` runs those of one.
+//! All integration tests, as one program: shared code is compiled once, and the library is linked once.
+//! Each line here is a file of tests; `cargo test --test all limit::` runs those of one file.
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
 mod browser;

@@ -36,7 +36,7 @@ fn a_column_has_the_capacity_of_a_block() {
             // Its centre of gravity is half as high, and starts half as fast.
             assert!((point.oscillator_displacement_m - 0.5 * top).abs() < 1e-9);
         }
-        // On straight lines between a hundred points.
+        // Both values are on straight lines between a hundred points.
         let half = side.secant_period_s(0.5, 9.81).unwrap();
         let middle = &side.curve[50];
         assert!(
@@ -77,8 +77,8 @@ fn curves_begin_at_the_onset_and_end_at_the_unstable_equilibrium() {
     }
 }
 
-/// The work of the horizontal force that holds the mechanism is its potential energy: `int a dX = Y`, with `X` and `Y`
-/// mass times displacement of the centre of gravity; and that is the energy of a history released there.
+/// The work of the horizontal force that holds the mechanism equals its potential energy: `int a dX = Y`, where `X` and `Y`
+/// are mass times displacement of the centre of gravity. It also equals the energy of a history released there.
 #[test]
 fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
     let scenario = parsed(POINTED);
@@ -132,7 +132,7 @@ fn mirror_images_exchange_their_sides() {
     assert!((own[0].end().displacement_m / own[1].end().displacement_m - 1.0).abs() > 0.05);
 }
 
-/// What the command writes is what the library says, and a wrong point is a usage error.
+/// The command writes what the library returns, and a wrong point is a usage error.
 #[test]
 fn the_command_writes_table_picture_and_summary() {
     let folder = tempfile::tempdir().unwrap();
@@ -172,8 +172,8 @@ fn the_command_writes_table_picture_and_summary() {
     }
 }
 
-/// At rest a secant has no displacement, and its period is none: of every scenario of the repository that has four links
-/// or is a block.
+/// At rest the secant has no displacement, and its period is undefined: in every scenario of the repository that has four
+/// links or is a block.
 #[test]
 fn curves_begin_at_no_displacement_and_no_period() {
     let folder = tempfile::tempdir().unwrap();
@@ -201,7 +201,7 @@ fn control_points_must_be_on_the_structure_and_move() {
     let scenario = parsed(POINTED);
     let outside = capacity(&scenario, Some(Vector2::new(0.0, 0.0))).unwrap_err();
     assert_eq!(outside, NoCapacity::Outside(Vector2::zeros()));
-    // A left pier stands still while the arch sways right: its hinges are in the arch and at the right springing.
+    // The left pier stands still while the arch sways right, because the hinges are in the arch and at the right springing.
     let still = capacity(&scenario, Some(Vector2::new(-3.5, -1.0))).unwrap_err();
     assert!(
         still.to_string().contains("does not move to the right"),

@@ -1,4 +1,4 @@
-//! What a run calls certain holds with other steps, and it still calls most things certain.
+//! What a run calls certain holds with other steps, and most results are still called certain.
 
 use crate::common::{GRAVITY, Random, noise, random_row};
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
@@ -9,13 +9,13 @@ use archrock::dynamics::spread::Repetitions;
 use archrock::studies::ending::Ending;
 use archrock::{Request, Sway};
 
-/// Steps, over those of a run, with which what it calls certain must hold.
+/// Steps, relative to those of a run, with which results called certain must hold.
 const OTHER_STEPS: [f64; 4] = [0.37, 0.23, 1.7, 2.9];
 
-/// By how much peaks may differ then: twice what a run allows its repetitions.
+/// Allowed relative difference between peaks: twice what a run allows its repetitions.
 const SAME: f64 = 0.02;
 
-/// A row that stands and moves, under a pulse or a broadband record some times as strong as its onset.
+/// A row that stands and can move, under a pulse or a broadband record several times as strong as its onset.
 fn case(random: &mut Random) -> (FreeHinges, GroundMotion, f64) {
     loop {
         let Ok(model) = FreeHinges::new(random_row(random, 30)) else {
@@ -102,7 +102,7 @@ fn campaign(cases: usize) -> Counts {
     counts
 }
 
-/// Of ten rows. Of a hundred (`ARCHROCK_CASES=100`): 95 outcomes and 98 first peaks are
+/// Ten rows. Out of a hundred (`ARCHROCK_CASES=100`), 95 outcomes and 98 first peaks are
 /// called certain, and one first peak does not hold.
 #[test]
 fn what_is_called_certain_holds_with_other_steps() {
@@ -116,7 +116,7 @@ fn what_is_called_certain_holds_with_other_steps() {
     );
 }
 
-/// Where output times are closer than the longest step, they limit the steps; a repetition with other steps has others nevertheless.
+/// Output times closer together than the longest step limit the steps. A repetition with other steps must still have other steps.
 #[test]
 fn repetitions_have_other_steps_however_close_output_times_are() {
     let row = random_row(&mut Random(7), 6);
@@ -153,9 +153,9 @@ fn repetitions_have_other_steps_however_close_output_times_are() {
     }
 }
 
-/// Maps take longer steps, and end a history that cannot overturn any more. With the steps of a run, whether it overturns and its
-/// largest rotation are those of the whole history to the last bit. With longer ones an answer that is called certain differs in at most one
-/// of a hundred cases, as with other steps of a run. Of six rows, each under three strengths of a pulse or a record.
+/// Maps take longer steps, and end a history that cannot overturn any more. With the steps of a run, the outcome and the
+/// largest rotation are those of the whole history to the last bit. With longer steps, an answer called certain differs in at most
+/// one of a hundred cases, as with other steps of a run. Six rows are tested, each under three strengths of a pulse or a record.
 #[test]
 fn maps_answer_as_runs_do() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(6, |cases| cases.parse().unwrap());
@@ -180,7 +180,7 @@ fn maps_answer_as_runs_do() {
             let case = [(ground.clone(), request)];
             let same_steps = Ending::until_safe(&model, &case).remove(0);
             let cell = Ending::until_safe(&of_maps, &case).remove(0);
-            // Ground much stronger than the onset may ask for shorter steps.
+            // Ground motion much stronger than the onset may need shorter steps.
             let (Ok(whole), Ok(same_steps), Ok(cell)) = (whole, same_steps, cell) else {
                 continue;
             };
@@ -222,7 +222,7 @@ fn maps_answer_as_runs_do() {
     assert!(early > 0 && overturned > 0, "{counts}");
     assert!(100 * contradicted <= 3 * cases, "{counts}");
     assert!(uncertain < cases && 2 * other_peaks <= peaks, "{counts}");
-    // What is ended early has less than 0.25.
+    // Histories that are ended early have less than 0.25.
     assert!(least > 0.4, "{counts}");
     if cases > 6 {
         std::io::Write::write_all(&mut std::io::stderr(), counts.as_bytes()).unwrap();

@@ -20,7 +20,7 @@ struct Case {
     next: Impact,
 }
 
-/// The mechanism that starts; `None` for arches that four-link mechanisms do not govern.
+/// The first mechanism; `None` for arches that do not start as four links.
 fn first(thickness_ratio: f64, embrace_deg: f64, sites: HingeSites) -> Option<(Ring, FourLink)> {
     let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
     Some((ring, incipient(&ring, sites).ok()?.mechanism))
@@ -48,7 +48,7 @@ impl Case {
         project(&self.before, &self.ring, &joints).unwrap()
     }
 
-    /// The field after the impact, put together from the rotations at the joints alone.
+    /// The field after the impact, built from the rotations at the joints alone.
     fn field(&self, projection: &Projection) -> Field {
         let jumps: Vec<_> = projection
             .joints
@@ -104,12 +104,12 @@ fn the_error_falls_with_the_square_of_the_number_of_joints() {
                 .unwrap()
                 .restitution
         });
-        // Each set of joints has the one before in it, so that the cones grow.
+        // Each set of joints contains the one before, so the cones grow.
         assert!(found.is_sorted_by(|a, b| *a < b + 1e-10), "{found:?}");
         let steps: Vec<f64> = found.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        // Four, but for where the joints happen to fall beside the ends of the zones that open.
+        // The ratio is four per step, except where joints happen to fall beside the ends of the zones that open.
         assert!(steps[0] / steps[3] > 16.0, "{steps:?}");
-        // What is left after the last step is a third of it at that rate.
+        // At that rate, the error after the last step is a third of the step.
         let error = found[4] + steps[3] / 3.0 - found[2];
         assert_eq!(DEFAULT_JOINTS, 720);
         assert!(error < 2e-6, "{error}");
@@ -129,8 +129,8 @@ fn the_field_opens_joints_and_keeps_the_energy_that_is_told() {
         for joint in &projection.joints {
             assert!(joint.opening_rates.into_iter().all(|rate| rate >= 0.0));
         }
-        // Both springings stand: the rotations close. The tolerances are those of the solver, 1e-10,
-        // summed over joints.
+        // Both springings stand still, so the rotations close. The tolerances are those of the solver, 1e-10,
+        // summed over the joints.
         let end = projection.joints.last().unwrap().angle_rad;
         let right = field.at(end, archrock::mechanics::geometry::field::Side::After);
         assert!(
@@ -171,12 +171,12 @@ fn the_impulses_are_compressive_inside_the_ring_and_complementary() {
             let section = joint.impulse;
             assert!(section.normal > 0.0, "{joint:?}");
             assert!(section.eccentricity_ratio.abs() <= 0.5, "{joint:?}");
-            // The impulses are the momentum that the part before the joint lost, from the field alone.
+            // The impulses are the momentum that the part before the joint lost, computed from the field alone.
             let passed = start + change.momentum_to(&case.ring, joint.angle_rad) - vector(joint);
             assert!(passed.linear.norm() < 1e-7 * size, "{passed:?}");
             assert!(passed.angular.abs() < 1e-7 * size, "{passed:?}");
-            // A joint that turns about an edge carries its impulse there: no work is done by what
-            // presses on the edge that parts.
+            // A joint that turns about an edge carries its impulse at that edge: the impulse does no work
+            // at the other edge, which parts.
             let [about_intrados, about_extrados] = joint.opening_rates;
             let from_extrados = 0.5 - section.eccentricity_ratio;
             let work = about_intrados * (1.0 - from_extrados) + about_extrados * from_extrados;
@@ -205,7 +205,7 @@ fn no_four_link_mechanism_keeps_more() {
             continue;
         };
         let Some(first) = Case::after(ring, ANYWHERE, &closing) else {
-            // Four hinges say that the impact stops the arch: so do all others.
+            // Four hinges find that the impact stops the arch; so must any other number.
             stops += 1;
             let joints = joints_rad(&ring, ANYWHERE, 180, None);
             let stop = project(&closing_field(&closing, &ring), &ring, &joints).unwrap();
@@ -217,7 +217,7 @@ fn no_four_link_mechanism_keeps_more() {
         for case in [Some(first), second].iter().flatten() {
             let gap = case.project(180).restitution - case.next.restitution;
             count += 1;
-            // The cone has the mechanism in it; what is left is the tolerance of the solver.
+            // The cone contains the mechanism; any remaining gap is the tolerance of the solver.
             assert!(gap > -1e-9, "{thickness_ratio} {embrace_deg}: {gap}");
             let extremes = case
                 .next
@@ -226,13 +226,13 @@ fn no_four_link_mechanism_keeps_more() {
                 .unwrap()
                 .resultants()
                 .extremes(ANYWHERE);
-            // A line that leaves the ring tells of energy to gain; by less than 1e-3 of the thickness it
-            // may do so between two of these joints.
+            // If a line leaves the ring, energy can be gained; by less than 1e-3 of the thickness it may
+            // leave the ring between two of these joints.
             if extremes.eccentricity_ratio.value > 0.501 {
                 outside += 1;
                 assert!(gap > 1e-6, "{thickness_ratio} {embrace_deg}: {gap}");
             }
-            // The theorem: an admissible line leaves nothing to gain but what the tolerances leave.
+            // The theorem: if the line is admissible there is no gain beyond the tolerances.
             if extremes.is_admissible() {
                 certified += 1;
                 assert!(gap < 1e-9, "{thickness_ratio} {embrace_deg}: {gap}");
@@ -290,7 +290,7 @@ fn where_four_joints_open_both_agree() {
 
 #[test]
 fn a_ring_that_moves_admissibly_loses_nothing() {
-    // The velocity is in the cone already: its projection is itself.
+    // The velocity is in the cone already, so it is its own projection.
     let case = Case::new(0.15, 157.5, HingeSites::Voussoirs(7)).unwrap();
     let sections = case.ring.sections(7);
     let opening = case.next.mechanism.field();
@@ -302,7 +302,7 @@ fn a_ring_that_moves_admissibly_loses_nothing() {
     );
     let opened: Vec<_> = found.opened().collect();
     for ((_, _, rate), expected) in opened.iter().zip(case.next.mechanism.openings()) {
-        // Impulses vanish with openings at the other joints, which leaves the square root of the tolerance.
+        // Impulses vanish together with openings at the other joints; this leaves the square root of the tolerance.
         assert!((rate - expected.abs()).abs() < 1e-5);
     }
     assert_eq!(opened.len(), 4);
@@ -312,7 +312,7 @@ fn a_ring_that_moves_admissibly_loses_nothing() {
 fn springings_and_hinges_are_always_joints() {
     let (ring, _) = first(0.15, 180.0, ANYWHERE).unwrap();
     let end = ring.embrace_rad();
-    // Hinges beside both springings, at both, and as good as at one.
+    // Hinges close to both springings, at both, and almost at one.
     for hinges in [
         [1e-4, 1.4, 2.4, end - 1e-4],
         [0.0, 1.4, 2.4, end],
@@ -326,7 +326,7 @@ fn springings_and_hinges_are_always_joints() {
             for hinge in hinges {
                 assert!(joints.iter().any(|joint| (joint - hinge).abs() < 1e-11));
             }
-            // The mechanism itself is in the cone: its closing loses nothing.
+            // The mechanism itself is in the cone, so its closing loses nothing.
             let kept = project(&mechanism.field(), &ring, &joints).unwrap();
             assert!(
                 (kept.restitution - 1.0).abs() < 1e-8,

@@ -1,4 +1,4 @@
-//! Records as people have them: what `check` and `run` tell of them, formats, and input that is unlikely.
+//! Records as people have them: what `check` and `run` report about them, formats, and unlikely input.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -24,7 +24,7 @@ fn sine() -> Vec<f64> {
         .collect()
 }
 
-/// The same motion in each format, with the keys to read it.
+/// The same motion in each format, with the keys that read it.
 fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
     let sine = sine();
     let mut at2 =
@@ -88,15 +88,15 @@ fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
     ]
 }
 
-/// The `--set` of keys as they are in a scenario.
+/// The `--set` options for keys that are written as in a scenario.
 fn set(keys: &str) -> Vec<String> {
     let lines = keys.lines().map(|line| line.replace(['\'', ' '], ""));
     lines.flat_map(|line| ["--set".to_owned(), line]).collect()
 }
 
-/// A sine of amplitude A and period T = 1 s has the velocity A / pi at its half and the displacement A / (2 pi) at its
-/// end and ever after. The squares add up to A^2 / 2, of which a part p is reached where t - sin(4 pi t) / (4 pi) = p:
-/// 5 % at 0.12945 s, and 95 % as long before the end.
+/// A sine of amplitude A and period T = 1 s has the velocity A / pi at half its period, and the displacement A / (2 pi) at its
+/// end and ever after. The integral of the squares is A^2 / 2; a part p of it is reached where t - sin(4 pi t) / (4 pi) = p:
+/// 5 % at 0.12945 s, and 95 % equally long before the end.
 #[test]
 fn a_record_is_told_alike_in_all_formats() {
     let folder = tempfile::tempdir().unwrap();
@@ -115,7 +115,7 @@ fn a_record_is_told_alike_in_all_formats() {
         ] {
             assert!(said.contains(words), "{file}: {words} is not in {said}");
         }
-        // Lines between 200 samples a second err by some 1e-4.
+        // Straight lines between 200 samples per second have errors of some 1e-4.
         for (what, exact) in [
             ("peak velocity ", velocity),
             ("peak displacement ", displacement),
@@ -154,14 +154,14 @@ fn a_record_shakes_alike_in_all_formats() {
             first,
             format!("  {file}: 401 samples every 0.005 s, 2 s long, peak 0.4000 g as scaled")
         );
-        // What is resolved reads back.
+        // The resolved scenario reads back.
         let resolved = stdout(&archrock(folder.path(), &["check", "s.toml"]));
         fs::write(folder.path().join("t.toml"), &resolved).unwrap();
         assert_eq!(
             stdout(&archrock(folder.path(), &["check", "t.toml"])),
             resolved
         );
-        // After the verdict.
+        // The line after the verdict.
         outcomes.push(rest.lines().nth(1).unwrap().to_owned());
     }
     assert!(outcomes[0].contains("came to rest") || outcomes[0].contains("overturned"));
@@ -192,7 +192,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         said.starts_with("g.AT2: ") && said.contains("\ncomma.csv: table"),
         "{said}"
     );
-    // Alone, a key of tables is refused on an AT2 file.
+    // For an AT2 file alone, a key of tables is refused.
     let said = refusal(&check(&["g.AT2", "--set", "skip_rows=3"]));
     assert!(
         said.contains("--set skip_rows=3: `skip_rows = 3` applies to `format = \"csv\"` only"),
@@ -209,7 +209,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         said.contains("single.csv:2: there is no column 2"),
         "{said}"
     );
-    // What is right is told, what is wrong as well.
+    // Files that are right are described, and those that are wrong are reported.
     let output = check(&["g.AT2", "none.at2", "s.toml"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("none.at2: cannot be read"));
@@ -329,7 +329,7 @@ fn unlikely_input_is_pointed_out() {
                 "offset.NS has a mean of 0.00523252 g, the offset of the instrument: give `remove_mean = true`",
             ),
         ),
-        // Longest steps of 3.4e-4 times the square root of size over gravity.
+        // The default longest step is 3.4e-4 times the square root of size over gravity.
         (
             format!(
                 "{}voussoirs = 7\n[free_hinges]\nlongest_step_s = 1e-3\n{pulse}\
@@ -354,7 +354,7 @@ fn unlikely_input_is_pointed_out() {
             let output = archrock(folder.path(), &[command, "s.toml"]);
             let said = stderr(&output);
             match warning {
-                // A thin arch of three degrees is refused besides.
+                // A thin arch of three degrees is also refused.
                 Some(_) if output.status.code() == Some(2) => {
                     assert!(text.contains("3.14159"), "{said}");
                     let remedy = "too thick for its embrace angle of 3.14159 degrees";
@@ -375,7 +375,7 @@ fn unlikely_input_is_pointed_out() {
     }
 }
 
-/// Weights beyond what numbers resolve end in an error that says so, and with others there is none.
+/// If weights differ by more than numbers can resolve, the error says so; otherwise there is no error.
 #[test]
 fn blocks_too_unlike_in_weight_are_named() {
     let folder = tempfile::tempdir().unwrap();

@@ -20,7 +20,7 @@ fn run(name: &str) -> (Value, Vec<Row>) {
     let file = scenarios().join(name).with_extension("toml");
     let output = archrock(folder.path(), &["run", file.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    // One scenario is compared with a program whose gravity is 10.
+    // One scenario has a gravity of 10, for comparison with another program.
     let said = stderr(&output);
     assert!(
         said.is_empty() || said == "warning: gravity is 10 m/s2, not that of the Earth\n",
@@ -51,7 +51,7 @@ fn the_readme_scenario_comes_to_rest() {
     }
     assert_eq!(time(last), summary["outcome_time_s"].as_f64().unwrap());
     assert_eq!(&last[3], "rest");
-    // The largest row is below the peak of the summary by what it can miss within half a step.
+    // The largest row may be below the peak of the summary by what happens within half a step.
     let magnitudes = regular
         .iter()
         .map(|row| row[6].parse::<f64>().unwrap().abs());
@@ -125,7 +125,7 @@ fn impacts_are_a_table_of_what_the_summary_counts() {
         assert_eq!(row["sway_before"], sway);
         row["sway_after"].clone_into(&mut sway);
         let ratio = row.number("energy_after_j") / row.number("energy_before_j");
-        // Two ways to the same quotient, which rounding parts.
+        // Two ways to compute the same quotient, which differ by rounding.
         assert!((ratio - row.number("restitution")).abs() < 1e-12);
     }
     // The published first impact: r, and the hinges of the mechanism after it.
@@ -166,7 +166,7 @@ fn limit_and_impact_print_the_published_numbers_as_json() {
     assert_eq!(impacts.len(), 3);
     let published = [0.681_185_59, 0.737_098_52, 0.764_018_83];
     for (impact, restitution) in impacts.iter().zip(published) {
-        // The third is published as 0.76401883; its next digits are 56.
+        // The third is published as 0.76401883; its next two digits are 56.
         close(&impact["restitution"], restitution, 6e-9);
     }
     assert_eq!(impacts[0]["before"]["sway"], "right");
@@ -191,7 +191,7 @@ fn check_prints_a_scenario_that_reads_back() {
     assert_eq!(check(), first);
 }
 
-/// Runs a scenario that is wrong, and returns the message.
+/// Runs a faulty scenario, and returns the message.
 fn faulty(text: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), text).unwrap();
@@ -204,7 +204,7 @@ fn faulty(text: &[u8]) -> String {
     message
 }
 
-/// Whatever is asked of a faulty scenario, or of one that lacks what the command is about.
+/// Whatever is asked of a faulty scenario, or of one that lacks what the command needs.
 #[test]
 fn every_command_refuses_wrong_input_with_exit_code_two() {
     let folder = tempfile::tempdir().unwrap();
@@ -313,7 +313,7 @@ fn bad_input_is_refused_with_its_place() {
         assert!(message.contains(words), "{words}: {message}");
     }
     assert!(faulty(b"title = \"\xff\"\n").contains(":1:10: not UTF-8 text"));
-    // The thickness that stands is Milankovitch's.
+    // The least thickness at which the arch stands is Milankovitch's.
     let thin = ARCH.replace("0.15", "0.10");
     assert!(faulty(thin.as_bytes()).contains("at least 0.1075"));
     let shallow = ARCH.replace("180.0", "90");
@@ -328,7 +328,7 @@ fn a_place_that_cannot_be_written_is_said_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
     let pulse = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.2\n";
     scenario(folder.path(), &format!("{ARCH}{pulse}"));
-    // A file is not a folder, not even for those who may write anywhere.
+    // A file is not a folder, even for users who may write anywhere.
     for (command, option) in [
         ("run", "--out"),
         ("threshold", "--out"),
@@ -364,7 +364,7 @@ fn numbers_too_small_for_anything_are_refused() {
     }
 }
 
-/// What nothing moves is bad input: there is no history to draw.
+/// A scenario in which nothing moves the structure is bad input: there is no history to draw.
 #[test]
 fn a_run_that_nothing_moves_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -394,13 +394,13 @@ fn rotations_go_to_standard_output_and_nothing_else_is_written() {
     archrock(folder.path(), &["run", "s.toml", "--out", "o"]);
     let written = fs::read(folder.path().join("o/rotations.csv")).unwrap();
     assert_eq!(written, piped.stdout);
-    // A sway to the left turns the right body anticlockwise.
+    // In a sway to the left the right body turns anticlockwise.
     let text = String::from_utf8(piped.stdout).unwrap();
     let fields: Vec<_> = text.lines().nth(1).unwrap().split(',').collect();
     assert_eq!((fields[3], fields[6]), ("left", "0.001"));
 }
 
-/// The repetitions of a run that nobody reads would take minutes.
+/// The repetitions of this run would take minutes, and nobody reads its output.
 #[test]
 fn a_closed_pipe_ends_a_run_with_free_hinges_at_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -424,7 +424,7 @@ fn a_closed_pipe_ends_a_run_with_free_hinges_at_once() {
     );
 }
 
-/// How far it has fallen when the run ends is no measure of anything.
+/// If it overturned, the rotation at the end of the run means nothing.
 #[test]
 fn of_what_overturns_the_largest_rotation_is_not_said() {
     let folder = tempfile::tempdir().unwrap();
@@ -458,8 +458,8 @@ fn usage_errors_have_exit_code_two() {
     assert_eq!(version.status.code(), Some(0));
 }
 
-/// Random scenarios, from the file to the results. What the numbers must obey is tested in the library;
-/// here it is that they arrive: finite, in order, under their names.
+/// Random scenarios, from the file to the results. The library's tests check the numbers;
+/// this one checks that they arrive: finite, in order, under their names.
 #[test]
 fn random_scenarios_run_to_an_outcome() {
     use archrock::dynamics::ground::Pulse;
@@ -487,7 +487,7 @@ fn random_scenarios_run_to_an_outcome() {
         scenario(folder.path(), &text);
         let output = archrock(folder.path(), &["run", "s.toml", "--out", "o", "--dimensionless"]);
         if output.status.code() == Some(2) {
-            // Only the arch may be to blame: too thin to stand.
+            // Only the arch may be at fault: too thin to stand.
             prop_assert!(stderr(&output).contains("cannot carry its own weight"));
             return Ok(());
         }
@@ -534,7 +534,7 @@ fn a_mistyped_command_is_answered_with_the_likely_one() {
     assert!(!said.contains("similar"), "{said}");
 }
 
-/// Every command shows examples, and their options are its own.
+/// Every command shows examples, whose options it has.
 #[test]
 fn every_help_has_examples_that_are_right() {
     let folder = tempfile::tempdir().unwrap();

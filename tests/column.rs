@@ -1,4 +1,4 @@
-//! Housner's free-standing column against closed forms and quadratures of its own.
+//! Housner's free-standing column compared with closed forms and independent quadratures.
 
 use crate::common::pulse;
 use std::f64::consts::PI;
@@ -29,7 +29,7 @@ fn restitution(alpha: f64) -> f64 {
     (1.0 - 1.5 * alpha.sin().powi(2)).powi(2)
 }
 
-/// With samples at the start and at the end.
+/// The only samples are those at the start and at the end.
 const REQUEST: Request = Request {
     gravity_m_s2: GRAVITY_M_S2,
     end_s: 60.0,
@@ -69,9 +69,9 @@ fn quarter_period_s(alpha: f64, theta_0: f64) -> f64 {
     history.impacts().next().unwrap().0
 }
 
-/// Energy integral `theta'^2 = 2 p^2 (cos(alpha - theta_0) - cos(alpha - theta))`, with the singularity
-/// at the turning point taken out by `theta = theta_0 (1 - u^2)` and the difference of cosines written as
-/// a product. The tolerance is that of the integration.
+/// Energy integral `theta'^2 = 2 p^2 (cos(alpha - theta_0) - cos(alpha - theta))`. The substitution
+/// `theta = theta_0 (1 - u^2)` removes the singularity at the turning point, and the difference of cosines is
+/// written as a product. The tolerance is that of the integration.
 #[test]
 fn the_quarter_period_is_the_energy_integral() {
     for (alpha, part) in [(0.05, 0.3), (0.2, 0.5), (0.2, 0.99), (0.6, 0.7), (1.2, 0.4)] {
@@ -95,7 +95,7 @@ fn the_quarter_period_is_the_energy_integral() {
     }
 }
 
-/// Housner's period of the slender column: the difference is of the order `alpha^2`, so it falls to a
+/// Housner's period of the slender column: the error is of the order `alpha^2`, so it falls to a
 /// quarter when the slenderness is halved.
 #[test]
 fn the_period_tends_to_the_slender_one() {
@@ -108,8 +108,8 @@ fn the_period_tends_to_the_slender_one() {
     assert!(miss(1e-4).abs() < 1e-8);
 }
 
-/// Peaks between impacts: `1 - cos` of the angle to the equilibrium loses the factor `r` at every impact.
-/// The samples are so dense that the highest is `p^2 alpha dt^2 / 8 = 5e-10` below the peak at most.
+/// Peaks between impacts: `1 - cos` of the angle to the equilibrium is multiplied by `r` at every impact.
+/// The samples are so dense that the highest is at most `p^2 alpha dt^2 / 8 = 5e-10` below the peak.
 #[test]
 fn peaks_decay_with_the_restitution() {
     let (alpha, theta_0) = (0.25, 0.2);
@@ -157,14 +157,14 @@ fn peaks_decay_with_the_restitution() {
     }
 }
 
-/// The same for slender columns: `1 - (1 - phi)^2` of the rotation over `alpha`. Energies before the
-/// impacts stand for the peaks; the slender law errs by `alpha^2`.
+/// The same for slender columns: `1 - (1 - phi)^2`, where `phi` is the rotation over `alpha`. Energies before the
+/// impacts stand for the peaks; the slender law has an error of `alpha^2`.
 #[test]
 fn slender_columns_decay_as_housner_says() {
     let (alpha, phi_0) = (1e-3, 0.7);
     let (column, still) = (column(alpha), GroundMotion::still());
     let history = run(&column, &still, &released(Sway::Right, phi_0 * alpha));
-    // r is 1 - 3e-6, so that the loss after many impacts is what there is to see.
+    // r is 1 - 3e-6, so the loss becomes visible only after many impacts.
     assert!(history.summary.impacts > 25);
     let energy = |phi: f64| 1.0 - (1.0_f64 - phi).powi(2);
     for (impacts, (_, impact)) in (0_i32..).zip(history.impacts()) {
@@ -222,7 +222,7 @@ fn overturning_x(kind: Pulse, alpha: f64, duration_s: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Slender: `cosh(p t_1) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. The difference is of the order
+/// Slender: `cosh(p t_1) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. The error is of the order
 /// `alpha^2`.
 #[test]
 fn rectangular_pulses_overturn_slender_columns_as_housner_says() {
@@ -239,9 +239,9 @@ fn rectangular_pulses_overturn_slender_columns_as_housner_says() {
 
 /// Finite slenderness: while a push `a` lasts, the energy integral is
 /// `theta'^2 = 2 p^2 (a/g (sin(alpha) - sin(alpha - theta)) - (cos(alpha - theta) - cos(alpha)))`. The pulse
-/// just overturns if at its end, `theta_1`, the energy is that of the upright diagonal, which is to say
-/// `sin(alpha - theta_1) = sin(alpha) - (1 - cos(alpha)) g / a`; its duration is then the integral of
-/// `d theta / theta'`, with `theta = theta_1 u^2` to take the start from rest out.
+/// just overturns if the energy at its end, `theta_1`, is that of the upright diagonal, which means
+/// `sin(alpha - theta_1) = sin(alpha) - (1 - cos(alpha)) g / a`. Its duration is then the integral of
+/// `d theta / theta'`, with `theta = theta_1 u^2` to remove the singularity of the start from rest.
 #[test]
 fn rectangular_pulses_overturn_fat_columns_by_the_energy_integral() {
     for (alpha, push_g) in [(0.3_f64, 0.8), (0.3, 0.35), (0.7, 1.5)] {
@@ -270,9 +270,9 @@ fn rectangular_pulses_overturn_fat_columns_by_the_energy_integral() {
 /// Slender column under a half sine `x g alpha sin(w t)`, `b = w / p`.
 ///
 /// It lifts off at `t_0` with `x sin(w t_0) = 1`. With `y = theta / alpha - 1` the motion is
-/// `y'' = p^2 (y + x sin(w t))`, so that `v = y' + p y`, the share of the growing exponential, obeys
+/// `y'' = p^2 (y + x sin(w t))`. So `v = y' + p y`, the amplitude of the growing exponential, obeys
 /// `v' = p v + p^2 x sin(w t)` from `v(t_0) = -p`. The column overturns if `v >= 0` at the end `pi / w`, that
-/// is if `p x int_{t_0}^{pi/w} exp(-p (t - t_0)) sin(w t) dt >= 1`; the integral is elementary and leaves
+/// is if `p x int_{t_0}^{pi/w} exp(-p (t - t_0)) sin(w t) dt >= 1`. The integral is elementary and gives
 ///
 /// `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) >= b`.
 #[test]
@@ -338,8 +338,8 @@ fn energy_is_kept() {
     }
 }
 
-/// A ground that pushes all the time, but too little to lift the column off, and holds it down the longer
-/// the smaller its hops are. The energy at `q = 0` falls by `r` at every impact whatever the push, so the
+/// The ground pushes all the time, but too little to lift the column off; the smaller the hops, the more
+/// the push holds it down. Whatever the push, the energy at `q = 0` falls by the factor `r` at every impact, so the
 /// number of impacts follows; their instants accumulate.
 #[test]
 fn chattering_on_a_pushing_ground_ends_in_rest() {
@@ -421,12 +421,12 @@ fn a_flat_column_falls_back_and_lies_still() {
     };
     assert!(impact.opened.is_empty() && impact.restitution == 0.0);
     assert!(impact.rates_after_rad_s == [0.0]);
-    // From the left, where it was anticlockwise, it falls back clockwise.
+    // From the left, where its rotation was anticlockwise, it falls back clockwise.
     assert!(impact.rates_before_rad_s[0] < 0.0);
 }
 
-/// The ends of the ranges of the scenario: nothing overflows or loses its digits. A column as slender as
-/// `1e-9` is pushed by what would lift it.
+/// At the ends of the ranges of the scenario nothing overflows or loses its digits. A column as slender as
+/// `1e-9` is pushed by the acceleration that would lift it.
 #[test]
 fn columns_of_all_proportions_rock() {
     for height_m in [1e-3, 1.0, 1e6] {
@@ -445,7 +445,7 @@ fn columns_of_all_proportions_rock() {
                     ..REQUEST
                 };
                 let history = run(&column, &ground, &request);
-                // It lifts off when it is pushed enough, and then only.
+                // It lifts off if and only if the push is large enough.
                 let uplifts = history
                     .events
                     .iter()
@@ -453,7 +453,7 @@ fn columns_of_all_proportions_rock() {
                 assert_eq!(uplifts.count(), 1);
                 assert!(history.summary.peak_rotations_rad[0] > 0.0);
                 assert!((0.0..=0.5 * PI).contains(&history.summary.peak_rotations_rad[0]));
-                // A flat column starts at accelerations whose work dwarfs the barrier.
+                // A flat column starts at accelerations whose work is far larger than the barrier.
                 let defect = history.summary.energy_defect_ratio;
                 assert!(defect.is_finite() && (width_m > height_m || defect < 1e-7));
             }

@@ -23,7 +23,7 @@ fn results(scenario: &str, arguments: &[&str]) -> tempfile::TempDir {
     folder
 }
 
-/// The tangent of the slenderness, 0.8 m over 4 m, but for the last digit.
+/// The tangent of the slenderness, 0.8 m over 4 m, except for the last digit.
 fn assert_incipient(both: &Value) {
     for side in ["right", "left"] {
         assert!((both[side].as_f64().unwrap() - 0.2).abs() < 1e-16);
@@ -44,7 +44,7 @@ fn files_have_one_body_and_no_hinges() {
     let expected = "impact,time_s,sway_before,sway_after,restitution,energy_before_j,energy_after_j,\
                     rate_before_rad_s,rate_after_rad_s";
     assert_eq!(header, expected);
-    // The first impact is from the right toe to the left one, at the rates of Housner.
+    // The first impact goes from the right toe to the left one, at Housner's rates.
     let first = &impacts[0];
     let rate_ratio = 1.0 - 1.5 * (0.04 / 1.04);
     assert_eq!(
@@ -66,7 +66,7 @@ fn files_have_one_body_and_no_hinges() {
     let peak = summary["peak_rotation_rad"].as_f64().unwrap();
     let sampled = rows.iter().map(|row| row.number("rotation_rad").abs());
     let sampled = sampled.fold(0.0, f64::max);
-    // At most p^2 alpha dt^2 / 8 apart.
+    // The difference is at most p^2 alpha dt^2 / 8.
     assert!(peak >= sampled && peak - sampled < 3e-6);
     assert_incipient(&summary["incipient_acceleration_g"]);
     assert_eq!(summary["impacts"], impacts.len());
@@ -111,7 +111,7 @@ fn dimensionless_columns_come_last() {
     }
 }
 
-/// Events are the phases of the rotations, and hold the impacts: a column that rocks to its rest, one that
+/// Events match the phases of the rotations, and include the impacts: for a column that rocks until rest, one that
 /// overturns after an impact, and an arch.
 #[test]
 fn events_are_the_phases_of_the_rotations() {
@@ -207,7 +207,7 @@ fn limit_and_impact_name_the_toes() {
     assert!(archrock(&["impact"], &path).contains("left toe"));
     assert!(archrock(&["check"], &path).contains("density_kg_m3 = 2000.0"));
 
-    // Pictures of mechanisms are of arches: said before anything is drawn.
+    // Pictures of mechanisms exist for arches only; the error comes before anything is drawn.
     for command in ["limit", "impact"] {
         let picture = folder.path().join("p.svg");
         let arguments = [command, "--plot", "p.svg", "s.toml"];
@@ -215,7 +215,7 @@ fn limit_and_impact_name_the_toes() {
         assert!(!picture.exists());
     }
 
-    // A flat one stops.
+    // A flat column stops at the first impact.
     fs::write(&path, "[column]\nheight_m = 1\nwidth_m = 2\n").unwrap();
     let impact: Value = serde_json::from_str(&archrock(&arguments, &path)).unwrap();
     assert_eq!(impact, json!({ "impacts": [] }));

@@ -1,4 +1,4 @@
-//! What `run` gives to draw with: poses, snapshots, hinges in the tables; and `limit` as JSON beside its text.
+//! The output of `run` that can be drawn: poses, snapshots, hinges in the tables; and `limit` as JSON and as text.
 
 use std::fs;
 use std::path::Path;
@@ -17,7 +17,7 @@ fn run(folder: &Path, scenario: &str, more: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A body of a row of `poses.csv`, in the words of its documentation.
+/// A point of a body in a row of `poses.csv`, moved as its documentation says.
 fn moved(row: &Row, body: &str, point: Vector2<f64>) -> Vector2<f64> {
     let [x, y, rotation] = [("x", "m"), ("y", "m"), ("rotation", "rad")]
         .map(|(quantity, unit)| row.number(&format!("{quantity}_{body}_{unit}")));
@@ -35,8 +35,8 @@ fn point(angle_deg: f64, edge: &str) -> Vector2<f64> {
     Vector2::new(sin, cos) * radius
 }
 
-/// With the hinges of `events.csv`, the poses keep the bodies together at each of them, and the outer ones on the ground:
-/// places and edges of hinges, and poses, from three independent tables.
+/// With the hinges of `events.csv`, the poses keep the bodies together at each hinge, and the outer bodies on the ground.
+/// Places of hinges, edges of hinges and poses come from three independent tables.
 #[test]
 fn bodies_meet_at_the_hinges_of_the_tables() {
     let folder = tempfile::tempdir().unwrap();
@@ -90,7 +90,7 @@ fn an_impact_closes_the_hinges_that_opened_before() {
             (place, row[&format!("{what}_{hinge}_edge")].to_owned())
         })
     };
-    // Those of `archrock limit`, from the README.
+    // The hinges of `archrock limit`, from the README.
     let first = [24.01353, 81.78741, 139.56130, 180.0];
     for ((place, edge), due) in cells(&impacts[0], "closed").into_iter().zip(first) {
         assert!((place - due).abs() < 1e-5);
@@ -105,7 +105,7 @@ fn an_impact_closes_the_hinges_that_opened_before() {
     for pair in impacts.windows(2) {
         assert_eq!(cells(&pair[0], "hinge"), cells(&pair[1], "closed"));
     }
-    // Columns have toes, and no such cells.
+    // Columns have toes, and no cells for edges.
     run(folder.path(), "column-pulse.toml", &[]);
     for name in ["impacts.csv", "events.csv"] {
         let header = fs::read_to_string(folder.path().join(name)).unwrap();
@@ -140,7 +140,7 @@ fn snapshots_are_to_scale() {
             .unwrap();
         let (side, top) = (corners[1] - corners[0], corners[2] - corners[1]);
         assert!((side.norm() / top.norm() - 4.0 / 0.8).abs() < 2e-3);
-        // On the sheet y points downwards.
+        // On the sheet y points down.
         let turned_rad = (-side.x).atan2(-side.y);
         assert!(
             (turned_rad - row.number("rotation_rad")).abs() < 2e-4,
@@ -217,7 +217,7 @@ fn snapshots_after_the_end_and_without_a_folder_are_told() {
     }
 }
 
-/// Every number of the text is in the JSON.
+/// The JSON has every number of the text.
 #[test]
 fn limit_says_the_same_as_json() {
     for scenario in [

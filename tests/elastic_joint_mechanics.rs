@@ -1,4 +1,4 @@
-//! A single elastic joint: its forces against its energy, conservation of momenta, and its stress against sums over many points.
+//! A single elastic joint: forces from its energy, conservation of momenta, and stresses compared with sums over many points.
 
 use archrock::mechanics::elastic_joint::{
     Body, ElasticJoint, ElasticStructure, Fibre, Link, Memory, Place,
@@ -9,7 +9,7 @@ use archrock::{Contact, ElasticProperties};
 const ALONG: [f64; 2] = [0.6, 0.8];
 const NORMAL_N_M: f64 = 3e9;
 const LENGTH_M: f64 = 0.7;
-/// Centres of the two bodies when undeformed, and the middle of the joint.
+/// Centres of the two undeformed bodies, and the middle of the joint.
 const CENTRES_M: [[f64; 2]; 2] = [[0.5, -0.2], [-0.3, 0.6]];
 const MIDDLE_M: [f64; 2] = [0.12, 0.2];
 
@@ -61,11 +61,11 @@ fn energy_j(structure: &ElasticStructure, q: [f64; 6]) -> f64 {
     structure.energy_j(joint, &memory, &fibres).0[0]
 }
 
-/// Positions at which the joint is closed, open in part at either edge, and far turned; the penetrations follow.
+/// Positions at which the joint is closed, partly open at either edge, and rotated far; the penetrations follow.
 fn positions() -> Vec<[f64; 6]> {
     let normal = [-ALONG[1], ALONG[0]];
     let pressed = |depth: f64, turn: f64, common: f64, slip: f64| {
-        // The second body is moved into the first one and turned; then both turn together about the origin.
+        // The second body is moved into the first and rotated; then both rotate together about the origin.
         let moved = [0, 1].map(|i| ALONG[i] * slip - normal[i] * depth);
         let arm = [MIDDLE_M[0] - CENTRES_M[1][0], MIDDLE_M[1] - CENTRES_M[1][1]];
         let swung = |a: f64, v: [f64; 2]| {
@@ -95,8 +95,8 @@ fn positions() -> Vec<[f64; 6]> {
     ]
 }
 
-/// What a joint does is minus the derivative of its energy, to the truncation of the differences; and it changes neither momentum
-/// nor angular momentum, to rounding.
+/// The forces of a joint are minus the derivative of its energy, up to the truncation error of the differences. They change neither
+/// momentum nor angular momentum, up to rounding.
 #[test]
 fn a_joint_acts_by_its_energy_and_keeps_momenta() {
     for (contact, strength_m) in [
@@ -136,7 +136,7 @@ fn a_joint_acts_by_its_energy_and_keeps_momenta() {
     }
 }
 
-/// Forces at the edges, with damping, against sums over many points of the joint: of what presses, and never pulls.
+/// Forces at the edges, with damping, compared with sums over many points of the joint; every part is in compression or has no force.
 #[test]
 fn the_stress_of_a_joint_is_that_of_its_parts() {
     let damping = 0.5;
@@ -184,7 +184,7 @@ fn the_stress_of_a_joint_is_that_of_its_parts() {
                     (exact[end] - due[end]).abs() <= 1e-4 * size,
                     "{exact:?} {due:?}"
                 );
-                // Parts that may crush, and do not, are as exact; their intervals of damping end anywhere.
+                // Parts that may crush but do not are just as accurate; their intervals of damping may end anywhere.
                 assert!(
                     (cells[end] - exact[end]).abs() <= 1e-9 * size,
                     "{exact:?} {cells:?}"
@@ -198,7 +198,7 @@ fn the_stress_of_a_joint_is_that_of_its_parts() {
     }
 }
 
-/// A joint that is pressed beyond its strength bears it, gives back only what is elastic, and takes the difference.
+/// A joint pressed beyond its strength carries the strength, gives back only the elastic energy, and dissipates the difference.
 #[test]
 fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
     for contact in [Contact::Continuous, Contact::Points(3)] {
@@ -227,7 +227,7 @@ fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
         for step in 0..=300 {
             press(1e-5 * f64::from(step));
         }
-        // It presses no more once it has come back by the elastic part.
+        // The force vanishes once the joint has sprung back by the elastic part.
         assert!(press(2e-3 + 1e-6) > 0.0 && press(2e-3 - 1e-6) == 0.0);
         let strength_n = NORMAL_N_M * strength_m;
         assert!((largest_n / strength_n - 1.0).abs() < 1e-9, "{largest_n}");

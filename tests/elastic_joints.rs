@@ -1,4 +1,4 @@
-//! Rows with elastic joints, against closed forms, tables of an independent program, and symmetries.
+//! Rows with elastic joints, compared with closed forms, tables of an independent program, and symmetries.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -37,7 +37,7 @@ fn stack(drums: usize, height_m: f64) -> Row {
     Row::stack(&vec![drum; drums], 1.0, 2700.0).unwrap()
 }
 
-/// As stiff against slip as against penetration, undamped.
+/// As stiff against slip as against penetration, without damping.
 fn joints(stiffness_pa_m: f64, contact: Contact) -> ElasticProperties {
     ElasticProperties {
         stiffness: Stiffness::Uniform(JointStiffness {
@@ -67,7 +67,7 @@ fn falls(summary: &Summary) -> bool {
     matches!(summary.outcome, Outcome::Overturned(_))
 }
 
-/// Whether the least amplitude that overturns lies within this part of what is due, with histories of this length.
+/// Asserts that the least amplitude that overturns lies within this tolerance of the expected one.
 fn overturns_at(
     model: &ElasticJoints,
     pulse: Pulse,
@@ -82,7 +82,7 @@ fn overturns_at(
     assert!(!below && above, "{due_m_s2}: {below} {above}");
 }
 
-/// Thrust over the weight, from the force on the first block.
+/// Thrust relative to the weight, from the force on the first block.
 fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     let rest = structure.rest([0.0, -gravity_m_s2]).unwrap();
     let places = [Place::undeformed(), Place::at(&rest.moved[0])];
@@ -101,7 +101,7 @@ fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     action.force_n[0].0[0] / weight_n
 }
 
-/// An independent program with tangents by differences gives these to all digits shown.
+/// An independent program, with tangents by finite differences, gives these values to all digits shown.
 #[test]
 fn arches_rest_where_an_independent_program_has_them() {
     for (row, gravity, stiffness, thrust, drop_mm) in [
@@ -129,7 +129,7 @@ fn arches_rest_where_an_independent_program_has_them() {
     }
 }
 
-/// Every joint of a column carries what is above it: `W/(kn w t)`.
+/// Every joint of a column carries the weight above it: `W/(kn w t)`.
 #[test]
 fn a_column_settles_by_its_weight_over_its_stiffness() {
     let row = stack(5, 4.0);
@@ -144,7 +144,7 @@ fn a_column_settles_by_its_weight_over_its_stiffness() {
     }
 }
 
-/// Materials in series: `1/kn = t_m/E_m + L/E_b`, at the base with half a drum.
+/// Materials in series: `1/kn = t_m/E_m + L/E_b`; at the base with half a drum.
 #[test]
 fn stiffness_follows_from_materials_in_series() {
     let properties = ElasticProperties {
@@ -163,9 +163,9 @@ fn stiffness_follows_from_materials_in_series() {
     }
 }
 
-/// A block of half base b with its centre at h that is pushed resists `(b - x_c t/3 - h kappa) W` at most, at
-/// `kappa = (sqrt(2 W/(kn w))/(6 h))^(2/3)`: a closed form for small rotations, which loses below 1.5 % of it to their squares
-/// where joints are softest.
+/// A pushed block of half base b, with its centre at height h, resists `(b - x_c t/3 - h kappa) W` at most, at
+/// `kappa = (sqrt(2 W/(kn w))/(6 h))^(2/3)`. This closed form holds for small rotations; with the softest joints, their squares
+/// change it by less than 1.5 %.
 #[test]
 fn a_block_that_is_pushed_resists_by_its_closed_form() {
     let (row, gravity) = (stack(1, 5.0), 9.81);
@@ -241,8 +241,8 @@ fn what_does_not_rest_says_why() {
     assert!(error.to_string().contains("not stable"), "{error}");
 }
 
-/// Of a published deck of a discrete-element program: 17 voussoirs, joints of 10 GPa/m with three points, half sine of 0.15 g. The
-/// independent program has 16.42 mm at 0.540 s; the crown's displacement is read from samples a millisecond apart.
+/// From a published deck of a discrete-element program: 17 voussoirs, joints of 10 GPa/m with three points, half sine of 0.15 g. The
+/// independent program gives 16.42 mm at 0.540 s; the crown's displacement is read from samples a millisecond apart.
 #[test]
 fn the_crown_of_a_published_arch_moves_as_it_should() {
     let properties = ElasticProperties {
@@ -278,7 +278,7 @@ fn the_crown_of_a_published_arch_moves_as_it_should() {
     assert!(summary.row.unwrap().energy_error < 1e-4);
 }
 
-/// The tables of an independent program, to half a per cent.
+/// The tables of an independent program are reproduced to half a per cent.
 #[test]
 fn blocks_and_arches_overturn_where_an_independent_program_has_them() {
     let continuous = Contact::Continuous;
@@ -315,7 +315,7 @@ fn blocks_and_arches_overturn_where_an_independent_program_has_them() {
     );
 }
 
-/// Eight lanes, more cases than lanes, histories of different length and step: every summary has the bits of the history alone.
+/// Eight lanes, more cases than lanes, histories of different lengths and steps: every summary is bit-identical to that of the history alone.
 #[test]
 fn histories_side_by_side_have_the_bits_of_each_alone() {
     for contact in [Contact::Continuous, Contact::Points(3)] {
@@ -353,7 +353,7 @@ fn histories_side_by_side_have_the_bits_of_each_alone() {
     }
 }
 
-/// The balance of energy closes with the square of the step; damping, friction and crushing create nothing.
+/// The error of the energy balance falls with the square of the step; damping, friction and crushing create no energy.
 #[test]
 fn the_energy_balance_closes_with_the_square_of_the_step() {
     let strong = ElasticProperties {
@@ -403,13 +403,13 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
             summary.energy_defect_ratio
         };
         let [coarse, fine] = [0.5, 0.125].map(error);
-        // Sixteen times less with steps four times shorter, if contacts changed at the same instants.
+        // With steps four times shorter it would be sixteen times less, if contacts changed at the same instants.
         assert!(fine < 0.15 * coarse && fine < 1e-6, "{coarse:e} {fine:e}");
     }
 }
 
-/// Mirror images move as mirror images, to the rounding that a second of chatter leaves; all lengths four times as large with
-/// stiffness per area a quarter of it, and times twice as long, change rotations by rounding only.
+/// Mirror images move as mirror images, up to the rounding that a second of chatter amplifies. If all lengths are four times as large,
+/// the stiffness per area a quarter and times twice as long, rotations change by rounding only.
 #[test]
 fn mirror_images_and_scaled_arches_move_alike() {
     let ring = Ring::new(0.15, PI).unwrap();
@@ -442,7 +442,7 @@ fn mirror_images_and_scaled_arches_move_alike() {
     let large = Row::annular(&ring, &sections, 20.0, 1.0, 2700.0).unwrap();
     let scaled = ElasticProperties {
         damping_time_s: 2e-3,
-        // Weights grow by 16, lengths by 4: penetrations that grow alike need the same force per length of joint.
+        // Weights grow by 16, lengths by 4: penetrations that grow by 4 need the same force per length of joint.
         ..joints(2e9, Contact::Continuous)
     };
     let other = peaks(large, scaled, &push(Pulse::HalfSine, 2.0, 0.4), 1.0);
@@ -451,7 +451,7 @@ fn mirror_images_and_scaled_arches_move_alike() {
     }
 }
 
-/// Thresholds go to that of the rigid block (Housner's first half cycle, 0.50173 g), as a power between 1/3 and 1/2 of stiffness.
+/// Thresholds tend to that of the rigid block (Housner's first half cycle, 0.50173 g), as a power of stiffness between 1/3 and 1/2.
 #[test]
 fn stiff_joints_go_to_the_rigid_block() {
     let least_g = |stiffness: f64| {
@@ -502,7 +502,7 @@ fn an_arch_that_is_not_shaken_stays_and_one_that_is_comes_to_rest() {
         .simulate(&GroundMotion::still(), &request(9.81, 2.0), None)
         .unwrap();
     assert_eq!(still.outcome, Outcome::NeverMoved);
-    // Rounding of the equilibrium is all that moves.
+    // Only the rounding error of the equilibrium moves the structure.
     assert!(still.row.unwrap().largest_kinetic_j < 1e-9);
     let shaken = model
         .simulate(&push(Pulse::HalfSine, 2.5, 0.2), &request(9.81, 20.0), None)
@@ -514,9 +514,9 @@ fn an_arch_that_is_not_shaken_stays_and_one_that_is_comes_to_rest() {
     assert!((due - model.incipient_acceleration_g(Sway::Left).unwrap()).abs() < 1e-9);
 }
 
-/// Pushed over slowly: a block of half base `b` and centre height `h` resists `W (b - x_c/3 - h kappa)`, with
-/// `x_c = sqrt(2 W/(kn w kappa))` of its base in contact; that is the closed form of small rotations, 2 % for those of this block. On
-/// points, stiff joints need the energy of rigid ones; arches go there from below.
+/// Pushed over slowly, a block of half base `b` and centre height `h` resists `W (b - x_c/3 - h kappa)`, with
+/// `x_c = sqrt(2 W/(kn w kappa))` of its base in contact. This closed form is for small rotations; for those of this block it is 2 % off.
+/// With contact points, stiff joints need the energy of rigid ones; arches approach it from below.
 #[test]
 fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
     let row = stack(1, 5.0);
@@ -531,7 +531,7 @@ fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
     for stiffness in [1e8, 1e9, 1e10] {
         let resisting_m = |kappa: f64| {
             let contact_m = (2.0 * weight_n / (stiffness * kappa)).sqrt();
-            // Closed, the base bends by its second moment, with a length of 1 m.
+            // With the base closed, its second moment resists, for a length of 1 m.
             let open_m = 0.5 - contact_m / 3.0;
             let closed_m = stiffness * kappa / (12.0 * weight_n);
             (if contact_m < 1.0 { open_m } else { closed_m }) - 2.5 * kappa
@@ -560,7 +560,7 @@ fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
     assert!((0.999..1.0).contains(&(elastic_j / rigid_j)));
 }
 
-/// After a pulse whatever overturns had more energy than the least way over takes; what never had half of it stands.
+/// After a pulse, any structure that overturns had more energy than the easiest way over needs; one that never had half of it stands.
 #[test]
 fn what_overturns_had_more_energy_than_its_barrier() {
     for (row, stiffness) in [(semicircle(9), 3e9), (stack(3, 5.0), 2e9)] {
@@ -594,8 +594,8 @@ fn what_overturns_had_more_energy_than_its_barrier() {
     }
 }
 
-/// Any row on any joints, under pulses or noise, vertical too: what can be computed has a balance of energy that closes, and friction,
-/// damping and crushing create nothing; what does not stand says why, and what needs shorter steps which. More with `ARCHROCK_CASES`.
+/// Any row on any joints, under pulses or noise, also vertical. A history that can be computed has a closed energy balance, and friction,
+/// damping and crushing create no energy. If the row does not stand or needs shorter steps, the error says so. `ARCHROCK_CASES` sets the number.
 #[test]
 fn no_history_fails_silently() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(20, |cases| cases.parse().unwrap());
@@ -619,7 +619,7 @@ fn no_history_fails_silently() {
             },
             ..ElasticProperties::of_stiffness(stiffness)
         };
-        // The stiffest in fewer steps.
+        // The stiffest rows take fewer steps.
         let end_s = random.within(0.3, 1.0) * (1e9 / stiffness).powf(0.25);
         let strong_g = random.within(0.1, 0.5);
         let vertical_g = if random.chance(0.3) {
@@ -669,9 +669,9 @@ fn no_history_fails_silently() {
     assert!(20 * refused.len() <= cases, "{refused:#?}");
 }
 
-/// Ratios of the rates after and before landings, from successive turning points, over Housner's, of a block five times as high as wide:
-/// on two points with damping Housner's, to 1e-3; on three that of points that land one after another, to 4 %; on a continuous base
-/// what an independent program has, to its digits.
+/// Ratios of the rates after and before landings, from successive turning points, relative to Housner's, for a block five times as high
+/// as wide. On two points with damping the ratio is Housner's, to 1e-3; on three points it is that of points that land one after another,
+/// to 4 %; on a continuous base it is that of an independent program, to its digits.
 #[test]
 fn restitution_follows_from_contact_and_damping() {
     let alpha = 0.2_f64.atan();
@@ -700,7 +700,7 @@ fn restitution_follows_from_contact_and_damping() {
             let ground = push(Pulse::Rectangular, push_m_s2, 0.1);
             (ground, request(9.81, end_s))
         };
-        // Up to the first turning point nearest to half the angle at which it overturns.
+        // Finds the push whose first turning point is nearest to half the angle of overturning.
         let cases: Vec<_> = (0..32).map(|index| case(index, 1.0)).collect();
         let answers = model.simulate_all(&cases).into_iter().map(Result::unwrap);
         let beside = |summary: Summary| (summary.largest_rotation_rad() / alpha - 0.5).abs();
@@ -717,7 +717,7 @@ fn restitution_follows_from_contact_and_damping() {
             .half_cycles
             .iter()
             .map(|cycle| cycle.peak_rad)
-            // A joint that vibrates as the block lands makes half cycles of its own.
+            // A joint that vibrates when the block lands makes half cycles of its own.
             .filter(|peak_rad| *peak_rad > 0.02 * alpha)
             .take(4)
             .collect();
@@ -732,8 +732,8 @@ fn restitution_follows_from_contact_and_damping() {
     }
 }
 
-/// The greatest push under which arches rest, as an independent program has it by slow ramps, which overshoot by some tenths of a per
-/// cent.
+/// The greatest push under which arches rest, compared with an independent program; that program uses slow ramps, which overshoot by some
+/// tenths of a per cent.
 #[test]
 fn arches_that_are_pushed_resist_as_an_independent_program_has_it() {
     for (row, gravity, stiffness, due_g) in [
@@ -752,7 +752,7 @@ fn arches_that_are_pushed_resist_as_an_independent_program_has_it() {
     }
 }
 
-/// Of the column of drums of the failure domain, with two points: to 1 % what an independent program has.
+/// The column of drums of the failure domain, with two points: within 1 % of an independent program.
 #[test]
 fn drums_overturn_where_an_independent_program_has_them() {
     let text = std::fs::read_to_string(scenarios().join("drums-step-pair.toml")).unwrap();

@@ -1,4 +1,4 @@
-//! `[elastic_joints]`: what is read, what is refused, and what a run writes.
+//! `[elastic_joints]`: what is read, what is refused, and the output of a run.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -29,7 +29,7 @@ fn scenarios_are_written_as_they_are_read() {
         assert_eq!(scenario.motion().hinges(), Hinges::Elastic);
         assert_eq!(parsed(&scenario.to_toml()), scenario, "{keys}");
     }
-    // A part of critical damping is a time.
+    // A fraction of critical damping gives a time.
     let keys = "normal_stiffness_gpa_m = 10.0\ndamping_ratio = 0.05\ndamping_frequency_hz = 1.7";
     let scenario = parsed(&block(keys));
     let Motion::ElasticJoints(joints) = scenario.motion() else {
@@ -138,19 +138,19 @@ fn a_run_tells_what_joints_bear() {
         assert!((stress_pa / weight_n - 1.0).abs() < 1e-9, "{stress_pa}");
     }
     let summary = json(&folder.path().join("o/summary.json"));
-    // No impact is counted, and friction has bounds that are known.
+    // No impacts are counted, and the friction has known bounds.
     assert!(summary["impacts"].is_null() && summary["friction_j"].is_number());
     assert!(summary.get("unconverged_steps").is_none());
-    // Rocking, the whole weight and more is on a part of the base.
+    // While it rocks, a part of the base carries the whole weight and more.
     let largest_pa = summary["largest_compressive_stress_pa"].as_f64().unwrap();
     assert!(largest_pa > 5.0 * weight_n && largest_pa <= 2e7 * (1.0 + 1e-9));
-    // What the ground gave moves still, but for what is taken.
+    // The energy from the ground is still in the motion, except for what was dissipated.
     let number = |name: &str| summary[name].as_f64().unwrap();
     let taken_j = number("damped_j") + number("friction_j") + number("crushed_j");
     assert!(taken_j > 0.0 && taken_j < 0.5 * number("ground_j"));
 }
 
-/// The threshold of a block is that of its table, whichever study asks: a twin with rigid joints stands up to 0.5017 g.
+/// The threshold of a block is that of its table, in every study; the same block with rigid joints stands up to 0.5017 g.
 #[test]
 fn studies_take_elastic_joints() {
     let folder = tempfile::tempdir().unwrap();
@@ -192,7 +192,7 @@ fn studies_take_elastic_joints() {
     fs::write(folder.path().join("u.toml"), format!("{text}{suite}")).unwrap();
     printed(folder.path(), &["suite", "u.toml", "--out", "u", "--quiet"]);
     let cases = Table::read(folder.path().join("u/suite.csv"));
-    // Largest rotations in radians, as of every row of blocks.
+    // Largest rotations in radians, as for every row of blocks.
     let peaks = cases.numbers("peak_rotation_rad");
     assert!(peaks.iter().any(|peak| *peak > 1e-3), "{peaks:?}");
     refused(
@@ -236,8 +236,8 @@ fn three_models_in_one_run() {
     }
 }
 
-/// What the motion of the arch of Lemos hangs on: with three points it stands at 0.15 g, with continuous contact it falls. The other runs
-/// are those of scenarios that say so.
+/// The properties on which the motion of the arch of Lemos depends: with three points it stands at 0.15 g, with continuous contact it
+/// falls. The other runs equal those of scenarios that have these properties.
 #[test]
 fn a_run_says_what_it_hangs_on() {
     let folder = tempfile::tempdir().unwrap();
@@ -286,7 +286,7 @@ fn a_run_says_what_it_hangs_on() {
     let (said, own) = run("own", &elastic("10", points), &alone);
     assert!(!said.contains("  with "), "{said}");
     assert_eq!(own["variations"], serde_json::Value::Null);
-    // Rigid joints point to elastic ones, unless these are beside them.
+    // With rigid joints the words suggest elastic ones, unless a run with elastic joints stands beside.
     let (said, _) = run("rigid", &arch("[free_hinges]"), &alone);
     assert!(said.contains("compare with --hinges elastic"), "{said}");
     let models = ["--hinges", "free,elastic", "--no-spread"];
@@ -300,7 +300,7 @@ fn a_run_says_what_it_hangs_on() {
     assert!(!said.contains("compare with"), "{said}");
 }
 
-/// The page draws the stresses of `joints.csv`, to the 256th part of the largest.
+/// The page draws the stresses of `joints.csv`, to 1/256 of the largest.
 #[test]
 fn the_page_draws_what_joints_bear() {
     let folder = tempfile::tempdir().unwrap();
@@ -348,7 +348,7 @@ fn the_page_draws_what_joints_bear() {
     crate::browser::assert_checked(&path, script, &facts.to_string(), &[], 300);
 }
 
-/// A threshold with other properties is the one of a scenario that has them.
+/// A threshold with other properties equals that of a scenario that has them.
 #[test]
 fn a_threshold_says_what_it_hangs_on() {
     let folder = tempfile::tempdir().unwrap();
@@ -384,7 +384,7 @@ fn a_threshold_says_what_it_hangs_on() {
     assert_eq!(variations[1]["with"], "9 GPa/m");
     let (found, due) = (&variations[1]["factor"], &stiffer["lowest_factor"]);
     let ratio = found.as_f64().unwrap() / due.as_f64().unwrap();
-    // To half a percent, and the other is enclosed to a hundredth of that.
+    // It is accurate to half a percent; the other edge is enclosed to a hundredth of that.
     assert!((1.0 - 1e-4..1.0051).contains(&ratio), "{found} {due}");
     let words = "  with rigid joints (free hinges): from factor 0.50";
     assert!(said.contains(words), "{said}");

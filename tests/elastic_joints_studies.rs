@@ -1,4 +1,4 @@
-//! Studies of rows with elastic joints: histories that are computed side by side are those of a run.
+//! Studies of rows with elastic joints: histories computed side by side equal those of a run.
 
 use std::fs;
 use std::num::NonZeroUsize;
@@ -32,7 +32,7 @@ fn rows<S: Study>(study: &S, threads: usize) -> Vec<S::Row> {
     runner.rows(study, |_| ControlFlow::Continue(())).unwrap()
 }
 
-/// A run of a scenario with other values of its keys.
+/// The run of a scenario with other values of its keys.
 fn run(scenario: &Scenario, values: &[(&str, f64)]) -> Summary {
     let scenario = scenario.with_values(values).unwrap();
     let model = scenario.model().unwrap();
@@ -42,7 +42,7 @@ fn run(scenario: &Scenario, values: &[(&str, f64)]) -> Summary {
         .unwrap()
 }
 
-/// To the last bit.
+/// Asserts that an ending is that of a run, to the last bit.
 fn assert_is_of(ending: &Ending, own: &Summary, what: &str) {
     assert_eq!(
         (ending.outcome, ending.outcome_time_s, ending.peak.rad()),
@@ -60,7 +60,7 @@ fn assert_is_of(ending: &Ending, own: &Summary, what: &str) {
     assert_eq!(ending.safe_from_s, None);
 }
 
-/// Pulses that differ in length and strength side by side, and, with stiffness on an axis, structures that do not.
+/// Pulses of different length and strength are computed side by side; structures of different stiffness, on another axis, are not.
 #[test]
 fn cells_of_a_map_are_runs() {
     let pulses =
@@ -110,7 +110,7 @@ fn cells_of_a_map_are_runs() {
         assert!(outcomes.contains(&outcome), "{outcomes:?}");
     }
     assert!(uncertain < outcomes.len());
-    // All repetitions of all cells.
+    // With all repetitions of all cells.
     let scenario = parsed(&block(&format!("{PULSE}{pulses}spread = true\n")));
     let map = OverturningMap::of(&scenario).unwrap();
     let cells = rows(&map, 2);
@@ -150,7 +150,7 @@ fn cases_of_a_suite_are_runs() {
     }
 }
 
-/// Samples are runs; the edge is that of a bisection that asks one history after another.
+/// Samples equal runs; the edge is that of a bisection that computes one history after another.
 #[test]
 fn thresholds_are_found_as_by_single_runs() {
     let scenario = parsed(&block(PULSE));

@@ -1,4 +1,4 @@
-//! Equivalent blocks and the dimensionless view, against the motions they stand for.
+//! Equivalent blocks and the dimensionless view, compared with the motions that they represent.
 
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::equivalent::equivalent;
@@ -48,8 +48,8 @@ fn an_arch_leaves_its_unstable_equilibrium_at_the_rate_of_the_block() {
 
 /// A hop that starts at the rate `v` against the deceleration `k`, both in the coordinate of unit mass, obeys
 /// `s'' = n^2 s - k` up to the order `s^2` and lasts `2 atanh(n v / k) / n = 2 v / k (1 + (n v / k)^2 / 3)`. With
-/// `n^2 = p_0^2 cos(alpha)` the first term beyond `2 v / k` so tells `p_0`; the third derivative of the
-/// potential adds the next order, `v^2` times as small, which the extrapolation from two hops removes.
+/// `n^2 = p_0^2 cos(alpha)`, the first term beyond `2 v / k` gives `p_0`. The third derivative of the
+/// potential adds the next order, smaller by `v^2`, which extrapolation from two hops removes.
 #[test]
 fn small_hops_last_as_long_as_those_of_the_block() {
     for (thickness_ratio, embrace_deg) in ARCHES {
@@ -58,7 +58,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
         let blocks = equivalent(&arch, GRAVITY_M_S2).unwrap();
         let at_zero = link.mechanism.coefficients(0.0);
         let still = GroundMotion::still();
-        // n^2 from half a hop: released at q, it closes with the rate v after atanh(n v / k) / n.
+        // n^2 from half a hop: after release at q, it closes with the rate v after atanh(n v / k) / n.
         let measured = |part: f64| {
             let request = Request {
                 end_s: 10.0,
@@ -72,7 +72,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
             let history = arch.history(&still, &request).unwrap();
             let (time_s, impact) = history.impacts().next().unwrap();
             let deceleration = GRAVITY_M_S2 / 3.0 * at_zero.s_y / at_zero.inertia.sqrt();
-            // The right body carries the coordinate of a sway to the left.
+            // In a sway to the left the coordinate is the rotation of the right body.
             let straight_s = -impact.rates_before_rad_s[2] * at_zero.inertia.sqrt() / deceleration;
             (time_s / straight_s - 1.0) * 3.0 / (straight_s * straight_s)
         };
@@ -87,7 +87,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
     }
 }
 
-/// Dimensionless history: time, acceleration and rotation of the samples, and instants of the impacts.
+/// Dimensionless history: time, acceleration and rotation of the samples, and the instants of the impacts.
 fn dimensionless(
     structure: &impl MechanismChain,
     p_t_p: f64,
@@ -149,7 +149,7 @@ fn large_and_small_structures_look_alike() {
     assert_same(&of_column(0.1), &of_column(7.0), 1e-9);
 }
 
-/// So does the slenderness of slender columns that lose the same energy, up to its square.
+/// So does the slenderness of slender columns with equal loss of energy, up to its square.
 #[test]
 fn slender_columns_look_alike() {
     let of_column = |width_m: f64| {

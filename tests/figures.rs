@@ -1,4 +1,4 @@
-//! `--figure-width`: every picture fits its sheet, with text of 8 pt at the width that is asked for.
+//! `--figure-width`: every picture fits its sheet, with text of 8 pt at the requested width.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::program::{archrock, scenarios, stderr};
 use roxmltree::Document;
 
-/// Characters are this wide at least, in pixels: texts that leave the sheet even so are cut.
+/// Least width of a character, in pixels: a text that leaves the sheet even at this width is cut off.
 const NARROW_PX: f64 = 5.2;
 
 fn check(picture: &Path, width_mm: f64) {
@@ -50,7 +50,7 @@ fn check(picture: &Path, width_mm: f64) {
         };
         let name = picture.display();
         if node.attribute("transform").is_some() {
-            // Turned by a quarter, upwards.
+            // Rotated by a quarter turn, upwards.
             let low = y + before * long_px;
             assert!(low <= height_px && low - long_px >= 0.0, "{name}: {words}");
         } else {

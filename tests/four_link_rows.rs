@@ -49,7 +49,7 @@ fn joints(model: &FourLinkRow, impacts: usize, sway: Sway) -> Vec<usize> {
         .collect()
 }
 
-/// The voussoirs of a ring as blocks that know nothing of it.
+/// The voussoirs of a ring as blocks without any knowledge of the ring.
 #[test]
 fn circular_voussoirs_as_a_row_are_those_of_the_ring() {
     for (embrace_deg, voussoirs) in [(157.5, 7), (180.0, 18), (180.0, 60)] {
@@ -101,7 +101,7 @@ fn circular_voussoirs_as_a_row_are_those_of_the_ring() {
     }
 }
 
-/// Voussoirs whose curved sides are polygons of `n` sides: errors fall with the square of `n`.
+/// Voussoirs whose curved sides are polygons with `n` sides: errors fall with the square of `n`.
 #[test]
 fn many_sided_voussoirs_converge_to_sectors() {
     let (arch, exact) = circular(157.5, 7);
@@ -141,8 +141,8 @@ fn many_sided_voussoirs_converge_to_sectors() {
     }
 }
 
-/// Where four links start (kinematic theorem, confirmed by its thrust line) they start at the push of the static
-/// programme with any number of hinges; where they are refused, that push is lower, or more joints open.
+/// If four links start (kinematic theorem, confirmed by the thrust line), they start at the push that the static
+/// programme finds for any number of hinges. If four links are refused, that push is lower, or more joints open.
 #[test]
 fn static_and_kinematic_theorem_agree_on_random_shapes() {
     let mut random = Random(12);
@@ -188,7 +188,7 @@ fn static_and_kinematic_theorem_agree_on_random_shapes() {
     assert!(compared >= 200, "{compared} compared, {refused} refused");
 }
 
-/// What sways right in a row sways left in its mirror image, and nothing else changes.
+/// A sway to the right of a row is a sway to the left of its mirror image, and nothing else changes.
 #[test]
 fn mirror_images_of_uneven_rows() {
     let mut random = Random(3);
@@ -243,7 +243,7 @@ fn mirror_images_of_uneven_rows() {
     }
 }
 
-/// The cone of all motions that open joints bounds the restitution of four links, and is the energy that the free
+/// The cone of all motions that open joints bounds the restitution of four links. It also gives the energy that free
 /// hinges keep when the same mechanism shuts all at once.
 #[test]
 fn the_certificate_bounds_the_impact_of_a_row() {
@@ -285,7 +285,7 @@ fn the_certificate_bounds_the_impact_of_a_row() {
     }
 }
 
-/// In motion the thrust line passes through the four hinges, by the equation of motion; at the release it is that of
+/// During motion the thrust line passes through the four hinges, by the equation of motion; at the release it is that of
 /// gravity.
 #[test]
 fn the_thrust_line_in_motion_passes_through_the_hinges() {
@@ -324,8 +324,8 @@ fn the_thrust_line_in_motion_passes_through_the_hinges() {
     }
 }
 
-/// Shapes of any kind, with fill, piers and loads, released in their first mechanism: with free hinges they have the energy of the
-/// linkage, and fall back as it does until a fifth hinge opens or hinges close. The leapfrog's steps leave an error of their square.
+/// Shapes of any kind, with fill, piers and loads, released in their first mechanism. With free hinges they have the energy of the
+/// linkage, and fall back as it does until a fifth hinge opens or hinges close. The error of the leapfrog is of the square of its step.
 #[test]
 fn a_row_with_free_hinges_is_released_as_its_four_links() {
     let mut random = Random(29);
@@ -394,7 +394,7 @@ fn an_uneven_row_is_released_and_overturns_by_side() {
     let model = rocking(&row.carrying(13, &load));
     let [right, left] = SIDES.map(|sway| model.incipient_towards_g(sway));
     assert!((right / left - 1.0).abs() > 0.05);
-    // A pulse between the two moves it to the weaker side only.
+    // A pulse between the two moves it only to the weaker side.
     let between_g = 0.5 * (right + left);
     let weaker = if right < left {
         Sway::Right
@@ -444,7 +444,7 @@ fn measured_restitution_scales_that_of_the_model() {
             let there = theory.link(impacts).unwrap();
             let expected = f64::min(factor * there.restitution, most);
             assert!((own.restitution - expected).abs() < 1e-15);
-            // The energy that the rate stands for is that part.
+            // The fraction of the energy, from the ratio of the rates.
             let before = measured.link(impacts - 1).unwrap();
             let kept = own.rate_ratio.powi(2) * own.at_zero.inertia / before.at_zero.inertia;
             assert!((kept - expected).abs() < 1e-12);
@@ -453,7 +453,7 @@ fn measured_restitution_scales_that_of_the_model() {
     }
     let refused = FourLinkRow::new(&row, law(-0.1)).unwrap_err().to_string();
     assert!(refused.contains("restitution_factor"), "{refused}");
-    // Nothing is left at all.
+    // No energy is left.
     let stopped = FourLinkRow::new(&row, law(0.0)).unwrap();
     let summary = stopped
         .simulate(&push(-0.5), &Request::default(), None)

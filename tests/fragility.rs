@@ -1,4 +1,4 @@
-//! Fragility curves: against published and independent fits, and against samples of known curves.
+//! Fragility curves: compared with published and independent fits, and with samples of known curves.
 
 use std::f64::consts::{LN_10, TAU};
 
@@ -8,7 +8,7 @@ use archrock::studies::suite::fragility::{
 };
 use proptest::prelude::*;
 
-/// Cases of one record each, in counts by intensity.
+/// Cases from counts by intensity, each with its own record.
 fn counts(levels: &[(f64, usize, usize)]) -> Vec<Observation> {
     let cases = levels.iter().flat_map(|&(intensity, cases, overturned)| {
         (0..cases).map(move |i| (intensity, i < overturned))
@@ -56,13 +56,13 @@ fn beetles() -> Vec<Observation> {
 fn the_beetles_of_bliss() {
     let fragility = fit(&beetles()).unwrap();
     // Probit -34.94 + 19.73 dose of Dobson, An Introduction to Generalized Linear Models: to the last
-    // digit printed, with standard error 1.48 of the slope.
+    // printed digit, with standard error 1.48 of the slope.
     let slope = LN_10 / fragility.dispersion;
     assert!((slope - 19.73).abs() < 0.005, "{slope}");
     assert!((slope * fragility.median.log10() - 34.94).abs() < 0.005);
     let slope_error = slope * fragility.independent.dispersion / fragility.dispersion;
     assert!((slope_error - 1.48).abs() < 0.005, "{slope_error}");
-    // Deviance 10.12 there: twice what the fractions themselves are likelier.
+    // Deviance 10.12 there: twice the log-likelihood by which the observed fractions themselves are likelier.
     let saturated: f64 = BLISS
         .iter()
         .flat_map(|&(_, cases, killed)| [(killed, cases), (cases - killed, cases)])
@@ -72,7 +72,7 @@ fn the_beetles_of_bliss() {
     let deviance = 2.0 * (saturated - fragility.log_likelihood);
     assert!((deviance - 10.12).abs() < 0.005, "{deviance}");
 
-    // The same maximum with forty digits. Ours ends within 1e-10 standard errors of it.
+    // The same maximum with forty digits. Ours is within 1e-10 standard errors of it.
     assert_close(fragility.median, 59.000_047_622_339_55, 1e-11);
     assert_close(fragility.dispersion, 0.116_716_989_641_649_2, 1e-11);
     assert_close(fragility.log_likelihood, -185.679_166_779_559, 1e-13);
@@ -100,7 +100,7 @@ fn two_levels_are_met_exactly() {
     let density = (-0.5 * quarter * quarter).exp() / TAU.sqrt();
     let eta_error = (0.25 * 0.75 / 8.0_f64).sqrt() / density;
     let errors = Errors {
-        // ln(theta) is (eta_2 ln x_1 - eta_1 ln x_2) / (eta_2 - eta_1); here both count alike.
+        // ln(theta) is (eta_2 ln x_1 - eta_1 ln x_2) / (eta_2 - eta_1); here both levels have the same weight.
         median: fragility.median * fragility.dispersion * eta_error / 2_f64.sqrt(),
         dispersion: fragility.dispersion.powi(2) * 2_f64.sqrt() * eta_error / 2_f64.ln(),
     };
@@ -110,16 +110,16 @@ fn two_levels_are_met_exactly() {
     let slope = (0.841_621_233_572_914_3 + quarter) / 2_f64.ln();
     assert_close(fragility.dispersion, slope.recip(), 1e-10);
     assert_close(fragility.median, 0.3 * (quarter / slope).exp(), 1e-10);
-    // At a level itself the band is what its own cases say, each a record of its own: there the scores
-    // spread exactly as independence promises, and the thirteen records add their factor.
+    // At a level the band follows from the cases of that level alone, each of which has its own record. There the scores
+    // scatter exactly as independence requires, and the thirteen records add their factor.
     let (low, high) = fragility.band(0.3);
     let margin = 1.959_963_984_540_054 * eta_error * (13.0_f64 / 12.0).sqrt();
     assert!((low - normal(-quarter - margin)).abs() < 1e-9, "{low}");
     assert!((high - normal(-quarter + margin)).abs() < 1e-9, "{high}");
 }
 
-/// `ln Phi` from `Phi(-t) = phi(t) int_0^oo exp(-t u - u^2/2) du`, `t >= 0`, by Simpson's rule: good to
-/// `1e-9` however far out.
+/// `ln Phi` from `Phi(-t) = phi(t) int_0^oo exp(-t u - u^2/2) du`, `t >= 0`, by Simpson's rule: accurate to
+/// `1e-9` at any distance.
 fn log_normal(eta: f64) -> f64 {
     let t = eta.abs();
     let scale = 1.0 + t;
@@ -155,7 +155,7 @@ fn deviate(random: &mut Random) -> f64 {
 const LEVELS: [f64; 6] = [0.15, 0.22, 0.3, 0.4, 0.55, 0.8];
 const MEDIAN: f64 = 0.35;
 
-/// Every record at every level. Each has a capacity of its own, shared by its levels to the part `shared`
+/// Every record at every level. Each record has its own capacity, which its levels share to the part `shared`
 /// of the dispersion.
 fn suite(random: &mut Random, records: usize, dispersion: f64, shared: f64) -> Vec<Observation> {
     let own = (dispersion * dispersion - shared * shared).sqrt();
@@ -182,15 +182,15 @@ fn a_large_sample_gives_its_curve_back() {
         } = fragility.independent;
         assert!((fragility.median - MEDIAN).abs() < 3.5 * median_error);
         assert!((fragility.dispersion - dispersion).abs() < 3.5 * dispersion_error);
-        // The errors are small enough to make this a test.
+        // The errors are small enough for a sharp test.
         assert!(median_error < 0.01 * MEDIAN && dispersion_error < 0.02 * dispersion);
-        // Independent cases in groups: both errors are right. Relative error of the robust variance
+        // Independent cases in groups: both kinds of errors are right. Relative error of the robust variance
         // sqrt(2 / G) = 0.01.
         assert_errors(fragility.clustered.unwrap(), fragility.independent, 0.03);
     }
 }
 
-/// What many samples of one curve say.
+/// Fits of many samples from one curve.
 struct Repeated {
     fits: Vec<Fragility>,
 }
@@ -215,7 +215,7 @@ impl Repeated {
         self.fits.iter().map(number).sum::<f64>() / self.fits.len() as f64
     }
 
-    /// Mean standard errors over the spreads of what they are the errors of: median, dispersion.
+    /// Mean standard errors, relative to the actual scatter: of median and dispersion.
     fn ratios(&self, errors: fn(&Fragility) -> Errors) -> [f64; 2] {
         let mean = |error: fn(&Errors) -> f64| {
             let sum: f64 = self.fits.iter().map(|fit| error(&errors(fit))).sum();
@@ -227,7 +227,7 @@ impl Repeated {
         ]
     }
 
-    /// The part of the samples whose band holds the true probability at an intensity.
+    /// The fraction of the samples whose band contains the true probability at an intensity.
     fn coverage(&self, intensity: f64, truth: f64) -> f64 {
         let holds = |fit: &&Fragility| {
             let (low, high) = fit.band(intensity);
@@ -237,12 +237,12 @@ impl Repeated {
     }
 }
 
-/// The spread of 1000 samples is known to 1 / sqrt(2000) = 2.2 %, the coverage to 0.7 %: three of these
-/// are allowed, and 1 % for the errors being of first order.
+/// The scatter of 1000 samples is known to 1 / sqrt(2000) = 2.2 %, the coverage to 0.7 %. Three times these are
+/// allowed, plus 1 % because the errors are of first order.
 #[test]
 fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
     let (mut random, dispersion) = (Random(21), 0.5);
-    // Every case is a record of its own.
+    // Every case has its own record.
     let repeated = Repeated::new(1000, || {
         let mut sample = suite(&mut random, 100, dispersion, 0.0);
         for (i, case) in sample.iter_mut().enumerate() {
@@ -263,7 +263,7 @@ fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
     }
 }
 
-/// Cases of one record share most of their capacity. The spread of 600 samples is known to 2.9 %, and with
+/// Cases of one record share most of their capacity. The scatter of 600 samples is known to 2.9 %, and with
 /// 100 records the errors are some percent too small.
 #[test]
 fn dependent_cases_spread_as_the_clustered_errors_say() {
@@ -280,7 +280,7 @@ fn dependent_cases_spread_as_the_clustered_errors_say() {
     }
 }
 
-/// Twice the levels, the same records, hardly tell more.
+/// Twice the levels with the same records add hardly any information.
 #[test]
 fn repeated_cases_of_the_same_records_are_no_evidence() {
     let once = suite(&mut Random(23), 40, 0.5, 0.3);
@@ -293,7 +293,7 @@ fn repeated_cases_of_the_same_records_are_no_evidence() {
     assert_errors(double.independent, halved, 1e-9);
 }
 
-/// Cases of new records, on the other hand, divide both variances; and the fit is the same.
+/// Cases of new records, in contrast, divide both variances by their number; the fit is the same.
 #[test]
 fn k_times_the_sample_divides_variances_by_k() {
     let once = suite(&mut Random(24), 40, 0.5, 0.3);
@@ -320,7 +320,7 @@ fn k_times_the_sample_divides_variances_by_k() {
         divided(single.independent, k as f64),
         1e-9,
     );
-    // G / (G - 1) differs.
+    // The factors G / (G - 1) differ.
     let factors = (40.0 / 39.0) / (200.0 / 199.0);
     let expected = divided(single.clustered.unwrap(), k as f64 * factors);
     assert_errors(many.clustered.unwrap(), expected, 1e-9);
@@ -339,7 +339,7 @@ fn the_unit_of_the_intensity_does_not_matter() {
             })
             .collect();
         let scaled = fit(&scaled).unwrap();
-        // Logarithms of 1e200 have an absolute rounding of 1e-13.
+        // Logarithms of 1e200 have an absolute rounding error of 1e-13.
         assert_close(scaled.median, original.median * factor, 1e-11);
         assert_close(scaled.dispersion, original.dispersion, 1e-11);
         assert_close(scaled.log_likelihood, original.log_likelihood, 1e-12);
@@ -380,7 +380,7 @@ fn order_and_names_of_records_do_not_matter() {
     );
 }
 
-/// The logarithm of the likelihood of the cases of some records, by `(ln theta, beta)`: written anew.
+/// The log-likelihood of the cases of some records, by `(ln theta, beta)`, in an independent implementation.
 fn log_likelihood<'a>(
     cases: impl Iterator<Item = &'a Observation>,
     [log_median, dispersion]: [f64; 2],
@@ -415,7 +415,7 @@ fn product(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     [0, 1].map(|i| [0, 1].map(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j]))
 }
 
-/// Differences of a likelihood in the parameters themselves, where nothing is linear, give the same
+/// Finite differences of the likelihood in the parameters themselves, which assume no linear form, give the same
 /// maximum and both sets of errors.
 #[test]
 fn differences_of_the_likelihood_confirm_maximum_and_errors() {
@@ -433,7 +433,7 @@ fn differences_of_the_likelihood_confirm_maximum_and_errors() {
         median: fragility.median * covariance[0][0].sqrt(),
         dispersion: covariance[1][1].sqrt(),
     };
-    // The differences are good to some 1e-9 of the curvature.
+    // The finite differences are accurate to some 1e-9 of the curvature.
     assert_errors(errors(covariance), fragility.independent, 1e-6);
     let score = gradient(whole, at);
     assert!(score[0].abs() * covariance[0][0].sqrt() < 1e-7, "{score:?}");
@@ -452,7 +452,7 @@ fn differences_of_the_likelihood_confirm_maximum_and_errors() {
         .map(|row| row.map(|entry| entry * factor));
     assert_errors(errors(sandwich), fragility.clustered.unwrap(), 1e-6);
 
-    // The band at the median is the error of -ln(theta) / beta.
+    // At the median the band is the error of -ln(theta) / beta.
     let larger = covariance[0][0].max(sandwich[0][0]).sqrt();
     let margin = 1.959_963_984_540_054 * larger / fragility.dispersion;
     let (low, high) = fragility.band(fragility.median);
@@ -472,7 +472,7 @@ fn one_record_has_no_clustered_errors() {
     assert!(0.0 < low && low < 0.25 && 0.25 < high && high < 1.0);
 }
 
-/// One record overturns more steeply than the other, about the same median: on which they leave no doubt.
+/// One record overturns more steeply than the other, about the same median, which is therefore certain.
 #[test]
 fn two_records_that_agree_on_the_median() {
     let cases = |record, levels: [(f64, usize); 4]| {
@@ -502,7 +502,7 @@ fn the_curve_holds_from_zero_to_infinity() {
 
 #[test]
 fn a_record_that_behaves_oddly_far_out_has_a_likelihood() {
-    // One case in a thousand survives a thousand times what overturns the others, and one falls at a
+    // One case in a thousand survives a thousand times the intensity that overturns the others, and one overturns at a
     // thousandth of it.
     let fragility = fit(&counts(&[
         (1e-3, 1000, 1),
@@ -512,11 +512,11 @@ fn a_record_that_behaves_oddly_far_out_has_a_likelihood() {
     ]))
     .unwrap();
     assert!((fragility.median - 1.0).abs() < 1e-2);
-    // Of the probabilities 1e-3 and 0.4 alone the dispersion would be 2.4 and 0.4.
+    // From the probabilities 1e-3 and 0.4 alone the dispersion would be 2.4 and 0.4.
     assert!(0.4 < fragility.dispersion && fragility.dispersion < 2.4);
 }
 
-/// From equal chances Newton's method overshoots here, on its way to the one case in 20 000.
+/// From equal chances Newton's method overshoots here, on the way to the one case in 20 000.
 #[test]
 fn a_step_too_far_is_halved() {
     let sample = counts(&[
@@ -554,7 +554,7 @@ fn cases_that_make_no_curve_say_why() {
             overturned: 2
         }
     );
-    // Two numbers that have the same logarithm.
+    // Two numbers with the same logarithm.
     let next = 1000_f64.next_up();
     assert_eq!(
         refusal(&[(1000.0, 5, 2), (next, 5, 3)]),
@@ -590,7 +590,7 @@ fn separated_cases_are_told_exactly() {
     assert_eq!(refusal(&middle), separated(0.2, 0.2));
     assert_eq!(refusal(&middle[1..]), separated(0.2, 0.2));
     assert_eq!(refusal(&middle[..2]), separated(0.2, 0.2));
-    // The least overlap has a fit: one case of either kind on the wrong side, by next to nothing.
+    // The smallest overlap has a fit: one case of either kind on the wrong side, by next to nothing.
     let above = 0.2_f64 * (1.0 + 1e-9);
     assert!(
         fit(&counts(&[
@@ -606,7 +606,7 @@ fn separated_cases_are_told_exactly() {
 #[test]
 fn a_fraction_that_does_not_grow_is_no_fragility() {
     for levels in [
-        // Falling, falling and separated, level, level in the mean of logarithms.
+        // Falling; falling and separated; level; level in the mean of logarithms.
         [(0.2, 4, 3), (0.4, 4, 2), (0.8, 4, 1)],
         [(0.2, 4, 4), (0.4, 4, 2), (0.8, 4, 0)],
         [(0.2, 4, 2), (0.4, 4, 2), (0.8, 4, 2)],
@@ -635,7 +635,7 @@ fn a_fraction_that_does_not_grow_is_no_fragility() {
     assert_close(survived, 0.128_f64.cbrt(), 1e-14);
 }
 
-/// Of 100 000 cases one more overturns at an intensity 10 % higher: at that rate, half do at e^1800.
+/// Out of 100 000 cases one more overturns at a 10 % higher intensity: at that rate, half would at e^1800.
 #[test]
 fn a_median_beyond_all_numbers_is_none() {
     let levels = [(1.0, 100_000, 30_000), (1.1, 100_000, 30_001)];
@@ -681,7 +681,7 @@ fn fractions_by_level() {
 
 fn intensity() -> impl Strategy<Value = f64> {
     prop_oneof![
-        // Few levels, levels next to each other, wide ranges, any positive number.
+        // Few levels, adjacent levels, wide ranges, any positive number.
         4 => (1_i32..8).prop_map(|i| 0.1 * f64::from(i)),
         1 => (0_u64..4).prop_map(|i| f64::from_bits(0.3_f64.to_bits() + i)),
         2 => (-3.0_f64..3.0).prop_map(|exponent| 10_f64.powf(exponent)),
@@ -691,7 +691,7 @@ fn intensity() -> impl Strategy<Value = f64> {
 
 fn sample() -> impl Strategy<Value = Vec<Observation>> {
     let case = (intensity(), any::<bool>(), 0_usize..6, -1.0_f64..1.0);
-    // Some samples are noise, some overturn where they should with more or less noise.
+    // Some samples are noise; the others follow a threshold with more or less noise.
     let noise = prop_oneof![Just(None), (0.0_f64..1.0).prop_map(Some)];
     (prop::collection::vec(case, 0..40), noise).prop_map(|(cases, noise)| {
         cases
@@ -705,7 +705,7 @@ fn sample() -> impl Strategy<Value = Vec<Observation>> {
     })
 }
 
-/// To either side by half a standard error, or by half the dispersion where that is less.
+/// Tests both sides at a distance of half a standard error, or half the dispersion if that is less.
 fn no_curve_nearby_is_likelier(fragility: &Fragility, sample: &[Observation]) {
     let (log_median, dispersion) = (fragility.median.ln(), fragility.dispersion);
     let likelihood = |to| log_likelihood(sample.iter(), to);
@@ -746,7 +746,7 @@ proptest! {
                 let probability = fragility.probability(x);
                 prop_assert!(0.0 <= low && low <= probability);
                 prop_assert!(probability <= high && high <= 1.0);
-                // Below, the rounding of the logarithm of the median shows.
+                // With less dispersion the rounding error of the median's logarithm is noticeable.
                 if fragility.dispersion > 1e-3 {
                     no_curve_nearby_is_likelier(&fragility, &sample);
                 }

@@ -58,7 +58,7 @@ fn still(row: &Row) -> (Vec<Twist>, Vec<[bool; 2]>) {
     (vec![Twist::ZERO; joints], vec![[true; 2]; joints])
 }
 
-/// Velocities of the undeformed row after contact, for those before, and the part of the energy that is kept.
+/// Velocities of the undeformed row after contact, from those before, and the fraction of the energy that is kept.
 fn projected(row: &Row, free: &[Twist]) -> (Vec<Twist>, f64) {
     let mut program = Program::new(row);
     let (jumps, touching) = still(row);
@@ -94,7 +94,7 @@ fn the_onset_is_that_of_the_static_programme() {
             assert!((found.acceleration_g - onset_g).abs() < 6e-7);
             assert_eq!(found.openings.len(), 4);
         }
-        // It is that of the search over four-link mechanisms, to rounding.
+        // It equals the result of the search over four-link mechanisms, up to rounding.
         let limit = incipient(&ring(thickness, embrace), HingeSites::Voussoirs(voussoirs)).unwrap();
         let found = onset(&row, Sway::Right).unwrap().unwrap();
         assert!((found.acceleration_g / limit.acceleration_g - 1.0).abs() < 1e-10);
@@ -118,7 +118,7 @@ fn the_onset_is_that_of_the_static_programme() {
     ));
 }
 
-/// An arch of twelve voussoirs on buttresses 30 m high: blocks of any shape.
+/// An arch of twelve voussoirs on buttresses 30 m high, as blocks of any shape.
 #[test]
 fn a_buttressed_arch_has_the_onset_of_the_static_programme() {
     let at = |radius: f64, angle_deg: f64| {
@@ -131,7 +131,7 @@ fn a_buttressed_arch_has_the_onset_of_the_static_programme() {
         points.iter().map(|p| Vector2::new(-p.x, p.y)).collect()
     };
     let mut outline = vec![Vector2::new(15.0, 0.0), Vector2::new(10.0, 0.0)];
-    // The published outline follows the intrados by two chords.
+    // In the published outline two chords replace the intrados.
     outline.extend([0.0, 15.0, 30.0].map(|angle_deg| at(10.0, angle_deg)));
     outline.extend([at(11.5, 30.0), Vector2::new(10.0, at(11.5, 30.0).y)]);
     outline.extend([Vector2::new(10.0, 30.0), Vector2::new(15.0, 30.0)]);
@@ -158,7 +158,7 @@ fn a_buttressed_arch_has_the_onset_of_the_static_programme() {
     assert_eq!(found.openings.len(), 4);
 }
 
-/// Largest push under which corner forces balance all blocks: a linear program for an interior-point solver. `None` when
+/// Largest push under which corner forces balance all blocks: a linear program for an interior-point solver. `None` if
 /// there is no limit.
 fn onset_by_linear_program(row: &Row, sway: Sway) -> Option<f64> {
     let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
@@ -229,7 +229,7 @@ fn the_onset_of_random_rows_is_that_of_linear_programming() {
             let ours = onset(&row, sway).unwrap().map(|found| found.acceleration_g);
             let judge = onset_by_linear_program(&row, sway);
             below += usize::from(ours.is_some_and(|ours| ours < 100.0));
-            // Beyond 100 g the solver of the judge calls a program unlimited.
+            // Beyond 100 g the reference solver reports an unbounded program.
             let (ours, judge) = (
                 ours.unwrap_or(1e9).min(100.0),
                 judge.unwrap_or(1e9).min(100.0),
@@ -322,7 +322,7 @@ fn a_block_moves_like_the_column() {
         }
     }
     assert!(peaks.len() > 4);
-    // Of the smallest, towards rest, one or the other has a few more.
+    // Near rest, one of the two histories may have a few more small peaks.
     let compared = ours.half_cycles().len().min(peaks.len());
     assert!(compared > 4, "{compared}");
     for (cycle, peak) in ours.half_cycles().iter().zip(&peaks) {
@@ -333,7 +333,7 @@ fn a_block_moves_like_the_column() {
     }
 }
 
-/// Until the first impact the joints of a stack stay shut.
+/// Until the first impact, the inner joints of a stack stay shut.
 #[test]
 fn a_stack_that_does_not_open_moves_like_one_block() {
     let ground = push(-0.3, 0.3);
@@ -376,7 +376,7 @@ fn first_peaks_are_the_measured_ones() {
     }
 }
 
-/// Thresholds agree within one in a thousand; larger rows take too long here.
+/// Thresholds agree to one part in a thousand; larger rows would take too long here.
 #[test]
 fn thresholds_of_single_pulses_are_the_measured_ones() {
     for (embrace, thickness, voussoirs, radius_m, duration_s, threshold_g) in [
@@ -406,7 +406,7 @@ fn thresholds_of_single_pulses_are_the_measured_ones() {
     }
 }
 
-/// Step pairs that a tapered column of drums does not survive.
+/// Step pairs that a tapered column of drums does not survive, as measured.
 #[test]
 fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
     let drums = [0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.21];
@@ -424,7 +424,7 @@ fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
     }
 }
 
-/// Rotations of the bodies at some times of the fall of a linkage from rest at `q`, by the classical Runge-Kutta method on
+/// Rotations of the bodies at some times of the fall of a linkage from rest at `q`, by the classical Runge-Kutta method for
 /// `M q'' + M'/2 q'^2 + g S_y = 0`, in mean radii.
 fn linkage_at(linkage: &Linkage, start_rad: f64, gravity: f64, times_s: &[f64]) -> Vec<[f64; 3]> {
     let slope = |state: Vector2<f64>| {
@@ -472,7 +472,7 @@ impl Recorder for Kept {
     }
 }
 
-/// A row of three blocks has the hinges of a four-link mechanism and no others.
+/// A row of three blocks has the hinges of a four-link mechanism and no other joints.
 fn three_blocks() -> (Row, Linkage) {
     let ring = ring(0.15, 157.5);
     let sections = [0.0_f64, 67.5, 112.5, 157.5].map(f64::to_radians);
@@ -539,7 +539,7 @@ fn left_and_right_are_mirror_images() {
     assert!(miss.abs() < 2e-6, "{miss}");
 }
 
-/// Powers of two leave all digits alone: whole histories are the same, to the last bit.
+/// Factors that are powers of two change no digits: whole histories are bit-identical.
 #[test]
 fn size_density_and_depth_scale_as_they_should() {
     let ring = ring(0.15, 157.5);
@@ -560,7 +560,7 @@ fn size_density_and_depth_scale_as_they_should() {
     assert_eq!(large.half_cycles().len(), expected.half_cycles().len());
 }
 
-/// The balance of energy closes to a part of weight times size that falls with the steps, and no impact adds any.
+/// The error of the energy balance, relative to weight times size, falls with the steps, and no impact adds energy.
 #[test]
 fn energy_does_not_grow() {
     let row = arch(157.5, 0.15, 14, 10.0);
@@ -578,7 +578,7 @@ fn energy_does_not_grow() {
             run.energy_defect_ratio
         );
         assert!(kept.impacts.len() > 10);
-        // An impact that takes nothing may be rounded to less.
+        // An impact that takes no energy may seem to add some by rounding.
         let unit = row.mass_kg() * GRAVITY * row.size_m();
         assert!(kept.impacts.iter().all(|taken| *taken > -1e-14 * unit));
         assert!(closure_error_m(&run) < 1e-9);
@@ -606,7 +606,7 @@ fn torture(random: &mut Random, most: usize, length_s: f64) -> Result<Summary, F
     simulate(&row, &ground, GRAVITY, &settings, None, None)
 }
 
-/// Any structure under any ground. `ARCHROCK_TORTURE` sets another number of histories than a hundred.
+/// Any structure on any ground. `ARCHROCK_TORTURE` sets the number of histories, by default a hundred.
 #[test]
 fn random_histories_do_not_fail() {
     let given = std::env::var("ARCHROCK_TORTURE")
@@ -638,7 +638,7 @@ fn random_histories_do_not_fail() {
         failures.len()
     );
     assert!(worst < 1e-3, "energy {worst}");
-    // They are histories of something: most move, many with impacts, and some fall.
+    // The histories are not trivial: most move, many have impacts, and some overturn.
     let counts = [moved, hit, overturned];
     assert!(
         2 * moved > histories && 3 * hit > histories && overturned > 0,
@@ -646,14 +646,14 @@ fn random_histories_do_not_fail() {
     );
 }
 
-/// At rest a corner of this row closes by rounding, and depends on others none of which gives way.
+/// At rest a corner of this row closes by rounding; it depends on other corners, none of which gives way.
 #[test]
 fn a_corner_that_closes_by_rounding_does_not_stop_a_history() {
     let run = torture(&mut Random(511 * 7919 + 1), 60, 8.0).unwrap();
     assert!(run.end_s > 1.0, "{run:?}");
 }
 
-/// Where blocks are flung about, the displacement that brings the ends of an arch together shuts corners of small gaps.
+/// When blocks are flung about, the displacement that brings the ends of an arch together may shut corners with small gaps.
 #[test]
 fn the_ends_of_an_arch_meet_where_corners_shut_on_the_way() {
     for (voussoirs, amplitude_g, duration_s) in [(7, -2.0, 0.4), (36, -2.0, 0.4), (36, -1.27, 0.6)]

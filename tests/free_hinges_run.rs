@@ -1,4 +1,4 @@
-//! `archrock run` with free hinges: its files, its words, the override, and what it refuses.
+//! `archrock run` with free hinges: its files, its words, overriding the scenario, and what it refuses.
 
 use crate::program;
 use crate::results::{Table, json};
@@ -18,7 +18,7 @@ const SEVEN: &str = "title = \"Seven\"\n[arch]\nmean_radius_m = 10.0\nthickness_
 const SHAKEN_COLUMN: &str =
     "height_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = -0.4\nduration_s = 0.3\n";
 
-/// What a run wrote and said.
+/// The files and words of a run.
 struct Results {
     root: TempDir,
     said: String,
@@ -53,7 +53,7 @@ fn free(scenario: &str) -> String {
     format!("{scenario}[free_hinges]\n")
 }
 
-/// What a run that is refused says.
+/// The message of a run that is refused.
 fn refusal(scenario: &str, arguments: &[&str]) -> String {
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("s.toml"), scenario).unwrap();
@@ -95,7 +95,7 @@ fn tables_of_a_row_fit_together() {
     );
     assert_eq!(joints.numbers("time_s"), rotations.numbers("time_s"));
 
-    // A joint is open where one of its gaps is; the difference of gaps is that of the rotations.
+    // A joint is open if one of its gaps is; the difference of the gaps follows from the rotations.
     let thickness_m = 0.15 * 10.0;
     for row in 0..joints.rows.len() {
         let mut open = 0;
@@ -160,7 +160,7 @@ fn tables_of_a_row_fit_together() {
             );
         }
     }
-    // It starts; every impact is an event, and after the last one it rests.
+    // The structure starts; every impact is an event; after the last impact it rests.
     let events = Table::read(results.path("events.csv"));
     assert_eq!(events.rows.len(), impacts.rows.len() + 2);
     assert_eq!(events.rows[0]["kind"], "uplift");
@@ -180,7 +180,7 @@ fn tables_of_a_row_fit_together() {
         ]
     );
 
-    // Peaks are those of the half cycles, and at least those of the rows.
+    // Peaks are those of the half cycles; rows of the table may reach a little less.
     let cycles = summary["half_cycles"].as_array().unwrap();
     let peaks = [8.4125e-3, 5.933e-3, 2.373e-3];
     assert!(cycles.len() >= peaks.len());
@@ -225,7 +225,7 @@ fn tables_of_a_row_fit_together() {
     }
 }
 
-/// Joints and edges of a row of a table, by their columns.
+/// Joints and edges in a row of a table, from their columns.
 fn hinges(table: &Table, row: usize, what: &str) -> Vec<(usize, String)> {
     let [joints, edges] = ["joints", "edges"].map(|of| &table.rows[row][&format!("{of}_{what}")]);
     let joints = joints.split_whitespace();
@@ -239,7 +239,7 @@ fn hinges(table: &Table, row: usize, what: &str) -> Vec<(usize, String)> {
 }
 
 /// The ground reaches the incipient acceleration of limit analysis at a known instant of its sine, and the hinges of that
-/// mechanism open there; a column starts about a toe.
+/// mechanism open then; a column starts about a toe.
 #[test]
 fn it_starts_when_and_where_limit_analysis_says() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 12\n";
@@ -277,8 +277,8 @@ fn it_starts_when_and_where_limit_analysis_says() {
             assert_eq!(events.rows[0]["phase"], "1");
             assert_eq!(events.rows[0]["sway"], side);
             assert_eq!(hinges(&events, 0, "open"), due);
-            // Steps are 0.24 ms long. The push grows slowly, and gaps with the cube of the time since: those that slip count
-            // from 1e-9 of the thickness on, which takes some 2 ms, the others from 1e-12 on.
+            // Steps are 0.24 ms long. The push grows slowly, and gaps with the cube of the time since. With slip, gaps count
+            // from 1e-9 of the thickness, which takes some 2 ms; without slip, from 1e-12.
             let miss_s = events.rows[0].number("time_s") - due_s;
             let late_s = if options.is_empty() { 5e-4 } else { 3e-3 };
             assert!((-3e-4..late_s).contains(&miss_s), "{miss_s}");
@@ -294,12 +294,12 @@ fn it_starts_when_and_where_limit_analysis_says() {
         assert_eq!(events.rows[0]["sway"], side);
         assert_eq!(hinges(&events, 0, "open"), [(0, edge.to_owned())]);
     }
-    // What is released moves already.
+    // A released structure already moves.
     let released = free(column) + "[initial]\nsway = \"right\"\nrotation_rad = 0.02\n";
     let results = Results::of(&released, &["--no-spread", "--no-report"]);
     let events = Table::read(results.path("events.csv"));
     assert_eq!(events.rows[0]["kind"], "impact");
-    // It lands flat, and goes on to the other side, about the other toe.
+    // It lands flat, and continues to the other side, about the other toe.
     for row in 0..events.rows.len() - 1 {
         let (side, edge) = [("left", "intrados"), ("right", "extrados")][row % 2];
         assert_eq!(events.rows[row]["sway"], side);
@@ -307,8 +307,8 @@ fn it_starts_when_and_where_limit_analysis_says() {
     }
 }
 
-/// Joints that are open at an event stay open until the next one, and what is far open was named: by `joints.csv`. Those
-/// that an impact opens are among them too, some for less than a step, and those that it shuts only where they open again.
+/// Joints that are open at an event stay open until the next one, and every joint that is wide open in `joints.csv` was named.
+/// The open joints include those that an impact opens, some for less than a step; those that it shuts only if they open again.
 #[test]
 fn events_name_the_joints_that_are_open() {
     for options in ["", "friction_coefficient = 0.7\n"] {
@@ -353,7 +353,7 @@ fn events_name_the_joints_that_are_open() {
             let Some(event) = phase.checked_sub(1) else {
                 continue;
             };
-            // What has just opened needs a step.
+            // A joint that has just opened needs one step.
             if rotations.rows[row].number("time_s") <= events.rows[event].number("time_s") {
                 continue;
             }
@@ -370,7 +370,7 @@ fn events_name_the_joints_that_are_open() {
                         "extrados" => intrados_m > 0.0,
                         _ => intrados_m.max(extrados_m) > 0.0,
                     };
-                    // Corners that are hardly apart shut without an impact where joints slip.
+                    // If joints slip, corners that are hardly apart shut without an impact.
                     assert!(
                         is_open || !options.is_empty(),
                         "joint {hinge:?} in row {row}"
@@ -379,7 +379,7 @@ fn events_name_the_joints_that_are_open() {
                     shuts += usize::from(!is_open);
                 }
             }
-            // Gaps do not grow by so much between two rows.
+            // Gaps cannot grow this much between two rows.
             let is_first = rotations.rows[row]["phase"] != rotations.rows[row - 1]["phase"];
             for joint in 0..8 {
                 let [intrados_m, extrados_m] = gaps_m(joint);
@@ -442,7 +442,7 @@ fn the_picture_shows_every_block_and_which_joints_are_open() {
     }
     assert!(picture.contains(">Energy / barrier<"));
     assert!(picture.contains(">block 5, which turns most<"));
-    // Of two drums no barrier is known.
+    // For two drums no barrier is known.
     let column = format!("[column]\ndrums = 2\n{SHAKEN_COLUMN}[free_hinges]\n");
     let results = Results::of(&column, &["--no-spread"]);
     let picture = fs::read_to_string(results.path("history.svg")).unwrap();
@@ -476,7 +476,7 @@ fn what_repetitions_change_is_said_and_written() {
             assert!(max - min <= 0.01 * max);
         }
     }
-    // The first half cycle does not depend on steps.
+    // The first half cycle does not depend on the steps.
     let first = &cycles[0]["peak_rad"];
     let ratio = first["max"].as_f64().unwrap() / first["min"].as_f64().unwrap();
     assert!(ratio < 1.001, "{ratio}");
@@ -494,8 +494,8 @@ fn what_repetitions_change_is_said_and_written() {
     );
 }
 
-/// With steps far too long the ends of the arch may part in the computation, or its energy balance be wrong. Which steps do that is a matter of
-/// rounding; among a few there is one with which a repetition fails and the history itself does not.
+/// With steps far too long the ends of the arch may part in the computation, or its energy balance may be wrong. Rounding decides
+/// which steps do that; among a few, one makes a repetition fail but not the history itself.
 #[test]
 fn a_failed_repetition_leaves_the_history_and_says_why() {
     let scenario = |step_s: f64| {
@@ -523,7 +523,7 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
         said.contains(&words) && said.contains("results in"),
         "{said}"
     );
-    // All else is what it is without repetitions.
+    // Everything else is as without repetitions.
     let alone = Results::of(&scenario(step_s), &["--no-spread"]);
     assert_eq!(results.files(""), alone.files(""));
     for name in [
@@ -578,7 +578,7 @@ fn a_spread_knows_other_outcomes() {
 fn hinges_override_the_scenario() {
     let four = Results::of(SEVEN, &[]);
     assert!(four.summary().get("evaluations").is_some());
-    // What the scenario chooses does not count where the command chooses.
+    // The model chosen by the command overrides that of the scenario.
     let overridden = Results::of(&free(SEVEN), &["--hinges", "four"]);
     for name in ["rotations.csv", "impacts.csv", "summary.json"] {
         let read = |results: &Results| fs::read(results.path(name)).unwrap();
