@@ -42,8 +42,8 @@ fn the_largest_kinetic_energy_is_noted() {
     }
 }
 
-/// With ever longer steps the balance gets worse, is doubtful, and is refused beyond a hundredth of the larger of the barrier,
-/// `m g (R - h)`, and the largest kinetic energy; the message tells a step with which it is not.
+/// With ever longer steps the energy balance gets worse, then doubtful. An error of more than a hundredth of the larger of the barrier,
+/// `m g (R - h)`, and the largest kinetic energy is refused; the message names a step with which it is not.
 #[test]
 fn a_wrong_energy_balance_fails() {
     let push = GroundMotion::pulse(Pulse::Rectangular, -0.8 * GRAVITY, 0.1, 0.0).unwrap();

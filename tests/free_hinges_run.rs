@@ -610,7 +610,7 @@ fn both_models_stand_side_by_side_with_one_picture() {
     for name in ["ground", "four links", "free hinges"] {
         assert!(picture.contains(&format!("data-name=\"{name}\"")), "{name}");
     }
-    // One model after both: only its files are in the folder itself, and none of an earlier model.
+    // A run with one model after a run with both: the folder has only its files, and none of an earlier model.
     let root = results.root.path();
     for (hinges, joints) in [("free", true), ("four", false)] {
         let arguments = ["run", "s.toml", "--out", "out", "--hinges", hinges];
@@ -637,7 +637,7 @@ fn rotations_go_to_standard_output() {
     assert!(table == file);
 }
 
-/// Drums that are released turn as one about the base, as one block does until the first impact.
+/// Released drums turn about the base as one, like a single block, until the first impact.
 #[test]
 fn a_column_of_drums_is_released_from_its_base() {
     let released = |drums: &str| {
@@ -663,7 +663,7 @@ fn a_column_of_drums_is_released_from_its_base() {
     assert!((three.rows[0].number("rotation_3_rad") + 0.05).abs() < 1e-15);
 }
 
-/// Below the unstable equilibrium of its first mechanism an arch of any shape comes to rest, beyond it falls at once.
+/// Released below the unstable equilibrium of its first mechanism, an arch of any shape comes to rest; released beyond, it falls at once.
 #[test]
 fn an_arch_of_any_shape_is_released_from_its_first_mechanism() {
     let released = |rotation_rad: f64| {
@@ -679,7 +679,7 @@ fn an_arch_of_any_shape_is_released_from_its_first_mechanism() {
     let fallen = released(0.3);
     assert_eq!(fallen["outcome"], "overturned");
     assert_eq!(fallen["overturning_sway"], "left");
-    // Nothing moved but what was released.
+    // Nothing moved except the released body.
     let peak_rad = fallen["peak_rotation_13_rad"].as_f64().unwrap();
     assert!((peak_rad - 0.3).abs() < 1e-12);
 }
@@ -699,12 +699,12 @@ fn what_a_model_cannot_do_is_refused() {
         .replace("157.5", "60.0");
     let said = refusal(&thick, &["--hinges", "four"]);
     assert!(said.contains("too thick"), "{said}");
-    // There is no repetition to leave out.
+    // There are no repetitions to leave out.
     for more in [&[][..], &["--hinges", "four"]] {
         let said = refusal(SEVEN, &[&["--no-spread"], more].concat());
         assert!(said.contains("--no-spread goes with free hinges"), "{said}");
     }
-    // An arch that does not start as four links has no mechanism to be released in.
+    // An arch that does not start as four links cannot be released in a mechanism.
     let released = free(&thick) + "[initial]\nsway = \"left\"\nrotation_rad = 0.001\n";
     let said = refusal(&released, &["--no-spread"]);
     assert!(
@@ -761,7 +761,7 @@ fn a_column_of_one_block_moves_as_housner_s() {
     assert!((kept(&impacts[1]) - restitution).abs() < 1e-9);
 }
 
-/// The bound of friction is far below what this pulse asks for: voussoirs slip, and stay so.
+/// The friction is far less than this pulse requires: voussoirs slip and stay displaced.
 #[test]
 fn joints_that_slip_are_told_of() {
     let slipping = format!(
@@ -770,7 +770,7 @@ fn joints_that_slip_are_told_of() {
     let results = Results::of(&slipping, &["--no-spread"]);
     let summary = results.summary();
     assert_eq!(summary["friction_coefficient"], 0.4);
-    // It has slipped so far down that its height tells nothing about overturning.
+    // It has slipped so far down that its height means nothing for overturning.
     assert_eq!(summary["peak_potential_over_barrier"], Value::Null);
     assert_eq!(summary["unconverged_steps"], 0);
     let slips_m: Vec<f64> = serde_json::from_value(summary["slips_m"].clone()).unwrap();
@@ -783,7 +783,7 @@ fn joints_that_slip_are_told_of() {
         "{summary:#}"
     );
     assert_eq!(summary["outcome"], "rest");
-    // What is left of the slips is in the last row, what friction took in the impacts is not more than all of it.
+    // The last row has the remaining slips; the energy that friction took in impacts is at most the total.
     let joints = Table::read(results.path("joints.csv"));
     for (joint, (column, slip_m)) in joints.header[17..].iter().zip(&slips_m).enumerate() {
         assert_eq!(*column, format!("slip_{joint}_m"));
@@ -826,7 +826,7 @@ fn joints_that_slip_are_told_of() {
     ] {
         assert!(results.said.contains(words), "{words}\n{}", results.said);
     }
-    // Statics know that sliding governs.
+    // Limit analysis also finds that sliding governs.
     let limit = archrock(
         results.root.path(),
         &["limit", "s.toml", "--format", "json"],
@@ -857,8 +857,8 @@ fn joints_that_slip_are_told_of() {
     }
 }
 
-/// The sideways peak of a pulse is told beside the push that starts the structure, and that is with friction the one of
-/// limit analysis: of a low block Coulomb's coefficient, of a slender one width over height.
+/// The horizontal peak of a pulse is reported with the push that starts the structure. With friction, that push is the result of
+/// limit analysis: for a low block Coulomb's coefficient, for a slender one width over height.
 #[test]
 fn with_friction_the_push_that_starts_it_is_that_with_friction() {
     for (height_m, width_m, friction, push_g) in [
@@ -878,7 +878,7 @@ fn with_friction_the_push_that_starts_it_is_that_with_friction() {
         assert!(results.said.contains(&words), "{}", results.said);
         for side in ["right", "left"] {
             let told_g = &results.summary()["incipient_acceleration_g"][side];
-            // To the accuracy of the interior point method.
+            // Accurate to the tolerance of the interior point method.
             assert!((told_g.as_f64().unwrap() - push_g).abs() < 1e-6, "{told_g}");
         }
     }
@@ -896,7 +896,7 @@ fn what_slides_without_turning_has_no_half_cycles_to_tell_of() {
     }
 }
 
-/// A mechanism that takes less energy than the first may overturn it.
+/// Another mechanism, which takes less energy than the first, may overturn it.
 #[test]
 fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
     let scenario = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.138\nembrace_deg = 120\nvoussoirs = 9\n\
@@ -926,7 +926,7 @@ fn limit_analysis_of_drums_tells_the_push_that_starts_them() {
     let pushes_g = |json: &Value| {
         ["right", "left"].map(|side| json["incipient_acceleration_g"][side].as_f64().unwrap())
     };
-    // As one block about the base, by width over height.
+    // It starts as one block about the base, at width over height.
     let drums = limit("drums = 6\n[free_hinges]\n");
     let sides = [("right", "extrados"), ("left", "intrados")];
     for (push_g, (side, edge)) in pushes_g(&drums).into_iter().zip(sides) {

@@ -1,5 +1,5 @@
-//! Maps and suites on rows of blocks with free hinges: cells against single histories, pieces of work against the
-//! whole, what they depend on, and what they refuse.
+//! Maps and suites of rows of blocks with free hinges: cells compared with single histories, parts of the work with the
+//! whole, the influences on results, and refusals.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -41,7 +41,7 @@ fn arch(mean_radius_m: f64, thickness_ratio: f64, embrace_deg: f64) -> Arch {
         .unwrap()
 }
 
-/// How a single history of a row ends in a cell of `map`.
+/// The ending of a single history of a row, as a cell of `map` has it.
 fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration_s: f64) -> Ending {
     let ground =
         GroundMotion::pulse(Pulse::Rectangular, amplitude_g * 9.81, duration_s, 0.0).unwrap();
@@ -70,11 +70,11 @@ fn a_cell_is_the_history_of_its_row_under_its_pulse() {
         assert!(expected.peak.over_critical().is_none());
         outcomes.push(expected.outcome.name());
     }
-    // Where nothing moves no block has turned.
+    // If nothing moves, no block has rotated.
     assert_eq!(outcomes[1], "never_moved");
     assert_eq!(ended(&map, 1).peak.rad(), Some(0.0));
     assert!(outcomes.contains(&"overturned") && outcomes.contains(&"rest"));
-    // That boundary is of mechanisms with one degree of freedom.
+    // That boundary exists only for mechanisms with one degree of freedom.
     assert!(ImpactFreeBoundary::new(&map).is_none());
 }
 
@@ -130,7 +130,7 @@ fn a_cell_of_drums_is_the_history_of_their_column() {
     }
 }
 
-/// Whether a history overturns, or how it ended else, as the spread counts outcomes.
+/// Whether a history overturns, or else how it ended, as the spread counts outcomes.
 fn outcome_of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> &'static str {
     model
         .simulate(ground, request, None)
@@ -141,7 +141,7 @@ fn outcome_of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> &'
 
 #[test]
 fn the_spread_counts_the_outcomes_of_all_repetitions() {
-    // Drums of 4 m under a pulse near the edge of overturning: with so long steps the edge is blurred.
+    // Drums of 4 m under a pulse near the edge of overturning: steps this long blur the edge.
     let text = |spread: &str| {
         format!(
             "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 2\n\
@@ -193,7 +193,7 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
     let hatch = picture.lines().find(|line| line.contains("\"spread\""));
     assert_eq!(hatch.unwrap().matches('L').count(), doubtful);
 
-    // Without it less is repeated: steps this long blur also the edge of what overturns at once, which is spared.
+    // Without it less is repeated: cells that overturn at once are not, though steps this long blur their edge too.
     let plain = parsed(&text(""));
     let map = OverturningMap::new(&plain).unwrap();
     for (index, with) in rows.iter().enumerate() {
@@ -208,8 +208,8 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
     assert!(!draw("Title", &map, &rows, &[], look).contains("in a repetition"));
 }
 
-/// With steps that the scenario gives a map takes those of `run`: outcome and peak are its to the last bit, and so are the impacts and
-/// the time of what overturns. What comes to rest is followed only until that is known.
+/// With steps that the scenario gives, a map takes those of `run`: outcome and peak are bit-identical, and so are the impacts and
+/// the time if it overturns. A history that comes to rest is followed only until that is known.
 #[test]
 fn cells_with_the_steps_of_runs_have_their_bits() {
     let map_text = || {
@@ -246,7 +246,7 @@ fn cells_with_the_steps_of_runs_have_their_bits() {
         } else {
             assert_eq!(summary["outcome"], "rest");
         }
-        // A run audits its samples too.
+        // A run also checks the energy at its samples.
         assert!(summary["energy_defect_ratio"].as_f64().unwrap() >= cell.energy_defect_ratio);
         assert_eq!(
             summary["largest_peak_rotation_rad"],
@@ -257,8 +257,8 @@ fn cells_with_the_steps_of_runs_have_their_bits() {
     assert!(moved > 2);
 }
 
-/// A step pair of 0.2 s on a block of 4 x 0.8 m: one band, from where Housner's column says too, without the safe gaps that
-/// merged landings made. Up to 0.66 g that is sampled a ten-thousandth apart.
+/// A step pair of 0.2 s on a block of 4 x 0.8 m: one band, from the same factor as for Housner's column, without the safe gaps that
+/// merged landings once caused. Up to 0.66 g the amplitudes are a ten-thousandth apart.
 #[test]
 fn a_block_under_a_step_pair_has_one_band_without_gaps() {
     let column = Column::new(4.0, 0.8).unwrap();
@@ -281,7 +281,7 @@ fn a_block_under_a_step_pair_has_one_band_without_gaps() {
         assert!((edge - 0.65649).abs() < 1e-4, "{} {edge}", threshold.model);
     }
     let edges: Vec<_> = found.iter().filter_map(Threshold::lowest_factor).collect();
-    // Each edge is enclosed to 1e-4 of it.
+    // Each edge is enclosed to a relative width of 1e-4.
     assert!((edges[0] / edges[1] - 1.0).abs() < 1e-4, "{edges:?}");
 }
 
@@ -326,7 +326,7 @@ fn results_do_not_depend_on_threads_and_parts() {
     let resume = [
         "map", "s.toml", "--shard", "2/2", "--resume", "--out", "parts",
     ];
-    // Nor does it go on with the other model of motion.
+    // Nor does it continue with the other model of motion.
     let four = [&resume[..], &["--hinges", "four"]].concat();
     refused(
         path,
@@ -338,11 +338,11 @@ fn results_do_not_depend_on_threads_and_parts() {
     assert_eq!(files(&path.join("merged")), whole);
 }
 
-/// With steps far too long the ends of an arch may part in the computation. The reason of such a cell goes through
-/// the file of its part to the merged results.
+/// With steps far too long the ends of an arch may part in the computation. The reason for the failure of such a cell passes
+/// from the part file to the merged results.
 #[test]
 fn a_cell_that_fails_keeps_its_reason_to_the_end() {
-    // Which steps do that is a matter of rounding; among a few there is one with which some cells fail.
+    // Rounding decides which steps do that; among a few, there is one with which some cells fail.
     let steps_s = [0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.3, 0.5];
     let found = steps_s.into_iter().find_map(|step_s| {
         let text = format!(
@@ -398,7 +398,7 @@ fn a_cell_that_fails_keeps_its_reason_to_the_end() {
     }
     let table = fs::read_to_string(path.join("merged/map.csv")).unwrap();
     assert_eq!(table.matches(",failed,").count(), reasons.len());
-    // In one go it is the same.
+    // Computed at once it is the same.
     done(path, &["map", "s.toml", "--out", "whole"]);
     assert_eq!(files(&path.join("merged")), files(&path.join("whole")));
 }
@@ -425,7 +425,7 @@ fn the_model_of_motion_can_be_chosen_on_the_command_line() {
     assert_eq!(files, as_free);
     assert_ne!(as_four["map.csv"], as_free["map.csv"]);
 
-    // A part of one model is none of the other.
+    // A part computed with one model does not belong to the other.
     let shard = ["map", "s.toml", "--shard", "1/2", "--out", "f"];
     done(path, &shard);
     let free = [&shard[..], &["--resume", "--hinges", "free"]].concat();
@@ -489,7 +489,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
     for scenario in [free, four] {
         assert_eq!(parsed(&scenario.to_toml()), scenario);
     }
-    // Free hinges open at joints.
+    // Free hinges need joints.
     fs::write(
         &file,
         map_text().replace("voussoirs = 7\n[free_hinges]\n", ""),
@@ -524,7 +524,7 @@ fn a_suite_shakes_the_row_of_its_scenario() {
     done(path, &["merge", parts[0], parts[1], "--out", "merged"]);
     assert_eq!(files(&path.join("merged")), whole);
 
-    // The rows are single histories under the records as scaled.
+    // The rows equal single histories under the scaled records.
     let mut overturned = 0;
     for row in Table::parse(&whole["suite.csv"]).rows {
         let text = format!(

@@ -1,10 +1,10 @@
-//! Ground motions from any numbers: an error that names the number, or a motion that holds what it promises.
+//! Ground motions from arbitrary numbers: either an error that names the number, or a motion that is sound.
 
 use archrock::{GroundError, GroundMotion, Pulse, WaveTrain};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
-/// Any number at all, and often enough one that is allowed.
+/// Any number at all; often enough a valid one.
 fn any_number() -> impl Strategy<Value = f64> {
     let special = [
         0.0,
@@ -40,7 +40,7 @@ fn any_samples() -> impl Strategy<Value = Vec<(f64, f64)>> {
     prop_oneof![any, rising]
 }
 
-/// A motion that works has pieces from zero to infinity without gaps, and finite values on them.
+/// A sound motion has pieces from zero to infinity without gaps, and finite values on them.
 fn assert_works(ground: Result<GroundMotion, GroundError>, other: f64) {
     let ground = match ground {
         Ok(ground) => ground,

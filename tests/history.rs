@@ -13,7 +13,7 @@ use archrock::{
     State, Sway,
 };
 
-/// Everything a history tells, for comparisons to the last bit.
+/// All values of a history, for bit-by-bit comparisons.
 fn fingerprint(history: &History) -> Vec<u64> {
     let summary = &history.summary;
     let mut bits = vec![
@@ -59,12 +59,12 @@ fn published_history_of_the_semicircle() {
     };
     let (height, time_s) = peak(0.0, first_s);
     assert!((height - 0.035_25).abs() <= 0.5e-5, "{height}");
-    // Published as 0.571; the rate passes zero between 0.5720 and 0.5721, where the top is so flat that the
+    // Published as 0.571; the rate passes zero between 0.5720 and 0.5721, and the maximum is so flat that the
     // rotation is the same to 1e-7.
     assert!((time_s - 0.572).abs() <= 0.5e-3 + 0.25e-3, "{time_s}");
     let (height, _) = peak(first_s, second_s);
     assert!((height - 0.003_68).abs() <= 0.5e-5, "{height}");
-    // The largest over the whole history, found inside a step and not on a sample.
+    // The largest rotation of the whole history, found inside a step and not at a sample.
     assert!((history.summary.peak_rotations_rad[2] - 0.035_25).abs() <= 0.5e-5);
     assert_eq!(history.summary.outcome, Outcome::Rest);
     assert_eq!(first.sway_before, Sway::Right);
@@ -74,7 +74,7 @@ fn published_history_of_the_semicircle() {
 
 #[test]
 fn published_collapse_amplitudes_without_impact() {
-    // The step pair pushes left first where its amplitude is positive; by symmetry that is the same.
+    // With a positive amplitude the step pair first pushes left; by symmetry the result is the same.
     let arch = seven_voussoirs();
     for (duration_s, published) in [(0.2, 3.066), (0.5, 0.820), (1.0, 0.465)] {
         let falls = |amplitude_g: f64| {
@@ -83,7 +83,7 @@ fn published_collapse_amplitudes_without_impact() {
             history.summary.outcome == Outcome::Overturned(Sway::Left)
                 && history.summary.impacts == 0
         };
-        // Collapse without impact is monotone in the amplitude around its least.
+        // Around the least amplitude, collapse without impact is monotone in the amplitude.
         let (mut low, mut high) = (0.97 * published, 1.03 * published);
         assert!(!falls(low) && falls(high), "{duration_s}");
         while high - low > 1e-5 {
@@ -158,8 +158,8 @@ fn the_mirror_image_is_exact() {
 
 #[test]
 fn size_and_gravity_only_stretch_time() {
-    // R -> 4 R and t -> 2 t, or g -> g/4 and t -> 2 t with the amplitude in g kept: powers of two, so that
-    // nothing but the solver's cube roots of step sizes could differ, and times agree to its tolerance.
+    // R -> 4 R and t -> 2 t, or g -> g/4 and t -> 2 t with the same amplitude in g. These are powers of two, so only
+    // the solver's cube roots of step sizes can differ, and times agree to its tolerance.
     let small = semicircle();
     let large = small.with_mean_radius_m(4.0 * 5.0).unwrap();
     for kind in [Pulse::Rectangular, Pulse::OneSine, Pulse::Ricker] {
@@ -267,7 +267,7 @@ fn it_starts_where_the_push_passes_the_incipient_acceleration() {
             );
         }
     }
-    // From there q'' grows in proportion to the time since: q = j s^3 / 6 to first order.
+    // From then on q'' grows in proportion to the elapsed time s: q = j s^3 / 6 to first order.
     let link = arch.link(0).unwrap();
     let coefficients = link.mechanism.coefficients(0.0);
     let jerk = 2.0 * arch.incipient_g() * GRAVITY / 0.4;
@@ -289,7 +289,7 @@ fn it_rests_and_starts_again_on_either_side() {
         (Pulse::OneSine, 1.05 * incipient_g, 4.0),
         (Pulse::OneSine, -1.05 * incipient_g, 4.0),
         // A short strong step, then one of half its size, long enough for the rocking to die out under it
-        // and the structure to be pushed again and again.
+        // and for the structure to be pushed again and again.
         (Pulse::Ricker, -1.1 * incipient_g, 5.0),
         (Pulse::Ricker, 1.1 * incipient_g, 5.0),
     ] {
@@ -304,7 +304,7 @@ fn it_rests_and_starts_again_on_either_side() {
             .count();
         if kind == Pulse::OneSine {
             assert!(starts >= 2, "{states:?}");
-            // Either side, the one opposite to the ground first.
+            // Both sides, beginning with the one opposite to the ground.
             let sides: Vec<State> = states
                 .windows(2)
                 .filter(|pair| pair[0] == State::Rest)
@@ -317,7 +317,7 @@ fn it_rests_and_starts_again_on_either_side() {
             };
             assert_eq!(sides, expected.map(State::Rocking));
         }
-        // The chain starts again with every start.
+        // The chain begins anew at every start.
         let restarts = history
             .events
             .windows(2)
@@ -331,7 +331,7 @@ fn it_rests_and_starts_again_on_either_side() {
 
 #[test]
 fn a_push_barely_above_the_threshold_does_no_harm() {
-    // One-cosine starts at its peak: the structure is lifted for an instant only, by as little as rounding.
+    // One-cosine starts at its peak, so the structure is lifted only for an instant, by as little as rounding.
     let arch = semicircle();
     for exponent in 1..=13 {
         for kind in [
@@ -360,7 +360,7 @@ fn the_peak_is_not_below_any_sample() {
         for sample in history.samples.iter() {
             let peaks = &history.summary.peak_rotations_rad;
             for (rotation, peak) in sample.rotations_rad.iter().zip(peaks) {
-                // Of two ways to one turning point, each is exact to the error of a step.
+                // Two ways lead to one turning point; each is accurate to the error of a step.
                 assert!(
                     rotation.abs() <= peak * (1.0 + 1e-5),
                     "{kind:?} {amplitude_g}: {} s {rotation} {peak}",
@@ -372,11 +372,11 @@ fn the_peak_is_not_below_any_sample() {
     for kind in Pulse::ALL.iter().copied() {
         for amplitude_g in [1.02 * incipient_g, 0.4] {
             check(kind, amplitude_g, 0.3, 3.0);
-            // The end finds it on its way out.
+            // The history ends while the structure still moves outwards.
             check(kind, amplitude_g, 0.3, 0.2);
         }
     }
-    // A peak that falls off: the whole first hop, from rest, is shorter than the first step.
+    // A peak that decreases: the whole first hop, from rest, is shorter than the first step.
     for exponent in 1..=5 {
         check(
             Pulse::OneCosine,
@@ -403,14 +403,14 @@ fn a_very_short_blow_gives_its_momentum() {
             let (_, samples) = run_sampled(&arch, &ground, &request(end_s));
             let rate = -samples.last().unwrap().rates_rad_s[0];
             let expected = velocity_m_s * at_zero.s_x / (at_zero.inertia * arch.length_m());
-            // Of first order in the duration, with the acceleration of gravity as its measure.
+            // The error is of first order in the duration, with the acceleration of gravity as its scale.
             let relative = 2.0 * GRAVITY * at_zero.s_y / at_zero.s_x * duration_s / velocity_m_s;
             assert!(
                 ((rate / expected) - 1.0).abs() < 2.0 * relative + 1e-8,
                 "{rate} {expected}"
             );
             assert!(rate < expected);
-            // The whole history goes on from there, whenever the blow came.
+            // The whole history continues from there, whenever the blow came.
             let summary = run(&arch, &ground, &request(start_s + 20.0)).summary;
             assert_ne!(summary.outcome, Outcome::NeverMoved);
             assert!(summary.peak_rotations_rad[0] > 1e-4);
@@ -477,8 +477,8 @@ fn a_chain_without_end_dies_out_in_finite_time() {
 
 #[test]
 fn the_time_of_overturning_is_the_last_passage_outwards() {
-    // A cosine pushes out, pulls back and pushes again: it may pass the critical rotation, come back, and pass
-    // it once more. From the instant that is told it is never seen inside again.
+    // A cosine pushes out, pulls back and pushes again: the structure may pass the critical rotation, come back, and
+    // pass it once more. After the reported instant it is never inside again.
     let arch = semicircle();
     let link = arch.link(0).unwrap();
     let (mut overturned, mut passed_before) = (0, 0);
@@ -512,7 +512,7 @@ fn the_time_of_overturning_is_the_last_passage_outwards() {
     );
 }
 
-/// Bytes of all lists of samples as they are.
+/// Memory that the lists of samples take, in bytes.
 fn bytes(samples: &archrock::Samples) -> usize {
     fn of<T>(list: &[T]) -> usize {
         size_of_val(list)
@@ -558,12 +558,12 @@ fn the_memory_of_a_history_is_known_before_and_bounded() {
         let history = model.history(scenario.ground_motion(), &request).unwrap();
         let count = request.most_samples();
         assert!((1001..=1003).contains(&count) && history.samples.len() as u64 <= count);
-        // All that may be open is not always open: that is what the bound is off by.
+        // Not all hinges that may be open are always open; the bound is too large by that.
         let needed = model.shape().bytes(count);
         let taken = bytes(&history.samples) as u64;
         assert!(taken <= needed && needed < 2 * taken, "{taken} {needed}");
         let within = |bytes| model.history_within(bytes, scenario.ground_motion(), &request);
-        // The events need something too.
+        // The events also need memory.
         let Err(archrock::SimulationError::Memory(error)) = within(needed) else {
             panic!("the events have no room")
         };

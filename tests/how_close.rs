@@ -1,4 +1,4 @@
-//! How close it was: per record in a line, and in the picture of incremental dynamic analysis.
+//! How close a structure came to overturning: a line per record, and the picture of incremental dynamic analysis.
 
 use std::fs;
 
@@ -32,7 +32,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// The words as they follow from the bands and gaps of `threshold.json`.
+/// The words that follow from the bands and gaps of `threshold.json`.
 fn words(threshold: &Value) -> String {
     let model = &threshold["models"][0];
     let four = |value: &Value| {
@@ -100,7 +100,7 @@ fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
         assert_eq!(scenario["ground"]["record"]["file"], record);
         assert_eq!(scenario.get("suite"), None);
     }
-    // The first is what [ground] asks for too.
+    // The first record is also that of [ground].
     let single = archrock(
         path,
         &[&["threshold", "s.toml", "--out", "o"], &OPTIONS[..]].concat(),
@@ -123,13 +123,13 @@ fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
         let summary = json(&path.join("results/s").join(record).join("summary.json"));
         assert_eq!(summary["scenario"]["ground"]["record"]["file"], record);
     }
-    // As if it were the ground of the scenario.
+    // The same as if it were the ground of the scenario.
     stdout(&archrock(path, &["run", "s.toml", "--out", "o"]));
     assert_eq!(
         fs::read(path.join("o/rotations.csv")).unwrap(),
         fs::read(path.join("results/s/wave-1.at2/rotations.csv")).unwrap()
     );
-    // One of two records of one name would replace the results of the other.
+    // If two records had the same name, the results of one would replace those of the other.
     for place in ["a", "b"] {
         fs::create_dir(path.join(place)).unwrap();
         fs::copy(path.join("wave-1.at2"), path.join(place).join("w.at2")).unwrap();
@@ -181,7 +181,7 @@ fn a_suite_says_a_line_per_record_and_draws_how_far_each_goes() {
             .iter()
             .filter(|row| row["outcome"] == "overturned")
             .count();
-        // The least level that overturns, and from there on the others, each run of survivors by its ends.
+        // The least level that overturns; and beyond it the others, each run of survivors given by its ends.
         let first = own
             .iter()
             .position(|row| row["outcome"] == "overturned")
@@ -212,11 +212,11 @@ fn a_suite_says_a_line_per_record_and_draws_how_far_each_goes() {
     }
     assert_eq!(marks("overturned"), overturned);
     assert_eq!(marks("survived"), 40 - overturned);
-    // Mirrored records do the same to the other side, and need no line of their own.
+    // Mirrored records give mirrored results, and need no line of their own.
     assert!(!said.contains("mirrored"), "{said}");
 }
 
-/// Potential energy of a block that has turned by so much over that at its unstable equilibrium, by Housner's diagonal.
+/// Potential energy of a block at this rotation, relative to that at its unstable equilibrium, from Housner's diagonal.
 fn potential_ratio(slenderness_rad: f64, rotation_rad: f64) -> f64 {
     ((slenderness_rad - rotation_rad).cos() - slenderness_rad.cos()) / (1.0 - slenderness_rad.cos())
 }
@@ -254,7 +254,7 @@ fn a_block_with_free_hinges_is_as_close_as_its_peak_rotation_says() {
     }
 }
 
-/// What is released at rest and not shaken is never higher than it was released.
+/// A structure released at rest on still ground never rises above the height of release.
 #[test]
 fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
     let arch = Arch::new(5.0, 0.15, 180.0)
@@ -278,7 +278,7 @@ fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
         let ratio = summary.peak_potential_over_barrier.unwrap();
         assert!((ratio / due - 1.0).abs() < 1e-9, "{ratio} {due}");
     }
-    // Of two drums no barrier is known.
+    // For two drums no barrier is known.
     let folder = tempfile::tempdir().unwrap();
     let drums = COLUMN.replace("width_m", "drums = 2\nwidth_m");
     let scenario =
@@ -296,8 +296,8 @@ fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
     );
 }
 
-/// The line in the panel of the energy is at 1: the energies of a block that rocks freely before and after its first impact
-/// give the scale. What hardly moves has none.
+/// The line in the panel of the energy is at 1. The energies of a freely rocking block before and after its first impact
+/// give the scale. A structure that hardly moves has no such line.
 #[test]
 fn the_picture_marks_the_barrier() {
     let folder = tempfile::tempdir().unwrap();
@@ -323,7 +323,7 @@ fn the_picture_marks_the_barrier() {
     let [energy, barrier] = curves(0.7);
     let released = potential_ratio(slenderness_rad, 0.7 * slenderness_rad);
     let restitution = (1.0 - 1.5 * slenderness_rad.sin().powi(2)).powi(2);
-    // On the sheet y points downwards; the first level is the highest.
+    // On the sheet y points down; the first level is the highest.
     let second = energy.iter().find(|y| **y > energy[0] + 2.0).unwrap();
     let scale = (second - energy[0]) / (released * (1.0 - restitution));
     assert_eq!(barrier.len(), 2);

@@ -17,7 +17,7 @@ fn first_mechanism(ring: &Ring, sites: HingeSites) -> FourLink {
     incipient(ring, sites).unwrap().mechanism
 }
 
-/// Hinges in degrees from the left springing of the ground's frame, where link 1, 3, ... sway left.
+/// Hinges in degrees from the left springing, in the frame of the ground, in which links 1, 3, ... sway left.
 fn seen_from_ground(mechanism: &FourLink, ring: &Ring, sways_left: bool) -> [f64; 4] {
     let [a, b, c, d] = mechanism.hinges_rad();
     if sways_left {
@@ -41,7 +41,7 @@ fn published_chain_of_the_semicircle() {
         // The last published digit of the third is cut off, not rounded (0.764018836).
         assert!((found - restitution).abs() <= 0.6e-8, "{index}: {found}");
         let seen = seen_from_ground(&link.mechanism, &arch.arch().ring(), index % 2 == 1);
-        // r is flat at its maximum: 1e-16 in r leaves 1e-8 rad, far below the digits.
+        // r is flat at its maximum: an error of 1e-16 in r allows 1e-8 rad, far below the digits.
         assert_hinges(seen, hinges, 0.5e-5);
     }
     // The paper's own figure.
@@ -98,7 +98,7 @@ fn a_prescribed_restitution_is_kept_with_mirrored_hinges() {
     };
     let found = given(0.8).unwrap();
     assert!(found.restitution == 0.8);
-    // Energy ratio, not velocity ratio; both mechanisms have the same inertia.
+    // The coefficient is an energy ratio, not a velocity ratio; both mechanisms have the same inertia.
     assert!((found.rate_ratio * found.rate_ratio - 0.8).abs() < 1e-15);
     // Mirrored hinges in the ground's frame are the same hinges in the mirrored frame.
     assert_eq!(found.mechanism.hinges_rad(), mechanism.hinges_rad());
@@ -133,7 +133,7 @@ fn published_eccentricities_of_the_impulse_line() {
                 (largest, at) = (there.eccentricity_ratio.abs(), section.to_degrees());
             }
         }
-        // The published section is in the ground's frame, where the new mechanism sways left.
+        // The published section is in the frame of the ground, in which the new mechanism sways left.
         let seen = 180.0 - at;
         let digit = if t == 0.15 { 0.5e-5 } else { 0.5e-3 };
         assert!(
@@ -167,7 +167,7 @@ fn quadrature(v: &Field, w: &Field, ring: &Ring, cuts: u32) -> f64 {
 
 #[test]
 fn restitution_is_the_ratio_of_integrated_kinetic_energies() {
-    // Joints of the voussoirs lie on the mesh, which errs by its squares: (22/1008)^2/24 + (1/24)^2 t^2/24.
+    // Joints of the voussoirs lie on the mesh; the errors are of second order: (22/1008)^2/24 + (1/24)^2 t^2/24.
     let ring = ring(0.15, 157.5);
     let sites = HingeSites::Voussoirs(7);
     let first = first_mechanism(&ring, sites);
@@ -176,7 +176,7 @@ fn restitution_is_the_ratio_of_integrated_kinetic_energies() {
     let after = found.mechanism.field().scaled(found.rate_ratio);
     let energy = |field: &Field| quadrature(field, field, &ring, 7 * 144);
     assert!((energy(&after) / energy(&before) - found.restitution).abs() < 1e-5);
-    // The part that is lost is orthogonal to the new mechanism.
+    // The lost part of the motion is orthogonal to the new mechanism.
     let lost = before.minus(&after);
     assert!(quadrature(&lost, &after, &ring, 7 * 144).abs() < 1e-5 * energy(&before));
 }
@@ -196,8 +196,8 @@ fn mechanisms(ring: &Ring, random: &mut Random, count: usize, apart: f64) -> Vec
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// The five equations and the projection are two ways to one rate. Both lose digits where hinges
-    /// come close or almost onto one line: the rotations are quotients of the areas that the hinges
+    /// The five equations and the projection are two ways to the same rate. Both lose digits if hinges come
+    /// close together or almost onto one line. The rotations are quotients of the areas that the hinges
     /// span, so the bound is relative to the smallest of these (4e-16 times a few hundred operations).
     #[test]
     fn five_equations_equal_the_projection(
@@ -228,7 +228,7 @@ proptest! {
                 );
                 // A squared cosine: energy never grows, whichever mechanism follows.
                 prop_assert!((0.0..=1.0 + 1e-14).contains(&restitution));
-                // Global balance with the impulses at both ends, which the projection never sees.
+                // Global balance with the impulses at both ends, which the projection does not use.
                 let change = after.scaled(theorems.rate).minus(&before);
                 let [a, .., d] = next.hinges_rad();
                 let gained = change.momentum_to(&ring, d).linear - change.momentum_to(&ring, a).linear;
@@ -249,14 +249,14 @@ proptest! {
         let Ok(found) = incipient(&ring, sites) else { return Ok(()) };
         let mut closing = found.mechanism;
         for _ in 0..links {
-            // A thick ring may be stopped: that nothing can follow is checked as well.
+            // A thick ring may be stopped; then it is also checked that no mechanism can follow.
             let Some(next) = impact(&closing, &ring, sites, MAX) else { break };
             closing = next.mechanism;
         }
         beaten_by_nothing(&closing, &ring, seed, 6)?;
     }
 
-    /// The same for mechanisms that no chain leads to.
+    /// The same for mechanisms to which no chain leads.
     #[test]
     fn nothing_beats_the_impact_of_a_random_mechanism(
         t in 0.05_f64..0.4, embrace in 90.0_f64..180.0, seed in 0_u64..1 << 60,
@@ -287,7 +287,7 @@ fn beaten_by_nothing(
     for _ in 0..1000 {
         let start = random.quadruple(ring.embrace_rad());
         if let Some((value, angles)) = climb(start, ring.embrace_rad(), score) {
-            // Below 1e-3 nothing is left that could matter, and the maximum may sit where two hinges merge.
+            // Values below 1e-3 do not matter, and there the maximum may lie where two hinges merge.
             prop_assert!(
                 value <= best + 1e-10 || value < 1e-3,
                 "{value} > {best} at {:?} after {:?} ({ring:?})",
@@ -303,9 +303,9 @@ fn beaten_by_nothing(
     Ok(())
 }
 
-/// The slope of r jumps up where a new hinge passes a section that closes, so that maxima come in twins on
-/// either side of it, closer than any lattice. Rings and mechanisms found at random for which the better
-/// twin was missed once; the first is the incipient mechanism of its ring.
+/// The slope of r jumps up where a new hinge passes a section that closes. So maxima come in pairs, one on
+/// either side, closer together than any lattice. For these rings and mechanisms, found at random, the better
+/// of the two was once missed; the first is the incipient mechanism of its ring.
 #[test]
 fn the_better_of_two_maxima_beside_a_closing_section_is_found() {
     for (t, embrace_rad, closing_deg, best) in [
@@ -357,7 +357,7 @@ fn the_better_of_two_maxima_beside_a_closing_section_is_found() {
         )
         .unwrap();
         let found = impact(&closing, &ring, HingeSites::Anywhere, MAX).unwrap();
-        // Rings and hinges are given to some 1e-9.
+        // Rings and hinges are given with some 1e-9.
         assert!(
             (found.restitution - best).abs() < 2e-7,
             "{} {best}",
@@ -369,8 +369,8 @@ fn the_better_of_two_maxima_beside_a_closing_section_is_found() {
 
 #[test]
 fn the_search_over_joints_is_exhaustive() {
-    // Up to 48 voussoirs the code looks at every joint, beyond it goes from coarse to fine; this test
-    // looks at every joint always.
+    // Up to 48 voussoirs the code tries every joint, beyond that it goes from coarse to fine; this test
+    // always tries every joint.
     for (t, embrace, count, links) in [
         (0.15, 157.5, 7, 5),
         (0.2, 150.0, 12, 4),
@@ -396,9 +396,9 @@ fn the_search_over_joints_is_exhaustive() {
     }
 }
 
-/// The largest restitution over all quadruples of joints. Products of a mechanism are sums over its four
-/// hinges of products of unit rotations, tabulated from the library's `product` of two fields; what is
-/// tested is the search.
+/// The largest restitution over all quadruples of joints. Products of a mechanism are sums, over its four
+/// hinges, of products of unit rotations, tabulated from the library's `product` of two fields; only
+/// the search is tested.
 fn best_of_joints(
     ring: &Ring,
     before: &Field,
@@ -472,7 +472,7 @@ fn the_same_question_has_the_same_answer_to_the_last_bit() {
 
 #[test]
 fn how_fast_it_closes_does_not_matter() {
-    // The restitution of a scaled field is the same, its rate scales.
+    // The restitution of a scaled field is the same, and its rate scales.
     let ring = ring(0.15, 180.0);
     let first = first_mechanism(&ring, HingeSites::Anywhere);
     let next = impact(&first, &ring, HingeSites::Anywhere, MAX)

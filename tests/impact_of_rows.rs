@@ -1,4 +1,4 @@
-//! What `impact` tells of rows of blocks: against the ring, the mirror image, the momentum of the blocks, and the free
+//! The output of `impact` for rows of blocks, compared with the ring, the mirror image, the momentum of the blocks, and free
 //! hinges.
 
 use std::fs;
@@ -22,7 +22,7 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&printed(folder, &arguments)).unwrap()
 }
 
-/// The same, where what the ring tells of a section in degrees the row tells of its joint.
+/// The same output, where the ring has a section in degrees and the row the number of its joint.
 fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
     match (row, ring) {
         (Value::Object(row), Value::Object(ring)) => {
@@ -45,7 +45,7 @@ fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
             }
             let size = if key.ends_with("n_s_per_m") { 1e4 } else { 1.0 };
             let tolerance = match key {
-                // The projection is known to 1e-11 in energy, and its rates to the root of that.
+                // The energy of the projection is accurate to 1e-11, and its rates to the square root of that.
                 "opening_rate_ratio" => 1e-5,
                 _ => 1e-9,
             };
@@ -58,7 +58,7 @@ fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
     }
 }
 
-/// Voussoirs of equal angles, given one by one, are a row of blocks to the program; the same given as a number are cut from
+/// Voussoirs of equal angles that are given one by one are a row of blocks for the program; given as a number they are cut from
 /// a ring.
 #[test]
 fn equal_voussoirs_given_one_by_one_are_told_as_those_of_the_ring() {
@@ -137,7 +137,7 @@ fn uneven(folder: &Path) {
     }
 }
 
-/// What is told of the mirror image, as seen in a mirror.
+/// The output for the mirror image, mirrored back.
 fn seen_in_a_mirror(told: &Value, key: &str, last: u64) -> Value {
     match told {
         Value::Object(map) => {
@@ -194,7 +194,7 @@ fn a_mirror_image_is_told_as_seen_in_a_mirror() {
                 assert_same(&own[key], &seen, 1.0, key);
             }
             assert_ne!(own["impacts"][0], there["impacts"][0]);
-            // The scenario's model among the models is the impact of the chain.
+            // Among the compared models, the scenario's own gives the impact of the chain.
             let chain = match side {
                 "right" => &own["impacts"],
                 _ => &own["impacts_after_left"],
@@ -213,7 +213,7 @@ fn a_mirror_image_is_told_as_seen_in_a_mirror() {
             let (own, there) = (line("own.toml", side), line("mirrored.toml", other));
             assert_eq!([own.len(), there.len()], [last + 1; 2]);
             for ([_, e, normal, tangential], [_, seen @ ..]) in own.iter().zip(there.iter().rev()) {
-                // What was before a section is behind it.
+                // The part before a section is the part after it in the mirror image.
                 let seen = [seen[0], seen[1], -seen[2]];
                 for (here, there) in [e, normal, tangential].into_iter().zip(seen) {
                     assert!((here - there).abs() < 1e-9 * (1.0 + there.abs()));
@@ -223,7 +223,7 @@ fn a_mirror_image_is_told_as_seen_in_a_mirror() {
     }
 }
 
-/// An uneven arch on one pier, and its depth.
+/// An uneven arch on one pier, with its depth.
 fn on_a_pier(folder: &Path) -> (Row, f64) {
     let text = "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 13\ndepth_m = 2.5\n\
                 [piers.right]\nheight_m = 2.0\nwidth_m = 1.5\n\
@@ -257,7 +257,7 @@ fn after_one_impact(row: &Row, first: Sway) -> Row {
     }
 }
 
-/// The ground's impulses, at the outer hinges, are the momentum that the blocks gain: block by block in kg and m/s.
+/// The impulses of the ground, at the outer hinges, equal the momentum gained by the blocks, added up block by block in kg and m/s.
 #[test]
 fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
     let folder = tempfile::tempdir().unwrap();
@@ -293,7 +293,7 @@ fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
     }
 }
 
-/// All four hinges shut at once: what is left with free hinges, computed by their own program of contact, is the
+/// All four hinges shut at once: the energy that free hinges keep, by their own contact program, is that of the
 /// certificate.
 #[test]
 fn the_certificate_is_the_full_closure_of_free_hinges() {
@@ -343,7 +343,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
             };
             let turn = rate(Some(joint)) - rate(joint.checked_sub(1));
             let told = opening["opening_rate_ratio"].as_f64().unwrap();
-            // The part to the right turns clockwise about the intrados, anticlockwise about the extrados.
+            // The part to the right of a joint turns clockwise about the intrados, anticlockwise about the extrados.
             let sign = if opening["edge"] == "intrados" {
                 -1.0
             } else {
@@ -422,7 +422,7 @@ fn what_does_not_go_with_a_structure_is_refused() {
         refused(folder, arguments, words);
     }
     assert!(!folder.join("p.svg").exists());
-    // A column sways to both sides alike.
+    // A column sways alike to both sides.
     let text = printed(folder, &["impact", "column.toml", "--first", "left"]);
     assert!(text.contains("after a first sway to the left"));
 }

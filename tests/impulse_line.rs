@@ -1,4 +1,4 @@
-//! The impulses of an impact against the momentum theorems, published numbers and statics by hand.
+//! The impulses of an impact compared with the momentum theorems, published numbers and statics by hand.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -66,7 +66,7 @@ fn the_line_passes_through_all_four_hinges() {
 
 #[test]
 fn outer_impulses_solve_the_equations_of_the_paper() {
-    // The line is determined by the hinges A, B and D, Eqs. (7)-(10) by the momenta of whole bodies.
+    // The hinges A, B and D determine the line; Eqs. (7)-(10) are about the momenta of whole bodies.
     for arch in arches() {
         let chain = arch.chain();
         for index in 1..8 {
@@ -84,8 +84,8 @@ fn outer_impulses_solve_the_equations_of_the_paper() {
 
 #[test]
 fn impulses_change_the_momentum_of_each_body() {
-    // Eqs. (7)-(10) name the outer hinges only. Here all three bodies, in all three components: the impulses
-    // on a body and their moments against the momentum that the body gains.
+    // Eqs. (7)-(10) use the outer hinges only. Here all three bodies are tested, in all three components: the impulses
+    // on a body, and their moments, must equal the momentum that the body gains.
     for arch in arches() {
         let chain = arch.chain();
         let ring = chain.profile(0);
@@ -119,7 +119,7 @@ fn impulses_change_the_momentum_of_each_body() {
 
 #[test]
 fn extremes_of_the_semicircles() {
-    // The reference values were computed by sampling, to the digits given.
+    // The reference values were computed by sampling, to these digits.
     for (thickness_ratio, excess, tolerance, at_deg) in
         [(0.15, 0.501_99, 0.5e-5, 74.3), (0.12, 0.861, 0.5e-3, 29.6)]
     {
@@ -157,8 +157,8 @@ fn refined_extremes_are_not_below_fine_samples() {
             let least = samples()
                 .map(|section| section.normal)
                 .fold(f64::INFINITY, f64::min);
-            // A sample misses a smooth extreme by (PI/2e5)^2 times a curvature of the order of ten at most;
-            // the lines here have no more, but for the poles that tension leaves.
+            // A sample misses a smooth extreme by (PI/2e5)^2 times a curvature of at most about ten;
+            // no line here has more, except at the poles that tension causes.
             let slack = 1e-7;
             assert!(extremes.normal.value <= least + 1e-15);
             assert!(extremes.normal.value >= least - slack);
@@ -223,8 +223,8 @@ fn the_frame_of_the_ground_is_the_mirror_image_for_a_sway_to_the_left() {
     {
         assert_eq!(seen, Vector2::new(-own.x, own.y));
     }
-    // In the frame of the ground the impulse on the part right of a section has the same components along
-    // the radius and the axis as the vector that the hinges tell: at hinge A that is the ground's impulse.
+    // In the frame of the ground, the impulse on the part right of a section has the same radial and axial
+    // components as the vector reported for the hinge: at hinge A it is the impulse of the ground.
     let (ring, sway) = (chain.profile(0), Sway::Left);
     let (angle, _) = chain
         .link(1)
@@ -242,7 +242,7 @@ fn the_frame_of_the_ground_is_the_mirror_image_for_a_sway_to_the_left() {
 
 #[test]
 fn the_part_that_stands_is_stopped_by_its_own_impulses() {
-    // Between a springing and the first hinge of the new mechanism the ring comes to a stand.
+    // Between a springing and the first hinge of the new mechanism the ring stops.
     let arch = arch(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
     let chain = arch.chain();
     let link = chain.link(2).unwrap();
@@ -317,7 +317,7 @@ fn impulses_models_and_certificate_as_json() {
     let result = json(&[&path, "--models", "--certificate", "--count", "2"]);
     let arch = arch(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
     let chain = arch.chain();
-    // Per metre of depth: without the depth.
+    // Impulses are per metre of depth, so the depth does not count.
     let unit = 1800.0 * 27.0;
     for (index, sway) in [(1, Sway::Left), (2, Sway::Right)] {
         let impact = &result["impacts"][index - 1];
@@ -333,7 +333,7 @@ fn impulses_models_and_certificate_as_json() {
     assert_eq!(extremes["admissible"], false);
     assert!((extremes["largest_eccentricity_ratio"].as_f64().unwrap() - 0.501_99).abs() < 0.5e-5);
     assert!((extremes["largest_eccentricity_angle_deg"].as_f64().unwrap() - 74.3).abs() < 0.05);
-    // Published to the digits given.
+    // Published values, to the digits given.
     for (i, (model, restitution)) in [
         ("max_restitution", 0.681_185_59),
         ("same_sections", 0.565_36),
@@ -347,7 +347,7 @@ fn impulses_models_and_certificate_as_json() {
         assert!((told["impact"]["restitution"].as_f64().unwrap() - restitution).abs() < 0.5e-5);
     }
     assert!(result["models"].get(3).is_none());
-    // Tension has no finite eccentricity, and JSON no infinity.
+    // With tension the eccentricity is infinite, and JSON has no infinity.
     assert!(result["models"][2]["impact"]["impulse_line"]["largest_eccentricity_ratio"].is_null());
     let certificate = &result["certificate"];
     let value = |key: &str| certificate[key].as_f64().unwrap();
@@ -444,10 +444,10 @@ fn impulses_of_a_run_are_in_newton_seconds() {
     let ring = Ring::new(0.15, PI).unwrap();
     for row in &rows {
         let value = |name: &str| row.number(name);
-        // The right body turns about hinge D with the rate after. The angular momentum theorem about
-        // hinge C for it (Eq. (9) or (10) of the paper) with the impulse at D, all in SI. What it had
-        // before is the momentum of the bodies of the closing mechanism inside it; only the first
-        // impact, whose mechanisms are published, is put together here from the table.
+        // The right body turns about hinge D with the rate after the impact. The test is the angular momentum theorem
+        // about hinge C for it (Eq. (9) or (10) of the paper), with the impulse at D, all in SI. Its momentum before
+        // is that of the bodies of the closing mechanism inside it; only for the first impact, whose mechanisms are
+        // published, can it be computed here from the table.
         let impulses = |name: &str| {
             Vector2::new(
                 value(&format!("impulse_{name}_x_n_s")),
@@ -456,7 +456,7 @@ fn impulses_of_a_run_are_in_newton_seconds() {
         };
         let [a, b, c, d] = ["a", "b", "c", "d"].map(impulses);
         assert!([a, b, c, d].into_iter().all(|impulse| impulse.norm() > 0.0));
-        // Thrusts: the ground and the neighbours press the arch together.
+        // Thrusts: the ground and the neighbouring bodies compress the arch.
         assert!(b.x > 0.0 && c.x < 0.0);
         if row["impact"] != "1" {
             continue;
@@ -469,8 +469,8 @@ fn impulses_of_a_run_are_in_newton_seconds() {
             hinge(value("hinge_d_deg"), Edge::Intrados),
         );
         let from = value("hinge_c_deg").to_radians();
-        // Before: the middle body of the first mechanism up to its hinge at 139.56130 degrees, the
-        // right body, which turns about its hinge D on the extrados at the springing, from there.
+        // Before: up to the hinge at 139.56130 degrees the middle body of the first mechanism; from there the
+        // right body, which turns about its hinge D on the extrados at the springing.
         let closing_c = 139.561_301_636_45_f64;
         let (right_before, middle_before) = (
             value("rate_right_before_rad_s"),

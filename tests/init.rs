@@ -1,4 +1,4 @@
-//! Scenarios to begin with, and completions of the shell.
+//! Scenarios to start from, and shell completions.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -6,7 +6,7 @@ use std::fs;
 use crate::program::{archrock, stderr};
 use archrock::Scenario;
 
-/// Optional keys, which the comments give with their defaults.
+/// Optional keys, which stand in comments with their defaults.
 const OPTIONAL: [&str; 12] = [
     "depth_m",
     "density_kg_m3",
@@ -22,7 +22,7 @@ const OPTIONAL: [&str; 12] = [
     "sides",
 ];
 
-/// The text with these no longer comments.
+/// The text with the optional keys taken out of the comments.
 fn with_comments_taken_in(text: &str) -> String {
     let lines = text.lines().map(|line| match line.strip_prefix("# ") {
         Some(rest)
@@ -62,7 +62,7 @@ fn every_kind_runs_at_once_and_its_comments_are_true() {
         fs::write(&path, text).unwrap();
         assert_eq!(Scenario::read(&path).unwrap(), plain, "{kind}");
 
-        // Nothing is written over.
+        // No file is overwritten.
         let again = archrock(folder.path(), &["init", kind]);
         assert_eq!(again.status.code(), Some(2));
         assert!(stderr(&again).contains(&format!("{name} exists already")));
@@ -81,10 +81,10 @@ fn a_scenario_to_begin_with_can_be_named_or_printed() {
         fs::read(folder.path().join("mine.toml")).unwrap(),
         printed.stdout
     );
-    // Without a kind it is an arch.
+    // Without a kind, an arch is written.
     assert!(archrock(folder.path(), &["init"]).status.success());
     assert!(folder.path().join("arch.toml").exists());
-    // Two of records share the one beside them.
+    // Two scenarios of records share the record file beside them.
     for kind in ["record", "suite"] {
         assert!(archrock(folder.path(), &["init", kind]).status.success());
     }
@@ -122,7 +122,7 @@ fn completions_name_every_command() {
         let printed = archrock(folder.path(), &["completions", shell]);
         assert!(printed.status.success(), "{}", stderr(&printed));
         let script = String::from_utf8(printed.stdout).unwrap();
-        // Fish has options without their dashes.
+        // Fish lists options without their dashes.
         for word in ["threshold", "completions", "set"] {
             assert!(script.contains(word), "{shell} {word}");
         }

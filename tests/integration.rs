@@ -1,4 +1,4 @@
-//! The integrator and the engine on systems that have nothing to do with arches, with exact solutions.
+//! The integrator and the engine on systems other than arches, with exact solutions.
 
 use std::ops::ControlFlow;
 
@@ -21,7 +21,7 @@ fn task<const N: usize>(start_s: f64, end_s: f64, start: State<N>, tolerance: f6
     }
 }
 
-/// Integrates with the slope at the start filled in.
+/// Integrates after filling in the slope at the start.
 fn integrate<const N: usize>(
     task: &Task<N>,
     slope: impl Fn(f64, &State<N>) -> State<N>,
@@ -40,8 +40,8 @@ fn integrate<const N: usize>(
     )
 }
 
-/// `y' = -2 t y^2`, `y(0) = 1`: `y = 1 / (1 + t^2)`. The slope depends on time itself, which the stages of
-/// a method with wrong nodes get wrong.
+/// `y' = -2 t y^2`, `y(0) = 1`: `y = 1 / (1 + t^2)`. The slope depends on time itself, so a method with
+/// wrong nodes fails.
 fn bell(time_s: f64, state: &State<1>) -> State<1> {
     State::<1>::new(-2.0 * time_s * state[0] * state[0])
 }
@@ -57,13 +57,13 @@ fn a_slope_that_depends_on_time() {
         };
         let mut cost = Cost::default();
         let end = integrate(&task, bell, watch, &mut cost).unwrap();
-        // Local errors of some tens of steps add up.
+        // Local errors of some tens of steps accumulate.
         assert!(
             (end[0] - 0.1).abs() < 30.0 * tolerance,
             "{tolerance}: {end}"
         );
         assert_eq!(steps.len() as u64, cost.steps);
-        // Time, state and slope that the watcher sees belong together, and steps follow without gap.
+        // Time, state and slope passed to the watcher belong together, and steps follow each other without gaps.
         let (mut time, mut state) = (0.0, State::<1>::new(1.0));
         for step in &steps {
             assert!(step.start_s == time && step.start == state && step.end_s > time);
@@ -72,14 +72,14 @@ fn a_slope_that_depends_on_time() {
             assert!((step.start_slope - bell(step.start_s, &step.start)).norm() < 1e-14);
             (time, state) = (step.end_s, step.end);
         }
-        // The last point is the end asked for, not beyond it.
+        // The last point is the requested end, not beyond it.
         assert!((time - 3.0).abs() < 1e-15 && state == end);
     }
 }
 
 #[test]
 fn the_error_falls_with_the_fifth_power_of_the_step() {
-    // Fixed steps: a tolerance that never binds and a longest step that always does.
+    // Fixed steps: a tolerance that never limits the steps, and a longest step that always does.
     let error = |count: f64| {
         let mut task = task(0.0, 2.0, State::<1>::new(1.0), 1e3);
         task.longest_step_s = 2.0 / count;
@@ -95,7 +95,7 @@ fn the_error_falls_with_the_fifth_power_of_the_step() {
 
 #[test]
 fn the_last_state_is_that_of_the_end_and_not_an_extrapolation() {
-    // One long step would be enough for a constant slope: the end must still be the end.
+    // For a constant slope one long step would be enough, but the end must still be exact.
     for end_s in [0.3, 1.0 / 3.0, 7.123_456_789] {
         let task = task(0.0, end_s, State::<1>::new(0.0), 1e-9);
         let mut last_s = 0.0;
@@ -105,7 +105,7 @@ fn the_last_state_is_that_of_the_end_and_not_an_extrapolation() {
         };
         let slope = |_: f64, _: &State<1>| State::<1>::new(2.0);
         let end = integrate(&task, slope, watch, &mut Cost::default()).unwrap();
-        // A few additions of steps: rounding.
+        // A few additions of steps: rounding only.
         assert!((end[0] - 2.0 * end_s).abs() < 1e-14);
         assert!((last_s - end_s).abs() <= 2.0 * f64::EPSILON * end_s);
     }
@@ -113,8 +113,8 @@ fn the_last_state_is_that_of_the_end_and_not_an_extrapolation() {
 
 #[test]
 fn a_late_start_changes_nothing() {
-    // The same motion 1000 s later, with a slope in the time since its start: times are rounded to
-    // 1e-13 there.
+    // The same motion 1000 s later, with a slope in the time since its start: times there are rounded to
+    // 1e-13.
     let run = |start_s: f64| {
         let task = task(start_s, start_s + 2.0, State::<1>::new(1.0), 1e-9);
         let slope = |time_s: f64, state: &State<1>| bell(time_s - start_s, state);
@@ -167,7 +167,7 @@ fn a_slope_that_is_not_a_number_is_called_so() {
         run(&always),
         Err(IntegratorError::NotFinite { .. })
     ));
-    // A slope that jumps to and fro without end is a matter of tolerance.
+    // A slope that jumps to and fro without end cannot satisfy a tolerance.
     let noise = |time_s: f64, _: &State<1>| {
         State::<1>::new(if (time_s.to_bits() >> 3).is_multiple_of(2) {
             1e9
@@ -181,8 +181,8 @@ fn a_slope_that_is_not_a_number_is_called_so() {
     ));
 }
 
-/// A ball that falls on a floor and springs back with a part of its velocity, until it has almost none.
-/// From `wind_s.0` to `wind_s.1` a wind of acceleration `wind` blows upwards.
+/// A ball that falls on a floor and rebounds with a fraction of its velocity, until almost none is left.
+/// From `wind_s.0` to `wind_s.1` a wind with the acceleration `wind` blows upwards.
 struct Ball {
     restitution: f64,
     gravity: f64,
@@ -266,7 +266,7 @@ impl HybridSystem<2> for Ball {
     }
 }
 
-/// Writes everything down, and breaks when it has had enough.
+/// Logs everything, and breaks after a given number of bounces.
 #[derive(Default)]
 struct Log {
     bounces: Vec<(f64, State<2>, State<2>)>,
@@ -379,7 +379,7 @@ fn a_ball_bounces_when_it_should_and_comes_to_rest() {
             expected += 2.0 * first * ball.restitution.powi(n + 1);
         }
         assert!((finish.unwrap() - 3.0 * first).abs() < 1e-8);
-        // No time is lost or counted twice between the steps.
+        // No time between the steps is lost or counted twice.
         assert!(log.steps[0].start_s == 0.0);
         assert!(
             log.steps
@@ -409,7 +409,7 @@ fn a_whole_hop_inside_one_step_is_not_missed() {
 
 #[test]
 fn a_dip_below_the_floor_inside_a_step_is_not_missed() {
-    // With gravity upwards the ball dives and comes back of itself; both ends of the step are above.
+    // With gravity upwards the ball dives and comes back by itself; both ends of the step are above the floor.
     let ball = Ball {
         gravity: -1.0,
         restitution: 0.0,
@@ -421,7 +421,7 @@ fn a_dip_below_the_floor_inside_a_step_is_not_missed() {
         let (log, _) = throw(&ball, State::<2>::new(0.5 - depth, -1.0), 2.5);
         assert_eq!(log.bounces.len(), 1, "{depth}");
         let exact = 1.0 - (2.0 * depth).sqrt();
-        // At the bottom of a shallow dip the instant is the root of rounding.
+        // At the bottom of a shallow dip the error of the instant is the square root of rounding.
         let tolerance = 1e-10_f64.max(1e-15 / (2.0 * depth).sqrt());
         assert!(
             (log.bounces[0].0 - exact).abs() < tolerance,
@@ -429,14 +429,14 @@ fn a_dip_below_the_floor_inside_a_step_is_not_missed() {
             log.bounces[0].0 - exact
         );
     }
-    // And one that stays just above the floor is no bounce.
+    // A ball that stays just above the floor does not bounce.
     let (log, _) = throw(&ball, State::<2>::new(0.5 + 1e-9, -1.0), 2.5);
     assert!(log.bounces.is_empty());
 }
 
 #[test]
 fn a_short_gust_inside_a_step_is_not_missed() {
-    // A gust of a microsecond changes the speed by 0.5 m/s; a step of ten seconds must not pass over it.
+    // A gust of a microsecond changes the speed by 0.5 m/s; a step of ten seconds must not skip it.
     let ball = Ball {
         wind: 0.5e6,
         wind_s: (0.1, 0.1 + 1e-6),
@@ -446,10 +446,10 @@ fn a_short_gust_inside_a_step_is_not_missed() {
     let (log, finish) = throw(&ball, State::<2>::new(1.0, 0.0), 10.0);
     let (height, speed): (f64, f64) = (1.0 - 0.5 * 9.81 * 0.01, -0.981 + 0.5);
     let exact = 0.1 + (speed + (speed * speed + 2.0 * 9.81 * height).sqrt()) / 9.81;
-    // To first order in the length of the gust.
+    // Accurate to first order in the length of the gust.
     assert!((finish.unwrap() - exact).abs() < 1e-5);
     assert_eq!(log.bounces.len(), 1);
-    // A step ends and another begins at either corner.
+    // One step ends and another begins at either corner.
     for corner in [0.1, 0.1 + 1e-6] {
         assert!(log.steps.iter().any(|step| step.end_s == corner));
         assert!(log.steps.iter().any(|step| step.start_s == corner));

@@ -1,4 +1,4 @@
-//! The keys that a scenario knows, and what the documents say of them.
+//! The keys that a scenario allows, and their description in the documents.
 
 use crate::common::{ARCH, parsed};
 use archrock::Scenario;
@@ -11,7 +11,7 @@ fn document(name: &str) -> String {
     fs::read_to_string(docs.join(name)).unwrap()
 }
 
-/// The keys that the reader knows in a table, from what it says of one that it does not know.
+/// The keys that the reader allows in a table, taken from the error about an unknown one.
 fn known(table: &str) -> BTreeSet<String> {
     const UNKNOWN: &str = "no_such_key";
     let lines = format!("[{table}]\n{UNKNOWN} = 1\n");
@@ -30,12 +30,12 @@ fn known(table: &str) -> BTreeSet<String> {
     keys.split(", ").map(str::to_owned).collect()
 }
 
-/// What stands in backticks.
+/// The parts of a text in backticks.
 fn code(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
 
-/// Rows of the reference behind the heading of a table: keys, and the default.
+/// Rows of the reference below the heading of a table: the keys, and the default.
 fn rows(reference: &str, table: &str) -> Vec<(Vec<String>, String)> {
     let heading = format!("| **`[{table}]`** |");
     let mut lines = reference
@@ -73,7 +73,7 @@ fn the_reference_has_the_keys_that_are_read() {
     ];
     for (heading, tables) in tables {
         let mut read: BTreeSet<String> = tables.into_iter().flat_map(known).collect();
-        // Joints of unequal voussoirs are told with other shapes.
+        // Joints of unequal voussoirs are described with other shapes.
         read.remove("joints_deg");
         let rows = rows(&reference, heading);
         let told: BTreeSet<String> = rows.into_iter().flat_map(|(keys, _)| keys).collect();
@@ -81,7 +81,7 @@ fn the_reference_has_the_keys_that_are_read() {
     }
 }
 
-/// What is told elsewhere is told completely.
+/// Documents that describe a table elsewhere name all its keys.
 #[test]
 fn other_documents_name_all_keys() {
     for (file, tables) in [
@@ -115,7 +115,7 @@ fn other_documents_name_all_keys() {
     }
 }
 
-/// The reference names the defaults that are taken.
+/// The reference names the actual defaults.
 #[test]
 fn the_reference_has_the_defaults_that_are_taken() {
     let reference = document("scenario.md");

@@ -1,5 +1,5 @@
-//! Landings: which corners share an impact, and when. Sequences of impacts against Housner's restitution, the certificate of
-//! four links, and motions computed with far shorter steps.
+//! Landings: which corners share an impact, and when. Sequences of impacts are compared with Housner's restitution, the certificate
+//! of four links, and motions computed with far shorter steps.
 
 use std::ops::ControlFlow;
 
@@ -27,7 +27,7 @@ fn rectangular(amplitude_g: f64, duration_s: f64) -> GroundMotion {
     GroundMotion::pulse(Pulse::Rectangular, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
 }
 
-/// The part of the energy that the first impact keeps.
+/// The fraction of the energy that the first impact keeps.
 #[derive(Default)]
 struct FirstImpact(Option<f64>);
 
@@ -38,8 +38,8 @@ impl Recorder for FirstImpact {
     }
 }
 
-/// Wherever in a step a block lands, its impact keeps what Housner says: with the steps of a run, and with some three times as
-/// long. Measured: 7e-16, rounding.
+/// Wherever in a step a block lands, its impact keeps the energy that Housner gives: with the steps of a run, and with steps some
+/// three times as long. Measured error: 7e-16, rounding.
 #[test]
 fn a_block_released_anywhere_keeps_what_housner_says() {
     let drum = Drum {
@@ -91,7 +91,7 @@ fn shaken_arch(random: &mut Random, least: usize, most: usize) -> (Ring, usize, 
         let Some(onset) = onset(&row, Sway::Right).unwrap() else {
             continue;
         };
-        // Beyond that arches are so thick that few of them hinge.
+        // Arches beyond that are so thick that few of them form hinges.
         if onset.acceleration_g < 3.0 {
             let ground = rectangular(side * strength * onset.acceleration_g, duration);
             return (ring, voussoirs, row, ground);
@@ -99,9 +99,9 @@ fn shaken_arch(random: &mut Random, least: usize, most: usize) -> (Ring, usize, 
     }
 }
 
-/// Closures of exactly four corners, after which all joints are shut: joints and edges that land, and the energy kept. Those
-/// with less energy are left out: there the old mechanism opens further hinges before it shuts, as gravity does more to it in a
-/// step than its motion.
+/// Closures of exactly four corners, after which all joints are shut: joints and edges that land, and the energy kept. Closures
+/// with less energy are left out: there the old mechanism opens further hinges before it shuts, because within a step gravity has
+/// more effect than the motion.
 struct Closures {
     least_j: f64,
     found: Vec<(Vec<(usize, Edge)>, f64)>,
@@ -129,12 +129,12 @@ impl Recorder for Closures {
     }
 }
 
-/// What the certificate says that a closing four-link mechanism keeps, by the corners that land.
+/// The fraction of the energy that a closing four-link mechanism keeps by the certificate, from the corners that land.
 fn certified(ring: &Ring, voussoirs: usize, landed: &[(usize, Edge)]) -> Option<f64> {
     let embrace_rad = ring.embrace_rad();
     let angle_rad = |joint: usize| embrace_rad * joint as f64 / voussoirs as f64;
     let mut hinges_rad: Vec<f64> = landed.iter().map(|(joint, _)| angle_rad(*joint)).collect();
-    // It turned about the edges opposite to those that land; the mirror image of one that swayed to the left swayed to the right.
+    // It turned about the edges opposite to those that land; if it swayed to the left, its mirror image swayed to the right.
     if landed[0].1 == Edge::Intrados {
         hinges_rad
             .iter_mut()
@@ -151,8 +151,8 @@ fn certified(ring: &Ring, voussoirs: usize, landed: &[(usize, Edge)]) -> Option<
     )
 }
 
-/// Four corners that are open alone land at one instant: one impact, whose energy the certificate knows from the interior-point
-/// solution of all velocities at once.
+/// If four corners alone are open, they land at one instant: one impact, whose energy the certificate gives from the interior-point
+/// solution for all velocities together.
 #[test]
 fn four_corners_that_land_together_are_one_impact() {
     let mut random = Random(20);
@@ -186,7 +186,7 @@ fn four_corners_that_land_together_are_one_impact() {
     assert!(closures >= 200 && worst < 1e-9, "{closures} {worst:e}");
 }
 
-/// Two arches whose closures were split into two impacts a shortest step apart, whatever the steps.
+/// Two arches whose closures were once split into two impacts a shortest step apart, whatever the steps.
 #[test]
 fn a_closure_is_not_split() {
     for (embrace_deg, thickness, radius_m, amplitude_g, duration_s, second_rad) in [
@@ -212,15 +212,15 @@ fn a_closure_is_not_split() {
     }
 }
 
-/// Sequences of impacts converge with the step: second peaks are those of steps of 0.01 ms, where these agree with steps of 0.03 ms,
-/// within 1 % in nine of ten arches of 5 to 12 voussoirs. More arches, half of them of up to 40, with `ARCHROCK_CASES=73`:
-/// 6 are off by more than 1 %, 2 of these by more than 5 %.
+/// Sequences of impacts converge with the step. Where second peaks with steps of 0.01 ms agree with those of 0.03 ms, those of a run
+/// are within 1 % in nine of ten arches of 5 to 12 voussoirs. With `ARCHROCK_CASES=73` there are more arches, half of them of up to
+/// 40 voussoirs: 6 are off by more than 1 %, 2 of these by more than 5 %.
 #[test]
 fn second_peaks_converge() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
     let mut random = Random(3);
     let mut compared = 0;
-    // By more than 1 % and 5 %, with the steps of a run.
+    // Number of peaks off by more than 1 % and by more than 5 %, with the steps of a run.
     let mut off = [0; 2];
     while compared < cases {
         let most = if cases > 10 && compared % 2 == 1 {

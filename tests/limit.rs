@@ -1,7 +1,7 @@
-//! Incipient rocking against published numbers and against statics.
+//! Incipient rocking compared with published numbers and with statics.
 //!
 //! The independent reference is the static theorem: the largest push under which some thrust line stays in
-//! the ring, by linear programming over the reaction at the left springing. It knows no mechanism.
+//! the ring, by linear programming over the reaction at the left springing. It uses no mechanism.
 
 use crate::common;
 use crate::common::{Random, assert_hinges, climb, ring};
@@ -24,9 +24,9 @@ use proptest::prelude::*;
 /// `row . x <= bound`.
 type Constraint = (Vec<f64>, f64);
 
-/// Maximises `goal . x` under the constraints, by Seidel's incremental algorithm: constraints one by one;
-/// the optimum moves onto the plane of each that it violates, where the problem has a variable less.
-/// `None` when no `x` is feasible. Needs a bounding box among the first constraints (see `boxed`).
+/// Maximises `goal . x` under the constraints, by Seidel's incremental algorithm. Constraints are added one by
+/// one; the optimum moves onto the plane of each that it violates, where the problem has one variable less.
+/// `None` if no `x` is feasible. Needs a bounding box among the first constraints (see `boxed`).
 fn maximise(goal: &[f64], constraints: &[Constraint], half_width: f64) -> Option<Vec<f64>> {
     let n = goal.len();
     if n == 1 {
@@ -35,7 +35,7 @@ fn maximise(goal: &[f64], constraints: &[Constraint], half_width: f64) -> Option
             match row[0] {
                 a if a > 1e-12 => high = high.min(bound / a),
                 a if a < -1e-12 => low = low.max(bound / a),
-                // Says nothing, unless it cannot be met.
+                // The constraint is void, unless it cannot be satisfied.
                 _ if *bound < -1e-9 => return None,
                 _ => {}
             }
@@ -88,9 +88,9 @@ fn maximise(goal: &[f64], constraints: &[Constraint], half_width: f64) -> Option
     Some(x)
 }
 
-/// Largest push to the right, in units of gravity, that a thrust line within the ring carries at all of the
-/// given sections (sorted); `None` when not even the weight alone can be carried. The load is added up by
-/// Simpson's rule over thin slices: a slice has its weight at `1 + t^2/12` from the centre.
+/// Largest push to the right, in units of gravity, for which a thrust line stays within the ring at all of the
+/// given sections (sorted); `None` if not even the weight alone can be carried. The load is added up by
+/// Simpson's rule over thin slices: the weight of a slice is at `1 + t^2/12` from the centre.
 fn static_limit_g(ring: &Ring, sections: &[f64]) -> Option<f64> {
     let t = ring.thickness_ratio();
     let centre = 1.0 + t * t / 12.0;
@@ -112,8 +112,8 @@ fn static_limit_g(ring: &Ring, sections: &[f64]) -> Option<f64> {
         }
         from = *section;
         let (sin, cos) = (section - half).sin_cos();
-        // Resultant of all before the section: force (h + a mass, v - mass), moment m - a my - mx about O
-        // (push a to +x at height y turns clockwise, weight -1 at x as well).
+        // Resultant of everything before the section: force (h + a mass, v - mass), moment m - a my - mx about O
+        // (a push a to +x at height y turns clockwise, and so does the weight -1 at x).
         // Axis towards the right springing: (cos, -sin). Point of the section at radius rho: rho (sin, cos).
         let normal = [cos, -sin, 0.0, mass * cos];
         let normal_fixed = mass * sin;
@@ -129,7 +129,7 @@ fn static_limit_g(ring: &Ring, sections: &[f64]) -> Option<f64> {
             constraints.push((row.map(|r| sign * r).to_vec(), -sign * fixed));
         }
     }
-    // A fixed shuffle: the algorithm is fast for constraints in random order.
+    // A fixed shuffle: the algorithm is fast if the constraints are in random order.
     let mut random = Random(7);
     for i in (1..constraints.len()).rev() {
         let j = random.pick(i + 1);
@@ -138,7 +138,7 @@ fn static_limit_g(ring: &Ring, sections: &[f64]) -> Option<f64> {
     maximise(&[0.0, 0.0, 0.0, 1.0], &constraints, BOX).map(|x| x[3])
 }
 
-/// Forces and pushes are sought below this.
+/// Forces and pushes are searched below this bound.
 const BOX: f64 = 1e3;
 
 fn even_sections(ring: &Ring, count: u32) -> Vec<f64> {
@@ -227,7 +227,7 @@ fn published_accelerations_and_hinges() {
 fn the_least_thickness_of_a_semicircle_is_milankovitchs() {
     let least = least_thickness_ratio(std::f64::consts::PI, HingeSites::Anywhere, 1e-6).unwrap();
     assert!((least - 0.10748).abs() <= 0.5e-5, "{least}");
-    // Just below it falls under its own weight, by statics as well.
+    // Just below the least thickness it falls under its own weight, by statics as well.
     let sections = |t| static_limit_g(&ring(t, 180.0), &even_sections(&ring(t, 180.0), 720));
     assert!(sections(least - 1e-4).is_none_or(|push| push < 0.0));
     assert!(sections(least + 1e-4).unwrap() > 0.0);
@@ -237,15 +237,15 @@ fn the_least_thickness_of_a_semicircle_is_milankovitchs() {
     );
 }
 
-/// By how much the moments of the best thrust line under gravity are on the right side of all edge points: a
-/// linear programme over the three components of the reaction at the left springing. Not above one; `None` when
-/// the solver fails.
+/// The margin by which the moments of the best thrust line under gravity are on the right side of all edge
+/// points: a linear programme over the three components of the reaction at the left springing. At most one;
+/// `None` if the solver fails.
 fn room_for_a_line(ring: &Ring, sections: &[f64]) -> Option<f64> {
     let (mut rows, mut bounds) = (vec![[0.0, 0.0, 0.0, 1.0]], vec![1.0]);
     for &section in sections {
         let weight = ring.moments_to(section);
         for (edge, side) in [(Edge::Extrados, 1.0), (Edge::Intrados, -1.0)] {
-            // The moment about the point, times its side, is not less than the room.
+            // The moment about the point, times its side, is at least the margin.
             let point = ring.point(section, edge);
             let of_weight = point.x * weight.mass - weight.first.x;
             rows.push([-side * point.y, side * point.x, -side, 1.0]);
@@ -271,8 +271,8 @@ fn room_for_a_line(ring: &Ring, sections: &[f64]) -> Option<f64> {
 
 #[test]
 fn arches_that_stand_are_not_said_to_fall() {
-    // The search for mechanisms alone took both for arches that cannot stand, or for ones with no thickness
-    // that does.
+    // The search for mechanisms alone once took both for arches that cannot stand, or that stand at no
+    // thickness.
     let found = incipient(&ring(0.05, 141.8), HingeSites::Anywhere).unwrap();
     assert!((found.acceleration_g - 0.047_379).abs() < 1e-6);
     let least = least_thickness_ratio(141.8_f64.to_radians(), HingeSites::Anywhere, 1e-6).unwrap();
@@ -322,13 +322,13 @@ fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
             let (_, advice) = message.split_once("must be at least ").expect(&message);
             let (advised, _) = advice.split_once(' ').unwrap();
             assert!(read(advised).is_ok(), "{message}");
-            // And no more than the digits said are to spare.
+            // The margin is no more than rounding to these digits.
             let less = advised.parse::<f64>().unwrap() * (1.0 - 2e-3);
             assert!(read(&format!("{less:?}")).is_err(), "{message}");
         }
     }
-    // The thrust line follows the middle of a ring of 1 degree to less than a millionth, and at the few joints of
-    // one of 10 degrees.
+    // The thrust line follows the middle of a ring of 1 degree to less than a millionth, and so it does at the few
+    // joints of one of 10 degrees.
     let (shallowest, others) = as_thin_as_can_be.split_at(4);
     assert!(shallowest.iter().all(|(embrace, _)| *embrace == 1.0));
     assert_eq!(others, [(10.0, "voussoirs = 4\n")]);
@@ -336,10 +336,10 @@ fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
 
 #[test]
 fn thick_shallow_rings_are_out_of_scope() {
-    // With its hinges A and B kept apart by 0.001 rad the best four-link mechanism needs 9.6828 and 7.4102 g.
-    // The infimum is lower and equals statics (9.6633 and 7.3966): A and B merge in one section of the
-    // springing that parts altogether. What is reported is not below the truth, and above it by no more
-    // than the 1e-7 rad that the search keeps hinges apart.
+    // With hinges A and B kept apart by 0.001 rad the best four-link mechanism needs 9.6828 and 7.4102 g.
+    // The infimum is lower and equals statics (9.6633 and 7.3966): A and B merge in one section at the
+    // springing, which parts altogether. The reported value is not below the true one, and exceeds it by no
+    // more than is due to the 1e-7 rad by which the search keeps hinges apart.
     for (t, embrace, statics) in [(0.30, 90.0, 9.6633), (0.60, 120.0, 7.3966)] {
         let ring = ring(t, embrace);
         let Err(LimitError::OtherMechanism { acceleration_g }) =
@@ -351,7 +351,7 @@ fn thick_shallow_rings_are_out_of_scope() {
             acceleration_g > statics - 0.5e-4 && acceleration_g < statics + 1e-4,
             "{acceleration_g}"
         );
-        // 720 sections miss little of where the line touches: the error falls with their square.
+        // 720 sections miss little of the places where the line touches: the error falls with their square.
         let push = static_limit_g(&ring, &even_sections(&ring, 720)).unwrap();
         assert!((push - statics).abs() < 1e-4, "{push}");
     }
@@ -368,8 +368,8 @@ fn thick_shallow_rings_are_out_of_scope() {
 
 #[test]
 fn statics_finds_the_same_push_at_the_joints_of_voussoirs() {
-    // Over joints the linear programme is exact; Simpson's rule errs by (width/40)^4 and the programme by
-    // rounding, which its eliminations magnify: 1e-9 in all.
+    // Over joints the linear programme is exact. The error of Simpson's rule is (width/40)^4; that of the programme
+    // is rounding, which its eliminations amplify: 1e-9 in all.
     for (t, embrace, count) in [
         (0.15, 157.5, 7),
         (0.15, 157.5, 28),
@@ -398,7 +398,7 @@ fn critical_and_limit_rotations() {
         critical_rad(&linkage, linkage.limit_rad()),
     );
     let right = |q| -linkage.rotations(q)[2];
-    // The right body's rotation at the top of the potential, by numerical differentiation of it with the
+    // The right body's rotation at the maximum of the potential, by numerical differentiation, with the
     // loop solved by SciPy's fsolve: 0.0734080 (a published value of 0.0735 is rounded up by 1e-4).
     assert!(
         (right(critical) - 0.073_408_0).abs() <= 0.5e-6,
@@ -413,7 +413,7 @@ fn critical_and_limit_rotations() {
     assert!((critical - 0.069_065).abs() <= 0.5e-6, "{critical}");
 }
 
-/// The verdict of a judge that has one; where it has none another case is tried, of which there may be few.
+/// The verdict of a reference that has one; otherwise another case is tried, which may happen only a few times.
 fn judged<T>(verdict: Option<T>) -> Result<T, TestCaseError> {
     verdict.ok_or_else(|| TestCaseError::reject("no verdict"))
 }
@@ -425,7 +425,7 @@ proptest! {
         ..ProptestConfig::with_cases(24)
     })]
 
-    /// Both theorems of limit analysis: statics can carry the push that is found, and no more.
+    /// Both theorems of limit analysis: statics can carry the push that was found, and no larger one.
     #[test]
     fn the_push_is_the_largest_that_statics_carries(
         t in 0.03_f64..0.35, embrace in 60.0_f64..180.0, voussoirs in 0_usize..40,
@@ -440,10 +440,10 @@ proptest! {
             Ok(found) => {
                 prop_assert!(found.acceleration_g > 0.0);
                 let hinges = found.mechanism.hinges_rad();
-                // The line passes through the hinges, so that no line can carry more, and is inside
-                // everywhere, so that this one carries as much.
+                // The line passes through the hinges, so no line can carry more; it stays inside
+                // everywhere, so this one carries as much.
                 let push = static_limit_g(&ring, &sections(hinges)).unwrap();
-                // The programme solves four equations of condition 1/t^2.
+                // The programme solves four equations whose condition number is 1/t^2.
                 let tolerance = 1e-9 / (t * t) * (1.0 + push);
                 prop_assert!((push - found.acceleration_g).abs() < tolerance, "{} {}", push, found.acceleration_g);
                 for section in sections(hinges) {
@@ -453,8 +453,8 @@ proptest! {
                 }
             }
             Err(LimitError::CannotStand) => {
-                // No line fits, or none but one that leaves the ring between sections. An arch that cannot stand
-                // may still do so while it is pushed.
+                // No line fits, or only one that leaves the ring between sections. An arch that cannot stand
+                // may still stand while it is pushed.
                 let room = judged(room_for_a_line(&ring, &sections([0.0; 4])))?;
                 prop_assert!(room < 1e-5, "{room}");
                 if let Some(push) = static_limit_g(&ring, &sections([0.0; 4])) {
@@ -462,20 +462,20 @@ proptest! {
                 }
             }
             Err(LimitError::OtherMechanism { acceleration_g }) => {
-                // The programme of the test itself finds no corner to start from in some of these rings.
+                // The test's own programme finds no starting corner in some of these rings.
                 let push = judged(static_limit_g(&ring, &sections([0.0; 4])))?;
-                // Statics at 180 sections asks less of the line than all over the ring, by the square of their
-                // distance; the mechanism is the best there is where its hinges merge.
+                // Statics at 180 sections constrains the line less than the whole ring would, by the square of their
+                // distance; the mechanism is the best one even where its hinges merge.
                 prop_assert!(push <= acceleration_g * (1.0 + 1e-3), "{push} {acceleration_g}");
             }
             Err(LimitError::NoPush) => {
-                // Thin rings always move; few joints make a thick one of a shallow ring earlier.
+                // Thin rings always move; with few joints a shallow ring counts as thick earlier.
                 prop_assert!(t > 0.05);
             }
         }
     }
 
-    /// Who stands, by a programme over all three components of the reaction, without use of symmetry.
+    /// Which rings stand, by a programme over all three components of the reaction, without using symmetry.
     #[test]
     fn rings_stand_if_a_thrust_line_fits_into_them(
         log_t in -3.0_f64..0.6, embrace in 30.0_f64..180.0, voussoirs in 0_usize..40,
@@ -488,18 +488,18 @@ proptest! {
             (HingeSites::Voussoirs(voussoirs), joints)
         };
         let room = judged(room_for_a_line(&ring, &sections))?;
-        // What the line may leave the ring by between sections, or the solver leaves over.
+        // The limit allows for what the line may leave the ring between sections, and for the error of the solver.
         if room.abs() > 1e-5 {
             prop_assert_eq!(carries_its_weight(&ring, sites), room > 0.0, "{}", room);
         }
-        // A ring as thick, or thicker, than one that stands.
+        // If a ring stands, a thicker ring stands too.
         let thicker = common::ring(1.3 * log_t.exp().min(1.5), embrace);
         if log_t.exp() < 1.5 && carries_its_weight(&ring, sites) {
             prop_assert!(carries_its_weight(&thicker, sites));
         }
     }
 
-    /// The least thickness is where a thrust line just fits.
+    /// At the least thickness a thrust line just fits.
     #[test]
     fn at_the_least_thickness_a_line_just_fits(embrace in 60.0_f64..180.0, voussoirs in 4_usize..40) {
         let sites = HingeSites::Voussoirs(voussoirs);
@@ -520,7 +520,7 @@ proptest! {
         let score = |angles: [f64; 4]| {
             let mechanism = FourLink::new(&ring, angles)?;
             let push = acceleration_g(&mechanism, &ring);
-            // A mechanism that a push moves to the left only counts for nothing.
+            // A mechanism that only a push to the left moves does not count.
             (push > 0.0).then_some(-push)
         };
         let mut random = Random(seed);

@@ -1,4 +1,4 @@
-//! The ways to spread a study over machines, as docs/long-work.md shows them.
+//! The ways to distribute a study over several machines, as in docs/long-work.md.
 
 #![allow(clippy::print_stderr)]
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The block of code of the documentation that has these words.
+/// The code block of the documentation that contains these words.
 fn block(words: &str) -> String {
     let page = fs::read_to_string(repository().join("docs/long-work.md")).unwrap();
     let block = page.split("```").find_map(|block| {
@@ -24,7 +24,7 @@ fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A folder with the scenario that it speaks of, on a coarser grid so that it is quick.
+/// A folder with the scenario of the documentation, on a coarser grid to be quick.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let name = "scenarios/semicircle-map.toml";
@@ -38,7 +38,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Runs a script in a folder, with the program among the commands.
+/// Runs a script in a folder; the program is among the commands.
 #[track_caller]
 fn bash(folder: &Path, script: &str, variables: &[(&str, &str)]) {
     let own = PathBuf::from(env!("CARGO_BIN_EXE_archrock"));
@@ -57,7 +57,7 @@ fn bash(folder: &Path, script: &str, variables: &[(&str, &str)]) {
     assert!(output.status.success(), "{stderr}");
 }
 
-/// Asserts that the parts were joined into what the program gives in one go.
+/// Asserts that the joined parts are what the program gives in one go.
 #[track_caller]
 fn assert_whole(folder: &Path) {
     bash(
@@ -74,7 +74,7 @@ fn assert_whole(folder: &Path) {
     }
 }
 
-/// There is no Slurm here; its variables are all that the script takes from it.
+/// There is no Slurm here, but the script needs only its variables.
 #[test]
 fn the_slurm_array_computes_the_whole_study() {
     let folder = folder();
@@ -97,7 +97,7 @@ fn the_slurm_array_computes_the_whole_study() {
     assert_whole(folder.path());
 }
 
-/// Where GNU parallel is not installed this says so and tests nothing; the checks of the repository install it.
+/// If GNU parallel is not installed, this test says so and tests nothing; the checks of the repository install it.
 #[test]
 fn gnu_parallel_computes_the_whole_study() {
     let version = Command::new("parallel").arg("--version").output();

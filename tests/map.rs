@@ -1,4 +1,4 @@
-//! The overturning map: its cells, its boundaries, and the work on it in pieces.
+//! The overturning map: its cells, its boundaries, and computing it in parts.
 
 use crate::common;
 use crate::common::parsed;
@@ -67,8 +67,8 @@ fn the_frequency_is_the_inverse_of_the_duration() {
     }
 }
 
-/// A pulse to the other side does the mirror image, to the last bit; and an arch of four times the size does
-/// under a pulse twice as long what the small one does, in twice the time.
+/// A pulse to the other side gives the mirror image, to the last bit. An arch four times as large under a pulse
+/// twice as long does what the small one does, in twice the time.
 #[test]
 fn maps_have_the_symmetries_of_the_mechanics() {
     let text = |map: &str| {
@@ -130,8 +130,8 @@ fn shapes_that_are_no_four_link_arches_have_no_history() {
     );
 }
 
-/// Slender columns under a rectangular pulse overturn without impact from `x = a / A_L` on with
-/// `cosh(p t) = 1 + 1 / (2 x (x - 1))`. What is left out is of the order of `alpha^2`, here 1e-4.
+/// Slender columns under a rectangular pulse overturn without impact from `x = a / A_L` with
+/// `cosh(p t) = 1 + 1 / (2 x (x - 1))`. The neglected terms are of the order of `alpha^2`, here 1e-4.
 #[test]
 fn the_impact_free_boundary_of_a_slender_column_is_the_closed_form() {
     let (height_m, width_m) = (10.0_f64, 0.1_f64);
@@ -170,7 +170,7 @@ fn the_impact_free_boundary_of_a_slender_column_is_the_closed_form() {
     }
 }
 
-/// Published values of an independent computation (relative tolerance 1e-10), given to three or four digits.
+/// Published values of an independent computation (relative tolerance 1e-10), with three or four digits.
 #[test]
 fn the_impact_free_boundary_of_seven_voussoirs_under_a_step_pair() {
     let scenario = parsed(
@@ -188,8 +188,8 @@ fn the_impact_free_boundary_of_seven_voussoirs_under_a_step_pair() {
     }
 }
 
-/// Pulses with side lobes overturn without impact within narrow windows far below the amplitudes that surely do: a
-/// lobe carries the column just over, and the next does not catch it. The windows were found by an integration
+/// Pulses with side lobes overturn without impact within narrow windows, far below the amplitudes that surely do: one
+/// lobe just carries the column over, and the next does not catch it. The windows were found by an integration
 /// that shares nothing with this one (of order eight, relative tolerance 1e-11), and by maps of 300 amplitudes.
 #[test]
 fn the_impact_free_boundary_sees_narrow_windows() {
@@ -242,7 +242,7 @@ fn a_map_does_not_cut_pulses_off() {
     );
 }
 
-/// Above amplitudes that overturn there are some that do not: bisection would never see them. At a tolerance
+/// Above amplitudes that overturn there are some that do not; bisection would never find them. At a tolerance
 /// a thousand times finer they are the same.
 #[test]
 fn safe_islands_above_the_first_overturning_amplitude_survive() {
@@ -276,7 +276,7 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
         .collect();
     assert!(island.len() >= 3, "{found:?}");
     assert!(island.iter().all(|amplitude_g| *amplitude_g < free_g));
-    // Below the island it takes impacts to overturn, above it none.
+    // Below the island it overturns after impacts, above it without impact.
     assert!(found[first].2 > Some(0) && found.last().unwrap().2 == Some(0));
     let verdicts = |found: Vec<(f64, bool, Option<usize>)>| -> Vec<_> {
         found
@@ -287,9 +287,9 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
     assert_eq!(verdicts(found), verdicts(outcomes(1e-12).0));
 }
 
-// The program, in pieces.
+// The program, computing in parts.
 
-/// A folder with `s.toml`: a map of so many cells each way.
+/// A folder with `s.toml`: a map with this many cells along each side.
 fn folder_with_map(count: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let text = format!(
@@ -354,7 +354,7 @@ fn threads_and_parts_do_not_change_a_bit() {
         &[&["merge", "--no-impact", "--out", "merged"], &parts[..]].concat(),
     );
     assert_eq!(files(&path.join("merged")), whole);
-    // Without the option there is no boundary, not even an old one; the parts stay where they are.
+    // Without the option no boundary is left, not even an old one; the parts stay where they are.
     done(path, &[&["merge"], &parts[..]].concat());
     assert_eq!(
         fs::read(path.join("parts/map.csv")).unwrap(),
@@ -436,7 +436,7 @@ fn parts_that_do_not_belong_together_are_refused() {
         &["merge", one, "alien.part"],
         &["line 12", "another part"],
     );
-    // Whatever is edited in a row.
+    // Whatever is changed in a row is detected.
     let row = lines[4];
     for edited in [
         row.replacen(',', ",1", 2),
@@ -455,14 +455,14 @@ fn parts_that_do_not_belong_together_are_refused() {
     }
 }
 
-/// Whatever is left of a part, going on with it ends in the same results.
+/// However much of a part is left, continuing it gives the same results.
 #[test]
 fn a_torn_part_is_resumed_to_the_same_results() {
     let folder = folder_with_map(7);
     let path = folder.path();
     done(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);
     let whole = files(&path.join("whole"));
-    // One part of one is the whole.
+    // Part 1 of 1 is the whole.
     done(
         path,
         &[
@@ -520,7 +520,7 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
     fs::write(path.join("r/map-1-of-2.part"), &some).unwrap();
     let again = ["map", "s.toml", "--out", "r", "--shard", "1/2"];
     refused(path, &again, &["3 cases", "--resume", "remove it"]);
-    // A part under the name of another.
+    // A part renamed to another part.
     let renamed = ["map", "s.toml", "--out", "r", "--shard", "2/2", "--resume"];
     fs::copy(
         path.join("r/map-1-of-2.part"),
@@ -536,7 +536,7 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
         fs::read_to_string(path.join("r/map-2-of-2.part")).unwrap(),
         some
     );
-    // A changed scenario has other cases.
+    // A changed scenario has different cells.
     let text = fs::read_to_string(path.join("s.toml")).unwrap();
     fs::write(path.join("s.toml"), text.replace("5.0", "6.0")).unwrap();
     let resume = [&again[..], &["--resume"]].concat();
@@ -547,7 +547,7 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
         fs::read_to_string(path.join("r/map-1-of-2.part")).unwrap(),
         some
     );
-    // What is complete is not computed again.
+    // A complete part is not computed again.
     fs::write(path.join("s.toml"), text).unwrap();
     fs::write(path.join("r/map-1-of-2.part"), &part).unwrap();
     done(path, &again);
@@ -602,7 +602,7 @@ fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
             kills += 1;
         }
         child.wait().unwrap();
-        // Results are complete or not there.
+        // Results are either complete or absent.
         if let Ok(table) = fs::read(path.join("r/map.csv")) {
             assert!(table == fs::read(path.join("whole/map.csv")).unwrap());
             for name in ["map.svg", "map.json", "no_impact.csv"] {

@@ -1,4 +1,4 @@
-//! A map of many pulses at the usual tolerance is the map at a thousandth of it.
+//! A map of many pulses at the default tolerance equals the map at a thousandth of it.
 
 use crate::common::{GRAVITY, request, semicircle};
 use archrock::{GroundMotion, Model as _, Outcome, Pulse, Request};
@@ -6,7 +6,7 @@ use archrock::{GroundMotion, Model as _, Outcome, Pulse, Request};
 /// Cells along each side.
 const CELLS: u32 = 20;
 
-/// Errors of 1e-9 a step at the usual tolerance add up over some tens of steps, and grow where a structure
+/// Errors of 1e-9 per step at the default tolerance accumulate over some tens of steps, and grow where a structure
 /// passes slowly near the unstable equilibrium. Found: 5e-9.
 const PEAK_TOLERANCE: f64 = 1e-7;
 
@@ -32,7 +32,7 @@ fn a_map_of_rectangular_pulses_does_not_depend_on_the_tolerance() {
             };
             arch.simulate(&ground, &request, None).unwrap()
         });
-        // The outcome knows the sway.
+        // The outcome includes the sway.
         let [usual_end, exact_end] =
             [&usual, &exact].map(|summary| (summary.outcome, summary.impacts));
         if usual_end != exact_end {
@@ -51,7 +51,7 @@ fn a_map_of_rectangular_pulses_does_not_depend_on_the_tolerance() {
             "{name}: {usual_peak} {exact_peak}"
         );
     }
-    // A cell right on the boundary could go either way; of this grid none does.
+    // A cell right on the boundary could go either way; none of this grid does.
     assert!(
         on_the_boundary.is_empty(),
         "{} cells: {on_the_boundary:#?}",

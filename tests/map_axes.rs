@@ -70,7 +70,7 @@ fn a_cell_under_a_record_is_the_run_with_its_values() {
         assert_eq!(by_peak["outcome"], by_scale["outcome"]);
         assert_eq!(by_peak["impacts"], by_scale["impacts"]);
     }
-    // In parts as well.
+    // Computed in parts as well.
     let whole = fs::read(path.join("results/s/map.csv")).unwrap();
     for part in ["1/2", "2/2"] {
         stdout(&archrock(path, &["map", "s.toml", "--shard", part]));
@@ -104,7 +104,7 @@ fn any_number_of_the_scenario_can_be_an_axis() {
         let impacts = summary["impacts"].as_u64().unwrap();
         assert_eq!(impacts.to_string(), cell["impacts"]);
     }
-    // What a value does not allow fails in its cells only, with the reason.
+    // A value that is not allowed makes only its own cells fail, with the reason.
     let thin = text.replace(
         "'arch.voussoirs' = { from = 9, to = 15, count = 4 }",
         "'arch.thickness_ratio' = [0.05, 0.15]",
@@ -117,7 +117,7 @@ fn any_number_of_the_scenario_can_be_an_axis() {
     assert_ne!(cells[2]["outcome"], "failed");
     let summary = fs::read_to_string(path.join("results/s/map.json")).unwrap();
     assert!(summary.contains("cannot carry its own weight"));
-    // The resolved scenario is the same.
+    // The resolved scenario reads back the same.
     let resolved = stdout(&archrock(path, &["check", "s.toml"]));
     fs::write(path.join("t.toml"), &resolved).unwrap();
     assert_eq!(stdout(&archrock(path, &["check", "t.toml"])), resolved);
@@ -199,11 +199,11 @@ fn dimensionless_axes_are_in_units_of_p_and_of_the_onset() {
     let picture = Document::parse(&picture).unwrap();
     text_place(&picture, "p t_p");
     text_place(&picture, "a / A_L");
-    // The onset is at one, wherever that is.
+    // The onset is at one, wherever one is on the axis.
     let (_, one) = text_place(&picture, "1");
     let incipient = paths(&picture, "incipient")[0];
     for point in incipient[1..].split(' ').skip(1).step_by(2) {
-        // Labels stand 4.5 pixels below their ticks.
+        // Labels are 4.5 pixels below their ticks.
         assert!(
             (point.parse::<f64>().unwrap() - (one - 4.5)).abs() < 0.02,
             "{incipient} {one}"

@@ -1,4 +1,4 @@
-//! `map.html`: every cell that it shows against the table, in a real browser, and the commands against a run.
+//! `map.html`: every cell that it shows is compared with the table, in a real browser, and its commands with a run.
 
 use crate::browser;
 use crate::results::{Row, Table, data_of};
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_m = 0.75\nembrace_deg = 180.0\n\
                         [ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.8\n";
 
-/// A map in a folder: its page, and the rows of its table.
+/// A map in a folder: returns its page, and the rows of its table.
 fn map(folder: &Path, axes: &str, more: &[&str]) -> (String, Vec<Row>) {
     fs::write(
         folder.join("my arch.toml"),
@@ -30,7 +30,7 @@ fn map(folder: &Path, axes: &str, more: &[&str]) -> (String, Vec<Row>) {
     )
 }
 
-/// The command of the page with the values of a row, run by a shell: the outcome in its summary.
+/// Runs the page's command, with the values of a row, in a shell; returns the outcome in its summary.
 fn run(folder: &Path, page: &str, row: &Row) -> String {
     let [x, y] = [0, 1].map(|column| row.number(column));
     let command = data_of(page)["command"].as_str().unwrap().to_owned();
@@ -111,7 +111,7 @@ data.rows.forEach((row, index) => {
   verify(command.includes(`duration_s = ${Number(row[0])}\\n`), `${command} ${row}`);
   verify(command.includes(`amplitude_g = ${Number(row[1])}\\n`), `${command} ${row}`);
 });
-// The middle of the cell under the pointer is in the rectangle that marks it.
+// The middle of the cell under the pointer lies in the rectangle that marks it.
 const box = map.querySelector('svg').getBoundingClientRect();
 const [xs, ys] = archrock.data.axes.map((axis) => axis.edges_px);
 const scale = box.width / archrock.data.sheet_px.width;

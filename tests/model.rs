@@ -1,4 +1,4 @@
-//! What models tell: poses, open hinges, columns of samples, energies; and that they trust no argument.
+//! The output of models: poses, open hinges, columns of samples, energies. Models check every argument.
 
 use std::fmt::Debug;
 use std::ops::ControlFlow;
@@ -29,7 +29,7 @@ fn block() -> FreeHinges {
     FreeHinges::of_column(&Column::new(4.0, 0.8).unwrap()).unwrap()
 }
 
-/// To rest after impacts to both sides, and lost on either side, where rotations are largest.
+/// One pulse leads to rest after impacts to both sides; a stronger one overturns to either side, where rotations are largest.
 fn grounds() -> impl Iterator<Item = GroundMotion> {
     [0.4, -0.4, 2.0, -2.0]
         .into_iter()
@@ -40,7 +40,7 @@ fn grounds() -> impl Iterator<Item = GroundMotion> {
         ])
 }
 
-/// Each hinge joins two neighbours among the bodies and the ground on both sides: where it opens is a point of
+/// Each hinge joins two neighbours, of the bodies and the ground on both sides: its position is a point of
 /// both.
 #[track_caller]
 fn assert_joined(sample: &Sample, point: impl Fn(Hinge) -> Vector2<f64>) {
@@ -125,7 +125,7 @@ fn poses_turn_by_the_rotations() {
     check(&column());
 }
 
-/// All numbers of the poses and of the hinges of a history, sample by sample, as seen in a mirror or not.
+/// All numbers of the poses and of the hinges of a history, sample by sample, mirrored or not.
 fn places(history: &History, in_a_mirror: bool) -> Vec<Vec<u64>> {
     let place = |mut sample: Sample| {
         if in_a_mirror {
@@ -160,7 +160,7 @@ fn mirrored_grounds_put_bodies_and_hinges_where_the_mirror_shows_them_to_the_las
     check(&column());
 }
 
-/// Keeps all that it is told, as it is told.
+/// Keeps everything that it receives.
 #[derive(Default)]
 struct Told {
     samples: Vec<Sample>,
@@ -226,12 +226,12 @@ fn a_history_keeps_what_a_recorder_is_told() {
             let hinges: usize = told.samples.iter().map(|sample| sample.hinges.len()).sum();
             assert_eq!(columns.hinges.len(), hinges);
 
-            // Nobody listens: the same, without the demand of samples.
+            // Without a recorder: the same, except for the demand of samples.
             let alone = model.simulate(&ground, &request, None).unwrap();
             assert_eq!(alone.thrust, None);
             let thrust = summary.thrust;
             assert_eq!(archrock::Summary { thrust, ..alone }, summary);
-            // To break ends it there.
+            // A break ends the history.
             told = Told {
                 most_samples: Some(3),
                 ..Told::default()
@@ -245,8 +245,8 @@ fn a_history_keeps_what_a_recorder_is_told() {
     check(&column());
 }
 
-/// At the unstable equilibrium, at no rate, every link has just the energy of its own barrier; and samples measure
-/// by that of the link that moves.
+/// At rest at the unstable equilibrium, every link has exactly the energy of its own barrier; samples are relative to
+/// the barrier of the link that moves.
 fn energies_are_over_the_barrier_of_the_link_that_moves<C: MechanismChain>(chain: &C) {
     let still = GroundMotion::still();
     let rocking = Rocking::new(chain, &still, GRAVITY, 1e-8);
@@ -285,7 +285,7 @@ fn energies_are_over_the_barrier_of_the_link_that_moves<C: MechanismChain>(chain
                 continue;
             };
             let link = chain.link(index).unwrap();
-            // The body that carries the coordinate: the one on the side from which it sways.
+            // The coordinate is the rotation of the body on the side from which it sways.
             let carrier = match sample.state.sway().unwrap() {
                 Sway::Right => 0,
                 Sway::Left => sample.rotations_rad.len() - 1,
@@ -325,7 +325,7 @@ fn any_model() -> impl Strategy<Value = ImpactModel> {
     ]
 }
 
-/// The error is about one of these arguments, and says which, and what it was.
+/// Checks that the error is about one of these arguments, and gives its name and its value.
 fn check_named(error: &ArgumentError, arguments: &[(&str, f64)]) -> Result<(), TestCaseError> {
     let is_it = |(name, value): &(&str, f64)| {
         *name == error.argument && (*value == error.value || value.is_nan() && error.value.is_nan())
@@ -458,7 +458,7 @@ proptest! {
         let ground = pulse(Pulse::OneSine, 0.4, 0.3);
         let models: [&dyn Model; 3] = [&*ARCH, &column(), &block()];
         for model in models {
-            // A number of samples that is soon tested.
+            // A number of samples that is quick to test.
             let mut told = Told { most_samples: Some(1000), ..Told::default() };
             match model.simulate(&ground, &request, Some(&mut told)) {
                 Ok(summary) => {
@@ -478,7 +478,7 @@ proptest! {
     }
 }
 
-/// At such times the errors of a step are below what numbers tell apart, and no tolerance can be met.
+/// In so short a time the errors of a step are below the resolution of numbers, and no tolerance can be met.
 #[test]
 fn a_history_of_less_than_a_microsecond_is_refused() {
     let ground = pulse(Pulse::OneSine, 0.4, 0.3);
@@ -505,7 +505,7 @@ fn more_samples_than_a_history_may_have_are_refused() {
         for model in models {
             let error = model.history(&ground, &request).unwrap_err();
             assert!(error.to_string().starts_with(&start), "{error}");
-            // Without samples as well: rows end their steps where these would be.
+            // Without samples as well: rows end their steps at output times anyway.
             let error = model.simulate(&ground, &request, None).unwrap_err();
             assert!(error.to_string().starts_with(&start), "{error}");
         }

@@ -10,7 +10,7 @@ use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{FourLinkArch, GroundMotion, Outcome, Pulse, Request, Sway};
 
-/// `q''` at the start, by the equation of motion written out; a ground acceleration pushes it.
+/// `q''` at the start, by the equation of motion written out, with a ground acceleration.
 fn acceleration_at_zero(arch: &FourLinkArch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
     let c = link.mechanism.coefficients(0.0);
     -(GRAVITY * c.s_y + ground_m_s2 * c.s_x) / (arch.length_m() * c.inertia)
@@ -23,7 +23,7 @@ fn at_rest_the_equation_of_motion_gives_the_incipient_acceleration() {
         let c = link.mechanism.coefficients(0.0);
         assert!((c.s_y / c.s_x - arch.incipient_g()).abs() < 1e-12);
         assert!(acceleration_at_zero(&arch, link, -arch.incipient_g() * GRAVITY).abs() < 1e-12);
-        // Every later link of the chain needs more push than the first.
+        // Every later link of the chain needs a larger push than the first.
         for index in 1..6 {
             let c = arch.link(index).unwrap().mechanism.coefficients(0.0);
             assert!(c.s_y / c.s_x >= arch.incipient_g() - 1e-12);
@@ -31,8 +31,8 @@ fn at_rest_the_equation_of_motion_gives_the_incipient_acceleration() {
     }
 }
 
-/// Constant of motion by central differences of the potential: `q''` from the sampled history must be the
-/// slope of the energy. Independent of the closed coefficients: kinetic energy from the bodies' own rates.
+/// The energy is constant: `q''` from the sampled history must be the slope of the potential, by central
+/// differences. Independent of the closed coefficients: the kinetic energy comes from the bodies' own rates.
 #[test]
 fn free_motion_keeps_the_energy_of_its_bodies() {
     let arch = semicircle();
@@ -94,7 +94,7 @@ fn free_motion_keeps_the_energy_of_its_bodies() {
             - spin(turn(at_c - at_d, right), right_rate);
         assert!(opening.norm() < 1e-12);
         let start = *first.get_or_insert(energy);
-        // Samples inside steps are interpolated: some 1e-8 of the barrier.
+        // Samples inside steps are interpolated, with an error of some 1e-8 of the barrier.
         assert!(
             (energy - start).abs() < 1e-7 * barrier,
             "{} {}",
@@ -125,8 +125,8 @@ fn the_energy_defect_is_small_under_every_pulse_and_falls_with_the_tolerance() {
             };
             let defects = [1e-5, 1e-7, 1e-9, 1e-11].map(defect);
             assert!(defects[2] < 1e-7, "{kind:?} {defects:?}");
-            // The sum of local errors: proportional to the tolerance or better down to rounding, with
-            // factors of the number of steps (tens) on either side.
+            // The accumulated local errors are proportional to the tolerance, or smaller, down to rounding; the factor
+            // is the number of steps (tens).
             for (defect, tolerance) in pairs(defects, [1e-5, 1e-7, 1e-9, 1e-11]) {
                 assert!(
                     defect < 30.0 * tolerance + 1e-13,
@@ -151,7 +151,7 @@ fn free_rocking_from_any_height_keeps_its_energy() {
         assert_eq!(summary.outcome, Outcome::Rest);
         let defect = summary.energy_defect_ratio;
         assert!(defect < 1e-8, "{part}: {defect}");
-        // Nothing rises above where it was let go: the right body leads when it sways left.
+        // Nothing rises above where it was released; when it sways left, the right body leads.
         assert!((summary.peak_rotations_rad[2] - q0).abs() < 1e-12);
     }
 }
@@ -172,12 +172,12 @@ fn a_small_hop_takes_the_time_of_a_constant_acceleration() {
             };
             let closed = (2.0 * q0 / acceleration).sqrt();
             let deviation = first_s / closed - 1.0;
-            // Of first order in q0/q_c: the push back falls to zero at q_c, on the mean by a third of it.
+            // The deviation is of first order in q0/q_c: the restoring force falls to zero at q_c, on average by a third of q0/q_c.
             assert!(deviation.abs() < part, "{part} {deviation}");
             deviations.push(deviation / part);
-            // Rates just before and the next hop, with its own constant acceleration.
+            // Rates just before the impact, and the next hop with its own constant acceleration.
             let rate = (2.0 * acceleration * q0).sqrt();
-            // The left body carries the coordinate, clockwise, and the right one that of the sway to the left.
+            // The coordinate is the rotation of the left body, clockwise; in the sway to the left, that of the right body.
             assert!((first.rates_before_rad_s[0] / rate - 1.0).abs() < part);
             let next = arch.link(1).unwrap();
             let back = acceleration_at_zero(&arch, next, 0.0).abs();
@@ -185,7 +185,7 @@ fn a_small_hop_takes_the_time_of_a_constant_acceleration() {
             let took = second_s - first_s;
             assert!((took / hop - 1.0).abs() < part, "{took} {hop}");
         }
-        // Proportional to q0 indeed: the quotient has a limit.
+        // The deviation is indeed proportional to q0: the quotient has a limit.
         assert!(
             (deviations[3] / deviations[2] - 1.0).abs() < 0.01,
             "{deviations:?}"
@@ -235,7 +235,7 @@ fn event_times_under_a_pulse_meet_those_of_the_smallest_tolerance() {
             impact_times_s(&run(&arch, &ground, &request))
         };
         let (usual, exact) = (times(1e-9), times(1e-13));
-        // What overturns at once has none; thereafter errors grow from impact to impact.
+        // If it overturns at once there are no impacts; otherwise errors grow from impact to impact.
         assert_eq!(usual.is_empty(), exact.is_empty(), "{kind:?}");
         for (usual, exact) in usual.iter().zip(&exact).take(3) {
             assert!((usual - exact).abs() < 2e-8, "{kind:?} {}", usual - exact);
@@ -264,13 +264,13 @@ fn cuts_in_the_ground_motion_change_nothing() {
             assert_eq!(times_s[0].is_empty(), times_s[1].is_empty(), "{kind:?}");
             for (x, y) in times_s[0].iter().zip(&times_s[1]).take(3) {
                 compared += 1;
-                // Other steps, other errors within the tolerance.
+                // Other steps have other errors, within the tolerance.
                 assert!((x - y).abs() < 2e-8, "{kind:?} {}", x - y);
             }
             let (cut, whole) = (cut.summary, &whole.summary);
             assert_eq!(cut.outcome, whole.outcome, "{kind:?}");
             if let Outcome::Overturned(_) = whole.outcome {
-                // It is given up at the last passage of q_c, but followed on while a cut lies ahead.
+                // The history ends at the last passage of q_c, but is followed on while a cut lies ahead.
                 assert!(
                     (cut.outcome_time_s - whole.outcome_time_s).abs() < 2e-8,
                     "{kind:?}"
@@ -283,13 +283,13 @@ fn cuts_in_the_ground_motion_change_nothing() {
             }
         }
     }
-    // Three cuts of each pulse.
+    // Each pulse is cut three times.
     assert!(compared >= 2 * 3 * Pulse::ALL.len(), "{compared}");
 }
 
 #[test]
 fn the_critical_rotation_is_where_it_turns_over() {
-    // Let go just above and just below on ground that moves a little first, so that it is not decided yet.
+    // Released just above and just below, on ground that moves a little first, so that the end is not decided yet.
     let arch = four_links(8.0, 0.15, 157.5, HingeSites::Anywhere);
     let link = arch.link(0).unwrap();
     let top = link.mechanism.displacement(link.critical_rad).y;
@@ -298,7 +298,7 @@ fn the_critical_rotation_is_where_it_turns_over() {
     }
     assert!(link.mechanism.coefficients(link.critical_rad).s_y.abs() < 1e-14);
     assert!(link.limit_rad > link.critical_rad);
-    // Energy decides: a blow that gives just less or just more than the barrier.
+    // The energy decides: a blow that gives just less or just more than the barrier.
     let c = link.mechanism.coefficients(0.0);
     let barrier = GRAVITY / arch.length_m() * top;
     let duration_s = 1e-7;

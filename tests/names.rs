@@ -1,4 +1,4 @@
-//! Titles and names from outside: what would not be seen in them is shown escaped, everywhere.
+//! Titles and names from outside: characters that would be invisible are shown escaped, everywhere.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::program::{archrock, files, printed, refused, stderr};
 
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 const RECORD: &str = "A\nUNITS OF G\nNPTS= 5, DT= .1\n0 .3 .4 -.3 0\n";
-/// Letters, a mark that turns what follows around, and more letters: looks like `wave-2ta.gvs`.
+/// Letters, a mark that reverses the text after it, and more letters: looks like `wave-2ta.gvs`.
 const NAME: &str = "wave-\u{202e}svg.at2";
 const SHOWN: &str = r"wave-\u202esvg.at2";
 
@@ -24,7 +24,7 @@ fn assert_legible(what: &str, text: &str) {
     assert_eq!(hidden, None, "{what}");
 }
 
-/// All files in a folder are legible, and those that can name something have these words.
+/// All files in a folder are legible, and those that may contain a name contain these words.
 #[track_caller]
 fn assert_results(folder: &Path, words: &str, named: &[&str]) {
     let all = files(folder);
@@ -34,7 +34,7 @@ fn assert_results(folder: &Path, words: &str, named: &[&str]) {
     for file in named {
         let (_, contents) = all.iter().find(|(name, _)| name.ends_with(file)).unwrap();
         let text = String::from_utf8(contents.clone()).unwrap();
-        // Strings of JSON and TOML have their backslashes doubled, where they are not escapes.
+        // Strings in JSON and TOML have their backslashes doubled, unless they are escapes.
         let text = text.replace(r"\\u", r"\u");
         assert!(text.contains(words), "{file}");
     }
@@ -92,7 +92,7 @@ fn names_of_records_are_shown_escaped() {
         SHOWN,
         &["report.html", "summary.json"],
     );
-    // What is written for programs reads back.
+    // Output for programs reads back.
     let summary = fs::read_to_string(folder.path().join("run/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     assert_eq!(summary["scenario"]["ground"]["record"]["file"], NAME);
@@ -146,7 +146,7 @@ fn names_like_formulas_are_refused_in_suites() {
                 refused(folder.path(), &[command, "s.toml"], &[&words]);
             }
         }
-        // In a folder, or alone, it begins no cell.
+        // In a folder, or by itself, such a name begins no cell.
         let text = format!("{ARCH}[ground.record]\nfile = '{name}'\n");
         fs::write(folder.path().join("s.toml"), text).unwrap();
         printed(folder.path(), &["run", "s.toml"]);
@@ -159,7 +159,7 @@ fn names_like_formulas_are_refused_in_suites() {
     printed(folder.path(), &["check", "s.toml"]);
 }
 
-/// A file that is named like orders to a terminal gives none in an error.
+/// A file whose name contains commands for a terminal issues none in an error.
 #[cfg(unix)]
 #[test]
 fn names_of_scenarios_are_shown_escaped() {

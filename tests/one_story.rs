@@ -6,7 +6,7 @@ use crate::common::Random;
 use crate::program::printed;
 use crate::results::{Table, data_of, summary, texts};
 
-/// A random structure on a random pulse, and how many blocks it has; none where links or a whole column move.
+/// A random structure on a random pulse, and its number of blocks; none if links or a whole column move.
 fn scenario(random: &mut Random, model: &str) -> String {
     let voussoirs = 7 + 2 * random.pick(3);
     let structure = if random.pick(2) == 0 {
@@ -53,7 +53,7 @@ fn words_page_picture_and_tables_agree() {
             page.contains(&format!("<p id=\"outcome\">{verdict}</p>")),
             "{said}"
         );
-        // What happened, and when.
+        // The outcome and its time.
         let time_s = told["outcome_time_s"].as_f64().unwrap();
         let (begins, happens) = match told["outcome"].as_str().unwrap() {
             "overturned" => {
@@ -82,7 +82,7 @@ fn words_page_picture_and_tables_agree() {
         if model.is_empty() || told["outcome"] == "never_moved" {
             continue;
         }
-        // Which block turns most, how far, and when the table has it.
+        // The block that rotates most, by how much, and when, compared with the table.
         let number = |from: &str, to: &str| {
             let (_, after) = said.split_once(from).unwrap();
             after.split_once(to).unwrap().0.to_owned()
@@ -99,7 +99,7 @@ fn words_page_picture_and_tables_agree() {
         );
         let column = rotations.numbers(&format!("rotation_{block}_rad"));
         let sampled_rad = column.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
-        // Samples are 2 ms apart, and the peaks of all steps.
+        // Samples are 2 ms apart; peaks are those over all steps.
         assert!(
             sampled_rad <= own_rad * (1.0 + 1e-12) && sampled_rad > 0.97 * own_rad,
             "{said}"

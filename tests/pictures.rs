@@ -1,4 +1,4 @@
-//! What the pictures show: read back from the SVG and compared with the mechanics.
+//! The contents of pictures: read back from the SVG and compared with the mechanics.
 
 use std::fs;
 use std::path::Path;
@@ -116,7 +116,7 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
         for e in eccentricities(&curve, &sheet, &arch.arch().ring()) {
             assert!(e.abs() < 0.5 + tolerance, "{e}");
         }
-        // Between points of the polyline, half a pixel apart or so, it passes through the hinges.
+        // Between points of the polyline, about half a pixel apart, it passes through the hinges.
         for point in chain.link(0).unwrap().mechanism.points() {
             let nearest = curve
                 .iter()
@@ -147,7 +147,7 @@ fn joints_are_drawn_where_there_are_voussoirs() {
     check_hinges(&document, chain, 0, Sway::Right);
 }
 
-/// Each displaced body has its corners where the circle arcs begin and end: read from its path.
+/// The corners of a displaced body are where its circular arcs begin and end: read from its path.
 fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
     let path = node.attribute("d").unwrap().replace(['M', 'L', 'Z'], " ");
     path.split('A')
@@ -175,7 +175,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
     let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
     assert_eq!(hinges.len(), 4);
     let body = |name: &str| corners(&named(&document, name)[0]);
-    // B is a corner of the left and the middle body, C of the middle and the right one.
+    // B is a corner of the left and the middle bodies, C of the middle and the right ones.
     for (hinge, bodies) in [
         (hinges[0], ["still", "left"]),
         (hinges[1], ["left", "middle"]),
@@ -200,7 +200,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
     assert!(hinges[1].x - hinges[0].x > scale * (points[1].x - points[0].x));
 }
 
-/// The mechanism after the second impact sways right again: nothing is drawn in a mirror.
+/// The mechanism after the second impact sways right again, so nothing is mirrored.
 #[test]
 fn the_second_impact_has_a_picture_of_its_own() {
     let arch = arch(0.15, 180.0);
@@ -213,7 +213,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
         title.contains("Impact 2: ") && title.contains("r = 0.737099"),
         "{title}"
     );
-    // Bodies from the left, as at the first impact.
+    // Bodies are counted from the left, as at the first impact.
     let left = |name: &str| {
         let bodies = named(&document, name);
         corners(&bodies[0])
@@ -321,7 +321,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         let exact = [corner(outlines_m, 0), corner(outlines_m, last)];
         let mut sheets = Vec::new();
         for document in [&limit, &impact] {
-            // The structure at rest, wherever it is drawn whole: similar to its blocks.
+            // The structure at rest is similar to its blocks, wherever it is drawn whole.
             let whole = named(document, "ring");
             assert!(!whole.is_empty());
             for node in &whole {
@@ -337,14 +337,14 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
                 sheets.push(sheet);
             }
         }
-        // Hinges of the first mechanism are where the static programme opens the joints, on the thrust line.
+        // Hinges of the first mechanism lie on the thrust line, at the joints that the static programme opens.
         let mechanism = onset["mechanism"][side].as_array().unwrap();
         assert_eq!(mechanism.len(), 4);
         let mut line = points(&named(&limit, "thrust line")[0]);
         assert_eq!(line.len(), outlines_m.len() + 1);
         let mut moved: Vec<_> = named(&limit, "moved hinge").iter().map(center).collect();
         if side == "left" {
-            // Drawn in the frame of the sway.
+            // Drawn in the frame of the sway, hence reversed.
             line.reverse();
             moved.reverse();
         }
@@ -356,7 +356,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
             let joint = usize::try_from(opening["joint"].as_u64().unwrap()).unwrap();
             assert!((line[joint] - shown).norm() < PIXEL, "{letter}");
         }
-        // Rigid bodies that share their hinges: left and middle the second, middle and right the third.
+        // Rigid bodies share their hinges: left and middle the second, middle and right the third.
         for (name, hinges) in [("left", [0, 1]), ("middle", [1, 2]), ("right", [2, 3])] {
             let body = strokes(&named(&limit, name)[0]);
             for hinge in hinges {
@@ -374,7 +374,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
             .map(|node| strokes(&node).len())
             .sum();
         assert_eq!(drawn, outlines_m.len());
-        // To that side: the hinge between left and middle goes there.
+        // It sways to that side: the hinge between the left and middle bodies moves there.
         let at_rest = center(&named(&limit, "hinge B")[0]);
         let sway = sheets[1].back(moved[1]).x - sheets[0].back(at_rest).x;
         assert_eq!(sway > 0.0, side == "right");
@@ -408,7 +408,7 @@ fn run_draws_the_history() {
     );
     done(folder.path(), &["run", "s.toml", "--out", "out"]);
     let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
-    // Thirty thousand samples of six quantities; thinned.
+    // Thirty thousand samples of six quantities, thinned.
     assert!(text.len() < 400_000, "{}", text.len());
     let document = Document::parse(&text).unwrap();
     assert_eq!(texts(&document)[0], "A < B & C");
@@ -429,7 +429,7 @@ fn run_draws_the_history() {
         assert_eq!(curves.len(), 1, "{name}");
         points(curves[0])
     };
-    // The largest rotations have the ratio of the published peaks to each other and to zero, where all start.
+    // The largest rotations have the ratios of the published peaks, measured from zero, where all curves start.
     let peak = |name: &str| {
         let points = curve_of(&document, name);
         let start = points[0].y;
@@ -450,7 +450,7 @@ fn run_draws_the_history() {
         let expected = sign * scale * key(&format!("peak_rotation_{name}_rad"));
         assert!((peak(name) - expected).abs() < 0.1, "{name}");
     }
-    // The first half cycle alone goes far: its line is at the unstable equilibrium that `limit` prints, of the left body.
+    // Only the first half cycle goes far: its line is at the left body's unstable equilibrium, as `limit` prints it.
     let unstable = curve("unstable");
     for end in &unstable {
         let from_zero = end.y - curve_of(&document, "left")[0].y;
@@ -464,7 +464,7 @@ fn run_draws_the_history() {
         assert!((points[points.len() - 1].x - right).abs() < PIXEL);
     }
     assert!((unstable[0].x - left).abs() < PIXEL);
-    // The first impact, published at 1.0279 s, has its mark at that part of the time.
+    // The first impact, published at 1.0279 s, is marked at that fraction of the time.
     let end_s = key("outcome_time_s");
     let marks = named(&document, "impact");
     let foot: f64 = marks[0].attribute("d").unwrap()[1..]
@@ -476,7 +476,7 @@ fn run_draws_the_history() {
     let expected = left + (right - left) * 1.0279 / end_s;
     assert!((foot - expected).abs() < 0.05, "{foot} {expected}");
     assert!(marks.len() > 10);
-    // Sways right until there, in each of four panels.
+    // It sways right until then, in each of four panels.
     let bands = named(&document, "right");
     let bands: Vec<_> = bands
         .iter()
@@ -540,7 +540,7 @@ fn chart_has_a_curve_for_every_angle_and_the_published_values() {
     assert!(curve.is_sorted_by(|a, b| a.x < b.x && a.y > b.y));
 }
 
-/// 0.6812 is the paper's; the chain from there is checked elsewhere, here that it has settled.
+/// 0.6812 is from the paper. Other tests check the rest of the chain; this one that it has settled.
 #[test]
 fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
     let sites = HingeSites::Anywhere;
@@ -553,7 +553,7 @@ fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
     assert!(shape_result(180.0, 0.1, sites, ImpactModel::MaxRestitution).is_none());
 }
 
-/// Bands that are wide enough to be seen have the sway of the events between which they lie; hops that are not
+/// Bands wide enough to be seen have the sway between the events on either side; narrower hops
 /// share one shade, which is neither.
 #[test]
 fn bands_have_the_sway_of_the_events() {
@@ -589,7 +589,7 @@ fn bands_have_the_sway_of_the_events() {
                 hops += within.len();
                 continue;
             }
-            // What a visible band holds besides its own sway is together narrower than a pixel.
+            // Events inside a visible band that have another sway take less than a pixel together.
             let first = within.iter().map(|(time_s, _)| place(*time_s) - left);
             assert!(first.fold(0.0, f64::max) < 1.0, "{name} {left} {width}");
             let middle_s = (left + 0.5 * width - 85.0) / 790.0 * end_s;
@@ -601,7 +601,7 @@ fn bands_have_the_sway_of_the_events() {
             swaying[usize::from(name == "left")] += 1;
         }
     }
-    // In each of four panels, for each event that is followed by a visible pause; there are several to each side.
+    // In each of four panels, for each event that a visible interval follows; there are several to each side.
     let seen = |side: &str| {
         let ends = events
             .iter()
@@ -640,7 +640,7 @@ fn rectangles(document: &Document<'_>, name: &str) -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// Every cell has its colour in its place, on axes whose edges lie halfway between the values; and the boundary
+/// Every cell has its colour in its place, on axes whose edges lie halfway between the values. The boundary
 /// runs between the last cell that survives and the first that does not.
 #[test]
 fn the_map_shows_every_cell_and_the_boundaries() {

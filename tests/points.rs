@@ -1,4 +1,4 @@
-//! `run --point`: displacements of points of blocks, by every model of motion.
+//! `run --point`: displacements of points of blocks, with every model of motion.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangul
                       [simulation]\nduration_s = 2.0\n";
 const ELASTIC: &str = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n";
 
-/// Runs a scenario into the folder `o` with points and options, and returns its table of samples.
+/// Runs a scenario into the folder `o` with points and options; returns its table of samples and its words.
 fn run(folder: &Path, scenario: &str, points: &[&str], options: &[&str]) -> (Table, String) {
     fs::write(folder.join("s.toml"), scenario).unwrap();
     let mut arguments = vec!["run", "s.toml", "--out", "o", "--no-report"];
@@ -25,7 +25,7 @@ fn run(folder: &Path, scenario: &str, points: &[&str], options: &[&str]) -> (Tab
     (Table::read(folder.join("o/rotations.csv")), said)
 }
 
-/// Housner's block turns about its toes: the middle of its top goes where these turn it, to rounding.
+/// Housner's block turns about its toes: the middle of its top moves accordingly, to rounding.
 #[test]
 fn the_top_of_a_column_turns_about_its_toes() {
     let folder = tempfile::tempdir().unwrap();
@@ -34,7 +34,7 @@ fn the_top_of_a_column_turns_about_its_toes() {
     let mut peak_m: f64 = 0.0;
     for row in &table.rows {
         let rotation_rad = row.number("rotation_rad");
-        // Clockwise is to the right.
+        // Clockwise means to the right.
         let toe = Vector2::new(-0.4 * rotation_rad.signum(), 0.0);
         let due_m = toe + Rotation2::new(rotation_rad) * (top - toe) - top;
         let displaced_m = Vector2::new(row.number("point_x_m"), row.number("point_y_m"));
@@ -53,12 +53,12 @@ fn the_top_of_a_column_turns_about_its_toes() {
     assert!(said.contains(&words), "{said}");
 }
 
-/// A point of a block goes where the pose of the block in `poses.csv` puts it, with rigid and with elastic joints; `history.svg` and the
+/// A point of a block moves with the pose of the block in `poses.csv`, with rigid and with elastic joints; `history.svg` and the
 /// page have its curves.
 #[test]
 fn a_point_of_a_voussoir_moves_with_it() {
     let folder = tempfile::tempdir().unwrap();
-    // The crown is of block 4 of 7; the other point of block 2, between 26 and 51 degrees from the left.
+    // The crown belongs to block 4 of 7; the other point to block 2, between 26 and 51 degrees from the left.
     let angle = 38_f64.to_radians();
     let other = Vector2::new(-5.1 * angle.cos(), 5.1 * angle.sin());
     let place = format!("{},{}", other.x, other.y);
@@ -109,8 +109,8 @@ fn a_point_of_a_voussoir_moves_with_it() {
     assert_eq!(data["layouts"][0]["point_bodies"][0], 3);
 }
 
-/// Ground that moves to the other side moves the mirrored point to the other side, by every model: with free
-/// hinges to what the order of landings makes of rounding.
+/// If the ground moves to the other side, the mirrored point moves to the other side, with every model; with free
+/// hinges up to the effect of rounding on the order of landings.
 #[test]
 fn mirrored_points_have_mirrored_displacements() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Random structures, grounds and starts: whatever is thrown at it, a history is sound.
+//! Random structures, grounds and starts: every history is sound, whatever the input.
 
 use crate::common;
 use crate::common::three;
@@ -30,7 +30,7 @@ fn sites() -> impl Strategy<Value = HingeSites> {
 fn ground() -> impl Strategy<Value = Option<(Pulse, f64, f64, f64)>> {
     let pulse = (
         proptest::sample::select(Pulse::ALL.to_vec()),
-        // Factors of the incipient acceleration, to either side, and durations from a blow to a swell.
+        // Multiples of the incipient acceleration, to either side; durations from a blow to a swell.
         prop_oneof![-6.0_f64..6.0, 0.98_f64..1.05, -300.0_f64..300.0],
         (-5.0_f64..0.7).prop_map(|exponent| 10_f64.powf(exponent)),
         prop_oneof![Just(0.0), 0.0_f64..3.0],
@@ -40,7 +40,7 @@ fn ground() -> impl Strategy<Value = Option<(Pulse, f64, f64, f64)>> {
 
 fn start() -> impl Strategy<Value = Option<(Sway, f64)>> {
     let side = prop_oneof![Just(Sway::Right), Just(Sway::Left)];
-    // Parts of the critical rotation.
+    // Fractions of the critical rotation.
     proptest::option::weighted(0.3, (side, prop_oneof![1e-6_f64..1.0, 1.0_f64..1.2]))
 }
 
@@ -92,13 +92,13 @@ proptest! {
         prop_assert!(summary.end_s <= request.end_s);
         prop_assert!(summary.outcome_time_s.is_finite() && summary.outcome_time_s <= summary.end_s);
 
-        // Rounding, and the interpolation within a step, in units of the critical rotation.
+        // Rounding, and interpolation within a step, in units of the critical rotation.
         let slack = link.critical_rad * (1e-12 + request.relative_tolerance);
         for sample in &samples {
             let all = sample.rotations_rad.iter().chain(&sample.rates_rad_s);
             prop_assert!(all.chain([&sample.ground_acceleration_m_s2]).all(|x| x.is_finite()));
-            // All hinges are open: swaying right the left body turns clockwise, and between two bodies
-            // intrados hinges close clockwise, extrados hinges anticlockwise; left is the mirror image.
+            // All hinges are open. When it sways right, the left body turns clockwise, and between two bodies
+            // intrados hinges close clockwise, extrados hinges anticlockwise; a sway to the left is the mirror image.
             let [left, middle, right] = three(&sample.rotations_rad);
             let openings = match sample.state {
                 State::Rocking(Sway::Right) => [-left, middle - left, middle - right, -right],
@@ -116,8 +116,8 @@ proptest! {
         for (_, impact) in history.impacts() {
             prop_assert!(impact.energy_after_j <= impact.energy_before_j * (1.0 + 1e-12));
         }
-        // The defect counts the errors of tens of steps, relative to the largest energy there was: the
-        // barrier, or what a blow many times stronger put into it.
+        // The defect adds up the errors of tens of steps, relative to the largest energy: the barrier, or the
+        // energy that a blow many times stronger gave.
         let barrier = Rocking::new(&arch, &ground, gravity, 1e-8).barrier();
         let rates = history.samples.rates_rad_s.iter();
         let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));

@@ -1,4 +1,4 @@
-//! The README: its pictures are those that the program draws, what it prints is what it says, its links lead somewhere.
+//! The README: its pictures are those that the program draws, its printed output is the program's, its links lead somewhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -94,7 +94,7 @@ fn links_lead_somewhere() {
     assert!(links > 30);
 }
 
-/// The anchor of a heading, as hosts of repositories make it.
+/// The anchor of a heading, as repository hosts form it.
 fn anchor_of(heading: &str) -> String {
     let words = heading.trim_start_matches('#').trim().to_lowercase();
     let kept = words

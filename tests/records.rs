@@ -25,8 +25,8 @@ fn scenario(folder: &Path, files: &[(&str, &str)], keys: &str) -> Result<Scenari
     Scenario::read(&path).map_err(|errors| errors.to_string())
 }
 
-/// Straight lines err by h^2/8 times the second derivative: 7.7e-6 of the peak for h = 1 ms and a half sine
-/// of 0.4 s, and 5e-6 of the velocity that it gives.
+/// The error of straight lines is h^2/8 times the second derivative: 7.7e-6 of the peak for h = 1 ms and a half sine
+/// of 0.4 s, and 5e-6 of the resulting velocity.
 #[test]
 fn a_sampled_half_sine_does_what_a_half_sine_does() {
     let arch = semicircle();
@@ -49,12 +49,12 @@ fn a_sampled_half_sine_does_what_a_half_sine_does() {
         }
     }
     for (x, y) in pairs(impact_times_s(&a), impact_times_s(&b)) {
-        // The error of the rotation over the rate at which it closes.
+        // The error of the rotation divided by the rate at which the hinges close.
         assert!((x - y).abs() < 1e-4);
     }
 }
 
-/// Further corners change no value; the steps of the integration, which err by 1e-10 at most, begin elsewhere.
+/// Additional corners change no value; only the steps of the integration, with errors up to 1e-10, begin elsewhere.
 #[test]
 fn further_corners_change_nothing() {
     let arch = semicircle();
@@ -85,7 +85,7 @@ fn further_corners_change_nothing() {
     }
 }
 
-/// A record cut into two files, which share the sample at the cut, is the record.
+/// A record cut into two files, which share the sample at the cut, gives the same motion.
 #[test]
 fn a_record_in_two_files_is_the_same_motion() {
     let record = scaled(&synthetic(7, 6.0, 0.01), 0.3 * G);
@@ -119,7 +119,7 @@ fn a_record_in_two_files_is_the_same_motion() {
     assert_eq!(histories[0], histories[1]);
 }
 
-/// The same numbers are the same motion, whatever file they come from.
+/// The same numbers give the same motion, whatever the file format.
 #[test]
 fn the_way_a_record_is_written_changes_no_bit() {
     let folder = tempfile::tempdir().unwrap();
@@ -217,14 +217,14 @@ fn scales_units_and_starts() {
     );
 }
 
-/// Straight lines of velocity are constant accelerations, so that a step pair of accelerations has a velocity of three
+/// Straight lines of velocity are constant accelerations, so a step pair of accelerations is a velocity record of three
 /// samples: the same history, to rounding.
 #[test]
 fn a_record_of_velocities_is_the_pulse_that_has_them() {
     let folder = tempfile::tempdir().unwrap();
     let (a_g, duration_s) = (-0.35, 0.25);
     let top_cm_s = 100.0 * a_g * G * duration_s;
-    // A uniform velocity before and after shakes nothing.
+    // A constant velocity before and after has no effect.
     let table = format!("0.1,7\n0.35,{:?}\n0.85,7\n", 7.0 + top_cm_s);
     let keys = "file = 'v.csv'\nunit = 'cm/s'\nquantity = 'velocity'";
     let read = scenario(folder.path(), &[("v.csv", &table)], keys).unwrap();
@@ -241,7 +241,7 @@ fn a_record_of_velocities_is_the_pulse_that_has_them() {
             assert!((x - y).abs() < 1e-8, "{} s", row_a.time_s);
         }
     }
-    // The steepest line is the peak, and what is resolved reads back.
+    // The steepest line is the peak acceleration, and the resolved scenario reads back.
     let Some(Ground::Record(record)) = read.ground() else {
         panic!("a record")
     };
@@ -250,7 +250,7 @@ fn a_record_of_velocities_is_the_pulse_that_has_them() {
     assert_eq!(Scenario::parse(&read.to_toml(), &name), Ok(read));
 }
 
-/// The ground has the velocities of the samples at their times, and the displacements of the trapezoids below them.
+/// The ground has the recorded velocities at the times of the samples, and the displacements of the trapezoids below them.
 #[test]
 fn the_ground_has_the_recorded_velocities() {
     let folder = tempfile::tempdir().unwrap();
@@ -287,12 +287,12 @@ fn the_ground_has_the_recorded_velocities() {
     }
 }
 
-/// A table as PEER writes its samples, with the header before it or not, is the motion of the AT2 file; so is one of
-/// six columns.
+/// A table with rows as PEER writes them, with the header before it or not, gives the motion of the AT2 file; so does one
+/// with six columns.
 #[test]
 fn rows_of_several_samples_are_the_samples_one_after_another() {
     let folder = tempfile::tempdir().unwrap();
-    // 401 samples fill no lines of 5, 400 do.
+    // 401 samples do not fill lines of 5, 400 do.
     for (count, header_counts) in [(401, false), (400, true), (400, false)] {
         let record: Vec<_> = synthetic(5, 4.2, 0.01).into_iter().take(count).collect();
         let text = at2(&record, "SYNTHETIC", &NGA_WEST2);
@@ -325,7 +325,7 @@ fn rows_of_several_samples_are_the_samples_one_after_another() {
         assert_eq!(found.ground_motion(), reference.ground_motion());
         let name = folder.path().join("s.toml").display().to_string();
         assert_eq!(Scenario::parse(&found.to_toml(), &name), Ok(found));
-        // One column is read where it is chosen.
+        // A single column is read if it is chosen.
         let first = read(&format!("{keys}\nacceleration_column = 1")).unwrap();
         let Some(Ground::Record(first)) = first.ground() else {
             panic!("a record")
@@ -334,7 +334,7 @@ fn rows_of_several_samples_are_the_samples_one_after_another() {
     }
 }
 
-/// Excel's "Unicode text" and old Macs' text are named, also where they are scenarios.
+/// Excel's "Unicode text" and the text of old Macs are recognised, also for scenarios.
 #[test]
 fn what_is_no_plain_text_is_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -377,7 +377,7 @@ fn what_is_no_plain_text_is_named() {
     }
 }
 
-/// Faults of the keys and of the file, each with its place.
+/// Errors in the keys and in the file, each with its place.
 #[test]
 fn faulty_records_are_input_errors() {
     let folder = tempfile::tempdir().unwrap();
@@ -543,8 +543,8 @@ fn a_faulty_record_ends_the_program_with_two() {
     assert!(!folder.path().join("results").exists());
 }
 
-/// A minute of strong motion, both ways: the work of the ground, summed by the integrator, balances what
-/// the impacts take and what the arch has.
+/// A minute of strong motion, in both directions: the work of the ground, summed by the integrator, equals the
+/// energy that the impacts took plus that of the arch.
 #[test]
 fn energy_balances_over_a_minute() {
     let arch = semicircle();
@@ -581,7 +581,7 @@ fn a_mirrored_record_mirrors_the_history() {
     }
 }
 
-/// The record among the scenarios is this generator's: run with ARCHROCK_REGENERATE=1 to write it anew.
+/// The record among the scenarios comes from this generator: run with ARCHROCK_REGENERATE=1 to write it again.
 #[test]
 fn the_record_among_the_scenarios_is_the_generated_one() {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
@@ -597,7 +597,7 @@ fn the_record_among_the_scenarios_is_the_generated_one() {
         panic!("a record")
     };
     for (sample, original) in pairs(record.main.samples.iter(), &generated) {
-        // Seven digits, and sines that differ between platforms in the last place.
+        // Seven digits, and sines that differ between platforms in the last digit.
         assert!((sample.1 - original.1).abs() < 0.51e-6 * original.1.abs() + 1e-15);
     }
 }
