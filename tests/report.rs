@@ -1,4 +1,4 @@
-//! `report.html`: what it shows against the tables, as text and in a real browser.
+//! `report.html`: its contents are compared with the tables, as text and in a real browser.
 
 use crate::browser;
 use crate::program;
@@ -17,7 +17,7 @@ fn run(folder: &Path, scenario: &str) -> String {
     fs::read_to_string(folder.join("report.html")).unwrap()
 }
 
-/// The page of a scenario in a browser: every frame that is compared is one of its frames, so that nothing is blended.
+/// The page of a scenario in a browser: every frame that is compared is one of the page's own, so nothing is interpolated.
 fn check(scenario: &str, names: &[&str], least_hinges: usize, settings: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let page = run(folder.path(), scenario);

@@ -1,4 +1,4 @@
-//! What the rest criterion costs: nothing that is reported.
+//! The rest criterion changes nothing that is reported.
 
 use crate::program::{scenario_files, scenarios};
 use std::ops::ControlFlow;
@@ -8,16 +8,16 @@ use archrock::{
     Scenario, Sway,
 };
 
-/// A structure that rests instead of hopping on has a hundred-millionth of the barrier less: its hops
+/// A structure that rests instead of hopping on loses a hundred-millionth of the barrier: its hops
 /// would be 1e-8 of the critical rotation high. A later push finds it at `q = 0` instead, which shifts
-/// what follows by about that much; peaks may so change by 1e-6 of themselves, and mostly do not at all.
+/// the later motion by about that much. So peaks may change by 1e-6 of themselves, and mostly do not at all.
 #[test]
 fn halving_the_rest_energy_changes_no_scenario() {
     let mut scenarios = 0;
     for path in scenario_files() {
         scenarios += 1;
         let scenario = Scenario::read(&path).unwrap();
-        // What is no four links has a criterion of its own.
+        // Models other than four links have a rest criterion of their own.
         let Ok(model) = scenario.mechanisms() else {
             assert!(scenario.motion().hinges().has_joints());
             continue;
@@ -41,8 +41,8 @@ fn halving_the_rest_energy_changes_no_scenario() {
     assert!(scenarios >= 2);
 }
 
-/// The onset of an arch that hardly stands and that in its equation of motion differ by rounding, which was more
-/// than the margin by which a push must exceed it: the arch lifted off and closed again at one instant, for ever.
+/// For an arch that hardly stands, the onset and that in its equation of motion differ by rounding. This was once more
+/// than the margin by which a push must exceed the onset: the arch lifted off and closed again at one instant, for ever.
 #[test]
 fn an_arch_that_hardly_stands_does_not_lock() {
     let arch = Arch::new(1.619_540_616_883_977_4, 0.107_511_050_298_186_1, 180.0)
@@ -63,13 +63,13 @@ fn an_arch_that_hardly_stands_does_not_lock() {
         ..Request::default()
     };
     let summary = model.simulate(&ground.unwrap(), &request, None).unwrap();
-    // Slow as it is, the ground goes on to 33 times the onset; nothing brings the arch back.
+    // The ground acceleration rises slowly, but to 33 times the onset; nothing brings the arch back.
     assert_eq!(summary.outcome, Outcome::Overturned(Sway::Right));
     assert_eq!(summary.impacts, 0);
 }
 
-/// The critical rotation is that of the mechanism that moved, not that of the first: a run may peak beyond the
-/// latter and rest.
+/// The critical rotation is that of the mechanism that moved, not that of the first: a run may exceed the
+/// latter and still come to rest.
 #[test]
 fn the_largest_rotation_is_measured_against_the_mechanism_that_moved() {
     let scenario = scenarios().join("semicircle-record.toml");
@@ -81,7 +81,7 @@ fn the_largest_rotation_is_measured_against_the_mechanism_that_moved() {
         .unwrap();
     assert_eq!(summary.outcome, Outcome::Rest);
     assert!(summary.largest_rotation_rad() > first_rad);
-    // Samples measure it too, each against the mechanism that moves then.
+    // Samples measure it too, each relative to the mechanism that moves at the time.
     let over_critical = summary.peak_over_critical.unwrap();
     let mut largest = 0.0_f64;
     let history = model.simulate(
@@ -94,7 +94,7 @@ fn the_largest_rotation_is_measured_against_the_mechanism_that_moved() {
         }),
     );
     assert_eq!(history.unwrap().peak_over_critical, Some(over_critical));
-    // Samples miss the peak by what is turned within half an output step.
+    // Samples miss the peak by the rotation within half an output step.
     assert!(
         largest <= over_critical && largest > 0.999 * over_critical,
         "{largest} {over_critical}"

@@ -1,4 +1,4 @@
-//! The program under bad circumstances: killed, unread, out of space, and with very much to write.
+//! The program under bad circumstances: killed, with nobody reading its output, out of space, and with very much to write.
 #![cfg(target_os = "linux")]
 #![expect(clippy::print_stderr, reason = "tests")]
 
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_archrock");
 
-/// A column that loses no energy and so rocks until the end of the run.
+/// A column that loses no energy, so it rocks until the end of the run.
 fn endless(rotation_rad: f64, duration_s: f64, output_step_s: f64) -> String {
     format!(
         "[column]\nheight_m = 4\nwidth_m = 0.8\n\
@@ -35,8 +35,8 @@ fn rows(path: &Path) -> Vec<Row> {
     Table::parse(text).rows
 }
 
-/// Checks that what is in the folder under the names of results is complete, and, with the summary, that
-/// it is all of one run. Returns whether the summary is there.
+/// Checks that result files in the folder are complete, and, if the summary is there, that all of
+/// them come from one run. Returns whether the summary is there.
 fn check_results(folder: &Path, duration_s: f64) -> bool {
     let found = |name: &str| folder.join(name).exists();
     if found("rotations.csv") {
@@ -96,8 +96,8 @@ fn a_killed_run_leaves_complete_results_or_none() {
     assert!(spawn(0).wait().unwrap().success());
     let whole = begin.elapsed();
     assert!(check_results(&folder, 40.0));
-    // Delays spread over the run and denser at its end, where the files get their names, by the golden
-    // ratio; what the machine adds makes them random.
+    // Delays are spread over the run by the golden ratio, and denser at its end, when the files get their names;
+    // the machine adds randomness.
     let (mut killed, mut finished) = (0, 0);
     for turn in 1..=60_u32 {
         let part = (f64::from(turn) * 0.618_033_988_75).fract();
@@ -118,7 +118,7 @@ fn a_killed_run_leaves_complete_results_or_none() {
         }
     }
     assert!(killed > 5, "{killed} killed, {finished} finished");
-    // What they left goes with the next run.
+    // The next run removes what they left.
     assert!(spawn(0).wait().unwrap().success());
     assert!(check_results(&folder, 40.0));
     let expected = [
@@ -169,7 +169,7 @@ fn a_full_disk_is_said_once() {
     }
 }
 
-/// A bound on the size of files stands for a disk that fills up on the way.
+/// A limit on the size of files stands for a disk that fills up.
 #[test]
 fn a_disk_that_fills_up_leaves_nothing() {
     let root = tempfile::tempdir().unwrap();
@@ -215,7 +215,7 @@ fn a_closed_pipe_is_no_failure() {
     }
 }
 
-/// Largest memory that a process has had resident, in KiB.
+/// Peak resident memory of a process, in KiB.
 fn peak_memory_kib(process: u32) -> u64 {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
     let line = status.lines().find(|line| line.starts_with("VmHWM:"));
@@ -227,7 +227,7 @@ fn peak_memory_kib(process: u32) -> u64 {
         .unwrap()
 }
 
-/// A million rows; the few hundred impacts among them are kept, the rows are not: they are some 60 MB.
+/// A million rows, some 60 MB: they are not kept, but the few hundred impacts among them are.
 #[test]
 fn a_long_output_streams() {
     let root = tempfile::tempdir().unwrap();
@@ -247,7 +247,7 @@ fn a_long_output_streams() {
         if count == 20_000 {
             early_kib = peak_memory_kib(child.id());
         }
-        // While the pipe is full the program waits, so that it can be asked.
+        // The program waits while the pipe is full, so its memory can be read.
         if count == 990_000 {
             let late_kib = peak_memory_kib(child.id());
             assert!(
@@ -257,11 +257,11 @@ fn a_long_output_streams() {
         }
     }
     assert!(child.wait().unwrap().success());
-    // The header and both ends.
+    // The header, and the rows at both ends.
     assert_eq!(count, 1_000_002);
 }
 
-/// Runs `action` with the path of a folder that a long run is writing to.
+/// Runs `action` with the path of a folder to which a long run is writing.
 fn while_being_written(root: &Path, action: impl FnOnce(&Path)) {
     let (scenario, folder) = (root.join("long.toml"), root.join("results"));
     fs::write(&scenario, endless(0.1, 9e3, 1e-3)).unwrap();
@@ -269,7 +269,7 @@ fn while_being_written(root: &Path, action: impl FnOnce(&Path)) {
         .args([&folder, &scenario])
         .spawn()
         .unwrap();
-    // Tables of which something is on the disk are open, and the folder is locked before these are made.
+    // When something is on the disk the tables are open; the folder was locked before they were created.
     let begun = || {
         fs::read_dir(&folder).is_ok_and(|mut files| {
             files
@@ -308,12 +308,12 @@ fn of_two_that_write_to_one_folder_the_second_says_so() {
             )
         );
     });
-    // The lock of a killed run goes with it, and so do its files.
+    // The lock of a killed run ends with it, and its files are removed.
     assert_eq!(run(&results), (Some(0), String::new()));
     assert!(names(&results).iter().all(|name| !name.starts_with('.')));
 }
 
-/// Runs the program, which is to end by itself.
+/// Runs the program, which must end by itself.
 fn within_a_minute(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let output = Command::new("timeout")
         .args(["60", PROGRAM])
@@ -400,7 +400,7 @@ fn a_folder_that_is_removed_during_a_map_is_made_again() {
         ["map.csv", "map.html", "map.json", "map.svg"]
     );
     assert_eq!(rows(&folder.join("map.csv")).len(), 14_400);
-    // The file of a part is its result.
+    // With `--shard` the part file is the result.
     fs::remove_dir_all(&folder).unwrap();
     let (code, said) = study(&["--shard", "1/2"], "map-1-of-2.part");
     assert_eq!(code, Some(1), "{said}");
@@ -412,7 +412,7 @@ fn a_folder_that_is_removed_during_a_map_is_made_again() {
     );
 }
 
-/// What a terminal shows of a command; `None` where there is nothing that stands for one.
+/// What a terminal shows for a command; `None` if no terminal can be emulated.
 fn on_a_terminal(folder: &Path, command: &str) -> Option<String> {
     let ran = Command::new("script")
         .args(["--quiet", "--return", "--command", command, "/dev/null"])
@@ -449,7 +449,7 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
         let said = on_a_terminal(root.path(), &run(more)).unwrap();
         assert!(!said.contains(" s simulated"), "{said}");
     }
-    // Into a file goes none.
+    // Progress is not written to a file.
     let (code, said) = within_a_minute(
         root.path(),
         &["run", "--no-spread", "--out", "out", "long.toml"],

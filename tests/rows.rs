@@ -1,4 +1,4 @@
-//! Rows of blocks from numbers of any kind: an error, or a row that can be shaken.
+//! Rows of blocks from arbitrary numbers: either an error, or a row that can be shaken.
 
 use crate::common::number;
 use archrock::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
@@ -9,8 +9,8 @@ use archrock::{Column, GroundMotion, Model as _, Pulse, Request, SimulationError
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
-/// What is made of a row is a model whose summary has finite numbers, or the right error: of the row that is wrong,
-/// of one that falls, or of sizes that nothing is simulated with. A row of numbers that are all fine is one.
+/// A row gives a model whose summary has finite numbers, or the right error: for a faulty row, for one that falls,
+/// or for a size that cannot be simulated. If all numbers are fine, there must be a row.
 fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
     let row = match row {
         Ok(row) => row,
@@ -20,7 +20,7 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
         }
     };
     prop_assert!(row.mass_kg() > 0.0 && row.blocks().iter().all(|b| b.mass_kg.is_finite()));
-    // A hundred steps of whatever length suits the size.
+    // A hundred steps of a length that suits the size.
     let time_s = (row.size_m() / 9.81).sqrt();
     let sized = fine || (1e-3..1e6).contains(&row.size_m());
     let model = match FreeHinges::new(row) {
@@ -29,7 +29,7 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
             prop_assert!(!fine || !opening.is_empty());
             return Ok(());
         }
-        // Of numbers of all magnitudes at once the velocities are not always found.
+        // If numbers of all magnitudes are mixed, the velocities are not always found.
         Err(FreeHingesError::Stability(StabilityError::Contact(error))) => {
             prop_assert!(!fine, "{error}");
             return Ok(());
@@ -64,7 +64,7 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// The row of a few drums has these heights; where there is none the sizes are to blame.
+/// A column of a few drums must form a row with these heights; if there is none, the sizes must be the reason.
 fn check_column(column: &Column) -> Result<(), TestCaseError> {
     let heights_m = column.drum_heights_m();
     if heights_m.len() >= 8 {
@@ -129,7 +129,7 @@ proptest! {
                 Err(RowError::Dimension { value, .. }) => {
                     prop_assert!(size.iter().any(|x| x == value || x.is_nan() && value.is_nan()));
                 }
-                // Beside the others a size may be nothing, or its powers.
+                // Next to the others a size, or its powers, may vanish.
                 Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) => {
                     prop_assert!(!usual);
                 }
@@ -159,7 +159,7 @@ proptest! {
                 prop_assert!(!(*value > 0.0 && *value < f64::INFINITY));
                 prop_assert!(sizes.iter().any(|x| x == value || x.is_nan() && value.is_nan()));
             }
-            // A drum may be lost beside another one.
+            // A drum may vanish next to another one.
             Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) => {
                 prop_assert!(!sizes.iter().all(|x| (1e-3..1e6).contains(x)));
             }
@@ -189,7 +189,7 @@ proptest! {
             Err(RowError::Size { size_m, extent_m }) => prop_assert!(*size_m < 1e-6 * extent_m),
             Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) | Ok(_) => {}
         }
-        // Steps follow the size: one that is nothing beside the row would leave a history no end.
+        // Steps follow the size: a joint far larger than the row would need steps without end.
         if let Ok(row) = &row {
             prop_assert!(row.joints().iter().all(|joint| row.size_m() >= 1e-6 * joint.thickness_m()));
         }
@@ -228,7 +228,7 @@ proptest! {
         parts in proptest::collection::vec(number(0.1..2.0), 0..4),
         adds_up in proptest::option::of(proptest::sample::select(vec![0.0, 5e-7, 3e-6, 1e-3])),
     ) {
-        // Heights that add up, but for so much of their sum; else the test would be of errors alone.
+        // Heights whose sum is right, or off by a given part; otherwise the test would see only errors.
         let scale = adds_up.map_or(1.0, |off| (1.0 + off) * height_m / parts.iter().sum::<f64>());
         let heights_m: Vec<f64> = parts.iter().map(|part| part * scale).collect();
         let made = Column::new(height_m, width_m).and_then(|column| column.with_top_width_m(top_width_m));
@@ -285,7 +285,7 @@ proptest! {
     }
 }
 
-/// Outlines are for pictures: they hold the mass that the row has by other formulas, up to arcs drawn as chords of 3
+/// Outlines are for pictures. They enclose the mass that the row has by other formulas, except that arcs are drawn as chords of 3
 /// degrees, which cut off 2e-4 of the area.
 #[test]
 fn outlines_hold_the_blocks() {

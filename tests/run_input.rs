@@ -1,4 +1,4 @@
-//! What `run` takes and gives: standard input, several scenarios, the summary on standard output, and folders that
+//! Input and output of `run`: standard input, several scenarios, the summary on standard output, and folders that
 //! hold the results of another scenario.
 
 use std::fs;
@@ -13,7 +13,7 @@ use serde_json::Value;
 const TEXT: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
                     [ground.rectangular]\namplitude_g = -0.3\nduration_s = 0.2\n";
 
-/// The program with a scenario on standard input.
+/// Runs the program with a scenario on standard input.
 fn piped(folder: &Path, arguments: &[&str], text: &str) -> Output {
     let mut child = command(folder, arguments)
         .stdin(Stdio::piped())
@@ -63,7 +63,7 @@ fn the_summary_as_json_is_that_of_the_file() {
     assert_eq!(printed["outcome"], "rest");
 
     let both: Value = serde_json::from_str(&stdout(&run(&["--hinges", "both"]))).unwrap();
-    // The time that a step takes is another each time.
+    // The time that a step takes differs every time.
     let mut printed = printed;
     printed["longest_step_us"] = both["free"]["longest_step_us"].clone();
     assert_eq!(both["free"], printed);
@@ -124,7 +124,7 @@ fn several_scenarios_run_one_after_another() {
     assert_eq!(json[0]["outcome"], "rest");
     assert_eq!(json[1]["outcome"], "never_moved");
 
-    // All that is wrong is said before anything runs.
+    // All errors are reported before anything runs.
     fs::remove_dir_all(path.join("results")).unwrap();
     fs::write(path.join("c.toml"), "[arch]\n").unwrap();
     let said = refusal(&archrock(
@@ -183,7 +183,7 @@ fn results_of_another_scenario_of_the_same_name_are_not_replaced() {
             "{said}"
         );
         assert_eq!(fs::read(path.join("results/s").join(file)).unwrap(), before);
-        // The same scenario, by whatever name and however edited, replaces them.
+        // The same scenario file, by whatever path and however edited, replaces its results.
         fs::write(
             path.join("s.toml"),
             format!("{TEXT}{map}").replace("0.15", "0.16"),

@@ -1,4 +1,4 @@
-//! The runner as a library: in memory and in files, cancelled, resumed, merged; and rows that failed.
+//! The runner as a library: in memory and in files, cancelled, resumed, merged; and with rows that failed.
 
 use std::fs;
 use std::num::NonZeroUsize;
@@ -19,7 +19,7 @@ use archrock::{
     Column, GroundMotion, ImpactModel, MechanismModel as _, Model as _, Pulse, RockingColumn, Sway,
 };
 
-/// Cases of a few milliseconds whose rows are hard to write down, some of which fail.
+/// Cases of a few milliseconds whose rows are hard to write exactly; some of them fail.
 #[derive(Default)]
 struct Slow {
     begun: AtomicUsize,
@@ -51,7 +51,7 @@ fn expected(index: usize) -> Result<f64, String> {
     if index % 7 == 3 {
         return Err(format!("case {index}, \"quoted\",\nin two lines"));
     }
-    // All sorts of digits and magnitudes.
+    // Numbers of all kinds of digits and magnitudes.
     let index = index as f64;
     Ok((index + 0.1).sin() * 10.0_f64.powf(10.0 * (index - 30.0)))
 }
@@ -78,7 +78,7 @@ fn go_on(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Breaks when so many are done.
+/// Breaks when this many are done.
 fn until(most: usize) -> impl FnMut(Progress) -> ControlFlow<()> {
     move |progress| {
         if progress.done >= most {
@@ -123,7 +123,7 @@ fn cancelled_work_stops_soon_and_is_resumed() {
     let Err(RunnerError::Cancelled(Progress { done, all: COUNT })) = cancelled else {
         panic!("{cancelled:?}");
     };
-    // The cases under way were finished, and nothing is lost.
+    // The cases under way were finished, and no row is lost.
     assert_eq!(done, study.begun.load(Ordering::Relaxed));
     assert!(0 < done && done < COUNT);
     let path = folder.path().join("slow.part");
@@ -173,7 +173,7 @@ fn shards_are_merged_to_the_whole() {
     let (header, rows) = part::merge::<Result<f64, String>>(&paths).unwrap();
     assert_eq!(header, Header::new(&Slow::default(), Shard::WHOLE));
     assert_eq!(rows, all());
-    // Rows of another type are not read as if they were.
+    // Rows are not read as another type.
     assert!(matches!(
         part::merge::<bool>(&paths),
         Err(PartError::Unusable { .. })
@@ -189,7 +189,7 @@ fn a_folder_that_cannot_be_made_is_said() {
     assert!(matches!(refused, Err(RunnerError::Folder { .. })));
 }
 
-/// The reason of a failure goes from the row through the part to what the program says, with the others as they
+/// The reason of a failure passes from the row through the part to the program's words; the other rows stay as they
 /// are.
 #[test]
 fn failed_cells_keep_their_reason() {
@@ -246,7 +246,7 @@ fn failed_cells_keep_their_reason() {
     assert_eq!(lines("no_impact.csv").len(), 2);
 }
 
-/// The edge by the plain search, every pulse made from the beginning.
+/// The edge by a plain search, in which every pulse is built from scratch.
 fn plain_edge_g(column: &RockingColumn, pulse: Pulse, duration_s: f64) -> Option<f64> {
     let overturns = |amplitude_g: f64| {
         let ground = GroundMotion::pulse(pulse, amplitude_g * GRAVITY, duration_s, 0.0).unwrap();
@@ -277,7 +277,7 @@ fn plain_edge_g(column: &RockingColumn, pulse: Pulse, duration_s: f64) -> Option
     Some(high_g)
 }
 
-/// To the last bit.
+/// They are equal to the last bit.
 #[test]
 fn the_boundary_is_that_of_the_plain_search() {
     let mut edges = 0;

@@ -1,4 +1,4 @@
-//! Scenario files: what is read, what is refused and where, and how it is written back.
+//! Scenario files: what is read, what is refused and where, and how a scenario is written back.
 
 use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::free_hinges::RowOptions;
@@ -33,7 +33,7 @@ fn assert_error_after_arch(lines: &str, (line, column): (usize, usize), words: &
     assert_errors(&format!("{ARCH}{lines}"), &[(before + line, column, words)]);
 }
 
-/// What Python's keywords say of settings that are left out is what a scenario takes.
+/// The defaults of Python's keyword arguments are those of a scenario.
 #[test]
 fn defaults_are_those_of_python() {
     let json = parse(ARCH).unwrap().to_json();
@@ -115,7 +115,7 @@ fn defaults() {
     assert_eq!(RowOptions::default(), none);
 }
 
-/// Every key of a row of blocks, as it is read and as it is written back.
+/// Every key of a row of blocks is read, and written back.
 #[test]
 fn every_key_of_a_row() {
     let scenario = parse(
@@ -149,7 +149,7 @@ fn every_key_of_a_row() {
     assert_eq!(parse(&text), Ok(scenario));
 }
 
-/// A row is released from its first mechanism: drums turn about the base, and what does not start as four links has none.
+/// A row is released in its first mechanism: drums turn about the base; a row that does not start as four links has none.
 #[test]
 fn releases_of_rows() {
     let released = |before: &str, rotation: &str| {
@@ -191,7 +191,7 @@ fn releases_of_rows() {
     assert!(none.ends_with("leave [initial] out"), "{none}");
 }
 
-/// Every key of a history, as it is read and as it is written back.
+/// Every key of a history is read, and written back.
 #[test]
 fn every_key() {
     let scenario = parse(
@@ -268,7 +268,7 @@ p_t = [1.0]
 acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "logarithmic" }
 "#
     );
-    // What is written is what was read, not only what was given.
+    // The resolved scenario is written, not only what was given.
     assert_eq!(scenario.title(), Some("all of it"));
     let arch = Arch::new(10.0, 0.15, 157.5)
         .and_then(|arch| arch.with_depth_m(2.0))
@@ -316,7 +316,7 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
     assert_eq!((initial.sway, initial.rotation_rad), (Sway::Left, 0.02));
 }
 
-/// What moves nothing is said to, with the tables that are missing and the command that may be meant.
+/// If nothing moves the structure, the error names the missing tables and the command that may be meant.
 #[test]
 fn a_run_needs_something_that_moves() {
     let says = |more: &str| parse(&format!("{ARCH}{more}")).unwrap().check_for_run();
@@ -585,14 +585,14 @@ fn output_steps_point_at_the_key_that_is_given() {
 
 #[test]
 fn syntax_errors_hide_nothing_and_breed_nothing() {
-    // The key that is on a faulty line is not missing, and the default does not stand for it.
+    // A key on a faulty line is not missing, and the default does not replace it.
     assert_error_after_arch(
         "[simulation]\nduration_s = 60 s\noutput_step_s = 20",
         (2, 14),
         &["`duration_s = 60 s`"],
     );
     assert_errors(&ARCH.replace("0.15", "0,15"), &[(3, 20, &["0,15"])]);
-    // The keys under a faulty header are not those of the table before.
+    // Keys under a faulty header do not belong to the table before.
     assert_error_after_arch("[initial\nsway = 'right'\n", (1, 9), &["expected `]`"]);
     let twice = format!("{ARCH}[impact]\n{ARCH}title = 1");
     assert_errors(&twice, &[(6, 2, &["duplicate key"])]);
@@ -636,7 +636,7 @@ fn hostile_nesting_does_not_overflow_the_stack() {
 
 #[test]
 fn many_errors_take_linear_time() {
-    // Quadratic work would be 1e11 steps here.
+    // Quadratic work would take 1e11 steps here.
     let keys: Vec<_> = (0..50_000).map(|i| format!("k{i}=1")).collect();
     let errors = parse(&format!("arch = {{ {} }}", keys.join(", "))).expect_err("unknown keys");
     assert!(errors.as_slice().len() > 50_000);
@@ -670,7 +670,7 @@ fn files() {
     assert!(dir.ends_with(": is a folder, not a scenario file"), "{dir}");
 }
 
-/// A number in `low..high` with a random exponent, so that all ways of writing it occur.
+/// A number in `low..high` with a random exponent, so that all notations of numbers occur.
 fn magnitude(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low.ln()..high.ln()).prop_map(move |x| x.exp().clamp(low, high))
 }
@@ -685,7 +685,7 @@ fn any_column() -> impl Strategy<Value = String> {
     })
 }
 
-/// Columns of drums, and arches, whose hinges are free.
+/// Columns of drums and arches, with free hinges.
 fn any_row() -> impl Strategy<Value = String> {
     let size = || magnitude(0.1, 10.0);
     let step = || proptest::option::of(magnitude(1e-6, 1e-2));
@@ -693,7 +693,7 @@ fn any_row() -> impl Strategy<Value = String> {
         value.map_or(String::new(), |value| format!("{name} = {value:?}\n"))
     };
     let steps = (step(), step()).prop_map(move |(one, other)| {
-        // In either order, but the longest is not the shorter one.
+        // In either order, with the longest step not shorter than the shortest.
         let (longest, shortest) = match (one, other) {
             (Some(one), Some(other)) => (Some(one.max(other)), Some(one.min(other))),
             steps => steps,
@@ -733,7 +733,7 @@ fn any_arch() -> impl Strategy<Value = String> {
         .prop_filter("stands", |arch| parse(arch).is_ok())
 }
 
-/// A ground motion read by itself, and put under a structure read without it, is that of the scenario with both.
+/// A ground motion read on its own, applied to a structure read without it, is that of the scenario with both.
 #[test]
 fn a_ground_may_be_read_by_itself_and_put_under_a_structure() {
     let simulation = "[simulation]\ngravity_m_s2 = 3.7\n";
@@ -818,7 +818,7 @@ fn any_simulation() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    /// What is written reads back as the same scenario, and says the same in TOML as in JSON.
+    /// A written scenario reads back the same, and TOML and JSON have the same contents.
     #[test]
     fn to_toml_reads_back_the_same(
         title in proptest::option::of(any::<String>()),
@@ -830,7 +830,7 @@ proptest! {
         initial in proptest::option::of(any_initial()),
         simulation in any_simulation(),
     ) {
-        // JSON escapes what TOML does, but for one character.
+        // JSON escapes the same characters as TOML, except one.
         let title = title.map_or(String::new(), |title| {
             format!("title = {}\n", serde_json::Value::from(title.replace('\u{7f}', "")))
         });
@@ -847,7 +847,7 @@ proptest! {
         prop_assert!(parse(&text).map_or_else(|errors| !errors.as_slice().is_empty(), |_| true));
     }
 
-    /// Damage to a valid text gets further into the reader than noise does.
+    /// Damage to a valid text gets further into the reader than noise would.
     #[test]
     fn damage_is_read_or_said_to_be_wrong(
         damage in proptest::collection::vec((0..200_usize, proptest::sample::select(DAMAGE)), 1..8),
@@ -869,7 +869,7 @@ const DAMAGE: &[&str] = &[
     "\u{feff}",
 ];
 
-/// What stands on a pedestal says so, for both piers or for one; the rest stands on ground that goes on.
+/// A pedestal is recorded for a column, for both piers or for one; everything else stands on ground that continues.
 #[test]
 fn pedestals() {
     let goes_on = |text: &str| {

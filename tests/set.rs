@@ -1,4 +1,4 @@
-//! Values that take the place of those of a scenario: `--set`.
+//! Values that replace those of a scenario: `--set`.
 
 use std::fs;
 
@@ -23,7 +23,7 @@ fn read(set: &[&str]) -> Result<Scenario, String> {
     Scenario::of(&Source::of_text(TEXT, "s.toml"), &changes).map_err(|errors| errors.to_string())
 }
 
-/// The scenario that is read from the text edited by hand.
+/// The scenario from the text as edited by hand.
 fn edited(old: &str, new: &str) -> Scenario {
     assert!(TEXT.contains(old));
     Scenario::parse(&TEXT.replace(old, new), "s.toml").unwrap()
@@ -39,7 +39,7 @@ fn an_assignment_does_what_an_edit_of_the_text_does() {
         read(&["title = A title"]).unwrap(),
         edited("\"x\"", "\"A title\"")
     );
-    // New keys, new tables, tables within tables.
+    // New keys, new tables, nested tables.
     assert_eq!(
         read(&["simulation.duration_s=3", "arch.voussoirs=21"]).unwrap(),
         edited(
@@ -51,12 +51,12 @@ fn an_assignment_does_what_an_edit_of_the_text_does() {
         read(&["ground.rectangular.start_s=1"]).unwrap(),
         edited("duration_s = 0.2", "duration_s = 0.2\nstart_s = 1")
     );
-    // The later of two for one key.
+    // If a key is set twice, the later value counts.
     assert_eq!(
         read(&["arch.embrace_deg=150", "arch.embrace_deg=157.5"]).unwrap(),
         edited("180.0", "157.5")
     );
-    // A table as a whole.
+    // A whole table.
     assert_eq!(
         read(&["ground={one_sine={amplitude_g=0.5, duration_s=1}}"]).unwrap(),
         edited(
@@ -64,7 +64,7 @@ fn an_assignment_does_what_an_edit_of_the_text_does() {
             "[ground.one_sine]\namplitude_g = 0.5\nduration_s = 1"
         )
     );
-    // A text needs no quotation marks, a list and a range are as in the file.
+    // A string needs no quotation marks; a list and a range are written as in the file.
     assert_eq!(
         read(&["impact.model=mirrored"]).unwrap(),
         read(&["impact.model=\"mirrored\""]).unwrap()
@@ -136,7 +136,7 @@ fn a_wrong_assignment_is_refused_like_a_wrong_line() {
     );
 }
 
-/// Keys of the entries of a list, by their numbers, for `--set` and for the axes of a map.
+/// Keys of list entries, named by their numbers, for `--set` and for the axes of a map.
 #[test]
 fn entries_of_lists_are_counted_from_one() {
     let loads = |masses: [f64; 2]| {

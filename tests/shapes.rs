@@ -1,4 +1,4 @@
-//! Arches of other shapes, piers, fill and loads against circles, columns, closed forms and a published arch.
+//! Arches of other shapes, piers, fill and loads, compared with circles, columns, closed forms and a published arch.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -51,7 +51,7 @@ fn assert_same(one: &Row, two: &Row, tolerance: f64) {
     }
 }
 
-/// The ring in closed form is the judge of all shapes that become a semicircle.
+/// The closed form of the ring is the reference for all shapes that become a semicircle.
 #[test]
 fn shapes_with_a_rise_of_half_the_span_are_a_semicircle() {
     let ring = Arch::new(5.0, 0.15, 180.0).unwrap().ring();
@@ -72,7 +72,7 @@ fn shapes_with_a_rise_of_half_the_span_are_a_semicircle() {
     }
 }
 
-/// Areas between parallel curves: thickness times the length of the middle line, here as long sums of chords.
+/// Areas between parallel curves: thickness times the length of the middle line, which is computed here as a sum of many chords.
 #[test]
 fn masses_are_those_of_the_middle_line() {
     let middle = |points: &dyn Fn(f64) -> Vector2<f64>| {
@@ -126,7 +126,7 @@ fn an_equilateral_arch() {
     }
 }
 
-/// Fill up to a level weighs what lies between the extrados and that, by the area under a circle.
+/// Fill up to a level has the weight between the extrados and that level, from the area under a circle.
 #[test]
 fn fill_weighs_what_lies_between_extrados_and_level() {
     let outer = 5.375_f64;
@@ -148,7 +148,7 @@ fn fill_weighs_what_lies_between_extrados_and_level() {
         |x: f64| 0.5 * (x * (outer * outer - x * x).sqrt() + outer * outer * (x / outer).asin());
     let area = 2.0 * (3.0 * (outer - x) - (primitive(outer) - primitive(x)));
     assert!(((haunches.row().mass_kg() - bare) / (1500.0 * area) - 1.0).abs() < 1e-12);
-    // The crown carries none of it.
+    // The crown carries no fill.
     let crown = |masonry: &Masonry| masonry.row().blocks()[5].mass_kg;
     assert_eq!(crown(&haunches), crown(&alone(circular(11))));
     assert!(crown(&above) > crown(&haunches));
@@ -201,7 +201,7 @@ fn row(scenario: &Scenario) -> Row {
     }
 }
 
-/// The arch on buttresses of the scripts of HybriDFEM-4 (see docs/validation.md): a static programme of other origin gives
+/// The arch on buttresses of the scripts of HybriDFEM-4 (see docs/validation.md): an independent static programme gives
 /// 0.113086 g for sector voussoirs, 0.113071 g for straight-sided ones.
 #[test]
 fn an_arch_on_buttresses_given_as_blocks() {
@@ -231,8 +231,8 @@ fn an_arch_on_buttresses_given_as_blocks() {
     }
 }
 
-/// Its motion under a step pair of 0.4 g and 0.2 s with free hinges: a prototype of other origin reaches 0.0581 rad, with a
-/// spread of 1.4e-4 over its steps.
+/// Its motion under a step pair of 0.4 g and 0.2 s with free hinges: an independent prototype reaches 0.0581 rad, with a
+/// scatter of 1.4e-4 over its steps.
 #[test]
 fn the_arch_on_buttresses_rocks_as_elsewhere() {
     let folder = tempfile::tempdir().unwrap();
@@ -255,7 +255,7 @@ fn the_arch_on_buttresses_rocks_as_elsewhere() {
     assert!((peak - 0.0581).abs() < 3e-4, "{peak}");
 }
 
-/// The least amplitude of that step pair that overturns it: the prototype stands below 0.70 g and overturns from there on.
+/// The least amplitude of that step pair that overturns it: the prototype stands below 0.70 g and overturns above.
 #[test]
 fn the_arch_on_buttresses_overturns_from_where_it_does_elsewhere() {
     let folder = tempfile::tempdir().unwrap();
@@ -277,7 +277,7 @@ fn the_arch_on_buttresses_overturns_from_where_it_does_elsewhere() {
         let summary = model
             .simulate(scenario.ground_motion(), &request, None)
             .unwrap();
-        // What stands has its largest rotation, 0.197 rad, before 4 s, and sways by 0.05 rad at the end.
+        // If it stands, its largest rotation, 0.197 rad, is before 4 s, and it sways by 0.05 rad at the end.
         let expected = if overturns {
             Outcome::Overturned(Sway::Left)
         } else {
@@ -287,9 +287,9 @@ fn the_arch_on_buttresses_overturns_from_where_it_does_elsewhere() {
     }
 }
 
-/// Sector voussoirs about (0, 16.4), radii 10 and 11.5 m, from 30 to 150 degrees; buttresses 30 m high, 5 m wide,
-/// whose inner corner follows the intrados through its points at 0, 15 and 30 degrees. Curved sides of voussoirs as
-/// polygons of so many sides.
+/// Sector voussoirs about (0, 16.4), radii 10 and 11.5 m, from 30 to 150 degrees; buttresses 30 m high and 5 m wide,
+/// whose inner corner follows the intrados through its points at 0, 15 and 30 degrees. The curved sides of voussoirs are
+/// polygons with this many sides.
 fn buttresses(folder: &Path, sides: usize) {
     let point = |radius: f64, degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -308,7 +308,7 @@ fn buttresses(folder: &Path, sides: usize) {
     let mut outlines = "block,x,y\n".to_owned();
     let mut corner =
         |block: usize, (x, y): (f64, f64)| outlines += &format!("{block},{x:?},{y:?}\n");
-    // The buttress reaches inwards along the intrados from (10, 16.4), where that is vertical, to the springing.
+    // The buttress extends inwards along the intrados from (10, 16.4), where it is vertical, to the springing.
     let shoulder = |corner: &mut dyn FnMut(usize, (f64, f64)), block: usize, sign: f64| {
         let mirror = |(x, y): (f64, f64)| (sign * x, y);
         corner(block, mirror((10.0, 0.0)));
@@ -342,7 +342,7 @@ fn buttresses(folder: &Path, sides: usize) {
     fs::write(folder.join("outlines.csv"), outlines).unwrap();
 }
 
-/// Drums as blocks with one support are the column of drums.
+/// Drums given as blocks with one support equal the column of drums.
 #[test]
 fn a_stack_of_blocks_is_a_column() {
     let folder = tempfile::tempdir().unwrap();
@@ -363,7 +363,7 @@ fn a_stack_of_blocks_is_a_column() {
     assert!((acceleration_g(&stack, Sway::Right) - 0.2).abs() < 1e-12);
 }
 
-/// Piers under an arch: left and right may differ, and what stands on a wide pier is the arch alone.
+/// Piers under an arch: left and right may differ, and an arch on wide piers is like the arch alone.
 #[test]
 fn piers_lower_the_onset_and_wide_ones_do_not() {
     let pier = |width_m, blocks| Pier {
@@ -563,7 +563,7 @@ fn what_is_wrong_with_blocks_is_told_with_the_line_of_their_file() {
     assert!(missing.contains("has 0 joints"), "{missing}");
 }
 
-/// What the reader refuses of files, the constructor refuses of anyone.
+/// The constructor refuses the same faults as the reader of files.
 #[test]
 fn blocks_that_are_none_are_refused_by_their_type() {
     let joint = |x: f64| Joint {

@@ -29,7 +29,7 @@ fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64)
     Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).unwrap()
 }
 
-/// Another computation of the same bound, printed with five digits.
+/// An independent computation of the same bound, printed with five digits.
 #[test]
 fn the_associated_bound_is_the_published_one() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -59,7 +59,7 @@ fn the_associated_bound_is_the_published_one() {
     }
 }
 
-/// With much friction the limit analysis without sliding, another programme, gives the same.
+/// With much friction, the limit analysis without sliding, which is another programme, gives the same result.
 #[test]
 fn much_friction_is_no_sliding() {
     for (embrace_deg, thickness_ratio, voussoirs) in
@@ -77,7 +77,7 @@ fn much_friction_is_no_sliding() {
     }
 }
 
-/// A block on its base: it slides below the slope of its diagonal, and overturns above.
+/// A block on its base: if friction is less than the slope of its diagonal it slides, otherwise it overturns.
 #[test]
 fn a_block_slides_or_overturns() {
     let row = Row::tapered_stack(&[4.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
@@ -88,7 +88,7 @@ fn a_block_slides_or_overturns() {
     }
 }
 
-/// At the least coefficient the push that the row bears vanishes; a column stands with any.
+/// At the least coefficient the push that the row can bear vanishes; a column stands with any coefficient.
 #[test]
 fn below_the_least_coefficient_nothing_stands() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -125,7 +125,7 @@ fn slid(run: &Summary) -> &Sliding {
 }
 
 /// Newmark's block: under a rectangular pulse `a` of duration `t` it slips by `a t^2/2 (a/(mu g) - 1)` relative to the ground, and
-/// friction takes `mu m g` times that. Positions are those of a leapfrog whose kicks are exact; pulse and stop fall inside
+/// friction dissipates `mu m g` times that. Positions are those of a leapfrog whose kicks are exact; the pulse and the stop end inside
 /// steps, which leaves an error of the order of the square of the step.
 #[test]
 fn a_flat_block_is_that_of_newmark() {
@@ -151,8 +151,8 @@ fn a_flat_block_is_that_of_newmark() {
     }
 }
 
-/// Times and slips up the slope of a block that slides flat on a plane (Newmark), whose right side is the higher one. The ground
-/// accelerates horizontally. Steps of 0.01 ms, of the second order; the stop is found within a step.
+/// Times and slips, up the slope, of a block that slides flat on a plane whose right side is the higher one (Newmark). The ground
+/// accelerates horizontally. Steps are of 0.01 ms and of the second order; the stop is found within a step.
 fn newmark(
     slope_rad: f64,
     coefficient: f64,
@@ -196,7 +196,7 @@ fn half_sine(amplitude_g: f64, duration_s: f64) -> (GroundMotion, impl Fn(f64) -
     })
 }
 
-/// A block 2 m wide and 0.3 m high on a base of that width, which rises to the right by ten degrees.
+/// A block 2 m wide and 0.3 m high on a base of the same width, which rises to the right at ten degrees.
 fn block_on_a_slope() -> (Row, f64) {
     let slope_rad = 10.0_f64.to_radians();
     let (sin, cos) = slope_rad.sin_cos();
@@ -211,8 +211,8 @@ fn block_on_a_slope() -> (Row, f64) {
     (row, slope_rad)
 }
 
-/// What slips downhill and comes to rest has not overturned, however much lower it lies. Both computations are of the second order in
-/// their steps.
+/// A block that slips downhill and comes to rest has not overturned, however much lower it lies. Both computations are of the second
+/// order in their steps.
 #[test]
 fn a_block_that_slips_down_a_slope_comes_to_rest() {
     let (row, slope_rad) = block_on_a_slope();
@@ -224,11 +224,11 @@ fn a_block_that_slips_down_a_slope_comes_to_rest() {
     assert!(matches!(run.outcome, Outcome::Rest), "{:?}", run.outcome);
     let ours_m = slid(&run).offsets_m[0];
     assert!((ours_m / slip_m - 1.0).abs() < 1e-5, "{ours_m} {slip_m}");
-    // What it slid along its base does not count as moved.
+    // The sliding along its base does not count as overturning.
     assert!(ours_m.abs() > 0.6 * row.size_m());
 }
 
-/// It overturns only as it leaves the slope: the time told is when it begins to tip, near where its centre passes the edge.
+/// It overturns only when it leaves the slope: the reported time is when it begins to tip, near where its centre passes the edge.
 #[test]
 fn a_block_that_slips_off_its_base_overturns_there() {
     let (row, slope_rad) = block_on_a_slope();
@@ -238,7 +238,7 @@ fn a_block_that_slips_off_its_base_overturns_there() {
     let time_s = run.outcome_time_s;
     let path = newmark(slope_rad, 0.4, acceleration, time_s);
     let [_, slip_m] = path[path.len() - 1];
-    // Friction moves the pressure by as much as it leans over half the height.
+    // Friction shifts the pressure by its ratio times half the height.
     let margin_m = 0.1;
     assert!(
         slip_m < -1.0 + margin_m && slip_m > -2.0,
@@ -252,7 +252,7 @@ fn column(height_m: f64, width_m: f64, pedestal: bool) -> Row {
     model.row().clone()
 }
 
-/// On ground that goes on a flat block slips almost three times its width, on a pedestal it falls off. Half sines to both sides.
+/// On ground that continues, a flat block slips almost three times its width; on a pedestal it falls off. Half sines to both sides.
 #[test]
 fn nothing_slips_off_ground_that_goes_on() {
     for amplitude_g in [0.9, -0.9] {
@@ -274,19 +274,20 @@ fn nothing_slips_off_ground_that_goes_on() {
     }
 }
 
-/// Rotation (clockwise) and slip (to the right) of the right corner of a block from rest on a plane that goes on, up to when it comes
-/// down. With `x, y` the place of its centre from that corner, per unit mass, `x'' = y f'' - x f'^2` and `y'' = -x f'' - y f'^2`; so
-/// `N = g - x f'' - y f'^2`, `X'' + y f'' - x f'^2 = T + A` and `I f'' = x N - y T`, with the slip `X`. Classical Runge-Kutta steps.
+/// Rotation (clockwise) and slip (to the right) of the right corner of a block, from rest on a plane that continues, until it comes
+/// down. Let `x, y` be the position of its centre relative to that corner. Per unit mass, `x'' = y f'' - x f'^2` and `y'' = -x f'' -
+/// y f'^2`; so `N = g - x f'' - y f'^2`, `X'' + y f'' - x f'^2 = T + A` and `I f'' = x N - y T`, with the slip `X`. Classical
+/// Runge-Kutta steps.
 fn rocking_on_a_plane(
     [width_m, height_m]: [f64; 2],
     coefficient: f64,
-    // Push and gravity, less the ground's vertical acceleration.
+    // Push and gravity, minus the ground's vertical acceleration.
     loads_m_s2: impl Fn(f64) -> [f64; 2],
     end_s: f64,
 ) -> Vec<[f64; 3]> {
     let inertia = (width_m * width_m + height_m * height_m) / 12.0;
     let (b, y0) = (0.5 * width_m, 0.5 * height_m);
-    // Accelerations of slip and rotation, and T/N, with friction in a given ratio or pinned.
+    // Accelerations of slip and rotation, and T/N, with a given friction ratio or pinned.
     let motion = |state: [f64; 4], [push, gravity]: [f64; 2], friction: Option<f64>| {
         let w = state[3];
         let (sin, cos) = state[2].sin_cos();
@@ -339,7 +340,7 @@ fn rocking_on_a_plane(
     path
 }
 
-/// What the samples say of a block, and that its hinge is at its own corner.
+/// The samples of a block, with a check that its hinge is at its own corner.
 struct Block {
     samples: Vec<[f64; 3]>,
     hinges: usize,
@@ -368,8 +369,8 @@ impl Recorder for Block {
     }
 }
 
-/// On ground that goes on a block that has slid rocks about its own corner. Under the same ground the edge of a pedestal would push it
-/// over three times as far. Before it comes down, against its equations of motion: ours are of the first order where the mode changes.
+/// On ground that continues, a block that has slid rocks about its own corner. On a pedestal, the edge would push it over three times
+/// as far on the same ground. Until it comes down it is compared with its equations of motion; ours are of first order at changes of mode.
 #[test]
 fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
     let (sizes_m, coefficient, duration_s) = ([1.0, 2.0], 0.52, 0.15);
@@ -432,7 +433,7 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
     );
 }
 
-/// To either side the same, to rounding, until impacts magnify it.
+/// The motion is the same to either side, to rounding, until impacts amplify the difference.
 #[test]
 fn a_block_on_the_ground_moves_to_either_side_alike() {
     let row = column(2.0, 1.0, false);
@@ -449,7 +450,7 @@ fn a_block_on_the_ground_moves_to_either_side_alike() {
     assert_eq!(sides, [Sway::Right, Sway::Left]);
 }
 
-/// Impacts at 2.5 s, which depend on the step, end the slide: with steps of 0.02 to 0.16 ms it rests at 2.66 to 2.49 s.
+/// Impacts at 2.5 s, which depend on the step, end the slide: with steps of 0.02 to 0.16 ms it comes to rest at 2.66 to 2.49 s.
 #[test]
 fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
     let dimensions = Dimensions {
@@ -479,7 +480,7 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
         assert_eq!(run.outcome, Outcome::Rest);
         let time_s = run.outcome_time_s;
         assert!((time_s - 2.53).abs() < 0.1, "{time_s}");
-        // It stands lower than what once counted as overturned.
+        // It lies lower than the limit that once counted as overturned.
         let slips_m = &slid(&run).offsets_m;
         let most_m = slips_m
             .iter()
@@ -488,8 +489,8 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
     }
 }
 
-/// With friction that holds it, a block passes its unstable equilibrium when it does without sliding; it is
-/// followed until its centre, on an arc whose radius is the size, has moved by 0.6 of that.
+/// With enough friction to hold it, a block passes its unstable equilibrium at the same time as without sliding. It is
+/// followed until its centre, on an arc whose radius is the size, has moved by 0.6 of the size.
 #[test]
 fn the_time_of_overturning_is_that_of_the_unstable_equilibrium() {
     let row = column(4.0, 0.8, false);
@@ -511,7 +512,7 @@ fn the_time_of_overturning_is_that_of_the_unstable_equilibrium() {
     assert!(with.end_s > times_s[1] + 0.1);
 }
 
-/// Level faces that nothing reaches below stand on ground that goes on; columns and piers do, unless they stand on a pedestal.
+/// The lowest level faces stand on ground that continues; so do columns and piers, unless they stand on a pedestal.
 #[test]
 fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
     let joint = |[xi, yi, xe, ye]: [f64; 4]| Joint {
@@ -552,7 +553,7 @@ fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
         [-0.4, 2.0, 0.4, 2.0],
     ];
     assert_eq!(goes_on(Supports::Left, &stack), [true, false]);
-    // A mirror image has its supports on the other sides.
+    // In a mirror image the supports are exchanged.
     let row = arch(157.5, 0.15, 7, 10.0);
     assert_eq!(row.supports_go_on(), [false; 2]);
     let mirrored = row
@@ -562,7 +563,7 @@ fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
     assert_eq!(mirrored.supports_go_on(), [false, true]);
 }
 
-/// The shake has to exceed the bound of statics to start a motion, by any amount.
+/// The ground acceleration must exceed the static bound to start a motion, by any amount.
 #[test]
 fn motion_starts_at_the_associated_bound() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -586,8 +587,8 @@ fn motion_starts_at_the_associated_bound() {
     }
 }
 
-/// The least pulse that overturns, by another computation with fixed steps: printed with four digits, found with steps of 0.1 to
-/// 0.2 ms. Sliding may raise it.
+/// The least pulse that overturns, by an independent computation with fixed steps of 0.1 to 0.2 ms, printed with four digits.
+/// Sliding may raise it.
 #[test]
 fn the_least_pulse_that_overturns_is_the_published_one() {
     let (seven, fourteen) = (arch(157.5, 0.15, 7, 10.0), arch(157.5, 0.15, 14, 10.0));
@@ -635,7 +636,7 @@ fn the_least_step_pair_that_fells_a_column_of_drums_is_the_published_one() {
     }
 }
 
-/// With much friction the first half cycle is that of joints that do not slip.
+/// With much friction the first half cycle is that with joints that do not slip.
 #[test]
 fn the_motion_with_much_friction_is_that_without_sliding() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -652,9 +653,9 @@ fn the_motion_with_much_friction_is_that_without_sliding() {
 }
 
 /// Rotation (clockwise) and slip (to the right) of a block from rest that turns about the right corner of its base and slips over
-/// it, by the classical Runge-Kutta method on its two equations of motion. With `x, y` the place of its centre from that
-/// corner along its face and normal to it, per unit mass: `x'' + y f'' - x f'^2 = T + A cos f + g sin f`, `-x f'' - 2 x' f' - y f'^2 = N
-/// + A sin f - g cos f` and `I f'' = x N - y T`. It sticks where the slip comes to a stop, while friction suffices.
+/// it, by the classical Runge-Kutta method for its two equations of motion. Let `x, y` be the position of its centre relative to that
+/// corner, along its face and normal to it. Per unit mass: `x'' + y f'' - x f'^2 = T + A cos f + g sin f`, `-x f'' - 2 x' f' - y f'^2 =
+/// N + A sin f - g cos f` and `I f'' = x N - y T`. It sticks when the slip stops, as long as friction suffices.
 fn sliding_toe(
     [width_m, height_m]: [f64; 2],
     coefficient: f64,
@@ -663,12 +664,12 @@ fn sliding_toe(
 ) -> Vec<[f64; 2]> {
     let inertia = (width_m * width_m + height_m * height_m) / 12.0;
     let y = 0.5 * height_m;
-    // Accelerations of slip and rotation, and T/N, with friction in a given ratio or pinned.
+    // Accelerations of slip and rotation, and T/N, with a given friction ratio or pinned.
     let motion = |state: [f64; 4], push: f64, friction: Option<f64>| {
         let (x, slip, w) = (state[0] - 0.5 * width_m, state[1], state[3]);
         let (sin, cos) = state[2].sin_cos();
         let (down, along) = (GRAVITY * cos - push * sin, GRAVITY * sin + push * cos);
-        // Friction acts at the mean angle of the faces, the pressure normal to that of the block.
+        // Friction acts at the mean angle of the faces, the pressure normal to the face of the block.
         let (half_sin, half_cos) = (0.5 * state[2]).sin_cos();
         if let Some(ratio) = friction {
             let ratio = ratio * half_cos * half_cos / (1.0 + ratio * half_cos * half_sin);
@@ -713,7 +714,7 @@ fn sliding_toe(
             let d = slope(along(state, c, h));
             let next =
                 [0, 1, 2, 3].map(|i| state[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
-            // The toe stops when its velocity takes the sign of the friction.
+            // The toe stops when its velocity gets the sign of the friction.
             let stops =
                 friction.is_some_and(|ratio| next[1] * ratio > 0.0 && state[1] * ratio <= 0.0);
             state = next;
@@ -737,8 +738,8 @@ impl Recorder for Course {
     }
 }
 
-/// A block that slips on its toe as it rises, sticks, and rocks on. Our steps of 0.05 ms are of the first order where the mode
-/// changes; the line of friction is a convention, which is worth half the rotation times the slip.
+/// A block that slips on its toe as it rises, sticks, and continues to rock. Our steps of 0.05 ms are of first order at changes of
+/// mode; the line of friction is a convention, which matters by half the rotation times the slip.
 #[test]
 fn a_block_that_slides_and_rocks_follows_its_equations() {
     let row = Row::tapered_stack(&[4.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
@@ -783,7 +784,7 @@ fn a_block_that_slides_and_rocks_follows_its_equations() {
     }
 }
 
-/// To the left everything is the mirror image; rounding differs, and impacts magnify it.
+/// The motion to the left is the mirror image; rounding differs, and impacts amplify it.
 #[test]
 fn mirror_images_move_alike() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -812,7 +813,7 @@ fn mirror_images_move_alike() {
     }
 }
 
-/// Energy that the first mechanism has to gain to overturn: of a stack, turning as one about the nearer edge of its base.
+/// Energy that the first mechanism must gain to overturn; for a stack, turning as one about the nearer edge of its base.
 fn barrier_j(row: &Row) -> Option<f64> {
     if row.supports() == Supports::Both {
         return FreeHinges::new(row.clone()).unwrap().barrier_j(GRAVITY);
@@ -827,13 +828,13 @@ fn barrier_j(row: &Row) -> Option<f64> {
     Some(row.mass_kg() * GRAVITY * rises_m[0].min(rises_m[1]))
 }
 
-/// Over weight times size: what rows of this kind have that start as four links. Those that do not are thicker.
+/// Relative to weight times size: the barrier of similar rows that start as four links. The others are thicker.
 const USUAL_BARRIER: f64 = 0.03;
-/// Rows that hardly stand fall with energies far above their barriers.
+/// Rows that hardly stand fall with energies far larger than their barriers.
 const LEAST_BARRIER: f64 = 1e-3;
 
-/// Any structure under any ground, with any friction: nothing fails, and no energy is created beyond a millionth of the barrier.
-/// `ARCHROCK_TORTURE` sets another number of histories than a hundred, and makes them longer.
+/// Any structure on any ground, with any friction: no history fails, and none creates more energy than a millionth of the barrier.
+/// `ARCHROCK_TORTURE` sets the number of histories, by default a hundred, and makes them longer.
 #[test]
 fn random_histories_create_no_energy() {
     let given = std::env::var("ARCHROCK_TORTURE")
@@ -865,14 +866,14 @@ fn random_histories_create_no_energy() {
     }
     assert!(failures.is_empty(), "{failures:?}");
     let found = format!("{worst:e} created, {unconverged} of {steps} steps, {slipped} slip");
-    // Longer histories of longer rows have impacts that follow each other from step to step.
+    // Longer histories of longer rows have impacts in consecutive steps.
     let bound = if given.is_some() { 1e-5 } else { 1e-6 };
     assert!(slipped > 10 && worst < bound, "{found}");
     assert!(unconverged * 100_000 <= steps, "{found}");
 }
 
-/// Long arches under fill much heavier than they are, near the least friction with which they stand: bounds of friction that follow the
-/// impulses swing there, by up to a fifth of the largest one. Coulomb's law holds at every step nevertheless.
+/// Long arches under fill much heavier than they are, near the least friction with which they stand: there, friction bounds that
+/// follow the impulses oscillate, by up to a fifth of the largest one. Coulomb's law still holds at every step.
 #[test]
 fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
     let dimensions = |rise_m, thickness_m, voussoirs| Dimensions {
@@ -947,7 +948,7 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
     }
 }
 
-/// Velocities of the blocks after a step by Coulomb's law as one linear complementarity problem of dense matrices: two unknowns for
+/// Velocities of the blocks after a step by Coulomb's law, as one linear complementarity problem with dense matrices: two unknowns for
 /// the ends of a joint, two for friction to either side, and a speed of slip.
 fn judged(
     row: &Row,
@@ -997,7 +998,7 @@ fn judged(
             compliance[(at, at)] += drawn;
         }
     }
-    // Impulses are combinations of the unknowns, and are scaled so that the matrix has a unit diagonal.
+    // Impulses are combinations of the unknowns, scaled so that the matrix has a unit diagonal.
     let root = |at: usize| compliance[(at, at)].sqrt();
     let mut of_unknowns = DMatrix::zeros(3 * joints, 5 * joints);
     for joint in 0..joints {
@@ -1028,7 +1029,7 @@ fn judged(
         .collect()
 }
 
-/// Five hundred steps of an arch that is shaken so that joints open, slip, stick and land: Lemke's method finds the same velocities.
+/// Five hundred steps of an arch, shaken so that joints open, slip, stick and land: Lemke's method finds the same velocities.
 #[test]
 fn every_step_solves_the_complementarity_problem() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -1057,7 +1058,7 @@ fn every_step_solves_the_complementarity_problem() {
             .zip(&stuck)
             .map(|(contact, stuck)| (contact.coordinates_m - Vector3::new(0.0, 0.0, *stuck)) / step)
             .collect();
-        // Two pushes to and fro, with much that is lifted and dropped.
+        // Pushes to and fro, in which much is lifted and dropped.
         let push = if (count / 120) % 2 == 0 { 0.9 } else { -0.9 };
         let lift = if (count / 70) % 3 == 2 { 1.2 } else { 0.0 };
         let kick = Vector3::new(push, lift - 1.0, 0.0) * (GRAVITY * step);

@@ -14,8 +14,8 @@ fn arch(keys: &str) -> Result<archrock::Arch, String> {
     }
 }
 
-/// Distance from springing to springing and height of the crown above them, along the line that is so many thicknesses
-/// outside the middle one.
+/// Distance between the springings and height of the crown above them, along the line that lies this many thicknesses
+/// outside the middle line.
 fn span_and_rise_m(arch: &archrock::Arch, outwards: f64) -> (f64, f64) {
     let radius_m = arch.mean_radius_m() * (1.0 + outwards * arch.thickness_ratio());
     let half = 0.5 * arch.embrace_deg().to_radians();
@@ -44,7 +44,7 @@ fn the_arch_has_the_span_and_the_rise_that_were_given() {
             }
         }
     }
-    // Half a circle, to the last bit.
+    // A semicircle, exact to the last bit.
     let semicircle = arch("span_m = 6\nmeasured_at = 'mean'\nrise_m = 3\nthickness_ratio = 0.2");
     let by_radius = arch("mean_radius_m = 3\nembrace_deg = 180\nthickness_ratio = 0.2");
     assert_eq!(semicircle, by_radius);

@@ -1,4 +1,4 @@
-//! Overturning spectra against closed forms, similarity, and histories of their own; and the command.
+//! Overturning spectra compared with closed forms, similarity, and single histories; and the command.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -24,8 +24,8 @@ fn spectrum(text: &str) -> Vec<PointRow> {
     (0..points.count()).map(|index| points.row(index)).collect()
 }
 
-/// Least accelerations without impact of a column of slenderness `atan(alpha)` under a pulse; one acceleration
-/// at which nothing moves is tried.
+/// Least accelerations without impact for a column of slenderness `atan(alpha)` under a pulse. The only acceleration
+/// tried moves nothing.
 fn without_impact(kind: &str, alpha: f64, p_t: &[f64]) -> Vec<f64> {
     let text = format!(
         "[column]\nheight_m = 2.0\nwidth_m = {}\n{}[spectrum]\np_t = {p_t:?}\n\
@@ -39,14 +39,14 @@ fn without_impact(kind: &str, alpha: f64, p_t: &[f64]) -> Vec<f64> {
     given
         .map(|(point, p_t)| {
             assert!(point.structure == StructureKind::Column && point.p_t == *p_t);
-            // It is beyond what was tried.
+            // The least is larger than the one tried.
             assert_eq!(point.minimum, None);
             point.no_impact_over_incipient.unwrap()
         })
         .collect()
 }
 
-/// Slender: `cosh(p t) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. A finite slenderness changes that by
+/// Slender: `cosh(p t) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. Finite slenderness changes that by
 /// a small multiple of its square.
 #[test]
 fn rectangular_pulses_and_slender_columns_are_housners() {
@@ -64,7 +64,7 @@ fn rectangular_pulses_and_slender_columns_are_housners() {
     let (coarse, fine) = (miss(0.02), miss(0.01));
     for (index, p_t) in p_t.into_iter().enumerate() {
         assert!(fine[index].abs() < 1e-4, "{p_t}: {}", fine[index]);
-        // The longest pulse needs hardly more than what starts the column, and the miss is that of rounding.
+        // The longest pulse needs hardly more than the onset of the column, so the error is that of rounding.
         if p_t < 6.0 {
             let ratio = coarse[index] / fine[index];
             assert!((3.9..4.1).contains(&ratio), "{p_t}: {ratio}");
@@ -72,13 +72,13 @@ fn rectangular_pulses_and_slender_columns_are_housners() {
     }
 }
 
-/// The impulse alone counts: `x p t -> 1`. The closed form goes on `1 + p t / 2 - (p t)^2 (1/12 - 1/8)...`.
+/// Only the impulse matters: `x p t -> 1`. The closed form continues `1 + p t / 2 - (p t)^2 (1/12 - 1/8)...`.
 #[test]
 fn short_pulses_overturn_by_their_impulse() {
     let p_t = [1e-3, 3e-3, 0.01, 0.03];
     for (x, p_t) in without_impact("rectangular", 1e-3, &p_t).iter().zip(p_t) {
         let miss = x * p_t - 1.0 - 0.5 * p_t;
-        // The last term is what a slenderness of a thousandth does.
+        // The last term is the effect of a slenderness of a thousandth.
         assert!(miss.abs() < 0.1 * p_t * p_t + 1e-6, "{p_t}: {miss}");
     }
 }
@@ -93,7 +93,7 @@ fn half_sines_and_slender_columns_are_the_linear_solution() {
     let simulated = without_impact("half_sine", 0.01, &ascending);
     for (simulated, b) in simulated.iter().rev().zip(b) {
         let excess = |x: f64| (x * x - 1.0).sqrt() + x * (-(PI - (1.0 / x).asin()) / b).exp() - b;
-        // Small misses of x follow from the residual by Newton's rule.
+        // Small errors of x follow from the residual by Newton's rule.
         let slope = (excess(simulated + 1e-6) - excess(simulated - 1e-6)) / 2e-6;
         let miss = excess(*simulated) / slope / simulated;
         assert!(miss.abs() < 1e-4, "{b}: {miss}");
@@ -109,8 +109,8 @@ fn small(structure: &str, kind: &str, more: &str) -> String {
     )
 }
 
-/// An arch four times as large, and one on the moon. What is bisected agrees to the integration's tolerance,
-/// what is sampled is the same.
+/// An arch four times as large, and one on the moon. Values found by bisection agree to the integration's tolerance,
+/// sampled values are the same.
 #[test]
 fn similar_structures_have_the_same_spectrum() {
     let moon = "[simulation]\ngravity_m_s2 = 1.62\n";
@@ -140,7 +140,7 @@ fn similar_structures_have_the_same_spectrum() {
     }
 }
 
-/// `A_L` by construction to rounding, `p` to what the differences of second order of the equivalent block know.
+/// `A_L` agrees to rounding by construction, `p` to the accuracy of the second differences of the equivalent block.
 #[test]
 fn the_equivalent_column_has_the_a_l_and_the_p_of_the_arch() {
     let thin =
@@ -182,7 +182,7 @@ fn incipient_g(model: &dyn MechanismModel) -> f64 {
     model.incipient_acceleration_g(Sway::Right).unwrap()
 }
 
-/// How a pulse to the left ends, in a history of its own.
+/// How a single history ends under a pulse to the left.
 fn outcome(
     model: &dyn MechanismModel,
     kind: Pulse,
@@ -192,7 +192,7 @@ fn outcome(
     let amplitude_m_s2 = -9.81 * over_incipient * incipient_g(model);
     let ground = GroundMotion::pulse(kind, amplitude_m_s2, duration_s, 0.0).unwrap();
     let request = Request {
-        // Longer than any of these goes on.
+        // Longer than any of these histories takes.
         end_s: 1e3,
         ..Request::default()
     };
@@ -200,8 +200,8 @@ fn outcome(
     (summary.outcome, summary.impacts)
 }
 
-/// Every amplitude tried again, to the end of its history: nothing below the least overturns, and the least does
-/// as it says. Impacts help somewhere, and above their least there are islands that are safe.
+/// Every amplitude is tried again, in its full history: none below the least overturns, and the least does as
+/// reported. Somewhere impacts help to overturn, and above that least there are safe islands.
 #[test]
 fn the_least_is_the_least_of_what_overturns() {
     let (mut after_impacts, mut islands, mut still_rocking) = (0, 0, 0);
@@ -243,11 +243,11 @@ fn the_least_is_the_least_of_what_overturns() {
         after_impacts >= 4 && islands > 0,
         "{after_impacts} {islands}"
     );
-    // The column rocks on for long, and what was cut off is among what is seen to the end here.
+    // The column rocks for a long time; histories that the spectrum cut off are followed to the end here.
     assert!(still_rocking > 0);
 }
 
-/// Just above the edge the first fall overturns, just below it does not: in histories of their own.
+/// Just above the edge the first fall overturns, just below it does not, in single histories.
 #[test]
 fn the_edge_without_impact_is_an_edge() {
     let scenario = parsed(&small(ARCH, "one_sine", ""));
@@ -266,8 +266,8 @@ fn the_edge_without_impact_is_an_edge() {
     }
 }
 
-/// Step pairs that overturn an arch of seven voussoirs without impact: amplitudes in g by an independent
-/// integration, printed to three digits.
+/// Step pairs that overturn an arch of seven voussoirs without impact: amplitudes in g from an independent
+/// integration, printed with three digits.
 #[test]
 fn step_pairs_overturn_an_arch_as_computed_elsewhere() {
     let printed = [(0.2, 3.066), (0.5, 0.820), (1.0, 0.465)];
@@ -304,7 +304,7 @@ fn the_sign_of_the_amplitude_is_the_side() {
     }
 }
 
-/// When the pulse begins, and the time of `[simulation]`, do not matter.
+/// The start of the pulse and the duration in `[simulation]` do not matter.
 #[test]
 fn start_and_duration_do_not_count() {
     let text = small(ARCH, "one_cosine", "");
@@ -315,7 +315,7 @@ fn start_and_duration_do_not_count() {
     assert_eq!(spectrum(&short), expected);
 }
 
-/// What a scenario cannot have is not tried.
+/// Accelerations that a scenario cannot have are not tried.
 #[test]
 fn accelerations_beyond_the_largest_of_a_scenario() {
     let wide = "[spectrum]\np_t = [1e-3, 1e3]\nacceleration_over_incipient = [1.0, 1e6]\n";
@@ -329,10 +329,10 @@ fn accelerations_beyond_the_largest_of_a_scenario() {
     }
     let points = spectrum(&format!("{ARCH}{}{wide}", pulse("half_sine")));
     assert_eq!(points.len(), 4);
-    // A thousandth takes pi/2 times a thousand A_L, which is 227 g.
+    // The pulse of a thousandth takes pi/2 times a thousand A_L, which is 227 g.
     assert!(points[0].no_impact_over_incipient.unwrap() > 1e3);
     assert_eq!(points[0].minimum, None);
-    // The longest takes hardly more than A_L, yet more than the only one that can be tried.
+    // The longest takes hardly more than A_L, but still more than the only one that can be tried.
     assert_eq!(points[1].minimum, None);
     assert!((points[1].no_impact_over_incipient.unwrap() - 1.0).abs() < 1e-2);
 }
@@ -389,7 +389,7 @@ fn errors_have_a_place_and_a_remedy() {
     assert!(long.to_string().ends_with("from 1e-6 to 1e6"), "{long}");
 }
 
-/// Values that are missing leave gaps, a single size gets room, and nothing is not a number.
+/// Missing values leave gaps, a single size gets a margin, and every number is finite.
 #[test]
 fn pictures_of_much_and_of_little() {
     let picture = |text: &str| {
@@ -472,7 +472,7 @@ fn parts_threads_and_interruptions_change_nothing() {
         &["--no-impact is for maps with amplitude_g as an axis"],
     );
 
-    // As if it had been killed within its third row.
+    // As if it had been killed while writing its third row.
     fs::create_dir(folder.join("killed")).unwrap();
     let mut text = String::new();
     for part in [1, 2] {

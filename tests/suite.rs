@@ -1,4 +1,4 @@
-//! Suites of records: rows against runs of the same scenario, parts against the whole, and what is said where
+//! Suites of records: rows compared with runs of the same scenario, parts with the whole, and the messages if
 //! there is no curve.
 
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ const FILES: [&str; 5] = [
     "suite.csv",
 ];
 
-/// A folder with the first records of the repository, one of them as a table in cm/s2 as well.
+/// A folder with the first records of the repository, one of them also as a table in cm/s2.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let records = folder.path().join("records");
@@ -67,7 +67,7 @@ fn rows(folder: &Path) -> Vec<Row> {
     table.rows
 }
 
-/// Two records and a table, either scaled or brought to peaks.
+/// Two records and a table, either multiplied by factors or scaled to peaks.
 fn mixed(levels: &str) -> String {
     format!(
         "{COLUMN}[suite]\nrecords = ['records/wave-[12].at2', 'north, \"old\".csv']\n\
@@ -105,7 +105,7 @@ fn rows_are_what_runs_of_the_same_scenario_give() {
                 &row[5]
             );
             assert_eq!(run["impacts"].to_string(), row[6]);
-            // A peak in g is scaled to by another order of multiplications.
+            // Scaling to a peak in g multiplies in another order.
             let time_s = run["outcome_time_s"].as_f64().unwrap();
             assert!((time_s - row.number(8)).abs() < 1e-6, "{row:?} {time_s}");
             let peak_g = samples_of(folder, file)
@@ -153,7 +153,7 @@ fn a_mirrored_record_does_the_same_to_the_other_side() {
         for record in both.chunks(8) {
             for (row, mirrored) in record[..4].iter().zip(&record[4..]) {
                 assert_eq!([&row["sign"], &mirrored["sign"]], ["1", "-1"]);
-                // To the last bit: no step knows left from right.
+                // They agree to the last bit: no step distinguishes left from right.
                 for column in [0, 2, 3, 4, 6, 7, 8, 9, 10] {
                     assert_eq!(row[column], mirrored[column]);
                 }
@@ -169,7 +169,7 @@ fn a_mirrored_record_does_the_same_to_the_other_side() {
         done(folder, &["suite", "s.toml", "--out", "one", "--quiet"]);
         let one: Vec<_> = both.iter().filter(|row| row[1] == "1").cloned().collect();
         assert_eq!(rows(&folder.join("one")), one);
-        // Mirror images are no further evidence.
+        // Mirror images add no evidence.
         let levels = |out: &str| read(&folder.join(out).join("fragility.csv"));
         assert_eq!(levels("both"), levels("one"));
         let fragility = |out: &str| {
@@ -212,7 +212,7 @@ fn the_curve_is_that_of_the_rows() {
         log_likelihood += overturned * p.ln() + (all - overturned) * (1.0 - p).ln();
     }
     let expected = fragility["log_likelihood"].as_f64().unwrap();
-    // The probabilities near one keep fewer digits of their complement.
+    // Probabilities near one keep fewer digits of their complements.
     assert!(
         (log_likelihood / expected - 1.0).abs() < 1e-9,
         "{log_likelihood} {expected}"
@@ -255,7 +255,7 @@ fn the_records_of_the_repository_are_what_they_are_said_to_be() {
         let record = samples(&scenarios().join(format!("records/wave-{k}.at2")));
         let peak = record.iter().map(|s| wave(s.0).abs()).fold(0.0, f64::max);
         for (time_s, acceleration_g) in record {
-            // Seven digits are written.
+            // Samples are written with seven digits.
             assert!((acceleration_g - 0.3 / peak * wave(time_s)).abs() < 1e-7);
         }
     }
@@ -277,7 +277,7 @@ fn patterns_and_lists_are_the_same_suite() {
         let text = format!("{COLUMN}[suite]\nrecords = {records}\nscales = [1.0, 3.0]\n");
         write(folder, "s.toml", &text);
         let out = format!("o{index}");
-        // From another folder: files are relative to the scenario.
+        // Called from another folder: files are relative to the scenario.
         fs::create_dir_all(folder.join("elsewhere")).unwrap();
         let arguments = [
             "suite",
@@ -356,7 +356,7 @@ fn parts_make_the_same_files_where_the_records_are_not() {
             ],
         );
     }
-    // What a killed program leaves: the last line is torn.
+    // A killed program leaves a torn last line.
     let part = folder.join("parts/suite-2-of-3.part");
     let complete = read(&part);
     fs::write(&part, &complete[..complete.len() - 30]).unwrap();
@@ -411,7 +411,7 @@ fn other_records_are_not_resumed_with() {
         "suite", "s.toml", "--out", "o", "--shard", "1/2", "--resume", "--quiet",
     ];
     done(folder, &arguments);
-    // What is said of a record is no part of it.
+    // The title of a record is not part of its samples.
     let record = folder.join("records/wave-2.at2");
     let original = read(&record);
     fs::write(
@@ -502,7 +502,7 @@ fn without_a_curve_the_reason_is_said() {
     }
 }
 
-/// Results of rows given by record, level and outcome, if there is one.
+/// Results from rows given by record, level and outcome, if there is one.
 fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
     let rows = rows.iter().map(|(record, scale, outcome)| CaseRow {
         record: (*record).to_owned(),
@@ -523,8 +523,8 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
     SuiteFragility::new(Measure::Scale, rows.collect())
 }
 
-/// Cases of records and levels that overturn (`x`), survive (`.`) or are uncertain (`~`, whose own history overturned), as many
-/// levels as letters; of a record with a minus sign mirrored.
+/// Cases of records that overturn (`x`), survive (`.`) or are uncertain (`~`, whose own history overturned), one letter per
+/// level; a minus sign before a record means that it is mirrored.
 fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
     let case = |(record, letters): &(&str, &str)| {
         let mirrored = record.starts_with('-');
@@ -566,7 +566,7 @@ fn free_heading() -> Heading {
     Heading::of_resolved(scenario).unwrap()
 }
 
-/// With uncertain cases as survived and as overturned the results are those of suites in which they did.
+/// With uncertain cases counted as survived or as overturned, the results are those of suites in which they did so.
 #[test]
 fn uncertain_cases_are_taken_both_ways() {
     let with = |letter: &str| {
@@ -631,7 +631,7 @@ fn uncertain_cases_are_taken_both_ways() {
     assert_eq!(json["uncertain_cases"].as_array().unwrap().len(), 3);
     assert_eq!(json["uncertain_cases"][0]["case"], "a, scale 3.0");
     assert_eq!(json["longest_step_s"]["max"], 1e-4);
-    // Neither side nor impacts before overturning.
+    // Neither the side nor impacts before overturning are given.
     assert_eq!(told["suite.csv"].matches(",uncertain,,0,,1.0,").count(), 3);
 
     let named =
@@ -649,7 +649,7 @@ fn uncertain_cases_are_taken_both_ways() {
     }
 }
 
-/// What a mirrored record did to the last bit is no further evidence; anything else is, of the same record.
+/// A mirrored record whose results are exactly mirrored adds no evidence; otherwise it does, as the same record.
 #[test]
 fn mirrored_records_count_where_they_are_not_mirror_images() {
     let own = [("a", "..xx"), ("b", ".x.x"), ("c", ".xxx")];
@@ -677,8 +677,8 @@ fn mirrored_records_count_where_they_are_not_mirror_images() {
     let other = SuiteFragility::new(Measure::Scale, levels_of(&other));
     assert!(other.mirrored_count);
     assert_eq!((other.record_count(), other.levels[0].cases), (3, 6));
-    // Each sign is a case, and both are of one record, which the errors by record take for dependent: against the same cases
-    // of six records they are larger.
+    // Each sign is a case; both belong to one record, which the errors by record treat as dependent. So these errors
+    // are larger than for the same cases of six records.
     let six = [
         own[0],
         ("d", "..x."),
@@ -751,7 +751,7 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         json["records_that_always_overturn"],
         serde_json::json!(["a, b.at2"])
     );
-    // Of d nothing is known.
+    // Nothing is known of d.
     assert_eq!(
         json["records_that_never_overturn"],
         serde_json::json!(["c.at2"])
@@ -800,7 +800,7 @@ fn those_still_rocking_are_said() {
     );
 }
 
-/// Asserts that a suite has these faults and no other: line and column within the file, and words.
+/// Asserts that a suite has these faults and no others: line and column within the file, and words.
 #[track_caller]
 fn assert_faults(folder: &Path, suite: &str, expected: &[(usize, usize, &[&str])]) {
     write(folder, "s.toml", &format!("{COLUMN}[suite]\n{suite}\n"));
@@ -887,7 +887,7 @@ fn faults_of_the_table_have_places() {
             (1, 66, &["is not a valid file pattern"]),
         ],
     );
-    // Keys of tables go with tables, and with them only.
+    // Keys of tables are for tables only.
     assert_faults(
         folder,
         &format!("{all}\nscales = [1]\ntime_column = 1"),
@@ -916,7 +916,7 @@ fn faults_of_the_table_have_places() {
 fn a_suite_has_a_largest_size() {
     let folder = folder();
     let folder = folder.path();
-    // What is too much is not even read.
+    // If there are too many records, none is read.
     for index in 0..51 {
         write(folder, &format!("{index}.at2"), "no record");
     }
@@ -949,7 +949,7 @@ fn faults_of_records_name_the_file() {
     ] {
         write(folder, name, &text);
     }
-    // All of them at once, each at the pattern that names it.
+    // All faults are reported together, each at the pattern that names the file.
     assert_faults(
         folder,
         "records = ['records/*.at2', '*.at2']\nscales = [1]",

@@ -1,5 +1,5 @@
-//! Thresholds: edges against closed forms and published numbers, bands and gaps against plain histories, and the
-//! command as a user meets it.
+//! Thresholds: edges compared with closed forms and published numbers, bands and gaps with plain histories, and the
+//! command as users see it.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -51,7 +51,7 @@ fn factors(from: f64, to: f64, stride: f64) -> Factors {
 }
 
 /// Slender column, rectangular pulse `(a, t)`: `cosh(p t) = 1 + 1 / (2 x (x - 1))`, `x = a / (g alpha)`, solved
-/// for `x`. A finite slenderness changes that by a small multiple of its square, 1e-4 here.
+/// for `x`. Finite slenderness changes that by a small multiple of its square, 1e-4 here.
 #[test]
 fn rectangular_pulses_overturn_slender_columns_from_housners_amplitude_on() {
     let alpha: f64 = 0.01;
@@ -75,7 +75,7 @@ fn rectangular_pulses_overturn_slender_columns_from_housners_amplitude_on() {
 }
 
 /// Amplitudes in g from which a step pair overturns within the first half cycle, by an independent integration.
-/// After impacts there may be bands below.
+/// There may be lower bands, which overturn after impacts.
 #[test]
 fn step_pairs_overturn_seven_voussoirs_without_impact_from_the_known_amplitudes_on() {
     let arch = seven_voussoirs();
@@ -85,7 +85,7 @@ fn step_pairs_overturn_seven_voussoirs_without_impact_from_the_known_amplitudes_
         let threshold = found(&arch, &ground, 10.0, &factors(0.3, 10.0, 0.02));
         assert_eq!(threshold.bands().len(), bands, "{duration_s}");
         let last = threshold.bands()[bands - 1];
-        // The numbers have three digits behind the point.
+        // The numbers have three decimals.
         assert!(
             (last.from - without_impact_g).abs() < 5e-4 + EDGE_WIDTH,
             "{last:?}"
@@ -109,8 +109,8 @@ fn overturns(model: &dyn Model, ground: &GroundMotion, end_s: f64, factor: f64) 
     matches!(summary.outcome, Outcome::Overturned(_))
 }
 
-/// Strong cosine pulses throw the arch the other way before it can fall: an island that is safe, between bands.
-/// Plain histories at the ends, just beyond them and in the middle say the same.
+/// Strong cosine pulses throw the arch the other way before it can fall: a safe island between bands.
+/// Plain histories at its ends, just beyond them and in its middle agree.
 #[test]
 fn safe_islands_of_cosine_pulses_are_gaps_between_bands() {
     let arch = semicircle();
@@ -137,7 +137,7 @@ fn safe_islands_of_cosine_pulses_are_gaps_between_bands() {
     }
 }
 
-/// Half the amplitude and twice the factors are the same motion; powers of two are exact.
+/// Half the amplitude and twice the factors give the same motion, exactly, because they are powers of two.
 #[test]
 fn factor_times_amplitude_counts() {
     let arch = semicircle();
@@ -158,8 +158,8 @@ fn factor_times_amplitude_counts() {
     assert_eq!(a.gaps().iter().map(doubled).collect::<Vec<_>>(), b.gaps());
 }
 
-/// Where vertical motion is so strong that nothing presses the column on the ground there is no history, and
-/// what is known ends there.
+/// If vertical motion is so strong that nothing presses the column on the ground, there is no history; the known
+/// range ends there.
 #[test]
 fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
     let column = Column::new(4.0, 0.8).unwrap();
@@ -181,7 +181,7 @@ fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
     assert!(band.to < 5.0 && band.to > 4.5);
 }
 
-/// Overturns as a function of the peak acceleration of the ground, in m/s2, or fails.
+/// Overturns or not as a function of the peak ground acceleration, in m/s2; or fails.
 #[derive(Debug)]
 struct Rule(fn(f64) -> Option<bool>);
 
@@ -231,7 +231,7 @@ impl Model for Rule {
     }
 }
 
-/// A rule, and what a repetition says instead.
+/// A rule, and another one for its repetition.
 #[derive(Debug)]
 struct Doubtful {
     own: fn(f64) -> Option<bool>,
@@ -263,13 +263,13 @@ impl Model for Doubtful {
     }
 }
 
-/// Where the repetition disagrees or fails is neither overturned nor survived, and the edges of that are found like others,
-/// also where neighbouring samples lie on both sides of it.
+/// Where the repetition disagrees or fails, the factor is neither overturned nor survived. The edges of these ranges are found like
+/// others, even if neighbouring samples lie on both sides of the range.
 #[test]
 fn uncertain_factors_are_ranges_of_their_own() {
     let doubtful = Doubtful {
         own: |x| Some((2.0..3.0).contains(&x) || x >= 4.0),
-        // Overturns a little earlier, and later; and fails somewhere.
+        // Overturns a little earlier, and later; and fails in one range.
         repeated: |x| {
             let fails = (6.0..6.5).contains(&x);
             (!fails).then_some((1.99..3.0).contains(&x) || x >= 4.4)
@@ -293,7 +293,7 @@ fn uncertain_factors_are_ranges_of_their_own() {
         assert!((range.to / to - 1.0).abs() < EDGE_WIDTH, "{range:?}");
     }
     assert_eq!((threshold.bands().len(), threshold.gaps().len()), (3, 1));
-    // No sample in strides is from 1.99 to 2: the search met one.
+    // No sample of the strides lies between 1.99 and 2: the search met one.
     let strides = factors(1.0, 8.0, 0.1).values();
     let met: Vec<_> = threshold
         .samples
@@ -389,7 +389,7 @@ fn bands_and_gaps_of_any_models_side_by_side() {
 
 #[test]
 fn histories_that_fail_keep_their_reasons_and_stop_nothing() {
-    // One failure among the samples, one only in the search for the edge near 4.05.
+    // One failure among the samples, and one only in the search for the edge near 4.05.
     let rule = Rule::new(|x| match x {
         _ if (2.9..3.1).contains(&x) => None,
         _ if (4.04..4.06).contains(&x) => None,
@@ -429,7 +429,7 @@ fn histories_that_fail_keep_their_reasons_and_stop_nothing() {
         ]
     );
     assert!(threshold.bands()[0].to < 2.9 && threshold.bands()[1].from >= 3.1);
-    // What is not known is not safe.
+    // An unknown range is not safe.
     assert!(threshold.gaps().is_empty());
 }
 
@@ -621,7 +621,7 @@ fn what_has_no_threshold_is_refused() {
     );
 }
 
-/// What `threshold` found of each model, by the names of the models.
+/// The result of `threshold` for each model, by the name of the model.
 fn models(folder: &Path, arguments: &str) -> Vec<(String, Value)> {
     let all = format!("threshold s.toml --from 0.5 --to 8 --stride 1 --format json {arguments}");
     let result = printed(folder, &all.split_whitespace().collect::<Vec<_>>());
@@ -636,7 +636,7 @@ fn names(models: &[(String, Value)]) -> Vec<&str> {
     models.iter().map(|(name, _)| name.as_str()).collect()
 }
 
-/// With both models each has the scenario that it was computed from, and what it says when it is alone.
+/// With both models, each has the scenario from which it was computed, and the same results as alone.
 #[test]
 fn both_models_have_their_own_scenario() {
     let root = tempfile::tempdir().unwrap();
@@ -662,7 +662,7 @@ fn both_models_have_their_own_scenario() {
     let table = fs::read_to_string(folder.join("both/threshold.csv")).unwrap();
     let of = |model: &str| table.lines().filter(|line| line.starts_with(model)).count();
     assert_eq!((of("four_links,"), of("free_hinges,")), (5, 5));
-    // That the impact model of the scenario does not count is said wherever blocks decide it, and only there.
+    // The remark that the scenario's impact model is ignored appears if blocks decide impacts, and only then.
     for (hinges, ignored) in [("four", false), ("free", true), ("both", true)] {
         let arguments = ["threshold", "s.toml", "--stride", "1", "--hinges", hinges];
         let said = stderr(&archrock(folder, &arguments));
@@ -674,7 +674,7 @@ fn both_models_have_their_own_scenario() {
     }
 }
 
-/// Drums are blocks with free hinges: Housner's column has none, so neither it nor both are to be had.
+/// Drums are blocks with free hinges. Housner's column has no drums, so `four` and `both` are not available.
 #[test]
 fn a_column_of_drums_has_a_threshold_with_free_hinges() {
     let root = tempfile::tempdir().unwrap();
@@ -704,7 +704,7 @@ fn a_column_of_drums_has_a_threshold_with_free_hinges() {
             &["`drums = 3`"],
         );
     }
-    // Its samples are plain histories.
+    // Its samples equal plain histories.
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
     let model = scenario.model().unwrap();
     let samples = drummed["samples"].as_array().unwrap();

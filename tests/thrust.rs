@@ -1,4 +1,4 @@
-//! The thrust line in motion, against statics, dynamics formulated otherwise, and published numbers.
+//! The thrust line in motion, compared with statics, an independent formulation of dynamics, and published numbers.
 
 use crate::common;
 use std::ops::ControlFlow;
@@ -62,7 +62,7 @@ fn at_the_onset_it_is_the_line_of_limit_analysis() {
         let linkage = &arch.link(0).unwrap().mechanism;
         let push = incipient.acceleration_g;
         let onset = motion(linkage, 0.0, 0.0, push);
-        // A_L is exact to rounding where joints are given, and flat in hinges placed to 1e-8 elsewhere.
+        // A_L is exact to rounding if joints are given; otherwise it is flat in the hinges, which are accurate to 1e-8.
         assert!(onset.acceleration.abs() < 1e-12, "{}", onset.acceleration);
         let line = linkage.thrust_line(&onset);
         let at_rest = ThrustLine::at_rest(
@@ -84,8 +84,8 @@ fn at_the_onset_it_is_the_line_of_limit_analysis() {
 }
 
 /// The nine equations of motion of three free bodies in nine unknowns, four hinge forces and `q''`, with
-/// velocities and accelerations by differences of positions: nothing in common with the closed form but
-/// the angles of the bodies.
+/// velocities and accelerations by finite differences of positions. Only the angles of the bodies are shared with
+/// the closed form.
 #[test]
 fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
     for arch in arches() {
@@ -142,7 +142,7 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
                 right[row] = polar * turn_bend * square;
             }
             let solution = matrix.lu().solve(&right).unwrap();
-            // Differences err by h^2 times fourth derivatives, and by 1e-16 / h^2.
+            // The errors of differences are h^2 times fourth derivatives, and 1e-16 / h^2.
             let tolerance = 3e-6 * solution.norm();
             assert!((solution[8] - motion.acceleration).abs() < tolerance);
             let line = linkage.thrust_line(&motion);
@@ -165,7 +165,7 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
     for arch in arches() {
         let ring = arch.chain().profile(0);
         let embrace = ring.end();
-        // The thick arch stops at its first impact and has one mechanism only.
+        // The thick arch stops at its first impact, so it has only one mechanism.
         for link in (0..3).map_while(|index| arch.chain().link(index)) {
             let (mechanism, linkage) = (link.mechanism, &link.link.mechanism);
             for motion in motions(linkage) {
@@ -174,8 +174,8 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
                 assert!((parts[4].end_rad - embrace).abs() < 1e-15);
                 for (hinge, angle) in mechanism.hinges_rad().into_iter().enumerate() {
                     let pole = mechanism.points()[hinge];
-                    // Of both parts that meet there: the moment about the hinge is zero, and the forces
-                    // are equal but for the rotation. For B, left side, this is the equation of motion.
+                    // Resultants of both parts that meet there: the moment about the hinge is zero, and the forces
+                    // are equal except for the rotation. For B, on its left side, this is the equation of motion.
                     let forces = [parts[hinge], parts[hinge + 1]].map(|part| {
                         let resultant = part.at(ring, angle);
                         let scale = 1.0 + resultant.linear.norm();
@@ -196,7 +196,7 @@ fn the_parts_that_stand_carry_their_weight_to_the_springings() {
     let linkage = &arch.link(0).unwrap().mechanism;
     let a = arch.chain().link(0).unwrap().mechanism.hinges_rad()[0];
     let line = linkage.thrust_line(&motion(linkage, 0.02, 0.1, 0.0));
-    // Nothing is accelerated before A: between springing and hinge the force grows by the weight.
+    // Nothing accelerates before A: between springing and hinge the force grows by the weight.
     let weight = line.at(a).linear - line.at(0.0).linear;
     let expected = Vector2::new(0.0, -ring.sector(0.0, a).mass);
     assert!((weight - expected).norm() < 1e-14);
@@ -210,7 +210,7 @@ fn at_rest_the_line_stays_inside_up_to_the_onset() {
         for part in [-1.0, -0.7, 0.0, 0.3, 0.999] {
             let body_force = Vector2::new(part * limit_g, -1.0);
             assert_eq!(arch.demand_at_rest(body_force).excess_ratio, 0.0, "{part}");
-            // Equilibrium of the whole ring: what comes in and the load go out.
+            // Equilibrium of the whole ring: the force at one end plus the load is the force at the other end.
             let line = ThrustLine::at_rest(
                 arch.chain().incipient(),
                 arch.chain().incipient(),
@@ -221,7 +221,7 @@ fn at_rest_the_line_stays_inside_up_to_the_onset() {
             let mass = ring.moments_to(ring.end()).mass;
             assert!((load - body_force * mass).norm() < 1e-14);
         }
-        // Mirror images ask the same.
+        // Mirror images have the same demand.
         let [left, right] = [-0.6, 0.6].map(|part| {
             arch.demand_at_rest(Vector2::new(part * limit_g, -1.0))
                 .friction
@@ -253,7 +253,7 @@ fn a_section_in_tension_has_a_finite_excess_that_grows_with_it() {
     assert_eq!(of(1.0, 0.05).excess_ratio, 0.0);
     assert!((of(1.0, -0.12).excess_ratio - 0.1).abs() < 1e-15);
     assert!((of(1.0, 0.0).friction - 0.3).abs() < 1e-15);
-    // A tenth of a weight in tension, over the hundredth that counts at least: half of its ten parts.
+    // A tension of a tenth of a weight, relative to the minimum of a hundredth: half of its ten parts.
     assert!((of(-1.0, 0.0).excess_ratio - 5.0).abs() < 1e-14);
     let mut before = 0.0;
     for normal in [0.2, 0.1, 0.01, 0.0, -0.01, -0.1, -3.0] {
@@ -280,7 +280,7 @@ fn pulse_history(
     run(arch, &ground, &sampled(end_s, 0.001))
 }
 
-/// Eccentricities of the line at a sample of the first half cycle, swaying right.
+/// Eccentricity of the line at a sample of the first half cycle, swaying right.
 fn eccentricity(arch: &FourLinkArch, sample: &Sample, angle_deg: f64) -> f64 {
     assert_eq!(sample.state, State::Rocking(Sway::Right));
     let linkage = &arch.link(0).unwrap().mechanism;
@@ -302,7 +302,7 @@ fn at(history: &History, time_s: f64) -> Sample {
     found.expect("a sample at that time")
 }
 
-/// Published to two digits: |e|/t about 0.55 at the joint at 22.5 degrees, after the pulse.
+/// Published with two digits: |e|/t about 0.55 at the joint at 22.5 degrees, after the pulse.
 #[test]
 fn seven_voussoirs_leave_the_ring_at_the_second_joint() {
     let arch = common::seven_voussoirs();
@@ -311,12 +311,12 @@ fn seven_voussoirs_leave_the_ring_at_the_second_joint() {
         let sample = at(&history, time_s);
         let e = eccentricity(&arch, &sample, 22.5);
         assert!((e + 0.55).abs() < 5e-3, "{e}");
-        // No joint is worse, so that this is the demand.
+        // No other joint has a larger value, so this is the demand.
         assert!((sample.demand.excess_ratio - (e.abs() - 0.5)).abs() < 1e-9);
     }
 }
 
-/// Published to two digits: about 0.52 near 30 and 86 degrees after the pulse; near 78 during it.
+/// Published with two digits: about 0.52 near 30 and 86 degrees after the pulse; near 78 during it.
 #[test]
 fn the_semicircle_leaves_the_ring_beside_its_hinges() {
     let arch = semicircle();
@@ -327,7 +327,7 @@ fn the_semicircle_leaves_the_ring_beside_its_hinges() {
     }
 }
 
-/// The largest value over all sections: at a thousandth of a degree, then a thousand times finer around the best.
+/// The largest value over all sections: at steps of a thousandth of a degree, then a thousand times finer around the best.
 fn densest(embrace_rad: f64, of: impl Fn(f64) -> f64) -> f64 {
     let best = |from: f64, to: f64, count: u32| {
         (0..=count)
@@ -366,9 +366,9 @@ fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
                 let section = line.section(angle);
                 Demand::of_sections([section].into_iter(), weight)
             };
-            // Samples 2e-8 rad apart miss less than rounding. Far outside the top is the kink where the
-            // normal force becomes too small to count, which is found to 1e-6 rad; and the friction jumps at
-            // hinges, and may be largest just after one.
+            // Samples 2e-8 rad apart miss less than rounding. Where the line is far outside, the maximum is at the kink where
+            // the normal force becomes too small to count, which is found to 1e-6 rad. Friction jumps at hinges, and
+            // may be largest just after one.
             let excess = densest(ring.end(), |angle| of(angle).excess_ratio);
             let tolerance = if excess < 1.0 { 1e-9 } else { 1e-7 * excess };
             assert!(
@@ -456,7 +456,7 @@ fn lines(model: &impl Model, ground: &GroundMotion) -> Vec<Sample> {
     lines.0
 }
 
-/// The excess is that of the worst joint, and at open hinges the line is at their edge: both from other computations.
+/// The excess is that of the worst joint, and at open hinges the line is at their edge; both come from other computations.
 #[test]
 fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
     let arch = seven_voussoirs();
@@ -475,7 +475,7 @@ fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
                 .map(|ratio| ratio.unwrap().abs())
                 .fold(0.0, f64::max);
             let excess = (worst - 0.5).max(0.0);
-            // Where a section is hardly pressed the excess is defined otherwise, and larger than anything drawn.
+            // In a section with hardly any compression the excess is defined differently, and larger than anything drawn.
             if worst < 3.0 {
                 let miss = (excess - sample.demand.excess_ratio).abs();
                 assert!(miss < 1e-6, "{} {worst} {:?}", sample.time_s, sample.demand);
@@ -506,7 +506,7 @@ fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
     assert!(swayed.iter().all(|count| *count > 50), "{swayed:?}");
 }
 
-/// Blocks without tension keep the line inside, and touch at the edge where a joint is open.
+/// Blocks without tension keep the line inside; it touches the edge at open joints.
 #[test]
 fn lines_of_thrust_of_free_hinges_stay_inside() {
     let arch = Arch::new(5.0, 0.15, 180.0)
@@ -541,7 +541,7 @@ fn lines_of_thrust_of_free_hinges_stay_inside() {
         }
     }
     assert!(open > 300, "{open}");
-    // Recorders that do not ask for lines get none.
+    // Recorders that do not request lines get none.
     let history = run(&model, &ground, &sampled(0.5, 0.01));
     assert!(
         history
@@ -551,7 +551,7 @@ fn lines_of_thrust_of_free_hinges_stay_inside() {
     );
 }
 
-/// A column presses the ground at the toe about which it turns; what the mirrored ground does to it is the mirror image.
+/// A column presses on the ground at the toe about which it turns; the mirrored ground gives the mirror image.
 #[test]
 fn lines_of_thrust_of_a_column_pass_through_its_toe() {
     let column = Column::new(4.0, 0.8).unwrap();
@@ -573,11 +573,11 @@ fn lines_of_thrust_of_a_column_pass_through_its_toe() {
         let due = match sample.state.sway() {
             Some(Sway::Right) => 0.5,
             Some(Sway::Left) => -0.5,
-            // Height times push over width, halved: the centre is half way up.
+            // Height times push over width, halved, because the centre is at half the height.
             None => -0.5 * 5.0 * sample.ground_acceleration_m_s2 / GRAVITY,
         };
         assert!((base - due).abs() < 1e-9, "{} {base}", sample.time_s);
-        // Above there is less and less that leans and is pushed.
+        // Towards the top there is less and less mass that leans and is pushed.
         assert!(ratios[20].unwrap().abs() < 0.1, "{:?}", ratios[20]);
         swayed[match sample.state.sway() {
             Some(Sway::Right) => 0,

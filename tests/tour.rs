@@ -1,4 +1,4 @@
-//! The tour of the documentation: its commands, run as they stand there, say what is shown there.
+//! The tour in the documentation: its commands, run as printed there, give the output shown there.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -9,7 +9,7 @@ use crate::program::{says_what_it_shows, scenarios};
 use archrock::Scenario;
 
 /// The two records of the tour, made as their titles say: the first as a PEER file of 0.45 g, the second as a table of
-/// 380 cm/s2 after three lines of its own.
+/// 380 cm/s2 after three lines of text.
 fn records() -> [(&'static str, String); 2] {
     let first = scaled(&synthetic(11, 16.0, 0.01), 0.45);
     let title = "Synthetic: tests/motions/mod.rs, synthetic(11, 16 s, 0.01 s), peak 0.45 g";
@@ -34,7 +34,7 @@ fn the_records_of_the_tour_are_the_generated_ones() {
         if std::env::var_os("ARCHROCK_REGENERATE").is_some() {
             fs::write(&file, &text).unwrap();
         }
-        // Sines differ between platforms in the last place, and so may last digits.
+        // Sines differ between platforms in the last digit, so last digits of the files may differ too.
         let own = fs::read_to_string(&file).unwrap();
         assert_eq!(own.lines().count(), text.lines().count());
         let differ = own.lines().zip(text.lines()).filter(|(a, b)| a != b);
@@ -55,13 +55,13 @@ fn the_tour_says_what_it_shows() {
     }
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/tour.md");
     let page = fs::read_to_string(page).unwrap();
-    // The scenario that the page shows is the one that is run.
+    // The page shows the scenario that is run.
     let scenario = fs::read_to_string(scenarios().join("tour/tour.toml")).unwrap();
     let (_, scenario) = scenario.split_once("\n\n").unwrap();
     assert!(page.contains(&format!("```toml\n{scenario}```")));
     let commands = says_what_it_shows("docs/tour.md", folder.path());
     assert!((2..=4).contains(&commands));
-    // What there is to look at.
+    // The files that the reader is told to look at.
     for record in ["nga1.at2", "station.csv"] {
         let results = folder.path().join("results/tour").join(record);
         for file in [

@@ -1,4 +1,4 @@
-//! What is not known: its samples, what follows from them, and what matters.
+//! Uncertain numbers: their samples, the consequences, and which of them matter.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -28,8 +28,8 @@ fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<Went>> {
     runner.rows(&study, |_| ControlFlow::Continue(())).unwrap()
 }
 
-/// Whether a free-standing block overturns under a push of so many g for so long, by the equation of Housner, integrated by Runge and
-/// Kutta's method with its sines: it does without impact or not at all.
+/// Whether a free-standing block overturns under a push of this many g for this long, by Housner's equation with its sines, integrated
+/// by the Runge-Kutta method: it overturns without impact or not at all.
 fn block_overturns(height_m: f64, width_m: f64, push_g: f64, duration_s: f64) -> bool {
     let radius_m = 0.5 * height_m.hypot(width_m);
     let alpha = (width_m / height_m).atan();
@@ -56,14 +56,14 @@ fn block_overturns(height_m: f64, width_m: f64, push_g: f64, duration_s: f64) ->
             *value += step / 6.0 * (k1[index] + 2.0 * k2[index] + 2.0 * k3[index] + k4[index]);
         }
     }
-    // Afterwards energy decides: what is left at the top.
+    // After the push energy decides: the energy left at the top.
     let [angle, speed] = state;
     angle >= alpha || 0.5 * speed * speed > p2 * (1.0 - (alpha - angle).cos())
 }
 
 /// A block of 4 m whose width is normal, 0.8 m with 0.03 m: the share that overturns is that of the widths below the critical one, by
-/// Simpson's rule. It is inside the interval that is told for at least 184 of 200 seeds: 190 are expected of independent
-/// samples, with a deviation of 3.
+/// Simpson's rule. It lies inside the reported interval for at least 184 of 200 seeds; for independent samples 190 are
+/// expected, with a deviation of 3.
 #[test]
 fn the_probability_that_a_block_overturns_is_inside_the_interval() {
     let (push_g, duration_s) = (0.35, 0.45);
@@ -102,7 +102,7 @@ fn the_probability_that_a_block_overturns_is_inside_the_interval() {
         let overturned = |row: &&SampleRow<Went>| row.answer.as_ref().unwrap().overturned() == 1.0;
         let share = Share::of(rows[1..].iter().filter(overturned).count(), 24).unwrap();
         inside += u32::from(share.low <= probability && probability <= share.high);
-        // One uncertain number: samples are spread evenly, so that the share is right to a sample or two.
+        // With one uncertain number, samples are spread evenly, so the share is right to a sample or two.
         assert!(
             (share.share - probability).abs() < 2.0 / 24.0,
             "{seed} {share:?} {probability}"
@@ -148,11 +148,11 @@ fn first_order_indices_are_those_of_ishigami() {
         // The first grows with its number in the middle half only; the rank correlation of x0 is that of its sine.
         assert!(matters[0].rank_correlation > 0.3 && matters[1].rank_correlation.abs() < 0.1);
     }
-    // 28.5 of 30 are expected of intervals of 95 %, with a deviation of 1.2.
+    // For 95 % intervals, 28.5 of 30 are expected, with a deviation of 1.2.
     assert!(inside >= 25, "{inside} of 30");
 }
 
-/// Of a sum the shares are those of the squares, and ranks go along.
+/// For a sum, the shares are those of the squares, and ranks agree.
 #[test]
 fn shares_of_a_sum_are_those_of_its_squares() {
     let scenario = parsed(&format!(
@@ -169,7 +169,7 @@ fn shares_of_a_sum_are_those_of_its_squares() {
     assert!((matters[0].first_order - 0.8).abs() < 0.02, "{matters:?}");
     assert!((matters[1].first_order - 0.2).abs() < 0.02, "{matters:?}");
     assert!(matters[0].rank_correlation > 0.85 && matters[1].rank_correlation < -0.35);
-    // What does not vary, and what is too little, decides nothing.
+    // An answer that does not vary, and too few samples, decide nothing.
     assert_eq!(what_matters(&values, &vec![1.0; 512]), None);
     assert_eq!(what_matters(&values[..10], &answers[..10]), None);
 }
@@ -194,13 +194,13 @@ fn samples_are_the_same_on_any_threads_and_continue() {
     let other = parsed(&uncertain_arch(20, 4));
     let values = |scenario: &Scenario| scenario.uncertain().unwrap().values(0);
     assert_ne!(values(&few), values(&other));
-    // The same on every machine: these were computed once.
+    // The same on every machine; these values were computed once.
     let first = values(&few);
     let known = KNOWN;
     for (value, known) in first.iter().zip(known) {
         assert!((value - known).abs() < 1e-12 * known, "{first:?}");
     }
-    // Samples lie about the scenario's values as they are to.
+    // Samples are distributed around the scenario's values as required.
     let all: Vec<Vec<f64>> = (0..1024)
         .map(|sample| few.uncertain().unwrap().values(sample))
         .collect();
@@ -211,7 +211,7 @@ fn samples_are_the_same_on_any_threads_and_continue() {
     assert!((variance - 0.9733).abs() < 0.005, "{variance}");
     assert!(mean(&|values| values[1].ln()).abs() < 1e-3);
     assert!((mean(&|values| values[2].ln()) - 0.24_f64.sqrt().ln()).abs() < 1e-3);
-    // A scenario that is written reads back as the same.
+    // A written scenario reads back the same.
     assert_eq!(parsed(&few.to_toml()), few);
 }
 
@@ -221,7 +221,7 @@ const KNOWN: [f64; 3] = [
     0.224_341_121_046_628_73,
 ];
 
-/// The first of the rows is the scenario itself, and each sample is what `--set` makes of it.
+/// The first row is the scenario itself, and each sample equals the scenario changed by `--set`.
 #[test]
 fn a_sample_is_the_scenario_with_its_values() {
     let scenario = parsed(&uncertain_arch(3, 1));
@@ -255,7 +255,7 @@ fn the_program_tells_what_follows() {
     let (_, samples) = said
         .split_once("of 64 samples of [uncertain]:\n  ")
         .unwrap();
-    // One sentence, over some lines.
+    // One sentence, over several lines.
     let (first, _) = samples.split_once("\n  overturned: ").unwrap();
     for words in [
         "overturns with a probability of ",
@@ -287,7 +287,7 @@ fn the_program_tells_what_follows() {
     let share = &summary["outcomes"]["overturned"];
     assert_eq!(share["count"], overturned);
     assert!(share["low"].as_f64().unwrap() < overturned as f64 / 64.0);
-    // The bands hold what they are to: at the end as many have overturned as are told.
+    // The bands are right: at the end, as many have overturned as reported.
     let bands = Table::read(results.join("bands.csv"));
     let last = bands.rows.last().unwrap();
     assert_eq!(last.number("overturned"), overturned as f64);
@@ -320,7 +320,7 @@ fn the_program_tells_what_follows() {
         ],
     );
     assert_eq!(files(&at.join("two/uncertain")), files(&results));
-    // Nothing is uncertain where that is left out.
+    // With `--no-uncertain` nothing is uncertain.
     let said = printed(at, &["run", "s.toml", "--out", "none", "--no-uncertain"]);
     assert!(!said.contains("samples of"), "{said}");
     assert!(!at.join("none/uncertain").exists());
@@ -337,7 +337,7 @@ fn the_program_tells_what_follows() {
     );
 }
 
-/// The first factor of a sample is that of the threshold of its own scenario.
+/// The first factor of a sample equals the threshold of its own scenario.
 #[test]
 fn thresholds_have_a_distribution() {
     let folder = tempfile::tempdir().unwrap();
@@ -373,7 +373,7 @@ fn thresholds_have_a_distribution() {
             row["first_factor"].parse().ok()
         );
     }
-    // The distribution is a staircase of the samples.
+    // The distribution is a step curve of the samples.
     let steps = Table::read(results.join("probability.csv"));
     let found = table.rows[1..]
         .iter()
@@ -385,19 +385,19 @@ fn thresholds_have_a_distribution() {
     }
 }
 
-/// Values that make no structure that stands are counted and told.
+/// Samples whose structure does not stand are counted and reported.
 #[test]
 fn samples_that_do_not_stand_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    // A semicircle needs t/R of at least 0.1075, and a thinner one is no error of the range.
+    // A semicircle needs t/R of at least 0.1075; a thinner one is not an error of the range.
     let text = uncertain_arch(32, 1).replace("{ deviation = 0.01 }", "{ from = 0.10, to = 0.16 }");
     fs::write(at.join("s.toml"), text).unwrap();
     let output = archrock(at, &["run", "s.toml", "--out", "r", "--no-report"]);
     let said =
         String::from_utf8(output.stderr).unwrap() + &String::from_utf8(output.stdout).unwrap();
     if output.status.code() == Some(2) {
-        // The reader refuses it already.
+        // The reader already refuses it.
         assert!(
             said.contains("reaches 0.1, which the scenario does not allow"),
             "{said}"
@@ -414,7 +414,7 @@ fn samples_that_do_not_stand_are_told() {
     assert_eq!(count("invalid") + count("answered"), 32);
 }
 
-/// The page and its scenario say the same.
+/// The page and its scenario agree.
 #[test]
 fn the_worked_case_is_there() {
     let scenario = Scenario::read(&scenarios().join("uncertain/arch.toml")).unwrap();
@@ -438,7 +438,7 @@ fn what_cannot_be_uncertain_is_refused() {
         errors.to_string()
     };
     for (keys, words) in [
-        // A key that is text, or whole, or no key.
+        // A key that is a string, or a whole number, or no key.
         (
             "'impact.model' = { from = 1.0, to = 2.0 }",
             "is no number in the scenario",
@@ -460,7 +460,7 @@ fn what_cannot_be_uncertain_is_refused() {
             "unknown key `arch` in [uncertain]",
         ),
         ("samples = 10", "needs 1 to 256 keys of other tables"),
-        // A range that leaves what is allowed: with the bound.
+        // A range that exceeds what is allowed: the message names the bound.
         (
             "'arch.embrace_deg' = { from = 170.0, to = 380.0 }",
             "reaches 380, which the scenario does not allow: `embrace_deg = 380",
@@ -473,7 +473,7 @@ fn what_cannot_be_uncertain_is_refused() {
             "'arch.thickness_ratio' = { deviation = 0.1 }",
             "reaches -0.15, which the scenario does not allow",
         ),
-        // Numbers that are none.
+        // Invalid numbers.
         (
             "samples = 0\n'arch.depth_m' = { deviation = 0.1 }",
             "must be a whole number from 1",
@@ -503,7 +503,7 @@ fn what_cannot_be_uncertain_is_refused() {
             "must be a range, such as",
         ),
         ("'arch.depth_m' = 3.0", "must be a table"),
-        // Keys that contradict.
+        // Keys that contradict each other.
         (
             "'arch.depth_m' = { deviation = 0.1 }\n'arch . depth_m' = { deviation = 0.2 }",
             "is the same as a key before it",
@@ -526,7 +526,7 @@ fn what_cannot_be_uncertain_is_refused() {
     assert!(Ensemble::new(&nothing, question).is_err());
 }
 
-/// Every number with a fraction of every kind of structure, ground and model may be uncertain.
+/// Every number that may have a fraction, in every kind of structure, ground and model, may be uncertain.
 #[test]
 fn all_numbers_may_be_uncertain() {
     let voussoirs = "thickness_m = 0.5\nvoussoirs = 9\n";
@@ -557,7 +557,7 @@ fn all_numbers_may_be_uncertain() {
             "[ground.gabor]\namplitude_g = 0.3\nduration_s = 0.5\n",
             "[ground.windowed_sine]\namplitude_g = 0.3\nduration_s = 0.5\nstart_s = 0.1\n",
         ] {
-            // All grounds go with the first structure.
+            // All kinds of ground are tested with the first structure.
             if ground != PULSE && structure != ARCH {
                 continue;
             }
@@ -566,11 +566,11 @@ fn all_numbers_may_be_uncertain() {
                 let mut all = Vec::new();
                 numbers(table, keys, &mut all);
                 for (key, value) in all {
-                    // The heights of drums are in the scenario, and add up to its height.
+                    // The heights of drums are in the scenario, and must add up to its height.
                     if key == "column.height_m" && keys.get("drum_heights_m").is_some() {
                         continue;
                     }
-                    // Bounds may be at the value itself: an arch of 180 degrees, a phase of zero.
+                    // The value itself may be a bound: an arch of 180 degrees, a phase of zero.
                     let [from, to] = if value > 0.0 {
                         [0.999 * value, value]
                     } else {
@@ -610,8 +610,8 @@ fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
     }
 }
 
-/// Records that overturn a column of uncertain width, from which intensity on: those of the scenario itself are between the levels at which
-/// its suite changes, and what decides is the width.
+/// Records that overturn a column of uncertain width, and the intensity from which they do. The intensities of the scenario itself lie
+/// between the levels at which its suite changes, and the width decides.
 #[test]
 fn suites_tell_the_parts_of_fragility() {
     let folder = tempfile::tempdir().unwrap();
@@ -643,7 +643,7 @@ fn suites_tell_the_parts_of_fragility() {
     let results = at.join("r/uncertain_suite");
     let capacities = Table::read(results.join("capacities.csv"));
     assert_eq!(capacities.rows.len(), 3 * 25);
-    // The scenario itself, against the histories of its suite.
+    // The scenario itself, compared with the histories of its suite.
     let suite = Table::read(at.join("r/suite.csv"));
     for record in ["a.csv", "b.csv", "c.csv"] {
         let own = capacities
@@ -666,8 +666,8 @@ fn suites_tell_the_parts_of_fragility() {
     }
     let summary = json(&results.join("uncertain.json"));
     let dispersion = |of: &str| summary["fragility"][of]["dispersion"].as_f64().unwrap();
-    // The width, known to 6 %, moves the capacity by more than that, and together they spread more than the records alone do in
-    // three of them; the bound is that of the fractiles of three records.
+    // The width, known to 6 %, changes the capacity by more than that. In three of them, both together scatter more than the records
+    // alone; the bound is that of the fractiles of three records.
     assert!(
         (0.03..0.3).contains(&dispersion("uncertain_data")),
         "{summary:#}"
@@ -687,7 +687,7 @@ fn suites_tell_the_parts_of_fragility() {
         matters[0]["rank_correlation"].as_f64().unwrap() > 0.9,
         "{matters:?}"
     );
-    // Parts give the same.
+    // Computing in parts gives the same.
     for part in ["1/2", "2/2"] {
         done(at, &["suite", "s.toml", "--out", "p", "--shard", part]);
     }

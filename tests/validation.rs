@@ -18,7 +18,7 @@ use archrock::mechanics::stability::{falls, onset};
 use archrock::{Arch, Outcome, Sway};
 use std::f64::consts::PI;
 
-/// The least number at which something holds that holds from there on, to 1e-6.
+/// The least number from which a condition holds, to 1e-6.
 fn least(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     while high - low > 1e-6 {
         let middle = 0.5 * (low + high);
@@ -32,7 +32,7 @@ fn least(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
 }
 
 /// Milankovitch: 0.1075 for radial joints. The ring by its own statics, rows of blocks by the static programme, which
-/// knows nothing of rings; a row with few joints needs less.
+/// does not know rings; a row with few joints needs less.
 #[test]
 fn least_thickness_of_a_semicircle() {
     let ring = least_thickness_ratio(PI, HingeSites::Anywhere, 1e-9).unwrap();
@@ -69,7 +69,7 @@ fn least_thickness_of_a_semicircle_under_acceleration() {
             (ratio - published).abs() < 1e-4,
             "{acceleration_g}: {ratio}"
         );
-        // The static programme on 120 voussoirs asks for the same, or a little less.
+        // The static programme on 120 voussoirs needs the same, or a little less.
         let ring = Ring::new(ratio, PI).unwrap();
         let row = Row::arch(&ring, 120, 1.0, 1.0, 1.0).unwrap();
         let of_row = onset(&row, Sway::Right).unwrap().unwrap().acceleration_g;
@@ -95,7 +95,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
         (0.325, 0.179, 0.1776),
         (0.31, 0.196, 0.1953),
     ] {
-        // Far below it also stands with hardly more friction, and far above it asks for more again.
+        // Well below it also stands, with hardly more friction; well above it needs more friction again.
         let ratio = least(0.1, 0.2, |ratio| {
             stands(&row(ratio), coefficient) == Ok(true)
         });
@@ -106,7 +106,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
             assert!((own - coefficient).abs() < 1e-5, "{coefficient}: {own}");
         }
     }
-    // With more friction than that the thickness of no sliding is enough, and with less than this none is.
+    // With more friction than that, the thickness for no sliding is enough; with less than this, no thickness is.
     let without = least(0.05, 0.2, |ratio| falls(&row(ratio)).unwrap().is_none());
     assert!((without - 0.1068).abs() < 5e-5, "{without}");
     let ratios = (0..40).map(|step| 0.11 + 0.01 * f64::from(step));
@@ -168,8 +168,8 @@ fn the_failure_domain_of_the_page_is_that_of_the_command() {
     {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
         let (duration, shown): (&str, f64) = (cells[0], cells[4].parse().unwrap());
-        // Half a unit of the last digit, and the width of an edge; at 0.36 and 0.37 s, beyond the jump, narrow bands lie side by
-        // side, of which a stride may miss one.
+        // Half a unit of the last digit, plus the width of an edge. At 0.36 and 0.37 s, beyond the jump, there are narrow bands side by
+        // side, one of which a stride may miss.
         let last_digit = if ["0.36", "0.37"].contains(&duration) {
             5e-3
         } else {

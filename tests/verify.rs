@@ -1,4 +1,4 @@
-//! The check by the Circolare 7/2019 as a whole: worked numbers that were computed apart from this program, both sides, on the
+//! The whole check by the Circolare 7/2019: worked numbers computed independently of this program, both sides, on the
 //! ground and at a height; spectra from files; what cannot be checked, and why.
 
 use crate::browser;
@@ -37,7 +37,7 @@ fn displacement(check: &Check, state: LimitState, sway: Sway) -> ByDisplacement 
     side(check, state, sway).displacement.unwrap()
 }
 
-/// Asserts a number to its last printed digit: half a unit, and a millionth for the straight lines between a hundred points of
+/// Asserts a number to its last printed digit: half a unit, plus a millionth for the straight lines between a hundred points of
 /// the curve.
 #[track_caller]
 fn printed(value: f64, expected: &str) {
@@ -86,7 +86,7 @@ fn c8_7_1_2_1_5_and_7_activation_and_its_multiple() {
 
 #[test]
 fn c8_7_1_2_1_8_displacements_on_the_ground_and_at_a_height() {
-    // d, a, T; on the ground: demand, a_g borne, zeta_E, a_g where the shape follows; at the height: demand, a_g borne, zeta_E.
+    // d, a, T; on the ground: demand, a_g capacity, zeta_E, a_g with varying shape; at the height: demand, a_g capacity, zeta_E.
     let expected = [
         [
             "0.16000", "0.087773", "2.27513", "0.16391", "0.24404", "0.97616", "0.24254",
@@ -160,7 +160,7 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
         printed(crown.end().oscillator_displacement_m, d0);
         let own = displacement(&check, LimitState::Slv, *sway);
         printed(own.zeta_e_crown.unwrap(), zeta_e);
-        // The displacement of the crown itself does not depend on how masses are grouped.
+        // The displacement of the crown itself does not depend on the grouping of masses.
         let scenario = parsed(&format!("{structure}{DEMAND}"));
         let grouped = archrock::studies::capacity::capacity(&scenario, None).unwrap();
         let grouped = grouped.iter().find(|one| one.sway == *sway).unwrap();
@@ -169,7 +169,7 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
     }
 }
 
-/// The worse side counts; where a wall holds the other, one.
+/// The worse side counts; if a wall holds the other side, only one does.
 #[test]
 fn the_worse_side_counts_unless_one_is_held() {
     let text = format!("{}{DEMAND}", on_piers());
@@ -189,8 +189,8 @@ fn the_worse_side_counts_unless_one_is_held() {
     assert!(words(&right).contains("SLV  passed: zeta_E 1.23940 to the right, by displacement"));
 }
 
-/// T_0 of C8.7.1.7, the acceleration at which it is demanded, and where the elastic branch ends. What is softer than it moves
-/// later has no other displacement.
+/// T_0 of C8.7.1.7, the acceleration demanded at that period, and the end of the elastic branch. The check by displacement, which
+/// is far beyond that branch, is that of a column held by walls.
 #[test]
 fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
     let text = format!("{COLUMN}{DEMAND}");
@@ -229,7 +229,7 @@ fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
     assert!((ag_g(&known) / ag_g(&free) - 1.0).abs() < 1e-9);
 }
 
-/// A stout column bears less displacement than it takes to start it: then that counts.
+/// A stout column has a displacement capacity that it reaches before motion starts: then the onset counts.
 #[test]
 fn c8_7_1_2_1_8_what_starts_later_than_it_falls_counts_by_its_start() {
     let text = format!("[column]\nheight_m = 0.3\nwidth_m = 0.12\n{DEMAND}");
@@ -242,7 +242,7 @@ fn c8_7_1_2_1_8_what_starts_later_than_it_falls_counts_by_its_start() {
     assert!(said.contains("the activation counts"), "{said}");
 }
 
-/// The tables of the file and the code's own numbers for it: FC 1.35, 0.4 d0, 1.68, 8 %.
+/// The table of the file; the code's own numbers for it are FC 1.35, 0.4 d0, 1.68, 8 %.
 const POINTS: &str =
     "period_s,acceleration_g\n0,0.29\n0.15,0.70\n0.5,0.70\n1,0.35\n2,0.20\n2.6,0.08\n4,0.03\n";
 
@@ -275,7 +275,7 @@ fn a_spectrum_of_points_names_no_clause() {
     let json = to_json(&scenario, &check).unwrap();
     assert_eq!(json["formulas"], Value::Null);
     assert!(words(&check).contains("no clause is named"));
-    // What is resolved is read back the same, in its folder.
+    // The resolved scenario reads back the same, in its folder.
     let resolved = folder.path().join("b.toml");
     std::fs::write(&resolved, scenario.to_toml()).unwrap();
     assert_eq!(Scenario::read(&resolved).unwrap(), scenario);
@@ -340,7 +340,7 @@ fn spectra_of_points_are_refused_where_they_end() {
     }
 }
 
-/// Each with its place, clause and range.
+/// Each error has its place, clause and range.
 #[test]
 fn what_is_out_of_the_range_of_the_code_is_refused() {
     for (from, to, words) in [
@@ -433,19 +433,19 @@ fn what_is_out_of_the_range_of_the_code_is_refused() {
     );
 }
 
-/// Locks before its multiplier is zero.
+/// Locks before its multiplier reaches zero.
 const LOCKS: &str = "[pointed_arch]\nspan_m = 2.02\nrise_m = 1.46\nthickness_m = 0.6\nvoussoirs = 6\n\
     [piers]\nheight_m = 2.62\nwidth_m = 2.09\nblocks = 2\n";
 const DRUMS: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hinges]\n";
 
-/// A linkage that locks and a stack of drums: there are the damage limit state and its multiple.
+/// A linkage that locks and a stack of drums: only the damage limit state and its multiple can be checked.
 #[test]
 fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
     for (structure, why) in [(LOCKS, "comes to the end of its way"), (DRUMS, "drums")] {
         let check = check(&format!("{structure}{DEMAND}"));
         for mechanism in &check.mechanisms {
             assert!(mechanism.way.as_ref().unwrap_err().contains(why));
-            // The virtual work of the bodies gives the push of the limit analysis back.
+            // The virtual work of the bodies reproduces the push of limit analysis.
             let model = parsed(structure).model().unwrap();
             let incipient_g = model.incipient_acceleration_g(mechanism.sway).unwrap();
             assert!((mechanism.alpha0 / incipient_g - 1.0).abs() < 1e-9);
@@ -474,7 +474,7 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
         assert!(matches!(error, NoCheck::NoCurve(_)));
         assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
     }
-    // A stack of drums that turns about its base is the column.
+    // A stack of drums that turns about its base is like the column.
     let [drums, column] = [DRUMS, COLUMN].map(|structure| check(&format!("{structure}{DEMAND}")));
     let (drums, column) = (&drums.mechanisms[0], &column.mechanisms[0]);
     assert!((drums.alpha0 / column.alpha0 - 1.0).abs() < 1e-9);
@@ -482,8 +482,8 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
     assert!((drums.bodies[0].displacement - column.bodies[0].displacement).norm() < 1e-9);
 }
 
-/// The least multiplier counts: where sliding has a smaller one than what opens without it, there is nothing to check. A block
-/// that needs more friction than the Circolare has is checked, with a warning.
+/// The least multiplier counts: if sliding has a smaller one than the mechanism without sliding, there is nothing to check. A block
+/// that needs more friction than the Circolare gives is checked, with a warning.
 #[test]
 fn c8_7_1_1_what_slides_before_is_no_mechanism() {
     let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
@@ -513,7 +513,7 @@ fn what_does_not_stand_is_refused() {
     );
 }
 
-/// The command: words, JSON with the same numbers, files; a verdict is no failure.
+/// The command: words, JSON with the same numbers, files; a negative verdict is not a failure of the program.
 #[test]
 fn the_command_says_and_writes_the_check() {
     let folder = in_folder(ARCH, DEMAND);
@@ -538,7 +538,7 @@ fn the_command_says_and_writes_the_check() {
         own.demand_m
     );
     assert_eq!(json["states"]["slv"]["demand"]["s_s"], 1.16);
-    // The hash is that of what `check` prints.
+    // The hash is that of the output of `check`.
     let resolved = print_of(folder.path(), &["check", "a.toml"]);
     assert_eq!(resolved, scenario.to_toml());
     assert_eq!(json["scenario_sha256"].as_str().unwrap().len(), 64);
@@ -563,7 +563,7 @@ fn the_command_says_and_writes_the_check() {
     }
 }
 
-/// Every number of the page is one of the JSON's, rounded as it is shown, and those that count are where they are looked for; the
+/// Every number of the page is a number of the JSON, rounded as shown, and the important ones are in their places. The
 /// page needs no network and claims nothing that the Circolare does not say.
 #[test]
 fn page_and_json_agree() {

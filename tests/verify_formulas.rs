@@ -1,5 +1,5 @@
-//! The formulas of the Circolare 7/2019 and of NTC 2018, clause by clause: against numbers computed apart from this program,
-//! closed forms, and a published check.
+//! The formulas of the Circolare 7/2019 and of NTC 2018, clause by clause: compared with numbers computed independently of this
+//! program, closed forms, and a published check.
 
 use crate::common::parsed;
 use crate::common::{ARCH, COLUMN};
@@ -17,7 +17,7 @@ use archrock::{MechanismModel, Pose, Scenario, Sway};
 use nalgebra::Vector2;
 use std::f64::consts::PI;
 
-/// Asserts a number to its last printed digit, which rounding may turn.
+/// Asserts a number to its last printed digit, which rounding may change.
 #[track_caller]
 fn printed(value: f64, expected: &str) {
     let digits = expected.split_once('.').map_or(0, |(_, after)| after.len());
@@ -82,7 +82,7 @@ fn tab_3_2_iv_and_the_corner_periods() {
     ] {
         assert!((soil.amplification(x) - s_s).abs() < 1e-12, "{soil:?} {x}");
     }
-    // 0.25 and its roots are exact.
+    // 0.25 and its square roots are exact.
     for (soil, c_c) in [
         (Soil::A, 1.0),
         (Soil::B, 1.10 * 2.0_f64.powf(0.4)),
@@ -111,7 +111,7 @@ fn eq_3_2_2_spectral_accelerations() {
     assert!((damping_factor(5.0), damping_factor(80.0)) == (1.0, 0.55));
 }
 
-/// Both sides of every corner agree, at every soil: rounding apart, and but for the step of 1.3 % at T_E, where the code rounds
+/// Both sides of every corner agree, for every soil, except for rounding and for the step of 1.3 % at T_E, where the code rounds
 /// 1/(4 pi^2) to 0.025.
 #[test]
 fn eq_3_2_2_is_continuous_at_every_corner() {
@@ -154,7 +154,7 @@ fn par_3_2_3_2_3_spectral_displacements() {
     ] {
         printed(slv().displacement_m(period_s, 8.0, GRAVITY), expected);
     }
-    // Beyond T_E what softened has passed the plateau.
+    // Beyond T_E a softening mechanism has already passed the plateau.
     let largest = |period_s| slv().largest_displacement_m(period_s, 8.0, GRAVITY);
     assert_eq!(largest(8.0), slv().displacement_m(5.0, 8.0, GRAVITY));
     assert!((1..100).all(|i| {
@@ -248,7 +248,7 @@ fn c7_2_5_to_8_the_spectrum_of_a_floor() {
     assert!(FloorSpectrum::new(slv(), Vec::new()).is_none());
 }
 
-/// The mechanism is softer than the building: what it was asked in resonance stays.
+/// If the mechanism is softer than the building, the demand in resonance remains.
 #[test]
 fn c8_7_1_12_displacements_beyond_the_resonance() {
     let lightly = floor(slv(), mode(0.45, 3.0));
@@ -265,8 +265,8 @@ fn c8_7_1_12_displacements_beyond_the_resonance() {
     assert!(lightly.displacement_m(3.0, 8.0, GRAVITY) > 0.25494);
 }
 
-/// Several modes add up as squares, in any order; near the ground the floor is as strong as the ground, which is our addition
-/// on the safe side.
+/// Several modes add up as squares, in any order. Near the ground the floor is at least as strong as the ground; this is our
+/// addition, on the safe side.
 #[test]
 fn c7_2_8_modes_add_up_and_no_floor_is_weaker_than_the_ground() {
     let modes = [
@@ -300,7 +300,7 @@ fn c7_2_8_modes_add_up_and_no_floor_is_weaker_than_the_ground() {
     }
 }
 
-/// A linear check by the circular of 2009 of the church of San Uldarico in Parma (a thesis, p. 161): soil C, one storey of
+/// A linear check by the circular of 2009, of the church of San Uldarico in Parma (a thesis, p. 161): soil C, one storey of
 /// 9.99 m, the mechanism at 15.43 m, which would bear 0.322 g at the ground.
 #[test]
 fn a_published_linear_check() {
@@ -328,8 +328,8 @@ fn a_published_linear_check() {
     assert!((at_mode_g * GRAVITY / 3.029 - 1.0).abs() < 2e-3);
 }
 
-/// An oscillator shaken by 1 m/s2 for good swings about its displaced rest, up to (1 + exp(-pi z / sqrt(1 - z^2))) / w^2; a
-/// harmonic motion in resonance builds up to 1/(2 z w^2).
+/// An oscillator under a lasting acceleration of 1 m/s2 swings about its displaced rest position, up to
+/// (1 + exp(-pi z / sqrt(1 - z^2))) / w^2; harmonic motion in resonance builds up to 1/(2 z w^2).
 #[test]
 fn spectra_of_records_are_those_of_closed_forms() {
     for (period_s, damping) in [(0.5, 5.0), (1.3, 10.0), (4.0, 2.0)] {
@@ -354,7 +354,7 @@ fn spectra_of_records_are_those_of_closed_forms() {
     }
 }
 
-/// The same by a plain integration in ten thousand small steps, of noise.
+/// The same for noise, by a plain integration in ten thousand small steps.
 #[test]
 fn spectra_of_records_are_those_of_an_integration() {
     let mut random = Random(7);
@@ -461,7 +461,7 @@ fn model(scenario: &Scenario) -> Box<dyn MechanismModel> {
     scenario.mechanisms().unwrap()
 }
 
-/// Capacity of the rigid bodies, control at their common centre.
+/// Capacity of the rigid bodies, with their common centre as control point.
 fn of_bodies(model: &dyn MechanismModel, sway: Sway) -> Capacity {
     let bodies = model.moving_bodies(sway).unwrap();
     let masses: Vec<(f64, Carried)> = (0..)
@@ -520,7 +520,7 @@ fn c8_7_1_1_the_multiplier_is_that_of_the_virtual_work_of_the_bodies() {
         printed(load_multiplier(&bodies), alpha0);
         let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
         printed(mass_kg, mass);
-        // The limit analysis found the same push without them.
+        // Limit analysis found the same push without them.
         let incipient_g = model.incipient_acceleration_g(sway).unwrap();
         assert!((load_multiplier(&bodies) / incipient_g - 1.0).abs() < 1e-12);
     }
@@ -533,7 +533,7 @@ fn c8_7_1_5_participating_masses_of_rigid_bodies() {
         let own = Participation::of_bodies(&bodies);
         printed(own.mass_fraction, e);
         printed(own.participating_mass_kg, participating);
-        // Virtual displacements know no unit.
+        // Virtual displacements have no unit.
         let scaled: Vec<MovingBody> = bodies
             .iter()
             .map(|body| MovingBody {
@@ -546,7 +546,7 @@ fn c8_7_1_5_participating_masses_of_rigid_bodies() {
     }
 }
 
-/// Displacements of the common centre, and of the oscillator: that centre's over e*.
+/// Displacements of the common centre, and of the oscillator, which are those of the centre divided by e*.
 #[test]
 fn c8_7_1_4_displacements_of_the_oscillator() {
     for (scenario, sway, [.., centre_m, oscillator_m]) in cases() {
@@ -559,8 +559,8 @@ fn c8_7_1_4_displacements_of_the_oscillator() {
     }
 }
 
-/// The bodies' virtual displacements are the derivatives of their motion, and friction is that of the thrust at the hinges: of a
-/// block on its toe, tan of what it leans.
+/// The bodies' virtual displacements are the derivatives of their motion. Friction is that of the thrust at the hinges; for a
+/// block on its toe, the tangent of its inclination.
 #[test]
 fn c8_7_1_2_1_2_virtual_displacements_are_those_of_the_motion() {
     for (scenario, sway, _) in cases() {
@@ -573,7 +573,7 @@ fn c8_7_1_2_1_2_virtual_displacements_are_those_of_the_motion() {
             let moved = (after_pose.of(body.centre_m) - before_pose.of(body.centre_m))
                 / (after.q_rad - before.q_rad);
             let own = Vector2::new(sway.sign() * body.displacement.x, body.displacement.y);
-            // The difference quotient errs by the square of its step, and rounding over it.
+            // The difference quotient has an error of the square of its step, plus rounding divided by the step.
             assert!(
                 (moved - own).norm() < 1e-8 * (1.0 + own.norm()),
                 "{moved} {own}"
@@ -596,7 +596,7 @@ fn c8_7_1_2_1_2_virtual_displacements_are_those_of_the_motion() {
     assert!(moving(Sway::Right) < masonry.row().mass_kg() + 1e-6);
 }
 
-/// The mirror image of a structure sways to the other side with the mirror images of its bodies.
+/// The mirror image of a structure sways to the other side, with mirrored bodies.
 #[test]
 fn mirrored_structures_have_mirrored_bodies() {
     let text = "[pointed_arch]\nspan_m = 6\nrise_m = 4\nthickness_m = 0.6\nvoussoirs = 14\n[[load]]\nmass_kg = 1500\nx_m = 1\n";
@@ -611,7 +611,7 @@ fn mirrored_structures_have_mirrored_bodies() {
     }
 }
 
-/// A body that is held by ever more, up to the end of its way, has no ultimate displacement.
+/// If the force that holds a body grows up to the end of its motion, there is no ultimate displacement.
 #[test]
 fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
     let rising = |part: f64| Displaced {
@@ -630,7 +630,7 @@ fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
     assert_eq!(refused, Err(CapacityError::Locks { sway: Sway::Right }));
 }
 
-/// What strengthens first and weakens then is borne up to where it bears nothing, along its own curve.
+/// If the force first grows and then falls, the curve is followed along its own course to where the force vanishes.
 #[test]
 fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
     let law = |part: f64| (1.0 - part) * (0.1 + 0.4 * part);
@@ -655,8 +655,8 @@ fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
     .unwrap();
     assert!((capacity.end().displacement_m - 0.1_f64.sin()).abs() < 1e-12);
     assert!(capacity.oscillator_acceleration_g(0.3) > capacity.oscillator_acceleration_g(0.0));
-    // The displacement at 0.4 d0 is sin(0.1 s); straight between a hundred points, off by at most an eighth of the curvature times
-    // the square of their distance.
+    // The displacement at 0.4 d0 is sin(0.1 s). The curve is straight between a hundred points, off by at most an eighth of the curvature
+    // times the square of their distance.
     let part = (0.4 * 0.1_f64.sin()).asin() / 0.1;
     let own_g = capacity.oscillator_acceleration_g(0.4);
     assert!(
@@ -665,7 +665,7 @@ fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
     );
 }
 
-/// The curve of the semicircle is straight between a hundred points: its period at 0.4 d0 is that of the curve itself to 3e-6.
+/// The curve of the semicircle is straight between a hundred points: its period at 0.4 d0 is that of the exact curve, to 3e-6.
 #[test]
 fn c8_7_1_10_the_period_of_a_curve_that_is_not_straight() {
     let model = model(&parsed(ARCH));
@@ -692,7 +692,7 @@ fn c8_7_1_10_the_period_of_a_curve_that_is_not_straight() {
     let exact_g =
         model.displaced(Sway::Right, low).unwrap().acceleration_g / capacity.mass_fraction;
     let own_g = capacity.oscillator_acceleration_g(0.4);
-    // T goes with one over the root of a.
+    // T is proportional to one over the square root of a.
     let ratio = (exact_g / own_g).sqrt();
     assert!((ratio - 1.0).abs() < 3e-6 && ratio != 1.0, "{ratio}");
 }

@@ -1,5 +1,5 @@
-//! The dynamic route of the check, C8.7.1.2.1.9: peaks against an integration and a geometry of this test's own, what counts of
-//! them, both sides, and what is refused.
+//! The dynamic route of the check, C8.7.1.2.1.9: peaks compared with an integration and a geometry of this test's own, which peaks
+//! count, both sides, and what is refused.
 
 use std::fs;
 use std::path::Path;
@@ -22,7 +22,7 @@ const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n\
     [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n\
     [demand.slc]\nag_g = 0.32\nf0 = 2.45\ntc_star_s = 0.36\n";
 
-/// A folder with all records of the repository, in which this is `a.toml`.
+/// A folder with all records of the repository, in which `a.toml` has this text.
 fn folder(text: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for entry in fs::read_dir(scenarios().join("records")).unwrap() {
@@ -41,7 +41,7 @@ fn check(folder: &Path) -> Check {
     Check::new(&read(folder)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The histories of SLV of a structure under records, given as an array of names.
+/// The histories of SLV for a structure under records, given as an array of names.
 fn of_slv(structure: &str, records: &str) -> Histories {
     let text = format!("{structure}{DEMAND}[verify]\nslv_records = {records}\n");
     let check = check(folder(&text).path());
@@ -52,7 +52,7 @@ fn of_slv(structure: &str, records: &str) -> Histories {
     slv.unwrap().histories.unwrap()
 }
 
-/// Times and accelerations in m/s2 of an AT2 file, read by four lines of this test.
+/// Sample interval and accelerations in m/s2 of an AT2 file, read by four lines of this test.
 fn at2(name: &str) -> (f64, Vec<f64>) {
     let text = fs::read_to_string(scenarios().join("records").join(name)).unwrap();
     let values = text.lines().skip(4).flat_map(str::split_whitespace);
@@ -64,7 +64,7 @@ fn at2(name: &str) -> (f64, Vec<f64>) {
     )
 }
 
-/// Housner's block, 4 m by 0.8 m, under straight lines between samples.
+/// Housner's block, 4 m by 0.8 m, with straight lines between samples.
 struct Housner<'a> {
     dt_s: f64,
     samples: &'a [f64],
@@ -83,7 +83,7 @@ impl Housner<'_> {
         }
     }
 
-    /// Swayed to the right (side 1) it turns clockwise, and ground that goes to the right pulls it back.
+    /// When it sways right (side 1) it turns clockwise, and ground that accelerates to the right pulls it back.
     fn slope(&self, time_s: f64, side: f64, theta: f64) -> f64 {
         let alpha = ALPHA_TAN.atan();
         let p2 = 0.75 * GRAVITY / (0.5 * 4.0_f64.hypot(0.8));
@@ -91,7 +91,7 @@ impl Housner<'_> {
         -p2 * ((alpha - theta).sin() + push * (alpha - theta).cos())
     }
 
-    /// A step of Runge and Kutta.
+    /// A Runge-Kutta step.
     fn advance(&self, time_s: f64, side: f64, (x, v): (f64, f64), h: f64) -> (f64, f64) {
         let at = |h: f64, x: f64| self.slope(time_s + h, side, x);
         let (a1, b1) = (v, at(0.0, x));
@@ -104,7 +104,7 @@ impl Housner<'_> {
         )
     }
 
-    /// Its largest rotations to the right and left, or `None` where it overturns, by so many steps a sample. Impacts keep
+    /// Its largest rotations to the right and left, with this many steps per sample, or `None` if it overturns. Impacts keep
     /// 1 - 1.5 sin^2 alpha of the rate.
     fn peaks(&self, parts: u32) -> Option<[f64; 2]> {
         let kept = 1.0 - 1.5 * ALPHA_TAN.atan().sin().powi(2);
@@ -152,8 +152,8 @@ impl Housner<'_> {
     }
 }
 
-/// The displacement of a column is that of its centre; an integration that shares nothing with the program's has the same peaks, to
-/// 0.2 %. Rocking multiplies small differences at every impact: only peaks that this integration has with other steps as well are
+/// The displacement of a column is that of its centre. An integration that shares nothing with the program's has the same peaks, to
+/// 0.2 %. Rocking amplifies small differences at every impact, so only peaks that do not depend on the steps of this integration are
 /// compared.
 #[test]
 fn c8_7_1_2_1_9_peaks_of_a_column_are_those_of_housners_equation() {
@@ -184,7 +184,7 @@ fn c8_7_1_2_1_9_peaks_of_a_column_are_those_of_housners_equation() {
             overturned += 1;
             continue;
         };
-        // The other sign is the mirror image, and the larger peak counts.
+        // The other sign gives the mirror image, and the larger peak counts.
         let largest = |peaks: [f64; 2]| displacement_m(peaks[0].max(peaks[1]));
         let (coarse_m, fine_m) = (largest(coarse), largest(fine));
         if (coarse_m / fine_m - 1.0).abs() > 1e-3 {
@@ -205,7 +205,7 @@ fn c8_7_1_2_1_9_peaks_of_a_column_are_those_of_housners_equation() {
     assert!((found.sides[0].restitution.unwrap() / restitution - 1.0).abs() < 1e-12);
 }
 
-/// Sector of the ring between two angles from the left springing: mass per metre of depth and per density, and centroid.
+/// Sector of the ring between two angles from the left springing: mass per metre of depth and unit density, and centroid.
 fn sector([from, to]: [f64; 2]) -> (f64, Vector2<f64>) {
     let (inner, outer) = (4.625_f64, 5.375_f64);
     let half = 0.5 * (to - from);
@@ -220,7 +220,7 @@ fn sector([from, to]: [f64; 2]) -> (f64, Vector2<f64>) {
     )
 }
 
-/// After impacts other hinges are open; what moves is then taken from the angles of the bodies and sectors of the ring.
+/// After impacts other hinges are open; then the motion is computed from the angles of the bodies and sectors of the ring.
 #[test]
 fn c8_7_1_2_1_9_displacements_of_an_arch_after_impacts_are_those_of_its_bodies() {
     let names = ["slv-2.at2", "slv-3.at2", "slv-5.at2"];
@@ -286,7 +286,7 @@ fn c8_7_1_2_1_9_displacements_of_an_arch_after_impacts_are_those_of_its_bodies()
             peaks[side] = peaks[side].max(shift_m);
         }
         assert!(links > 20, "{links}");
-        // Either sign of the record acts; the arch is its own mirror image.
+        // Either sign of the record acts; the arch is symmetric.
         let peak_m = peaks[0].max(peaks[1]);
         for peak in record.peaks {
             assert!(
@@ -304,7 +304,7 @@ fn peaks(records: &[RecordPeaks], side: usize) -> Vec<f64> {
         .collect()
 }
 
-/// From seven records on the mean counts, of fewer the largest; with FC and without.
+/// With seven records or more the mean counts, with fewer the largest; with FC and without.
 #[test]
 fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
     let seven = of_slv(SEMICIRCLE, "'slv-*.at2'");
@@ -315,7 +315,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
         assert!((own.capacity_m / (0.4 * own.d0_m) - 1.0).abs() < 1e-12);
         assert!((own.capacity_over_fc_m * 1.35 / own.capacity_m - 1.0).abs() < 1e-12);
         assert_eq!(own.exceeded, [0, 0]);
-        // The worst of them is beyond what is allowed: the mean is not.
+        // The worst of them exceeds the capacity, but the mean does not.
         assert!(
             peaks(&seven.records, side)
                 .iter()
@@ -340,7 +340,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
     }
 }
 
-/// One record beyond d0 is one too many, whatever the mean is; so is one that overturns.
+/// One record beyond d0 is one too many, whatever the mean; so is one that overturns.
 #[test]
 fn c8_7_1_2_1_9_d0_is_exceeded_in_no_record() {
     let beyond = of_slv(SEMICIRCLE, "['slv-*.at2', 'wave-6.at2']");
@@ -356,7 +356,7 @@ fn c8_7_1_2_1_9_d0_is_exceeded_in_no_record() {
     assert_eq!(beyond.passes(), [false, false]);
     let slv = of_slv(COLUMN, "['slv-*.at2', 'wave-6.at2']").sides[0];
     assert!(slv.demand_m.is_some());
-    // With more of the small ones the mean is allowed, and yet it does not pass.
+    // With more of the small ones the mean is allowed, but the check still does not pass.
     let many: Vec<String> = (0..30).map(|i| format!("'small-{i}.csv'")).collect();
     let text = format!(
         "{SEMICIRCLE}{DEMAND}[verify]\nslv_records = ['wave-6.at2', {}]\nunit = 'g'\n",
@@ -379,7 +379,7 @@ fn c8_7_1_2_1_9_d0_is_exceeded_in_no_record() {
     assert!(overturns.sides[0].exceeded[0] >= 1);
 }
 
-/// The load makes both sides differ; the mirror image has them exchanged.
+/// The load makes the sides differ; in the mirror image they are exchanged.
 #[test]
 fn c8_7_1_2_1_9_both_sides_of_an_uneven_arch() {
     let arch = "[pointed_arch]\nspan_m = 6\nrise_m = 4\nthickness_m = 0.6\nvoussoirs = 14\n\
@@ -514,7 +514,7 @@ fn records_that_make_no_check_are_refused() {
     ));
 }
 
-/// Histories at both states stand in words, JSON and page, resolve and read back, and with spectra by points name no clause.
+/// Histories at both limit states appear in words, JSON and page, resolve and read back; with spectra by points no clause is cited.
 #[test]
 fn histories_are_told_alike_everywhere() {
     let text = format!(
@@ -545,7 +545,7 @@ fn histories_are_told_alike_everywhere() {
         (&slc["passed"], &slv["passed_over_fc"]),
         (&false.into(), &true.into())
     );
-    // What counts for the state is the check by displacement.
+    // The check by displacement decides the verdict of the state.
     assert_eq!(data["verdict"]["slv"], "not_passed");
     let names = data["decisions"]
         .as_array()
@@ -590,7 +590,7 @@ for (const [index, state] of ['slv', 'slc'].entries()) {
     browser::assert_checked(&page, script, &json, &[], 100);
 }
 
-/// The commands of docs/verify.md say what stands below them, and the rows of its table are those of the JSON.
+/// The commands of docs/verify.md print what stands below them, and the rows of its table are those of the JSON.
 #[test]
 fn commands_say_what_the_page_of_the_documentation_shows() {
     let folder = tempfile::tempdir().unwrap();

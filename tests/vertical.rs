@@ -17,7 +17,7 @@ fn release(rotation_rad: f64) -> Option<Initial> {
     })
 }
 
-/// On ground that rises ever faster at a steady rate everything is as under more gravity.
+/// On ground with a constant upward acceleration everything is as with more gravity.
 #[test]
 fn a_steady_vertical_acceleration_is_gravity() {
     let arch = semicircle();
@@ -35,7 +35,7 @@ fn a_steady_vertical_acceleration_is_gravity() {
         for (x, y) in pairs(impact_times_s(&a), impact_times_s(&b)) {
             assert!((x - y).abs() < 1e-8, "{x} {y}");
         }
-        // The plain ground is quiet some time, which ends the run at rest; that which rises is not.
+        // The plain ground is quiet for some time, which ends the run at rest; the rising ground is not.
         let (end, until) = rows_b.split_last().unwrap();
         assert_eq!((end.state, b.summary.outcome), (State::Rest, Outcome::Rest));
         let (before, after) = rows_a.split_at(until.len());
@@ -48,7 +48,7 @@ fn a_steady_vertical_acceleration_is_gravity() {
         }
         assert!(after.iter().all(|row| row.state == State::Rest));
     }
-    // The same for a release on ground that pulses in both directions at once.
+    // The same for a release on ground with pulses in both directions at once.
     let shake = GroundMotion::pulse_along(
         Pulse::Rectangular,
         Vector2::new(0.05 * G, 2.0),
@@ -65,7 +65,7 @@ fn a_steady_vertical_acceleration_is_gravity() {
     }
 }
 
-/// Both components grow in straight lines: the tilt of gravity passes A_L where
+/// Both components grow linearly: the tilt of gravity passes A_L when
 /// `h t = A_L (g + v t)`.
 #[test]
 fn uplift_is_at_the_tilt_of_gravity() {
@@ -92,7 +92,7 @@ fn uplift_is_at_the_tilt_of_gravity() {
         assert_eq!(outcome(1.0 - 1e-9), Outcome::NeverMoved);
         assert_ne!(outcome(1.0 + 1e-3), Outcome::NeverMoved);
     }
-    // The weight that the ground takes away while it pushes less and less: the largest tilt is neither at
+    // The ground takes weight away while its push decreases: the largest tilt is neither at
     // the largest push nor at the largest fall, and lasts for a moment.
     let tilt = |t: f64| (1.2 - 0.3 * t) / (G - 4.0 * t.min(2.0 - t));
     assert!(tilt(1.0) > incipient && tilt(0.7) < incipient && tilt(1.1) < incipient);
@@ -106,7 +106,7 @@ fn uplift_is_at_the_tilt_of_gravity() {
     assert_ne!(history.summary.outcome, Outcome::NeverMoved);
 }
 
-/// The equation of motion under both accelerations, by the Runge-Kutta method of fourth order in 20000
+/// The equation of motion with both accelerations, by the Runge-Kutta method of fourth order in 20000
 /// steps, written here from the coefficients: until the first impact the history is the same.
 #[test]
 fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
@@ -125,7 +125,7 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
     let mut path = vec![q];
     for step in 0..20_000 {
         let t = f64::from(step) * h;
-        // The wave ends at a step; each step keeps to its own side of it.
+        // The wave ends at a step; each step stays on its own side of that instant.
         let (start, middle, finish) = (t + 1e-12, t + 0.5 * h, t + h - 1e-12);
         let k1 = (rate, bend(start, q, rate));
         let k2 = (
@@ -147,7 +147,7 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
             .unwrap();
     let (history, rows) = run(&arch, &ground, G, release(released), end);
     assert!(history.summary.impacts == 0 && q > 0.0);
-    // The ground moves all the time: a history ends earlier where quiet ground has decided it.
+    // The ground moves all the time; on quiet ground the history would end once it is decided.
     assert_eq!(rows.len(), 101);
     for (i, row) in rows.iter().enumerate() {
         assert!(
@@ -156,12 +156,12 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
             row.time_s
         );
     }
-    // Without the vertical part it is elsewhere.
+    // Without the vertical part the arch is elsewhere.
     let plain = GroundMotion::pulse(Pulse::OneSine, horizontal, period, 0.0).unwrap();
     let (_, rows) = run(&arch, &plain, G, release(released), end);
     assert_eq!(rows.len(), 101);
     assert!((rows.last().unwrap().rotations_rad[0] + q).abs() > 1e-4);
-    // The ground's work on an arch that is open is real: without it the energy would not balance.
+    // The ground does work on an open arch: without it the energy would not balance.
     assert!(history.summary.energy_defect_ratio < 1e-8);
 }
 
@@ -206,7 +206,7 @@ fn ground_that_falls_freely_is_an_input_error() {
     assert!(error.contains("at 0.25 s"), "{error}");
 }
 
-/// The fixed columns stay as they are; the vertical acceleration follows only where there is one.
+/// The fixed columns stay the same; the vertical acceleration follows only if there is one.
 #[test]
 fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
     for vertical_g in [0.0, -0.15] {

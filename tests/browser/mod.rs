@@ -1,4 +1,4 @@
-//! Pages in a real browser, where there is one.
+//! Pages in a real browser, if there is one.
 #![allow(clippy::print_stderr)]
 
 use std::fs;
@@ -12,10 +12,10 @@ const BROWSERS: [&str; 4] = [
     "google-chrome",
 ];
 
-/// What a page says of itself after its script `check`, which has `data` and calls `verify(true or false, "what")`;
-/// `None`, with a message, where there is no browser. Errors on the console count as failed checks.
+/// The result of a page's own script `check`, which has `data` and calls `verify(true or false, "what")`;
+/// `None`, with a message, if there is no browser. Errors on the console count as failed checks.
 ///
-/// `settings` are arguments of the browser. Its time is virtual and no frames are drawn in it, so a timer stands in for
+/// `settings` are arguments of the browser. Its time is virtual and it draws no frames, so a timer replaces
 /// them.
 pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Option<String> {
     let browser = BROWSERS.iter().find(|name| {
@@ -70,7 +70,7 @@ pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Optio
     Some(verdict.to_owned())
 }
 
-/// Asserts that a page's checks all pass, at least so many of them.
+/// Asserts that all checks of a page pass, at least this many.
 pub fn assert_checked(page: &Path, check: &str, data: &str, settings: &[&str], least: usize) {
     if let Some(verdict) = checked(page, check, data, settings) {
         let (passed, failures) = verdict.split_once(" passed\n").unwrap();

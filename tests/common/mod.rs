@@ -1,4 +1,4 @@
-//! What several test files share: arches by their published names, and short ways to run them.
+//! Code that several test files share: arches by their published names, and short ways to run them.
 
 use archrock::dynamics::ground::Pulse;
 use archrock::mechanics::blocks::{Drum, Row};
@@ -39,13 +39,13 @@ pub const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nemb
 /// A column five times as high as wide.
 pub const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
 
-/// A scenario that is as it should be.
+/// A valid scenario.
 #[track_caller]
 pub fn parsed(text: &str) -> Scenario {
     Scenario::parse(text, "s.toml").unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// An arch under the impact model of the paper.
+/// An arch with the impact model of the paper.
 pub fn four_links(
     mean_radius_m: f64,
     thickness_ratio: f64,
@@ -92,7 +92,7 @@ pub fn released(end_s: f64, sway: Sway, rotation_rad: f64) -> Request {
     }
 }
 
-/// A pulse from the start on.
+/// A pulse from time zero.
 pub fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
     GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
 }
@@ -117,7 +117,7 @@ pub fn impact_times_s(history: &History) -> Vec<f64> {
     history.impacts().map(|(time_s, _)| time_s).collect()
 }
 
-/// Random numbers in [0, 1) that are the same on every machine (SplitMix64).
+/// Random numbers in [0, 1), the same on every machine (SplitMix64).
 pub struct Random(pub u64);
 
 impl Random {
@@ -142,7 +142,7 @@ impl Random {
         self.next() < probability
     }
 
-    /// Four ordered sections; each one lies on a springing now and then, as maxima often do.
+    /// Four ordered sections; now and then one lies on a springing, as maxima often do.
     pub fn quadruple(&mut self, embrace_rad: f64) -> [f64; 4] {
         let mut angles =
             [0.0; 4].map(|_: f64| (self.next() * 1.2 - 0.1).clamp(0.0, 1.0) * embrace_rad);
@@ -151,7 +151,7 @@ impl Random {
     }
 }
 
-/// Best value of `score` near `start` by trying steps along the axes and the diagonals, ever shorter.
+/// Best value of `score` near `start`, by trying ever shorter steps along the axes and the diagonals.
 /// Slow and plain: it shares nothing with the search of the library.
 pub fn climb(
     start: [f64; 4],
@@ -200,7 +200,7 @@ pub fn three(of_bodies: &[f64]) -> [f64; 3] {
     of_bodies.try_into().unwrap()
 }
 
-/// Numbers that a caller may get wrong, and ones that are fine.
+/// Numbers that a caller may get wrong, and valid ones.
 pub fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => any::<f64>(),
@@ -215,12 +215,12 @@ pub fn any_number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Mostly fine, so that one wrong number is found among right ones.
+/// Mostly valid, so that one wrong number is found among valid ones.
 pub fn number(fine: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
     prop_oneof![4 => fine, 1 => any_number()]
 }
 
-/// The elements of both side by side; there must be some, and as many of either.
+/// The elements of both in pairs; there must be some, and as many of one as of the other.
 #[track_caller]
 pub fn pairs<A, B>(
     a: impl IntoIterator<Item = A>,

@@ -1,4 +1,4 @@
-//! Synthetic ground motions, the files they are written to, and what they do to an arch.
+//! Synthetic ground motions, the files with them, and the histories of an arch under them.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -8,8 +8,8 @@ use archrock::{FourLinkArch, GroundMotion, History, Initial, Model as _, Request
 
 pub const G: f64 = 9.81;
 
-/// History with samples every 5 ms. It comes to rest below 1e-8 of the energy barrier under the gravity `G`,
-/// whatever gravity is.
+/// History with samples every 5 ms. It comes to rest below 1e-8 of the energy barrier for the gravity `G`,
+/// whatever the actual gravity.
 pub fn run(
     model: &FourLinkArch,
     ground: &GroundMotion,
@@ -30,7 +30,7 @@ pub fn run(
     (history, samples)
 }
 
-/// An earthquake from a seed: forty waves of 0.3 to 8 Hz with random phases, weaker the faster, which swell
+/// An earthquake from a seed: forty waves of 0.3 to 8 Hz with random phases, weaker at higher frequencies, which swell
 /// over the first tenth of the duration and fade over the second half, with a peak of 1.
 pub fn synthetic(seed: u64, duration_s: f64, step_s: f64) -> Vec<(f64, f64)> {
     let mut random = Random(seed);
@@ -77,12 +77,12 @@ pub struct Style {
     /// The line with `{npts}` and `{dt}`.
     pub counts: &'static str,
     pub per_line: usize,
-    /// Between values; nothing: only signs part them, or the blank in the place of a sign.
+    /// Text between values; if empty, only signs separate them, or the blank in place of a sign.
     pub gap: &'static str,
     pub line_end: &'static str,
 }
 
-/// As the database of NGA-West2 writes.
+/// The style of the NGA-West2 database.
 pub const NGA_WEST2: Style = Style {
     counts: "NPTS=  {npts}, DT=   {dt} SEC",
     per_line: 5,

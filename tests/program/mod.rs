@@ -1,11 +1,11 @@
-//! The program as tests run it.
+//! Running the program in tests.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// The program with these arguments, in a folder, with nobody at the keyboard.
+/// The program with these arguments, in a folder, without a keyboard.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_archrock"));
     command
@@ -25,20 +25,20 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// What the program printed; it is to have succeeded.
+/// What the program printed; it must have succeeded.
 #[track_caller]
 pub fn stdout(output: &Output) -> String {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// What the program prints; it is to succeed.
+/// What the program prints; it must succeed.
 #[track_caller]
 pub fn printed(folder: &Path, arguments: &[&str]) -> String {
     stdout(&archrock(folder, arguments))
 }
 
-/// What the program says while it works; it is to succeed, and no study prints anything.
+/// What the program reports while it works; it must succeed, and no study prints anything.
 #[track_caller]
 pub fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = archrock(folder, arguments);
@@ -48,7 +48,7 @@ pub fn done(folder: &Path, arguments: &[&str]) -> String {
     stderr(&output)
 }
 
-/// What the program said of wrong input; it is to have printed nothing.
+/// What the program says about wrong input; it must have printed nothing.
 #[track_caller]
 pub fn refusal(output: &Output) -> String {
     let said = stderr(output);
@@ -57,7 +57,7 @@ pub fn refusal(output: &Output) -> String {
     said
 }
 
-/// What the program says of wrong input, these words among it; it is to print nothing.
+/// What the program says about wrong input, including these words; it must print nothing.
 #[track_caller]
 pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
     let said = refusal(&archrock(folder, arguments));
@@ -67,7 +67,7 @@ pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
     said
 }
 
-/// Names of what is in a folder, in order.
+/// Names of the entries of a folder, in order.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<_> = entries
@@ -77,7 +77,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// All results in a folder with their contents: all files but that which names the scenario file.
+/// All results in a folder with their contents: all files except the one that names the scenario file.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     names(folder)
         .into_iter()
@@ -94,14 +94,14 @@ pub fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
 }
 
-/// The scenarios among them: the files of one each.
+/// The single scenarios among them.
 pub fn scenario_files() -> Vec<PathBuf> {
     let names = names(&scenarios()).into_iter();
     let files = names.filter(|name| name.ends_with(".toml"));
     files.map(|name| scenarios().join(name)).collect()
 }
 
-/// The commands that a page of the documentation shows, each with the lines that are shown of what it says.
+/// The commands that a page of the documentation shows, each with the lines of its output that are shown.
 fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     let mut commands: Vec<(Vec<String>, Vec<String>)> = Vec::new();
     for line in page.lines() {
@@ -110,7 +110,7 @@ fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
         };
         match line.strip_prefix("$ archrock ") {
             Some(command) => {
-                // None of the words has a blank, so that a shell would only drop the marks around them.
+                // None of the words has a blank, so a shell would only drop the quotation marks.
                 let words = command
                     .split_whitespace()
                     .map(|word| word.trim_matches('\'').to_owned());
@@ -122,8 +122,8 @@ fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     commands
 }
 
-/// Runs the commands that a page shows, as they stand there, in a folder; each says the lines that are shown, in their order. Returns
-/// how many there are.
+/// Runs the commands of a page, as printed there, in a folder; each must print the lines shown, in their order. Returns
+/// the number of commands.
 #[track_caller]
 pub fn says_what_it_shows(page: &str, folder: &Path) -> usize {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);

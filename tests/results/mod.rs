@@ -1,4 +1,4 @@
-//! What the program writes, as tests read it back: tables, JSON, data of pages, pictures.
+//! Reads back what the program writes: tables, JSON, data of pages, pictures.
 
 use std::fs;
 use std::ops::Index;
@@ -55,7 +55,7 @@ impl Row {
         self[column].parse().unwrap()
     }
 
-    /// Names of columns, and what is in them.
+    /// Names of columns, with the cells in them.
     pub fn cells(&self) -> impl Iterator<Item = (&str, &str)> {
         let names = self.header.iter().map(String::as_str);
         names.zip(self.cells.iter().map(String::as_str))
