@@ -53,9 +53,9 @@ pub(crate) fn above(
     })
 }
 
-/// A number as people write it, with six digits at most: 0.12, not 0.12000000000000002.
+/// A number as people write it, with at most six digits: 0.12, not 0.12000000000000002.
 pub(crate) fn plain(x: f64) -> String {
-    // Six digits in the form that has any number of them, and as few of them as are not zero.
+    // Six digits, in the notation that gives the fewest digits without trailing zeros.
     short(format!("{x:.5e}").parse().unwrap_or(x))
 }
 
@@ -71,7 +71,7 @@ pub(crate) fn rounded_down(x: f64) -> f64 {
     (x * unit).floor() / unit
 }
 
-/// What makes a whole number of so many digits of a positive one.
+/// The factor that turns a positive number into one with this many digits before the decimal point.
 fn whole(x: f64, digits: f64) -> f64 {
     10.0_f64.powf(digits - 1.0 - x.log10().floor())
 }

@@ -1,8 +1,8 @@
-//! Bisection: where along the numbers a property changes.
+//! Bisection: finds the number at which a property changes.
 
 use std::convert::Infallible;
 
-/// How narrow an interval is to become.
+/// The width at which bisection stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Width {
     /// Until no number lies between its ends.
@@ -31,7 +31,7 @@ pub(crate) fn middle(low: f64, high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The numbers that [`bisect`] may ask in its next steps, so many of them.
+/// The numbers about which [`bisect`] may ask in its next steps, for this many steps.
 pub(crate) fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> Vec<f64> {
     if steps == 0 || width.is_reached(low, high) {
         return Vec::new();

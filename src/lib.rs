@@ -1,29 +1,29 @@
 //! Rocking of masonry arches under ground motion.
 //!
 //! A horizontal acceleration of the ground beyond the **incipient acceleration** `A_L` turns a masonry
-//! A horizontal acceleration of the ground beyond the **incipient acceleration** `A_L` turns a masonry
 //! arch into a four-link mechanism that sways to one side. When the arch swings back, all hinges close at
-//! once: an **impact**. It then sways to the other side along another mechanism, with less
+//! once: an **impact**. The arch then sways to the other side along another mechanism, with less
+//! energy. This crate follows the arch through all its impacts until it rests or overturns.
 //!
 //! Four links are one model of motion ([`FourLinkArch`], [`FourLinkRow`], and for a column [`RockingColumn`]). Nothing forces an arch
 //! to keep to them: with **free hinges** ([`FreeHinges`]) it is a row of rigid blocks ([`mechanics::blocks`]) any of whose joints may
-//! Four links are one model of motion ([`FourLinkArch`], [`FourLinkRow`], and for a column [`RockingColumn`]). A real arch need
-//! not keep to them: with **free hinges** ([`FreeHinges`]) it is a row of rigid blocks ([`mechanics::blocks`]) any of whose joints may
+//! open, shut, and slip, at any time. That costs more and is computed in steps; repetitions show how far the answer depends on
+//! these ([`Model::repetitions`]). Both are a [`Model`]: a history, a [threshold](studies::threshold) or a [map](studies::map) takes either.
 //!
-//! From the bottom up:
+//! The modules, from the bottom up:
 //!
 //! - [`mechanics`]: pure functions. Shapes and rigid motions of their parts ([`mechanics::geometry`]); the arch
-//! The modules, from the bottom up:
+//!   ([`mechanics::arch`]) and the column ([`mechanics::column`]); arches of other shapes, on piers, with fill and loads
 //!   ([`mechanics::masonry`]), as rows of blocks ([`mechanics::blocks`]); four-link mechanisms
-//!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms that impacts lead
-//!   through, and what certifies it; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
+//!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms through which
+//!   impacts lead, and the certificate of its restitution; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
 //! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
 //!   their histories ([`dynamics::history`]); mechanisms with one degree of freedom at a time
-//!   through, and the certificate of its restitution; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
-//! - [`scenario`]: what to simulate, as a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
+//!   ([`dynamics::hybrid`]), and rows of blocks ([`dynamics::free_hinges`]).
+//! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
-//! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
+//! The arch of the paper, and the history of `docs/example.md`:
 //!
 //! ```
 //! use archrock::{Arch, FourLinkArch, GroundMotion, ImpactModel, Model, Outcome, Pulse, Request};
@@ -61,11 +61,12 @@
 //! left springing. The ground acceleration is positive to the right, so that a negative one pushes the
 //! arch to the right. The restitution coefficient is the ratio of kinetic energies after and before an
 //! impact. [`mechanics`] works in mean radii, unit density and the frame in which a mechanism sways right;
-//! SI units begin with [`mechanics::arch`] and [`mechanics::column`], and units of gravity end at [`scenario`].
+//! SI units begin with [`mechanics::arch`] and [`mechanics::column`], and [`scenario`] converts
+//! accelerations given in g.
 //!
 //! # Sources
-//! impact. [`mechanics`] works in mean radii, unit density and the frame in which a mechanism sways right;
-//! SI units begin with [`mechanics::arch`] and [`mechanics::column`]. [`scenario`] converts the accelerations that are given in g.
+//!
+//! "The paper" in this documentation is *Impacts analysis in the rocking of masonry circular arches*; it is
 //! quoted by its equation numbers. Where a result is derived here instead, the documentation says so.
 
 #[macro_use]

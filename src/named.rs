@@ -1,7 +1,7 @@
 //! Enums whose variants have names in files.
 
-/// Defines an enum whose variants have names in files, so that a variant, its name and its documentation
-/// stand in one place.
+/// Defines an enum whose variants have names in files. A variant, its name and its documentation
+/// stay together.
 macro_rules! named {
     (
         $(#[$attribute:meta])*

@@ -1,4 +1,4 @@
-//! The energy balance of a row: doubtful ones are told, and wrong ones fail.
+//! The energy balance of a row: a doubtful balance is reported, and a wrong one is an error.
 
 use crate::common::{GRAVITY, released, request};
 use archrock::dynamics::free_hinges::{
@@ -22,8 +22,8 @@ fn block(friction_coefficient: Option<f64>, longest_step_s: Option<f64>) -> Free
     model.with_options(options).unwrap()
 }
 
-/// A block that is released gains what its centre comes down by: with sine and cosine of its rotation, half its width and height.
-/// The first impact is within a step of the largest.
+/// A released block gains the energy by which its centre comes down, from sine and cosine of its rotation, half its width and height.
+/// The first impact is within a step of the largest kinetic energy.
 #[test]
 fn the_largest_kinetic_energy_is_noted() {
     let angle_rad = 0.1_f64;
