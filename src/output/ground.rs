@@ -28,7 +28,7 @@ pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> V
     if points.len() <= 2 * COLUMNS {
         return points;
     }
-    // Only records have more points; they are thinned.
+    // Longer curves are those of records and of long wave trains; they are thinned.
     let mut envelope = Envelope::new();
     for (time_s, ground_g) in points {
         envelope.push(time_s, ground_g);

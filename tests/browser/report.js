@@ -4,7 +4,7 @@ const find = (id) => document.getElementById(id);
 const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
 const units = report.data.frames;
 
-// Frames at given times against the tables.
+// Frames at given times are compared with the tables.
 for (const { time_s, state, bodies } of data.rows) {
   report.seek(time_s);
   const shown = report.shown();
@@ -22,7 +22,7 @@ for (const { time_s, state, bodies } of data.rows) {
 verify(data.rows.length > 10, "rows");
 verify(near(report.times[report.times.length - 1], data.end_s, 0), "the last frame is the end");
 
-// Open hinges close within what can be seen: hinges of neighbouring bodies coincide.
+// The picture depends on the time only, and shows the open hinges.
 const picture = () => find("stage").toDataURL();
 report.seek(data.peak_s);
 const atPeak = picture();
@@ -62,7 +62,7 @@ const ridden = picture();
 find("ride").click();
 verify(picture() !== ridden, "riding with the ground or not");
 
-// Plots: the instant is where the time is, a click moves it, zoom is shared.
+// Plots: the cursor is at the current time, a click moves it, all plots zoom together.
 const plots = document.querySelectorAll(".u-over");
 verify(plots.length >= 3, "plots");
 const wide = plots[0].getBoundingClientRect().width;
@@ -81,7 +81,7 @@ press("0");
 await wait(50);
 for (const [from, to] of report.range()) verify(from === 0 && to === data.end_s, "all");
 
-// Playing moves on, in steps with reduced motion.
+// Playing advances the time; with reduced motion it does so in steps.
 report.seek(0);
 find("speed").value = "0.5";
 find("play").click();
