@@ -337,6 +337,144 @@ fn the_program_tells_what_follows() {
     );
 }
 
+/// A map of a block whose width is uncertain: the share of each cell is that of the widths that overturn, by quadrature, to a sample or
+/// two of 64, since samples of one number are spread evenly; and the line of 50 % is where the block of the median width begins to overturn.
+#[test]
+fn maps_tell_the_probability_of_each_cell() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = format!(
+        "{COLUMN}[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.45\n[simulation]\nduration_s = 20.0\n\
+         [map]\nduration_s = [0.4, 0.5]\namplitude_g = {{ from = 0.3, to = 0.5, count = 6 }}\n\
+         [uncertain]\nsamples = 64\n'column.width_m' = {{ from = 0.7, to = 0.9 }}\n"
+    );
+    fs::write(at.join("s.toml"), &text).unwrap();
+    let said = done(at, &["map", "s.toml", "--out", "r", "--threads", "2"]);
+    assert!(
+        said.contains("of 64 samples of [uncertain]:\n  of 12 cells the probability of overturning is at least 5.0 % in "),
+        "{said}"
+    );
+    assert!(
+        said.contains("the scenario itself overturns in ") && said.contains("width decides "),
+        "{said}"
+    );
+    let results = at.join("r/uncertain_map");
+    assert_eq!(
+        names(&results),
+        [
+            "map.csv",
+            "map.html",
+            "map.svg",
+            "matters.svg",
+            "probability.csv",
+            "uncertain.json"
+        ]
+    );
+    let table = Table::read(results.join("map.csv"));
+    let own = Table::read(at.join("r/map.csv"));
+    assert_eq!([table.rows.len(), own.rows.len()], [12, 12]);
+    let mut between = 0;
+    for row in &table.rows {
+        let (duration_s, push_g) = (row.number("duration_s"), row.number("amplitude_g"));
+        // The part of the range below the width from which on the block stands.
+        let widths = (0..2000).map(|index| 0.7 + 0.2 * (f64::from(index) + 0.5) / 2000.0);
+        let overturned = widths.filter(|width| block_overturns(4.0, *width, push_g, duration_s));
+        let probability = overturned.count() as f64 / 2000.0;
+        let share = row.number("overturned");
+        assert!(
+            (share - probability).abs() < 1.6 / 64.0,
+            "{probability} {row:?}"
+        );
+        assert!(row.number("overturned_low") <= share && share <= row.number("overturned_high"));
+        let all = [
+            "overturned",
+            "uncertain",
+            "rest",
+            "never_moved",
+            "still_rocking",
+        ];
+        let sum: f64 = all.iter().map(|name| row.number(*name)).sum();
+        assert!(
+            (sum - 1.0).abs() < 1e-12 && row["samples"] == "64",
+            "{row:?}"
+        );
+        between += u32::from((0.1..0.9).contains(&share));
+    }
+    assert!(between >= 4, "{between}");
+    let lines = Table::read(results.join("probability.csv"));
+    for line in &lines.rows {
+        let (mut low, mut high) = (0.2, 0.6);
+        while high - low > 1e-6 {
+            let middle = 0.5 * (low + high);
+            if block_overturns(4.0, 0.8, middle, line.number("duration_s")) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        // Between cells the line through two probabilities stands for a curve: within a fifth of a cell.
+        assert!(
+            (line.number("overturned_50") - low).abs() < 0.2 * 0.04,
+            "{line:?} {low}"
+        );
+    }
+    // The picture has the colours of these probabilities, and the line.
+    let picture = fs::read_to_string(results.join("map.svg")).unwrap();
+    for words in [
+        "probability of 50 %",
+        "no sample overturns",
+        "every sample overturns",
+    ] {
+        assert!(picture.contains(words), "{words}");
+    }
+
+    // Parts, threads and resuming give the same files; the map itself is no part of these.
+    for part in ["2/3", "1/3", "3/3"] {
+        let part = [
+            "map",
+            "s.toml",
+            "--out",
+            "p",
+            "--shard",
+            part,
+            "--threads",
+            "1",
+            "--resume",
+        ];
+        done(at, &part);
+    }
+    assert_eq!(names(&at.join("p")), ["uncertain_map"]);
+    let parts =
+        ["1", "2", "3"].map(|part| format!("p/uncertain_map/uncertain_map-{part}-of-3.part"));
+    let parts = parts.each_ref().map(String::as_str);
+    done(at, &[&["merge"], &parts[..], &["--out", "m"]].concat());
+    assert_eq!(files(&at.join("m")), files(&results));
+    refused(
+        at,
+        &[&["merge"], &parts[..], &["--out", "n", "--color", "peak"]].concat(),
+        &["--color"],
+    );
+    done(at, &["map", "s.toml", "--out", "none", "--no-uncertain"]);
+    assert!(!at.join("none/uncertain_map").exists());
+    assert_eq!(
+        fs::read(at.join("none/map.csv")).unwrap(),
+        fs::read(at.join("r/map.csv")).unwrap()
+    );
+    // An axis that is uncertain as well.
+    let text = text.replace(
+        "'column.width_m' = {",
+        "'ground.rectangular.amplitude_g' = {",
+    );
+    fs::write(at.join("s.toml"), text).unwrap();
+    refused(
+        at,
+        &["map", "s.toml", "--out", "two"],
+        &[
+            "`amplitude_g` of [map] and \"ground.rectangular.amplitude_g\" of [uncertain] contradict",
+        ],
+    );
+}
+
 /// The first factor of a sample equals the threshold of its own scenario.
 #[test]
 fn thresholds_have_a_distribution() {

@@ -38,7 +38,7 @@ fn to_python(py: Python<'_>, files: Files) -> PyFiles<'_> {
 fn kind_of(name: &str) -> PyResult<StudyKind> {
     StudyKind::of_name(name).ok_or_else(|| {
         PyValueError::new_err(format!(
-            "{name:?} is no study: give \"map\", \"spectrum\", \"suite\", \"uncertain\", \"uncertain_threshold\" or \"uncertain_suite\""
+            "{name:?} is no study: give \"map\", \"spectrum\", \"suite\", \"uncertain\", \"uncertain_threshold\", \"uncertain_suite\" or \"uncertain_map\""
         ))
     })
 }

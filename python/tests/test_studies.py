@@ -14,6 +14,7 @@ from archrock import (
     Column,
     FirstFactors,
     OverturningMap,
+    ProbabilityMap,
     Pulse,
     Record,
     Results,
@@ -118,6 +119,20 @@ def test_an_ensemble_is_that_of_the_program(program: Program, tmp_path: Path) ->
     part = compute_part(scenario, "uncertain_threshold", (1, 1), tmp_path / "parts")
     factors = merge([part])
     assert isinstance(factors, FirstFactors) and len(factors.first_factor) == 40
+
+
+def test_a_map_of_probability_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+    table = "samples = 16\n'column.width_m' = { from = 0.7, to = 0.9 }\n"
+    text = map_scenario(Column(4.0, 0.8), COSINE, AXES).to_toml() + f"[uncertain]\n{table}"
+    scenario = Scenario.parse(text)
+    parts = [compute_part(scenario, "uncertain_map", (part, 2), tmp_path / "parts") for part in (1, 2)]
+    found = merge(parts)
+    assert isinstance(found, ProbabilityMap)
+    assert_files(found, by_program(program, tmp_path, "map", scenario.to_toml()) / "uncertain_map")
+    low, high = found.interval
+    assert found.probability.shape == low.shape == (len(found.x), len(found.y))
+    assert (low <= found.probability).all() and (found.probability <= high).all()
+    assert len(found.lines["overturned_50"]) == len(found.x)
 
 
 def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> None:

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use archrock::output::{Figure, pretty};
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{StudyError, StudyKind, merge as merged};
+use archrock::studies::ensemble::cells::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
 use archrock::studies::results::{Look, Results};
 use clap::ValueEnum;
 
 use super::figure::FigureOption;
-use super::scenario_file::Destination;
+use super::scenario_file::{Destination, Input};
 use super::study::{HingesOption, Options, say};
 use super::uncertain::{Asked, Telling, words};
 use super::{Failure, Format, print};
@@ -120,6 +121,17 @@ impl MapOption {
         })
     }
 
+    /// The look of a map of probability.
+    fn of_samples(self, scenario: &Scenario, figure: Figure) -> Result<Look, String> {
+        if self.no_impact || self.color != Color::Outcome {
+            return Err(
+                "--no-impact and --color are about maps of outcomes, and these are parts of a map of probability"
+                    .to_owned(),
+            );
+        }
+        self.look(scenario, figure)
+    }
+
     /// The look of a study that is not a map.
     fn of_no_map(self, figure: Figure) -> Result<Look, String> {
         if self.no_impact {
@@ -153,31 +165,59 @@ pub fn map(arguments: &MapArguments, quiet: bool) -> Result<(), Failure> {
     OverturningMap::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
     let look = arguments.map.look(&scenario, arguments.figure.get());
     let look = look.map_err(Failure::Input)?;
-    options.study(StudyKind::Map, &input, &scenario, look, quiet)
+    if scenario.uncertain().is_some() {
+        CellsOfSamples::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
+    }
+    with_samples(
+        StudyKind::Map,
+        Asked::Map(look),
+        options,
+        (&input, &scenario),
+        look,
+        quiet,
+    )
 }
 
-pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
-    let options = &arguments.options;
-    let input = options.open()?;
-    let scenario = arguments.hinges.read(&input, quiet)?;
+/// Computes a study of a scenario, and then that of its samples. A part of a scenario with samples is one of these.
+fn with_samples(
+    kind: StudyKind,
+    asked: Asked,
+    options: &Options,
+    (input, scenario): (&Input<'_>, &Scenario),
+    look: Look,
+    quiet: bool,
+) -> Result<(), Failure> {
     let samples = Telling {
         work: options.work(),
-        figure: arguments.figure.get(),
+        figure: look.figure,
         quiet,
     };
-    // In a scenario with samples, a part is a part of those samples.
     if scenario.uncertain().is_none() || !samples.work.is_part() {
-        let look = Look::of(arguments.figure.get());
-        options.study(StudyKind::Suite, &input, &scenario, look, quiet)?;
+        options.study(kind, input, scenario, look, quiet)?;
     }
-    let place = options.place(&input)?;
-    let told = samples.tell(&scenario, Asked::Suite, &place)?;
+    let place = options.place(input)?;
+    let told = samples.tell(scenario, asked, &place)?;
     if let Some(results) = told
         && !quiet
     {
         say(words(&results).trim_end());
     }
     Ok(())
+}
+
+pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
+    let options = &arguments.options;
+    let input = options.open()?;
+    let scenario = arguments.hinges.read(&input, quiet)?;
+    let look = Look::of(arguments.figure.get());
+    with_samples(
+        StudyKind::Suite,
+        Asked::Suite,
+        options,
+        (&input, &scenario),
+        look,
+        quiet,
+    )
 }
 
 pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failure> {
@@ -196,6 +236,7 @@ pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
     let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
     let (_, results) = merged(parts, None, |kind, scenario| match (kind, scenario) {
         (StudyKind::Map, Some(scenario)) => arguments.map.look(scenario, figure),
+        (StudyKind::UncertainMap, Some(scenario)) => arguments.map.of_samples(scenario, figure),
         _ => arguments.map.of_no_map(figure),
     })?;
     write(&results, &place, arguments.format, quiet)

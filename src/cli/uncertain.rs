@@ -28,6 +28,8 @@ pub enum Asked {
     FirstEdges(Factors),
     /// Which records overturn them, and from which intensity.
     Suite,
+    /// What becomes of the cells of a map, which looks like this.
+    Map(Look),
 }
 
 impl Telling {
@@ -56,11 +58,15 @@ impl Telling {
         if scenario.uncertain().is_none() {
             return Ok(None);
         }
-        let look = Look::of(self.figure);
+        let look = match asked {
+            Asked::Map(look) => look.of_samples(),
+            _ => Look::of(self.figure),
+        };
         let kind = match asked {
             Asked::Histories => StudyKind::Uncertain,
             Asked::FirstEdges(_) => StudyKind::UncertainThreshold,
             Asked::Suite => StudyKind::UncertainSuite,
+            Asked::Map(_) => StudyKind::UncertainMap,
         };
         let place = place.within(kind.name());
         let done = self
@@ -68,7 +74,7 @@ impl Telling {
             .compute(kind.name(), &place, self.quiet, |runner, task, watch| {
                 let task = Some(task);
                 Ok(match asked {
-                    Asked::Histories | Asked::Suite => {
+                    Asked::Histories | Asked::Suite | Asked::Map(_) => {
                         kind.compute(scenario, look, runner, task, watch)?
                     }
                     Asked::FirstEdges(factors) => {

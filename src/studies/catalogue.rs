@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::ensemble::cells::CellsOfSamples;
 use super::ensemble::edges::FirstEdges;
 use super::ensemble::histories::Histories;
 use super::ensemble::records::Capacities;
@@ -35,6 +36,8 @@ named! {
         UncertainThreshold = "uncertain_threshold",
         /// Which records overturn samples of the uncertain numbers.
         UncertainSuite = "uncertain_suite",
+        /// How likely pulses overturn, over two quantities, as far as samples of what is not known tell.
+        UncertainMap = "uncertain_map",
     }
 }
 
@@ -123,6 +126,10 @@ impl StudyKind {
             Self::UncertainSuite => {
                 let question = Capacities::of(scenario).map_err(StudyError::Scenario)?;
                 let study = ensemble(scenario, question)?;
+                complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
+            }
+            Self::UncertainMap => {
+                let study = CellsOfSamples::of(scenario).map_err(StudyError::Scenario)?;
                 complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
             }
         }
@@ -243,6 +250,13 @@ pub fn merge(
             let scenario = read(&header.scenario)?;
             let question = Capacities::of(&scenario).map_err(StudyError::Scenario)?;
             ensemble(&scenario, question)?.tell(&rows, look)?
+        }
+        StudyKind::UncertainMap => {
+            let (header, rows) = part::merge(parts)?;
+            let scenario = read(&header.scenario)?;
+            let study = CellsOfSamples::of(&scenario).map_err(StudyError::Scenario)?;
+            let look = look(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
+            study.tell(&rows, look)?
         }
     };
     Ok((kind, results))

@@ -78,4 +78,14 @@ impl Look {
             no_impact: false,
         }
     }
+
+    /// The same of a map of probability, which has no outcomes to colour by and no boundary.
+    #[must_use]
+    pub const fn of_samples(self) -> Self {
+        Self {
+            by_peak: false,
+            no_impact: false,
+            ..self
+        }
+    }
 }

@@ -28,7 +28,9 @@ Progress = Callable[[int, int], object]
 Values = Any
 """Increasing numbers, anything like an array, or a :func:`span`."""
 
-Study = Literal["map", "spectrum", "suite", "uncertain", "uncertain_threshold", "uncertain_suite"]
+Study = Literal[
+    "map", "spectrum", "suite", "uncertain", "uncertain_threshold", "uncertain_suite", "uncertain_map"
+]
 
 
 def span(
@@ -127,14 +129,10 @@ def _column(cells: list[str]) -> npt.NDArray[Any]:
         return np.array(cells)
 
 
-class OverturningMap(Results):
-    """An overturning map: a history for every cell of a plane of two quantities."""
+class _Plane(Results):
+    """Cells over two quantities."""
 
     __slots__ = ()
-
-    _picture = "map.svg"
-    _table = "map.csv"
-    _json = "map.json"
 
     @property
     def axes(self) -> tuple[str, str]:
@@ -161,6 +159,16 @@ class OverturningMap(Results):
         x, y = self.axes
         of_first: npt.NDArray[np.float64] = columns[y][columns[x] == columns[x][0]]
         return of_first
+
+
+class OverturningMap(_Plane):
+    """An overturning map: a history for every cell of a plane of two quantities."""
+
+    __slots__ = ()
+
+    _picture = "map.svg"
+    _table = "map.csv"
+    _json = "map.json"
 
     @property
     def outcome(self) -> npt.NDArray[np.str_]:
@@ -345,6 +353,31 @@ class Fragilities(Ensemble):
         return fragility
 
 
+class ProbabilityMap(_Plane):
+    """How likely each cell of a map overturns, as far as the samples of what is uncertain tell."""
+
+    __slots__ = ()
+
+    _picture = "map.svg"
+    _table = "map.csv"
+    _json = "uncertain.json"
+
+    @property
+    def probability(self) -> npt.NDArray[np.float64]:
+        """The share of samples that overturn in each cell, NaN where none has an outcome, shape ``(len(x), len(y))``."""
+        return self._plane("overturned")
+
+    @property
+    def interval(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """The ends of its interval of 95 %."""
+        return self._plane("overturned_low"), self._plane("overturned_high")
+
+    @property
+    def lines(self) -> dict[str, npt.NDArray[Any]]:
+        """Where the probability first reaches 5, 50 and 95 % along y, for each x, as in ``probability.csv``."""
+        return self.columns("probability.csv")
+
+
 class Check(Files):
     """A check by the Circolare 7/2019: its numbers, and the page to be filed."""
 
@@ -381,6 +414,7 @@ _KINDS: dict[str, type[Results]] = {
     "uncertain": Histories,
     "uncertain_threshold": FirstFactors,
     "uncertain_suite": Fragilities,
+    "uncertain_map": ProbabilityMap,
 }
 
 
@@ -753,8 +787,8 @@ def compute_part(
 
     Args:
         scenario: the scenario with the table of the study.
-        study: ``"map"``, ``"spectrum"``, ``"suite"``, or for samples ``"uncertain"``, ``"uncertain_threshold"`` and
-            ``"uncertain_suite"``.
+        study: ``"map"``, ``"spectrum"``, ``"suite"``, or for samples ``"uncertain"``, ``"uncertain_threshold"``,
+            ``"uncertain_suite"`` and ``"uncertain_map"``.
         shard: the number of the part, from 1, and the number of parts: ``(2, 4)``.
         folder: folder of the file; created if necessary.
         threads: as for :func:`overturning_map`.

@@ -3,7 +3,9 @@
 //! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is
 //! asked of each case: how its history ends and proceeds ([`histories`]), from which factor it overturns ([`edges`]), or which
 //! records overturn it ([`records`]). The study knows only the answers, so shards, resuming and threads work alike for all questions.
+//! The cells of a map ([`cells`]) are a study of their own, whose cases are cells of samples.
 
+pub mod cells;
 pub mod edges;
 pub mod histories;
 pub mod matters;
@@ -91,19 +93,37 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
     /// # Errors
     /// Explains that the scenario has no such table.
     pub fn new(scenario: &'a Scenario, question: Q) -> Result<Self, String> {
-        let uncertain = scenario.uncertain().ok_or_else(|| {
-            "the scenario has no [uncertain]: give it a table such as\n\n\
-             [uncertain]\n\
-             samples = 100\n\
-             \"arch.thickness_ratio\" = { deviation = 0.003 }"
-                .to_owned()
-        })?;
         Ok(Self {
             scenario,
-            uncertain,
+            uncertain: uncertain(scenario)?,
             question,
         })
     }
+}
+
+/// What is uncertain in a scenario, or in words that nothing is.
+fn uncertain(scenario: &Scenario) -> Result<&Uncertain, String> {
+    scenario.uncertain().ok_or_else(|| {
+        "the scenario has no [uncertain]: give it a table such as\n\n\
+         [uncertain]\n\
+         samples = 100\n\
+         \"arch.thickness_ratio\" = { deviation = 0.003 }"
+            .to_owned()
+    })
+}
+
+/// The files that a scenario names, with their checksums, as in [`Study::inputs`].
+fn files(scenario: &Scenario) -> Vec<String> {
+    let record = match scenario.ground() {
+        Some(crate::scenario::Ground::Record(record)) => Some(record),
+        _ => None,
+    };
+    let series = record.into_iter().flat_map(|record| record.series());
+    let suite = scenario.suite().into_iter();
+    let series = series.chain(suite.flat_map(|suite| &suite.records));
+    series
+        .map(|series| format!("{} {:08x}", series.file, series.checksum()))
+        .collect()
 }
 
 impl<Q: Question> Study for Ensemble<'_, Q> {
@@ -116,17 +136,9 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
     }
 
     fn inputs(&self) -> Vec<String> {
-        let record = match self.scenario.ground() {
-            Some(crate::scenario::Ground::Record(record)) => Some(record),
-            _ => None,
-        };
-        let series = record.into_iter().flat_map(|record| record.series());
-        let suite = self.scenario.suite().into_iter();
-        let series = series.chain(suite.flat_map(|suite| &suite.records));
-        series
-            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
-            .chain(self.question.settings())
-            .collect()
+        let mut inputs = files(self.scenario);
+        inputs.extend(self.question.settings());
+        inputs
     }
 
     fn count(&self) -> usize {

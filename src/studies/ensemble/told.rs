@@ -16,7 +16,7 @@ use crate::studies::ending::columns::{self, UNCERTAIN};
 use crate::studies::results::Results;
 use crate::studies::threshold::rounded;
 
-const SUMMARY: &str = "uncertain.json";
+pub(super) const SUMMARY: &str = "uncertain.json";
 
 /// A row of the table of samples: its number, from 1, or 0 for the scenario itself; its values; and its answer.
 struct Line<'a, A> {
@@ -62,7 +62,11 @@ pub(super) struct Decides<'a> {
 }
 
 impl<'a> Decides<'a> {
-    fn new<A>(told: &Told<'a, A>, [name, what]: [&'static str; 2], numbers: &[f64]) -> Self {
+    pub(super) fn new<A>(
+        told: &Told<'a, A>,
+        [name, what]: [&'static str; 2],
+        numbers: &[f64],
+    ) -> Self {
         let of = told.what_matters(numbers);
         let keys = &told.uncertain.keys;
         Self {
@@ -73,7 +77,7 @@ impl<'a> Decides<'a> {
     }
 
     /// `friction coefficient decides 60 % of the first factor that overturns, thickness ratio 25 %`.
-    fn in_words(&self, uncertain: &Uncertain) -> Option<String> {
+    pub(super) fn in_words(&self, uncertain: &Uncertain) -> Option<String> {
         const LEAST: f64 = 0.05;
         let mut of: Vec<_> = self.of.as_ref()?.iter().collect();
         of.sort_by(|a, b| b.1.first_order.total_cmp(&a.1.first_order));
@@ -105,7 +109,7 @@ impl<'a> Decides<'a> {
         ))
     }
 
-    fn to_json(&self) -> (&'static str, Value) {
+    pub(super) fn to_json(&self) -> (&'static str, Value) {
         #[derive(Serialize)]
         struct Of<'a> {
             key: &'a str,
@@ -147,7 +151,7 @@ pub(super) fn spoken(key: &str, uncertain: &Uncertain) -> String {
     }
 }
 
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent > 0.0 && percent < 9.95 || percent > 90.05 && percent < 100.0 {
         format!("{percent:.1} %")
@@ -173,10 +177,10 @@ fn share_in_words(share: &Share) -> String {
 }
 
 /// The uncertainty that samples do not cover.
-const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not name, other ground motions, and the model of motion itself";
+pub(super) const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not name, other ground motions, and the model of motion itself";
 
 /// The first part of the JSON of every ensemble.
-fn beginning<A>(told: &Told<'_, A>) -> Value {
+pub(super) fn beginning<A>(told: &Told<'_, A>) -> Value {
     let reasons = told.samples.iter().zip(1..).filter_map(|(row, sample)| {
         let reason = row.answer.as_ref().err()?;
         Some(json!({ "sample": sample, "why": reason.name(), "reason": reason.reason() }))
@@ -195,7 +199,7 @@ fn beginning<A>(told: &Told<'_, A>) -> Value {
 }
 
 /// How many samples have no answer, and why the first of them has none.
-fn without_answer<A>(told: &Told<'_, A>) -> Vec<String> {
+pub(super) fn without_answer<A>(told: &Told<'_, A>) -> Vec<String> {
     let all = [
         (
             "invalid",
@@ -228,7 +232,7 @@ fn finite(values: [f64; 3]) -> [Option<f64>; 3] {
 }
 
 /// The quantiles of the answers in JSON, by their names.
-fn band_to_json(band: Option<[f64; 3]>) -> Value {
+pub(super) fn band_to_json(band: Option<[f64; 3]>) -> Value {
     let [low, median, high] = band.map_or([None; 3], finite);
     json!({ "quantile_05": low, "median": median, "quantile_95": high })
 }

@@ -1,7 +1,7 @@
 //! The overturning map: a history for every cell of a plane of two quantities.
 
 pub mod boundary;
-mod page;
+pub(super) mod page;
 pub mod picture;
 mod told;
 
@@ -85,7 +85,7 @@ pub struct OverturningMap<'a> {
     /// The structures and pulses that several cells share.
     structures: Shared<Result<Standing, ModelError>>,
     pulses: Shared<ScalablePulse>,
-    /// The scenario, and its variants with other values for keys of other tables.
+    /// The scenario, or a sample of it, and its variants with other values for keys of other tables.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
 }
@@ -166,6 +166,11 @@ impl<'a> OverturningMap<'a> {
     /// The cells of a scenario's map; `None` if it has no map or no ground motion.
     #[must_use]
     pub fn new(scenario: &'a Scenario) -> Option<Self> {
+        Self::of_sample(scenario, scenario.clone())
+    }
+
+    /// The cells of the map of a scenario, where all that its axes do not vary is as in another one, a sample of it.
+    pub(super) fn of_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
         let (Some(map), Some(_)) = (scenario.map(), scenario.ground()) else {
             return None;
         };
@@ -193,7 +198,7 @@ impl<'a> OverturningMap<'a> {
             spread: map.spread,
             structures: Shared::new(counts, structures),
             pulses: Shared::new(counts, depends(&durations)),
-            base: Arc::new(scenario.clone()),
+            base: Arc::new(sample),
             variants: variants
                 .contains(&true)
                 .then(|| Shared::new(counts, variants)),
@@ -201,7 +206,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// The scenario.
+    /// The scenario that has the map.
     #[must_use]
     pub const fn scenario(&self) -> &'a Scenario {
         self.scenario
@@ -249,7 +254,7 @@ impl<'a> OverturningMap<'a> {
                 .filter(|(axis, _)| axis.quantity == Quantity::Other)
                 .map(|(axis, value)| (axis.key.as_str(), value))
                 .collect();
-            self.scenario.with_values(&values).map(Arc::new)
+            self.base.with_values(&values).map(Arc::new)
         })
     }
 

@@ -30,19 +30,90 @@ pub fn page(
         ..look
     };
     let drawn = picture::drawn(title, map, rows, boundaries, look);
-    let data = data(map, rows, &drawn, look);
-    let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-    filled(
-        include_str!("page/page.html"),
-        &[
-            ("PROGRAM", &version),
-            ("TITLE", &escaped(title)),
-            ("PICTURE", &drawn.picture),
-            ("SCENARIO", &escaped(&map.scenario().to_toml())),
-            ("DATA", &script_safe(&data)),
-            ("SCRIPT", include_str!("page/page.js")),
-        ],
-    )
+    let kinds = rows.iter().map(|row| picture::kind_of(&row.result, look));
+    let doubt = |(index, row): (usize, &CellRow)| {
+        let doubt = ended(row)?.uncertain.as_ref()?;
+        Some((index, doubt.clone()))
+    };
+    let cells = Cells {
+        palette: &Kind::ALL,
+        kinds: kinds.collect(),
+        doubts: rows.iter().enumerate().filter_map(doubt).collect(),
+        columns: columns(rows),
+    };
+    cells.page(title, map, &drawn)
+}
+
+/// What the page knows of the cells.
+pub(in crate::studies) struct Cells<'c> {
+    /// All kinds.
+    pub(in crate::studies) palette: &'c [Kind],
+    /// That of each cell.
+    pub(in crate::studies) kinds: Vec<Kind>,
+    /// The uncertain cells by their numbers, and why.
+    pub(in crate::studies) doubts: Vec<(usize, String)>,
+    /// Numbers of each cell, by their names; what a cell does not have is left out.
+    pub(in crate::studies) columns: Vec<(&'static str, Vec<Option<f64>>)>,
+}
+
+impl Cells<'_> {
+    /// The page with this picture, which is for the screen.
+    pub(in crate::studies) fn page(
+        &self,
+        title: &str,
+        map: &OverturningMap<'_>,
+        drawn: &Drawn,
+    ) -> String {
+        let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
+        filled(
+            include_str!("page/page.html"),
+            &[
+                ("PROGRAM", &version),
+                ("TITLE", &escaped(title)),
+                ("PICTURE", &drawn.picture),
+                ("SCENARIO", &escaped(&map.scenario().to_toml())),
+                ("DATA", &script_safe(&self.data(map, drawn))),
+                ("SCRIPT", include_str!("page/page.js")),
+            ],
+        )
+    }
+
+    fn data(&self, map: &OverturningMap<'_>, drawn: &Drawn) -> Value {
+        let index = |kind: &Kind| {
+            let place = self.palette.iter().position(|known| known == kind);
+            u8::try_from(place.unwrap_or(0)).unwrap_or(0)
+        };
+        let kinds: Vec<u8> = self.kinds.iter().map(index).collect();
+        let columns = self.columns.iter().map(|(name, values)| {
+            // NaN stands for a missing value, which the page does not show.
+            let values = values.iter().map(|value| value.unwrap_or(f64::NAN));
+            let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
+            json!({ "name": name, "values": BASE64_STANDARD.encode(bytes) })
+        });
+        let axes = map.axes();
+        let values = map.values();
+        let axis = |i: usize| {
+            json!({
+                "label": picture::label(axes[i]),
+                "values": values[i],
+                "edges_px": drawn.edges_px[i],
+            })
+        };
+        let doubts = self.doubts.iter();
+        let doubts: Map<String, Value> = doubts
+            .map(|(index, doubt)| (index.to_string(), json!(doubt)))
+            .collect();
+        let labels: Vec<&str> = self.palette.iter().map(|kind| kind.label).collect();
+        json!({
+            "axes": [axis(0), axis(1)],
+            "sheet_px": { "width": Figure::SCREEN.width_px(), "height": drawn.height_px },
+            "kinds": BASE64_STANDARD.encode(kinds),
+            "doubts": doubts,
+            "labels": labels,
+            "columns": columns.collect::<Vec<_>>(),
+            "command": command(map),
+        })
+    }
 }
 
 /// How the history of a cell ended, if it has one.
@@ -53,59 +124,25 @@ const fn ended(row: &CellRow) -> Option<&Ending> {
     }
 }
 
-fn data(map: &OverturningMap<'_>, rows: &[CellRow], drawn: &Drawn, look: Look) -> Value {
-    let kinds = rows.iter().map(|row| picture::kind_of(&row.result, look));
-    let kinds: Vec<Kind> = kinds.collect();
-    let index = |kind: &Kind| {
-        Kind::ALL
-            .iter()
-            .position(|known| known == kind)
-            .unwrap_or(0)
-    };
-    let kinds = kinds
-        .iter()
-        .map(|kind| u8::try_from(index(kind)).unwrap_or(0));
-    let column = |name: &str, value: &dyn Fn(&CellRow) -> Option<f64>| {
-        // NaN stands for a missing value, which the page does not show.
-        let values = rows.iter().map(|row| value(row).unwrap_or(f64::NAN));
-        let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
-        json!({ "name": name, "values": BASE64_STANDARD.encode(bytes) })
-    };
+/// The numbers of a cell, by their names.
+fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
+    type Of = fn(&CellRow) -> Option<f64>;
     #[expect(clippy::cast_precision_loss, reason = "numbers of impacts are small")]
-    let columns = [
-        column("impacts", &|row| Some(ended(row)?.known_impacts()? as f64)),
-        column("outcome_time_s", &|row| ended(row)?.known_time_s()),
-        column("peak_rotation_over_critical", &|row| {
+    let all: [(&str, Of); 5] = [
+        ("impacts", |row| Some(ended(row)?.known_impacts()? as f64)),
+        ("outcome_time_s", |row| ended(row)?.known_time_s()),
+        ("peak_rotation_over_critical", |row| {
             ended(row)?.peak.over_critical()
         }),
-        column("peak_rotation_rad", &|row| ended(row)?.peak.rad()),
-        column("energy_defect_ratio", &|row| {
+        ("peak_rotation_rad", |row| ended(row)?.peak.rad()),
+        ("energy_defect_ratio", |row| {
             Some(ended(row)?.energy_defect_ratio)
         }),
     ];
-    let axes = map.axes();
-    let values = map.values();
-    let axis = |i: usize| {
-        json!({
-            "label": picture::label(axes[i]),
-            "values": values[i],
-            "edges_px": drawn.edges_px[i],
-        })
-    };
-    let doubt = |(index, row): (usize, &CellRow)| {
-        let doubt = ended(row)?.uncertain.as_ref()?;
-        Some((index.to_string(), json!(doubt)))
-    };
-    let doubts: Map<String, Value> = rows.iter().enumerate().filter_map(doubt).collect();
-    json!({
-        "axes": [axis(0), axis(1)],
-        "sheet_px": { "width": Figure::SCREEN.width_px(), "height": drawn.height_px },
-        "kinds": BASE64_STANDARD.encode(kinds.collect::<Vec<u8>>()),
-        "doubts": doubts,
-        "labels": Kind::ALL.map(|kind| kind.label),
-        "columns": columns,
-        "command": command(map),
-    })
+    let columns = all.into_iter();
+    columns
+        .map(|(name, of)| (name, rows.iter().map(of).collect()))
+        .collect()
 }
 
 /// The command that runs a cell, with placeholders for its two values. The whole scenario goes to standard input, so the

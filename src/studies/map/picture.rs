@@ -27,7 +27,7 @@ pub(super) fn kind_of(result: &CellResult, look: Look) -> Kind {
     Kind::of(outcome(result), impacts)
 }
 
-pub(super) fn label(axis: &Axis) -> &str {
+pub(in crate::studies) fn label(axis: &Axis) -> &str {
     match axis.quantity {
         Quantity::Duration => "pulse duration (s)",
         Quantity::Frequency => "pulse frequency (Hz)",
@@ -101,11 +101,104 @@ pub fn draw(
 }
 
 /// The picture of a map, and the positions of its cells.
-pub(super) struct Drawn {
-    pub(super) picture: String,
-    pub(super) height_px: f64,
+pub(in crate::studies) struct Drawn {
+    pub(in crate::studies) picture: String,
+    pub(in crate::studies) height_px: f64,
     /// Edges of the columns from the left, and of the rows from below.
-    pub(super) edges_px: [Vec<f64>; 2],
+    pub(in crate::studies) edges_px: [Vec<f64>; 2],
+}
+
+/// A map to be drawn, whatever fills its cells.
+#[derive(Clone, Copy)]
+pub(in crate::studies) struct Sheet<'s> {
+    pub(in crate::studies) title: &'s str,
+    pub(in crate::studies) map: &'s OverturningMap<'s>,
+    pub(in crate::studies) look: Look,
+}
+
+impl Sheet<'_> {
+    /// What axes are multiplied by.
+    pub(in crate::studies) fn factors(&self) -> [f64; 2] {
+        self.look.factors.unwrap_or([1.0; 2])
+    }
+
+    /// Fills the cells by their kinds, which are in the palette. `keys` are those of the legend, for the scale of y; `over` draws
+    /// over the cells, whose edges it is given.
+    pub(in crate::studies) fn draw<'k>(
+        self,
+        palette: &[Kind],
+        kinds: &[Kind],
+        keys: impl FnOnce(&Scale) -> Vec<Key<'k>>,
+        over: impl FnOnce(&mut Drawing, &Axes, [&[f64]; 2]),
+    ) -> Drawn {
+        let Self { title, map, look } = self;
+        let figure = look.figure;
+        let mut drawing = Drawing::new(figure);
+        let top = drawing.title(title);
+        let top = drawing.caption(top + 11.0, &caption(map.scenario(), &map.axes()));
+        let factors = self.factors();
+        let [x_axis, y_axis] = map.axes();
+        let (x, x_edges) = scale(x_axis, factors[0], figure);
+        let (y, y_edges) = scale(y_axis, factors[1], figure);
+        let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys(&y)) + 8.0;
+        let axes = Axes {
+            frame: figure.plot(top, figure.height_px(560.0)),
+            x,
+            y,
+        };
+        let edges = [x_edges, y_edges];
+        for kind in palette {
+            let path = cells(&axes, &edges, kinds, *kind);
+            if !path.is_empty() {
+                // The stroke closes the seams between cells.
+                drawing.path(kind.name, &path, kind.fill, Stroke::new(kind.fill, 0.4, ""));
+            }
+        }
+        let [x_label, y_label] = match look.factors {
+            Some(_) => ["p t_p", "a / A_L"],
+            None => map.axes().map(label),
+        };
+        axes.draw(&mut drawing, Some(x_label), y_label);
+        over(&mut drawing, &axes, [&edges[0], &edges[1]]);
+        let height_px = axes.frame.top + axes.frame.height + 56.0;
+        let [x_edges, y_edges] = edges;
+        Drawn {
+            picture: drawing.finish(height_px),
+            height_px,
+            edges_px: [
+                x_edges
+                    .iter()
+                    .map(|x| axes.place(*x, axes.y.low).x)
+                    .collect(),
+                y_edges
+                    .iter()
+                    .map(|y| axes.place(axes.x.low, *y).y)
+                    .collect(),
+            ],
+        }
+    }
+}
+
+/// The path around the cells of a kind.
+fn cells(axes: &Axes, [x_edges, y_edges]: &[Vec<f64>; 2], kinds: &[Kind], kind: Kind) -> String {
+    let mut path = String::new();
+    for (column, kinds) in kinds.chunks(y_edges.len() - 1).enumerate() {
+        let mut bottom = 0;
+        for run in kinds.chunk_by(|a, b| a == b) {
+            let top = bottom + run.len();
+            if run[0] == kind {
+                let low = axes.place(x_edges[column], y_edges[bottom]);
+                let high = axes.place(x_edges[column + 1], y_edges[top]);
+                let _ = write!(
+                    path,
+                    "M{:.2} {:.2}H{:.2}V{:.2}H{:.2}Z",
+                    low.x, low.y, high.x, high.y, low.x
+                );
+            }
+            bottom = top;
+        }
+    }
+    path
 }
 
 /// As [`draw`].
@@ -117,84 +210,34 @@ pub(super) fn drawn(
     look: Look,
 ) -> Drawn {
     let boundaries: Vec<_> = found(boundaries).collect();
-    let figure = look.figure;
-    let mut drawing = Drawing::new(figure);
-    let top = drawing.title(title);
-    let top = drawing.caption(top + 11.0, &caption(map.scenario(), &map.axes()));
     let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result, look)).collect();
-    let factors = look.factors.unwrap_or([1.0; 2]);
-    let [x_axis, y_axis] = map.axes();
-    let (x, x_edges) = scale(x_axis, factors[0], figure);
-    let (y, y_edges) = scale(y_axis, factors[1], figure);
-    let keys = legend(map, &kinds, &boundaries, factors[1], &y);
-    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
-    let axes = Axes {
-        frame: figure.plot(top, figure.height_px(560.0)),
-        x,
-        y,
-    };
-    let high = map.values()[1].len();
-    for kind in Kind::ALL {
-        let mut path = String::new();
-        for (column, kinds) in kinds.chunks(high).enumerate() {
-            let mut bottom = 0;
-            for run in kinds.chunk_by(|a, b| a == b) {
-                let top = bottom + run.len();
-                if run[0] == kind {
-                    let low = axes.place(x_edges[column], y_edges[bottom]);
-                    let high = axes.place(x_edges[column + 1], y_edges[top]);
-                    let _ = write!(
-                        path,
-                        "M{:.2} {:.2}H{:.2}V{:.2}H{:.2}Z",
-                        low.x, low.y, high.x, high.y, low.x
-                    );
-                }
-                bottom = top;
-            }
-        }
-        if !path.is_empty() {
-            // The stroke closes the gaps between cells.
-            drawing.path(kind.name, &path, kind.fill, Stroke::new(kind.fill, 0.4, ""));
-        }
-    }
-    hatch(&mut drawing, &axes, [&x_edges, &y_edges], rows);
-    let [x_label, y_label] = match look.factors {
-        Some(_) => ["p t_p", "a / A_L"],
-        None => map.axes().map(label),
-    };
-    axes.draw(&mut drawing, Some(x_label), y_label);
-    let signs: Vec<f64> = [1.0, -1.0]
+    let sheet = Sheet { title, map, look };
+    let factors = sheet.factors();
+    let signs = [1.0, -1.0]
         .into_iter()
-        .filter(|sign| map.values()[1].iter().any(|value| sign * value > 0.0))
-        .collect();
-    drawing.within(&axes.frame, |drawing| {
-        for sign in &signs {
-            let mut curve = |name, stroke, value: fn(&Boundary) -> Option<f64>| {
-                let points = boundaries.iter().filter_map(|(x, boundary)| {
-                    let value = sign * value(boundary)?;
-                    Some(axes.place(factors[0] * x, factors[1] * value))
-                });
-                drawing.curve(name, points, stroke);
-            };
-            curve("incipient", INCIPIENT, |b| Some(b.incipient_g));
-            curve("no-impact", IMPACT_FREE, |b| b.impact_free_g);
-        }
-    });
-    let height_px = axes.frame.top + axes.frame.height + 56.0;
-    Drawn {
-        picture: drawing.finish(height_px),
-        height_px,
-        edges_px: [
-            x_edges
-                .iter()
-                .map(|x| axes.place(*x, axes.y.low).x)
-                .collect(),
-            y_edges
-                .iter()
-                .map(|y| axes.place(axes.x.low, *y).y)
-                .collect(),
-        ],
-    }
+        .filter(|sign| map.values()[1].iter().any(|value| sign * value > 0.0));
+    let signs: Vec<f64> = signs.collect();
+    sheet.draw(
+        &Kind::ALL,
+        &kinds,
+        |y| legend(map, &kinds, &boundaries, factors[1], y),
+        |drawing, axes, edges| {
+            hatch(drawing, axes, edges, rows);
+            drawing.within(&axes.frame, |drawing| {
+                for sign in &signs {
+                    let mut curve = |name, stroke, value: fn(&Boundary) -> Option<f64>| {
+                        let points = boundaries.iter().filter_map(|(x, boundary)| {
+                            let value = sign * value(boundary)?;
+                            Some(axes.place(factors[0] * x, factors[1] * value))
+                        });
+                        drawing.curve(name, points, stroke);
+                    };
+                    curve("incipient", INCIPIENT, |b| Some(b.incipient_g));
+                    curve("no-impact", IMPACT_FREE, |b| b.impact_free_g);
+                }
+            });
+        },
+    )
 }
 
 /// Hatches the cells whose outcome depends on how they are computed.
