@@ -544,6 +544,7 @@ fn every_help_has_examples_that_are_right() {
         "limit",
         "impact",
         "capacity",
+        "spread",
         "verify",
         "chart",
         "map",

@@ -29,6 +29,11 @@ Examples:
   archrock capacity arch.toml
   archrock capacity arch.toml --format json";
 
+pub const SPREAD: &str = "\
+Examples:
+  archrock spread arch.toml
+  archrock spread arch.toml --springing left --angle 45 --angle -90";
+
 pub const VERIFY: &str = "\
 Examples:
   archrock verify arch.toml --out check     verify.html is the page to file";

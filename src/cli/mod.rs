@@ -14,6 +14,7 @@ mod impact;
 mod init;
 mod run;
 mod scenario_file;
+mod spread;
 mod studies;
 mod study;
 mod threshold;
@@ -78,6 +79,9 @@ enum Command {
     /// Find the quasi-static capacity curve of the first mechanism and its equivalent oscillator.
     #[command(after_help = examples::CAPACITY)]
     Capacity(capacity::Arguments),
+    /// Find how far a springing may move until the arch falls, and what push it bears on the way.
+    #[command(after_help = examples::SPREAD)]
+    Spread(spread::Arguments),
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
     #[command(after_help = examples::VERIFY)]
     Verify(verify::Arguments),
@@ -178,6 +182,7 @@ pub fn main() -> ExitCode {
         }
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),
+        Command::Spread(spread) => spread::spread(&spread, arguments.quiet),
         Command::Verify(verify) => verify::verify(&verify, arguments.quiet),
         Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => studies::map(&map, arguments.quiet),

@@ -17,6 +17,7 @@
 //! solution.
 
 mod answer;
+pub mod closing;
 mod dual;
 mod exchange;
 mod factor;

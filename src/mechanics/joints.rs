@@ -8,7 +8,7 @@
 //!
 //! Positions follow from the left support to the right. In an arch the blocks to the right of the last open joint stand where the
 //! right support holds them, and the rotation of that joint closes the row. What rounding leaves between its two faces is the
-//! [`Placement::closure_error`].
+//! [`Placement::closure_error`]. Supports stand where they were built, or where they have gone since.
 
 use nalgebra::Vector2;
 
@@ -61,6 +61,8 @@ pub struct Placement {
     undeformed_m: Vec<Vector2<f64>>,
     handedness: f64,
     supports: Supports,
+    /// Where the left and the right support are.
+    support_poses: [Pose; 2],
     gaps_m: Vec<[f64; 2]>,
     poses: Vec<Pose>,
     centres_m: Vec<Vector2<f64>>,
@@ -101,6 +103,7 @@ impl Placement {
         let mut placement = Self {
             handedness: row.handedness(),
             supports: row.supports(),
+            support_poses: [Pose::UNDEFORMED; 2],
             gaps_m: vec![[0.0; 2]; faces.len()],
             poses: vec![Pose::UNDEFORMED; undeformed_m.len()],
             centres_m: undeformed_m.clone(),
@@ -111,6 +114,18 @@ impl Placement {
         };
         placement.place();
         placement
+    }
+
+    /// Where the left and the right support are.
+    #[must_use]
+    pub const fn support_poses(&self) -> &[Pose; 2] {
+        &self.support_poses
+    }
+
+    /// Moves the left and the right support, with the gaps as they are: the next [`Placement::open`] or [`Placement::turn`] places the
+    /// blocks between them.
+    pub const fn move_supports(&mut self, poses: [Pose; 2]) {
+        self.support_poses = poses;
     }
 
     /// Gaps of every joint at intrados and extrados, in metres.
@@ -194,15 +209,17 @@ impl Placement {
         self.poses.copy_from_slice(&other.poses);
         self.centres_m.copy_from_slice(&other.centres_m);
         self.frames.copy_from_slice(&other.frames);
+        self.support_poses = other.support_poses;
         self.closure = other.closure;
     }
 
     /// Sets the gaps of hinges that turn the blocks by the given rotations in radians; every joint stays shut at one corner.
     pub fn turn(&mut self, rotations_rad: &[f64]) {
+        let [first, last] = self.support_poses.map(|pose| pose.rotation_rad());
         for joint in 0..self.faces.len() {
-            let at = |block: Option<usize>| block.and_then(|b| rotations_rad.get(b)).copied();
-            let left = at(joint.checked_sub(1)).unwrap_or(0.0);
-            let opening = self.handedness * (at(Some(joint)).unwrap_or(0.0) - left);
+            let at = |block: usize| rotations_rad.get(block).copied();
+            let left = joint.checked_sub(1).and_then(at).unwrap_or(first);
+            let opening = self.handedness * (at(joint).unwrap_or(last) - left);
             self.gaps_m[joint] = hinged(opening * self.faces[joint].thickness, 0.0);
         }
         self.place();
@@ -230,18 +247,18 @@ impl Placement {
             Supports::Both => self.gaps_m.iter().rposition(|gaps| *gaps != [0.0; 2]),
         };
         self.closure = None;
-        let mut left = Pose::UNDEFORMED;
+        let [mut left, last] = self.support_poses;
         for joint in 0..self.faces.len() {
             let face = &self.faces[joint];
             let closing = last_open == Some(joint);
             let right = if closing {
                 self.gaps_m[joint] = closed_gaps(
                     &self.gaps_m[joint],
-                    left.rotation_rad(),
+                    last.rotation_rad() - left.rotation_rad(),
                     face,
                     self.handedness,
                 );
-                Pose::UNDEFORMED
+                last
             } else if self.gaps_m[joint] == [0.0; 2] {
                 left
             } else {
@@ -280,7 +297,7 @@ impl Placement {
         let nearer = gaps[0].min(gaps[1]);
         let start = left.of(face.middle) + normal * (nearer + chord);
         if closing {
-            let mut error_m = face.middle - start;
+            let mut error_m = right.of(face.middle) - start;
             // A joint that is open at both corners takes the error normal to it as a change of its gaps.
             if nearer > 0.0 {
                 let change = normal.dot(&error_m).max(-nearer);
@@ -314,10 +331,10 @@ fn hinged(width_m: f64, nearer_m: f64) -> [f64; 2] {
     [nearer_m + (-width_m).max(0.0), nearer_m + width_m.max(0.0)]
 }
 
-/// Gaps of the last open joint: its rotation brings the rotation of the row back to zero.
+/// Gaps of the last open joint: its rotation brings the rotation of the row to that of the right support.
 fn closed_gaps(gaps: &[f64; 2], rotation_rad: f64, face: &Face, handedness: f64) -> [f64; 2] {
     let gaps = hinged(
-        -handedness * rotation_rad * face.thickness,
+        handedness * rotation_rad * face.thickness,
         gaps[0].min(gaps[1]),
     );
     gaps.map(|gap| {

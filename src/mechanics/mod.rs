@@ -22,6 +22,7 @@ pub mod joints;
 pub mod lanes;
 pub mod masonry;
 pub mod parts;
+pub mod settling;
 #[doc(hidden)]
 pub mod slip;
 pub mod stability;

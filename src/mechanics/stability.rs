@@ -14,6 +14,7 @@ use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::Placement;
 use crate::mechanics::sway::Sway;
 
 /// Velocities below this fraction of those without contact count as zero.
@@ -57,7 +58,8 @@ pub enum StabilityError {
 /// # Errors
 /// When the velocities under the weight are not found.
 pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
-    let mut trial = Trial::new(row);
+    let undeformed = Placement::new(row);
+    let mut trial = Trial::new(row, &undeformed);
     Ok(trial
         .moves(Vector2::new(0.0, -1.0))?
         .map(|_| trial.openings()))
@@ -69,7 +71,20 @@ pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
 /// # Errors
 /// When the row does not stand, or the velocities of a trial are not found.
 pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> {
-    let mut trial = Trial::new(row);
+    onset_at(row, &Placement::new(row), sway)
+}
+
+/// The same where some joints are open already, as where supports have moved: those press at their corners alone, and may go on
+/// opening or shut again.
+///
+/// # Errors
+/// As [`onset`].
+pub fn onset_at(
+    row: &Row,
+    placement: &Placement,
+    sway: Sway,
+) -> Result<Option<RowOnset>, StabilityError> {
+    let mut trial = Trial::new(row, placement);
     if trial.moves(Vector2::new(0.0, -1.0))?.is_some() {
         return Err(StabilityError::CannotStand(trial.openings()));
     }
@@ -94,9 +109,10 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
     Ok(found)
 }
 
-/// The undeformed row under loads.
+/// A row under loads.
 struct Trial<'a> {
     row: &'a Row,
+    centres_m: &'a [Vector2<f64>],
     program: Program,
     free: Vec<Twist>,
     jumps: Vec<Twist>,
@@ -104,14 +120,17 @@ struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    fn new(row: &'a Row) -> Self {
-        let joints = row.joints().len();
+    fn new(row: &'a Row, placement: &'a Placement) -> Self {
+        let mut program = Program::new(row);
+        program.place(placement);
+        let gaps_m = placement.gaps_m().iter();
         Self {
             row,
-            program: Program::new(row),
+            centres_m: placement.centres_m(),
+            program,
             free: vec![Twist::ZERO; row.blocks().len()],
-            jumps: vec![Twist::ZERO; joints],
-            touching: vec![[true; 2]; joints],
+            jumps: vec![Twist::ZERO; row.joints().len()],
+            touching: gaps_m.map(|gaps| gaps.map(|gap| gap == 0.0)).collect(),
         }
     }
 
@@ -124,11 +143,11 @@ impl<'a> Trial<'a> {
             touching: &self.touching,
         };
         self.program.solve(&load_case)?;
-        let blocks = self.row.blocks().iter().zip(self.program.velocities());
+        let blocks = self.row.blocks().iter().zip(self.centres_m);
         let mut work = Vector2::zeros();
         let mut fastest = 0.0_f64;
-        for (block, twist) in blocks {
-            let velocity = twist.at(block.centre_m);
+        for ((block, centre_m), twist) in blocks.zip(self.program.velocities()) {
+            let velocity = twist.at(*centre_m);
             work += velocity * block.mass_kg;
             fastest = fastest
                 .max(velocity.norm())

@@ -13,6 +13,7 @@
 //! - [`suite`]: which records overturn, at several levels, and the [`fragility`](suite::fragility) curve of that;
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
+//! - [`spread`]: how far a springing may move until the arch falls, without a history;
 //! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with its own numbers, words and page;
 //! - [`chart`]: arches of many shapes compared, without a history.
 
@@ -33,6 +34,7 @@ pub mod results;
 pub mod run;
 pub mod runner;
 pub mod spectrum;
+pub mod spread;
 pub mod suite;
 pub mod survival;
 pub mod threshold;

@@ -25,6 +25,7 @@ use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::model::Recorder;
 use crate::dynamics::row::course::{Course, Stepper as _, Task};
 use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{Corners, Load, Program};
 use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::pose::Pose;
@@ -33,8 +34,6 @@ use crate::mechanics::joints::{Placement, SHUT_RATIO};
 
 /// An arch whose ends miss each other by more than this fraction of the thickness of a joint is in error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
-/// Below this fraction of the thickness of a joint the closure error is left alone.
-const CLOSURE_RATIO: f64 = 1e-13;
 /// Corners that are open by less than this fraction of the thickness belong to an impact.
 const LANDED_RATIO: f64 = 1e-9;
 /// The last three open corners of an arch belong to an impact when all are open by less than this fraction of the thickness:
@@ -135,10 +134,10 @@ pub(super) struct LandingStepper<'a> {
     /// The time up to which gravity and ground have acted on the velocities.
     kicked_s: f64,
     placement: Placement,
-    backup: Placement,
     program: Program,
     /// For solutions that must not change the active set.
     auxiliary: Program,
+    closer: Closer,
     pieces: Vec<Piece>,
     next_pieces: Vec<Piece>,
     /// Corner about which each joint turned in the last drift.
@@ -189,10 +188,10 @@ impl<'a> LandingStepper<'a> {
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
             course: Course::new(task, Some(fallen), recorder),
             kicked_s: 0.0,
-            backup: placement.clone(),
             placement,
             auxiliary: program.clone(),
             program,
+            closer: Closer::new(row),
             pieces: Vec::with_capacity(blocks),
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
@@ -269,7 +268,7 @@ impl<'a> LandingStepper<'a> {
         if error_m > LARGEST_CLOSURE_RATIO * self.thinnest {
             return Err(FreeHingeError::Open { error_m });
         }
-        self.close();
+        self.closer.close(&mut self.placement);
         let gaps = self.placement.gaps_m().iter();
         let active: Vec<Corners> = gaps.map(|gaps| gaps.map(|gap| gap == 0.0)).collect();
         let open = active
@@ -662,7 +661,7 @@ impl<'a> LandingStepper<'a> {
         self.placement.open(|joint| change[joint]);
         self.take_pieces();
         self.course.time += step.length_s;
-        self.close();
+        self.closer.close(&mut self.placement);
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
         let of_row = &mut self.course.of_row;
@@ -709,58 +708,6 @@ impl<'a> LandingStepper<'a> {
             piece.centre = first / mass;
             piece.mass = mass;
         }
-    }
-
-    /// Takes up the closure error at the open joints, in positions only, while that at least halves it. Each displacement
-    /// has the least kinetic norm and goes as far as the first corner shuts. That one stays shut, and the others take up
-    /// the rest.
-    fn close(&mut self) {
-        self.free.fill(Twist::ZERO);
-        self.jumps.fill(Twist::ZERO);
-        while let Some(closure) = self.placement.closure() {
-            let error_m = closure.error_m.norm();
-            if error_m <= CLOSURE_RATIO * self.thinnest {
-                return;
-            }
-            let load = Load {
-                free: &self.free,
-                jumps: &self.jumps,
-                touching: &self.touching,
-            };
-            if !self.auxiliary.close(&self.placement, &closure, &load) {
-                return;
-            }
-            let shuts = self.closing_change();
-            self.backup.copy_from(&self.placement);
-            let change = &self.change;
-            self.placement.open(|joint| change[joint]);
-            if !shuts && self.placement.closure_error() > 0.5 * error_m {
-                self.placement.copy_from(&self.backup);
-                return;
-            }
-        }
-    }
-
-    /// Changes of the gaps by the solution of the closure, as far as the first corner shuts; whether one does.
-    fn closing_change(&mut self) -> bool {
-        let gaps_m = self.placement.gaps_m();
-        let mut first = (1.0, None);
-        for (joint, changes) in self.auxiliary.open_joints() {
-            for edge in 0..2 {
-                let (gap, change) = (gaps_m[joint][edge], changes[edge]);
-                if gap > 0.0 && gap + first.0 * change < 0.0 {
-                    first = (gap / -change, Some((joint, edge)));
-                }
-            }
-        }
-        self.change.fill([0.0; 2]);
-        for (joint, changes) in self.auxiliary.open_joints() {
-            self.change[joint] = changes.map(|change| change * first.0);
-        }
-        if let Some((joint, edge)) = first.1 {
-            self.change[joint][edge] = -gaps_m[joint][edge];
-        }
-        first.1.is_some()
     }
 
     /// Whether a corner touches that did not at the beginning of the step.

@@ -1,0 +1,404 @@
+//! How a row between two supports follows them when they move slowly, and what push it then bears.
+//!
+//! Rigid blocks without tension or sliding, at rest at every instant. Where supports have moved, the row stands on three hinges: two bodies between
+//! three pins, whose positions and forces are closed forms ([`three_pins`]). Such a state lasts while its joints open no way back and the thrust
+//! line stays inside all others. Where that ends, a joint cannot hand its hinge on little by little: with a fourth hinge the row is an unstable mechanism,
+//! which snaps to three other hinges, or falls ([`descent`]). So a path of equilibria is made of pieces, and which ones they are depends
+//! on where it began: here, at the undeformed row.
+//!
+//! The same holds of a push that grows while the supports stand still: it moves nothing until it makes hinges snap. That push is the first motion; the
+//! push at which the row falls, its capacity, may be many times larger.
+
+mod descent;
+mod three_pins;
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use self::descent::Descent;
+pub use self::three_pins::{Hinge, State, ThreePins};
+use super::blocks::{Row, Supports};
+use super::contact::ContactError;
+use super::geometry::pose::Pose;
+use super::joints::Placement;
+use super::stability::{StabilityError, onset_at};
+use super::sway::Sway;
+use crate::bisection::{Width, bisect};
+
+/// A way is gone in steps of this part of the row's size, of a radian, or of gravity.
+const STEP: f64 = 1e-3;
+/// What gives way is pushed on by these parts of size, radian, or gravity, one after the other until it has found other hinges.
+const NUDGES: [f64; 3] = [1e-6, 1e-5, 1e-4];
+/// Pushes by which a symmetric row chooses a side, in units of gravity.
+const TILTS_G: [f64; 3] = [0.0, 1e-6, 1e-4];
+/// Forces below this part of the weight, and rotations below it, are rounding.
+const ROUNDING: f64 = 1e-12;
+/// No row bears a push of so many times gravity that is found by following it.
+const LARGEST_PUSH_G: f64 = 100.0;
+
+/// How a support has moved from where it was built.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Movement {
+    /// Outwards, away from the other support, in metres.
+    pub spread_m: f64,
+    /// Down, in metres.
+    pub settlement_m: f64,
+    /// Anticlockwise about the middle of its joint, in radians.
+    pub rotation_rad: f64,
+}
+
+impl Movement {
+    /// This part of it.
+    #[must_use]
+    pub fn times(&self, part: f64) -> Self {
+        Self {
+            spread_m: part * self.spread_m,
+            settlement_m: part * self.settlement_m,
+            rotation_rad: part * self.rotation_rad,
+        }
+    }
+
+    /// Both, one after the other.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            spread_m: self.spread_m + other.spread_m,
+            settlement_m: self.settlement_m + other.settlement_m,
+            rotation_rad: self.rotation_rad + other.rotation_rad,
+        }
+    }
+
+    /// Its size over that of the row, or in radians.
+    fn extent(&self, size_m: f64) -> f64 {
+        self.spread_m.hypot(self.settlement_m) / size_m + self.rotation_rad.abs()
+    }
+}
+
+/// How the supports of a row have moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Movements {
+    /// The left one.
+    pub left: Movement,
+    /// The right one.
+    pub right: Movement,
+}
+
+impl Movements {
+    /// This part of them.
+    #[must_use]
+    pub fn times(&self, part: f64) -> Self {
+        Self {
+            left: self.left.times(part),
+            right: self.right.times(part),
+        }
+    }
+
+    /// Both, one after the other.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            left: self.left.and(&other.left),
+            right: self.right.and(&other.right),
+        }
+    }
+
+    /// Where the left and the right support of a row are then.
+    #[must_use]
+    pub fn poses(&self, row: &Row) -> [Pose; 2] {
+        let joints = row.joints();
+        let pose = |joint: usize, outwards: f64, movement: &Movement| {
+            let middle = joints[joint].middle_m();
+            let shift = Vector2::new(outwards * movement.spread_m, -movement.settlement_m);
+            Pose::about(middle, middle + shift, movement.rotation_rad)
+        };
+        [
+            pose(0, -1.0, &self.left),
+            pose(joints.len() - 1, 1.0, &self.right),
+        ]
+    }
+
+    fn extent(&self, size_m: f64) -> f64 {
+        self.left.extent(size_m) + self.right.extent(size_m)
+    }
+}
+
+/// What a row is subject to: where its supports are, and the force on a unit of its mass, in units of gravity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Condition {
+    /// Where the left and the right support are.
+    pub supports: [Pose; 2],
+    /// Gravity and inertia over gravity.
+    pub force_g: Vector2<f64>,
+}
+
+/// Hinges that gave way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snap {
+    /// Where along the way.
+    pub at: f64,
+    /// The hinges before; none where the row was undeformed.
+    pub before: Option<[Hinge; 3]>,
+    /// The hinges after; none where it fell.
+    pub after: Option<[Hinge; 3]>,
+    /// What made them give way, where the row had hinges: joints whose line of thrust reached an edge, or that shut.
+    pub causes: Vec<Hinge>,
+}
+
+/// How far a row followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reached {
+    /// To the end of the way.
+    End,
+    /// To here, where it falls.
+    Falls(f64),
+}
+
+/// Why a row could not be followed.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SettlingError {
+    /// A stack has one support.
+    #[error("the row stands on one support alone, and nothing moves against it")]
+    OneSupport,
+    /// The undeformed row does not stand.
+    #[error(transparent)]
+    Stability(#[from] StabilityError),
+    /// Velocities were not found.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// No three hinges were found on which it stands.
+    #[error(
+        "the hinges of the row were not found where they give way, {at:.3e} of the way on: choose another way or other joints"
+    )]
+    Lost {
+        /// Where along the way.
+        at: f64,
+    },
+}
+
+/// A row that follows slow changes.
+#[derive(Clone, Debug)]
+pub struct Follower<'a> {
+    row: &'a Row,
+    descent: Descent<'a>,
+    hinges: Option<ThreePins>,
+    condition: Condition,
+    placement: Placement,
+    snaps: Vec<Snap>,
+}
+
+impl<'a> Follower<'a> {
+    /// The undeformed row.
+    ///
+    /// # Errors
+    /// When it is a stack, or does not stand.
+    pub fn new(row: &'a Row) -> Result<Self, SettlingError> {
+        if row.supports() == Supports::Left {
+            return Err(SettlingError::OneSupport);
+        }
+        if let Some(openings) = super::stability::falls(row)? {
+            return Err(StabilityError::CannotStand(openings).into());
+        }
+        Ok(Self {
+            row,
+            descent: Descent::new(row),
+            hinges: None,
+            condition: Condition {
+                supports: [Pose::UNDEFORMED; 2],
+                force_g: Vector2::new(0.0, -1.0),
+            },
+            placement: Placement::new(row),
+            snaps: Vec::new(),
+        })
+    }
+
+    /// The row undeformed.
+    #[must_use]
+    pub const fn row(&self) -> &'a Row {
+        self.row
+    }
+
+    /// The hinges on which it stands; none while it is undeformed.
+    #[must_use]
+    pub const fn hinges(&self) -> Option<&ThreePins> {
+        self.hinges.as_ref()
+    }
+
+    /// Where its blocks are.
+    #[must_use]
+    pub const fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// What it is subject to.
+    #[must_use]
+    pub const fn condition(&self) -> &Condition {
+        &self.condition
+    }
+
+    /// What gave way so far.
+    #[must_use]
+    pub fn snaps(&self) -> &[Snap] {
+        &self.snaps
+    }
+
+    /// Its forces and rotations; none while it is undeformed, where they are not determined.
+    #[must_use]
+    pub fn state(&self) -> Option<State> {
+        self.hinges
+            .as_ref()
+            .and_then(|hinges| hinges.state(self.row, &self.condition))
+    }
+
+    /// Moves the supports on from where they are, in a straight line, from this part of a movement to that.
+    ///
+    /// # Errors
+    /// When the row is lost where it gives way.
+    pub fn move_supports(
+        &mut self,
+        movements: impl Fn(f64) -> Movements,
+        from: f64,
+        to: f64,
+    ) -> Result<Reached, SettlingError> {
+        let (row, force_g) = (self.row, self.condition.force_g);
+        let (first, last) = (movements(from), movements(to));
+        let extent = last.and(&first.times(-1.0)).extent(row.size_m());
+        if extent == 0.0 {
+            return Ok(Reached::End);
+        }
+        let way = |at: f64| Condition {
+            supports: movements(at).poses(row),
+            force_g,
+        };
+        self.follow(&way, [from, to], (to - from) / extent)
+    }
+
+    /// Pushes the row to a side until it falls; the pushes, in units of gravity, of its first motion and at its fall. The row itself
+    /// stays where it is. `None` where no push moves it.
+    ///
+    /// # Errors
+    /// When the row is lost where it gives way.
+    pub fn pushes_g(&self, sway: Sway) -> Result<Option<[f64; 2]>, SettlingError> {
+        let first = match onset_at(self.row, &self.placement, sway) {
+            Err(StabilityError::CannotStand(_)) => return Ok(Some([0.0; 2])),
+            first => first?,
+        };
+        let Some(first) = first else {
+            return Ok(None);
+        };
+        // Where it is about to fall, rounding may leave it on either side of zero.
+        let first_g = first.acceleration_g.max(0.0);
+        // Undeformed, its joints hold it until they are four.
+        if self.hinges.is_none() {
+            return Ok(Some([first_g; 2]));
+        }
+        let mut pushed = Self {
+            snaps: Vec::new(),
+            ..self.clone()
+        };
+        let condition = self.condition;
+        let way = move |push_g: f64| Condition {
+            force_g: condition.force_g + Vector2::new(sway.sign() * push_g, 0.0),
+            ..condition
+        };
+        let reached = pushed.follow(&way, [0.0, LARGEST_PUSH_G], 1.0)?;
+        Ok(match reached {
+            Reached::Falls(capacity_g) => Some([first_g, capacity_g]),
+            Reached::End => None,
+        })
+    }
+
+    /// Follows what changes along a way whose parameter changes by `unit` while a support goes by the size of the row, or turns by a radian,
+    /// or a push grows by gravity.
+    fn follow(
+        &mut self,
+        way: &impl Fn(f64) -> Condition,
+        [from, to]: [f64; 2],
+        unit: f64,
+    ) -> Result<Reached, SettlingError> {
+        let mut low = from;
+        if self.hinges.is_none() {
+            match self.give_way(way, low, unit)? {
+                Some(at) => low = at,
+                None => return Ok(Reached::Falls(low)),
+            }
+        }
+        while low < to {
+            let next = (low + STEP * unit).min(to);
+            if self.stands(&way(next)) {
+                low = next;
+                continue;
+            }
+            let (last, _) = bisect(low, next, Width::Rounding, |at| !self.stands(&way(at)));
+            self.stand(&way(last));
+            match self.give_way(way, last, unit)? {
+                Some(at) => low = at,
+                None => return Ok(Reached::Falls(last)),
+            }
+        }
+        self.stand(&way(to.max(low)));
+        Ok(Reached::End)
+    }
+
+    /// Whether the present hinges hold the row in a condition.
+    fn stands(&self, condition: &Condition) -> bool {
+        let state = self
+            .hinges
+            .as_ref()
+            .and_then(|hinges| hinges.state(self.row, condition));
+        state.is_some_and(|state| state.margin() >= -ROUNDING)
+    }
+
+    /// Places the row on its hinges in a condition in which they hold it.
+    fn stand(&mut self, condition: &Condition) {
+        self.condition = *condition;
+        if let Some(state) = self.state() {
+            self.placement.move_supports(condition.supports);
+            self.placement.turn(&state.rotations_rad);
+        }
+    }
+
+    /// Goes on from where the present hinges hold it last. Returns from where on others do; `None` where it falls.
+    fn give_way(
+        &mut self,
+        way: &impl Fn(f64) -> Condition,
+        at: f64,
+        unit: f64,
+    ) -> Result<Option<f64>, SettlingError> {
+        let before = self.hinges;
+        let last = way(at);
+        for nudge in NUDGES {
+            let beyond = at + nudge * unit;
+            let condition = way(beyond);
+            let causes = before
+                .and_then(|hinges| hinges.state(self.row, &condition))
+                .map_or_else(Vec::new, |state| state.beyond(-ROUNDING));
+            let snap = |after: Option<&ThreePins>| Snap {
+                at,
+                before: before.map(|hinges| *hinges.hinges()),
+                after: after.map(|hinges| *hinges.hinges()),
+                causes: causes.clone(),
+            };
+            for tilt_g in TILTS_G {
+                let mut placement = self.placement.clone();
+                let rests = self
+                    .descent
+                    .settle(&mut placement, &last, &condition, tilt_g)?;
+                if !rests {
+                    self.snaps.push(snap(None));
+                    return Ok(None);
+                }
+                let Some(hinges) = ThreePins::of(self.row, &placement) else {
+                    continue;
+                };
+                let state = hinges.state(self.row, &condition);
+                if state.is_some_and(|state| state.margin() >= -ROUNDING) {
+                    self.snaps.push(snap(Some(&hinges)));
+                    self.hinges = Some(hinges);
+                    self.stand(&condition);
+                    return Ok(Some(beyond));
+                }
+            }
+        }
+        Err(SettlingError::Lost { at })
+    }
+}

@@ -1,0 +1,242 @@
+//! How far a springing may move until the arch falls, and what push it bears on the way: see [`crate::mechanics::settling`].
+
+mod picture;
+mod told;
+
+use thiserror::Error;
+
+pub use self::told::{FILES, tell};
+use crate::mechanics::blocks::{Row, RowError};
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::parts::Parts as _;
+use crate::mechanics::settling::{
+    Follower, Hinge, Movement, Movements, Reached, SettlingError, Snap, State,
+};
+use crate::mechanics::sway::Sway;
+use crate::scenario::Scenario;
+
+/// Equal parts of a way at which its states are told.
+const STEPS: u32 = 20;
+/// No way is longer than so many clear spans.
+const LONGEST: f64 = 1.0;
+
+named! {
+    /// One of the two springings.
+    pub enum Springing {
+        /// The left one.
+        Left = "left",
+        /// The right one.
+        Right = "right",
+    }
+}
+
+/// In which direction a springing moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// Which one moves; the other stands still.
+    pub springing: Springing,
+    /// From outwards (0) over down (90) to inwards (180); up is -90.
+    pub angle_deg: f64,
+}
+
+impl Way {
+    /// Outwards, inwards and down.
+    pub const USUAL_DEG: [f64; 3] = [0.0, 180.0, 90.0];
+
+    /// Its name for people.
+    #[must_use]
+    pub fn words(&self) -> String {
+        match self.angle_deg {
+            0.0 => "outwards".to_owned(),
+            90.0 => "down".to_owned(),
+            180.0 => "inwards".to_owned(),
+            -90.0 => "up".to_owned(),
+            angle_deg => format!("at {angle_deg} degrees"),
+        }
+    }
+
+    /// So far along it, in metres.
+    #[must_use]
+    pub fn movements(&self, movement_m: f64) -> Movements {
+        // Quarters of a turn have no rounding.
+        let [outwards, down] = match self.angle_deg {
+            0.0 => [1.0, 0.0],
+            90.0 => [0.0, 1.0],
+            180.0 => [-1.0, 0.0],
+            -90.0 => [0.0, -1.0],
+            angle_deg => {
+                let (sin, cos) = angle_deg.to_radians().sin_cos();
+                [cos, sin]
+            }
+        };
+        let movement = Movement {
+            spread_m: movement_m * outwards,
+            settlement_m: movement_m * down,
+            rotation_rad: 0.0,
+        };
+        match self.springing {
+            Springing::Left => Movements {
+                left: movement,
+                ..Movements::default()
+            },
+            Springing::Right => Movements {
+                right: movement,
+                ..Movements::default()
+            },
+        }
+    }
+}
+
+/// The arch when a springing has moved so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// By how much it has moved, in metres.
+    pub movement_m: f64,
+    /// Hinges and forces; `None` where nothing has moved yet, and they are not determined.
+    pub state: Option<State>,
+    /// Where the blocks are.
+    pub poses: Vec<Pose>,
+    /// By how much the crown is lower than undeformed, in metres.
+    pub crown_drop_m: f64,
+    /// Pushes in units of gravity, to the right and to the left; `None` where none moves the arch.
+    pub pushes: [Option<Pushes>; 2],
+}
+
+/// Two pushes to a side, as horizontal ground accelerations in units of gravity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pushes {
+    /// The one that makes hinges give way: with three of them open it is small, and says nothing of safety.
+    pub first_motion_g: f64,
+    /// The one that makes the arch fall.
+    pub capacity_g: f64,
+}
+
+/// What an arch does while a springing moves one way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// The way.
+    pub way: Way,
+    /// The arch at equal parts of it.
+    pub stages: Vec<Stage>,
+    /// Where hinges gave way to others, in metres; the last one may be its fall.
+    pub snaps: Vec<Snap>,
+    /// Where it falls, in metres; `None`: not within the clear span.
+    pub falls_at_m: Option<f64>,
+}
+
+/// An arch on springings that move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpreadPaths {
+    /// Its blocks.
+    pub row: Row,
+    /// Distance of the springings at the intrados, in metres.
+    pub clear_span_m: f64,
+    /// One for every way.
+    pub paths: Vec<Path>,
+}
+
+/// Why there are no such paths.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NoSpread {
+    /// It is no row of blocks.
+    #[error(transparent)]
+    Row(#[from] RowError),
+    /// It cannot be followed.
+    #[error(transparent)]
+    Settling(#[from] SettlingError),
+}
+
+/// Moves a springing of the arch of a scenario along each of these ways, from where it was built.
+///
+/// # Errors
+/// When it is no row of blocks between two supports, does not stand, or is lost on the way.
+pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<SpreadPaths, NoSpread> {
+    let row = scenario.structure().row()?;
+    let joints = row.joints();
+    let across = joints[joints.len() - 1].intrados_m - joints[0].intrados_m;
+    let clear_span_m = across.norm();
+    let paths = ways
+        .iter()
+        .map(|way| path(&row, *way, LONGEST * clear_span_m));
+    Ok(SpreadPaths {
+        paths: paths.collect::<Result<_, _>>()?,
+        clear_span_m,
+        row: row.clone(),
+    })
+}
+
+/// First how far it goes, then the stages on the way there.
+fn path(row: &Row, way: Way, longest_m: f64) -> Result<Path, SettlingError> {
+    let movements = |movement_m: f64| way.movements(movement_m);
+    let mut scout = Follower::new(row)?;
+    let falls_at_m = match scout.move_supports(movements, 0.0, longest_m)? {
+        Reached::Falls(at_m) => Some(at_m),
+        Reached::End => None,
+    };
+    let end_m = falls_at_m.unwrap_or(longest_m);
+    let mut follower = Follower::new(row)?;
+    let mut stages = vec![stage(&follower, 0.0)?];
+    let mut here_m = 0.0;
+    for step in 1..=STEPS {
+        let next_m = end_m * f64::from(step) / f64::from(STEPS);
+        let reached = follower.move_supports(movements, here_m, next_m)?;
+        stages.push(stage(&follower, next_m)?);
+        // Rounding may let it fall just before its end.
+        if reached != Reached::End {
+            break;
+        }
+        here_m = next_m;
+    }
+    Ok(Path {
+        way,
+        stages,
+        snaps: scout.snaps().to_vec(),
+        falls_at_m,
+    })
+}
+
+fn stage(follower: &Follower<'_>, movement_m: f64) -> Result<Stage, SettlingError> {
+    let row = follower.row();
+    let (place, crown_m) = row.crown();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the index of a block and a half"
+    )]
+    let block = place as usize;
+    let poses = follower.placement().poses();
+    let pushes = |sway| -> Result<Option<Pushes>, SettlingError> {
+        let pushes_g = follower.pushes_g(sway)?;
+        Ok(pushes_g.map(|[first_motion_g, capacity_g]| Pushes {
+            first_motion_g,
+            capacity_g,
+        }))
+    };
+    Ok(Stage {
+        movement_m,
+        state: follower.state(),
+        poses: poses.to_vec(),
+        crown_drop_m: (crown_m - poses[block].of(crown_m)).y,
+        pushes: [pushes(Sway::Right)?, pushes(Sway::Left)?],
+    })
+}
+
+impl Stage {
+    /// Horizontal force between springings and arch, over its weight; `None` where it is not determined.
+    #[must_use]
+    pub fn thrust_ratio(&self) -> Option<f64> {
+        let state = self.state.as_ref()?;
+        Some(state.right_reaction.linear.x.abs())
+    }
+
+    /// The hinges, none where nothing has moved.
+    #[must_use]
+    pub fn hinges(&self) -> &[Hinge] {
+        self.state.as_ref().map_or(&[], |state| &state.hinges()[..])
+    }
+
+    /// The lesser of a push to the right and one to the left; `None` where none moves the arch.
+    fn least(&self, push_g: impl Fn(&Pushes) -> f64) -> Option<f64> {
+        self.pushes.iter().flatten().map(push_g).reduce(f64::min)
+    }
+}

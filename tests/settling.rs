@@ -1,0 +1,632 @@
+//! Rows that follow supports that move slowly, beside a computation that shares nothing with the program: the least potential energy
+//! of all blocks, found by convex programmes over joints that may open anywhere.
+
+use archrock::mechanics::blocks::Row;
+use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::mechanics::settling::{Follower, Movement, Movements, Reached};
+use archrock::mechanics::sway::Sway;
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
+};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use crate::program::{printed, refused};
+use crate::results::{Table, json};
+
+fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
+    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
+    Row::arch(&ring, voussoirs, 1.0, 1.0, 1000.0).unwrap()
+}
+
+/// Of the right support, as parts outwards and down.
+const OUT: [f64; 2] = [1.0, 0.0];
+const INWARDS: [f64; 2] = [-1.0, 0.0];
+const DOWN: [f64; 2] = [0.0, 1.0];
+const DIAGONAL: [f64; 2] = [FRAC_1_SQRT_2, FRAC_1_SQRT_2];
+
+fn right([spread, settlement]: [f64; 2]) -> impl Fn(f64) -> Movements {
+    move |s| Movements {
+        right: Movement {
+            spread_m: s * spread,
+            settlement_m: s * settlement,
+            rotation_rad: 0.0,
+        },
+        ..Movements::default()
+    }
+}
+
+/// Where an arch falls.
+fn falls_at(row: &Row, way: [f64; 2]) -> f64 {
+    let mut follower = Follower::new(row).unwrap();
+    match follower.move_supports(right(way), 0.0, 1.6).unwrap() {
+        Reached::Falls(at) => at,
+        Reached::End => panic!("it stands"),
+    }
+}
+
+/// An arch of annular voussoirs of unit mean radius: places of the blocks, `x`, `y` of the centre and rotation.
+#[derive(Clone)]
+struct Blocks {
+    masses: Vec<f64>,
+    centres: Vec<[f64; 2]>,
+    /// Corners of every joint, intrados and extrados.
+    joints: Vec<[[f64; 2]; 2]>,
+    moved: Vec<[f64; 3]>,
+    /// How far the right support went out and down.
+    support: [f64; 2],
+    /// Forces on a unit of mass.
+    push: f64,
+}
+
+type Triplets = (Vec<usize>, Vec<usize>, Vec<f64>);
+
+impl Blocks {
+    fn new(embrace_deg: f64, thickness: f64, voussoirs: usize) -> Self {
+        let half = 0.5 * embrace_deg.to_radians();
+        let [inner, outer] = [1.0 - 0.5 * thickness, 1.0 + 0.5 * thickness];
+        let angle = |joint: f64| -half + 2.0 * half * joint / voussoirs as f64;
+        let at = |angle: f64, radius: f64| [radius * angle.sin(), radius * angle.cos()];
+        let own = half / voussoirs as f64;
+        let arm = 2.0 / 3.0 * (outer.powi(3) - inner.powi(3)) / (outer.powi(2) - inner.powi(2));
+        Self {
+            masses: vec![1.0 / voussoirs as f64; voussoirs],
+            centres: (0..voussoirs)
+                .map(|block| at(angle(block as f64 + 0.5), arm * own.sin() / own))
+                .collect(),
+            joints: (0..=voussoirs)
+                .map(|joint| [inner, outer].map(|radius| at(angle(joint as f64), radius)))
+                .collect(),
+            moved: vec![[0.0; 3]; voussoirs],
+            support: [0.0; 2],
+            push: 0.0,
+        }
+    }
+
+    /// Where a point of a body is: 0 the left support, then the blocks, then the right support.
+    fn place(&self, body: usize, point: [f64; 2], more: [f64; 3]) -> [f64; 2] {
+        let blocks = self.masses.len();
+        if body == 0 {
+            return point;
+        }
+        if body > blocks {
+            return [point[0] + self.support[0], point[1] - self.support[1]];
+        }
+        let (moved, centre) = (self.moved[body - 1], self.centres[body - 1]);
+        let (sin, cos) = (moved[2] + more[2]).sin_cos();
+        let arm = [point[0] - centre[0], point[1] - centre[1]];
+        [
+            centre[0] + moved[0] + more[0] + cos * arm[0] - sin * arm[1],
+            centre[1] + moved[1] + more[1] + sin * arm[0] + cos * arm[1],
+        ]
+    }
+
+    /// Of a joint: by how much it has slipped, and its gaps at intrados and extrados, measured along and across the mean of its faces,
+    /// where hinges at either corner are exact.
+    fn opening(&self, joint: usize, more: [[f64; 3]; 2]) -> [f64; 3] {
+        let corners = |side: usize| {
+            self.joints[joint].map(|corner| self.place(joint + side, corner, more[side]))
+        };
+        let (left, right) = (corners(0), corners(1));
+        let face = |corners: [[f64; 2]; 2]| [0, 1].map(|axis| corners[1][axis] - corners[0][axis]);
+        let sum = [0, 1].map(|axis| face(left)[axis] + face(right)[axis]);
+        let length = sum[0].hypot(sum[1]);
+        let along = sum.map(|part| part / length);
+        // Towards the right block: faces point outwards.
+        let across = [along[1], -along[0]];
+        let apart = [0, 1].map(|edge| [0, 1].map(|axis| right[edge][axis] - left[edge][axis]));
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        [
+            dot(apart[0], along),
+            dot(apart[0], across),
+            dot(apart[1], across),
+        ]
+    }
+
+    /// Displacements that lower the energy most, against a resistance; by how much the farthest goes. `None`: it has fallen apart.
+    fn descend(&mut self, resistance: f64) -> Option<f64> {
+        let blocks = self.masses.len();
+        let joints = blocks + 1;
+        let (mut rows, mut columns, mut values): Triplets = Default::default();
+        let mut right = vec![0.0; 3 * joints];
+        for joint in 0..joints {
+            let here = self.opening(joint, [[0.0; 3]; 2]);
+            // Slip is none; gaps are not negative.
+            let places = [joint, joints + 2 * joint, joints + 2 * joint + 1];
+            for (kind, row) in places.into_iter().enumerate() {
+                right[row] = if kind == 0 { -here[0] } else { here[kind] };
+            }
+            for side in 0..2 {
+                let body = joint + side;
+                if body == 0 || body > blocks {
+                    continue;
+                }
+                for axis in 0..3 {
+                    let step = 1e-6;
+                    let at = |step: f64| {
+                        let mut more = [[0.0; 3]; 2];
+                        more[side][axis] = step;
+                        self.opening(joint, more)
+                    };
+                    let (before, after) = (at(-step), at(step));
+                    for (kind, row) in places.into_iter().enumerate() {
+                        let slope = (after[kind] - before[kind]) / (2.0 * step);
+                        rows.push(row);
+                        columns.push(3 * (body - 1) + axis);
+                        values.push(if kind == 0 { slope } else { -slope });
+                    }
+                }
+            }
+        }
+        let count = 3 * blocks;
+        let weights = self
+            .masses
+            .iter()
+            .flat_map(|mass| [*mass, *mass, 0.1 * mass]);
+        let weights: Vec<f64> = weights.map(|weight| weight * resistance).collect();
+        let hessian = CscMatrix::new_from_triplets(
+            count,
+            count,
+            (0..count).collect(),
+            (0..count).collect(),
+            weights,
+        );
+        let slopes = self.masses.iter();
+        let slopes: Vec<f64> = slopes
+            .flat_map(|mass| [-mass * self.push, *mass, 0.0])
+            .collect();
+        let matrix = CscMatrix::new_from_triplets(right.len(), count, rows, columns, values);
+        let settings = DefaultSettings {
+            verbose: false,
+            tol_gap_abs: 1e-11,
+            tol_gap_rel: 1e-11,
+            tol_feas: 1e-11,
+            ..DefaultSettings::default()
+        };
+        let cones = [ZeroConeT(joints), NonnegativeConeT(2 * joints)];
+        let mut solver =
+            DefaultSolver::new(&hessian, &slopes, &matrix, &right, &cones, settings).unwrap();
+        solver.solve();
+        let solved = [SolverStatus::Solved, SolverStatus::AlmostSolved];
+        if !solved.contains(&solver.solution.status) {
+            return None;
+        }
+        let x = &solver.solution.x;
+        let farthest = x.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
+        // Gaps are linear for small steps only.
+        let part = (0.03 / farthest).min(1.0);
+        for (index, moved) in self.moved.iter_mut().enumerate() {
+            for axis in 0..3 {
+                moved[axis] += part * x[3 * index + axis];
+            }
+        }
+        Some(farthest)
+    }
+
+    /// Lets it come to rest; false where it falls.
+    fn settle(&mut self) -> bool {
+        let start = self.moved.clone();
+        for _ in 0..400 {
+            let Some(farthest) = self.descend(0.3) else {
+                return false;
+            };
+            if farthest < 1e-7 {
+                return true;
+            }
+            let gone = self.moved.iter().zip(&start);
+            let gone =
+                gone.flat_map(|(now, then)| (0..3).map(move |axis| (now[axis] - then[axis]).abs()));
+            if gone.fold(0.0, f64::max) > 0.5 {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// The highest push under which forces at the corners that touch balance all blocks where they are.
+    fn first_motion(&self) -> f64 {
+        let (blocks, joints) = (self.masses.len(), self.joints.len());
+        // Of every joint: the force along it, and those across it at either corner; last, the push.
+        let (mut rows, mut columns, mut values): Triplets = Default::default();
+        let mut right = vec![0.0; 3 * blocks];
+        let mut pulls = Vec::new();
+        for joint in 0..joints {
+            let [_, inner, outer] = self.opening(joint, [[0.0; 3]; 2]);
+            // An open joint presses at its corner.
+            let touching = [inner < 1e-6, outer < 1e-6];
+            let left = self.joints[joint].map(|corner| self.place(joint, corner, [0.0; 3]));
+            let other = self.joints[joint].map(|corner| self.place(joint + 1, corner, [0.0; 3]));
+            let sum =
+                [0, 1].map(|axis| left[1][axis] - left[0][axis] + other[1][axis] - other[0][axis]);
+            let length = sum[0].hypot(sum[1]);
+            let along = sum.map(|part| part / length);
+            let across = [along[1], -along[0]];
+            let held = usize::from(!touching[0]);
+            let forces = [(along, left[held]), (across, left[0]), (across, left[1])];
+            for (kind, (force, point)) in forces.into_iter().enumerate() {
+                let column = 3 * joint + kind;
+                if kind > 0 {
+                    pulls.push((column, touching[kind - 1]));
+                }
+                for (body, sign) in [(joint, -1.0), (joint + 1, 1.0)] {
+                    if body == 0 || body > blocks {
+                        continue;
+                    }
+                    let centre = self.place(body, self.centres[body - 1], [0.0; 3]);
+                    let turn =
+                        (point[0] - centre[0]) * force[1] - (point[1] - centre[1]) * force[0];
+                    for (axis, value) in [force[0], force[1], turn].into_iter().enumerate() {
+                        rows.push(3 * (body - 1) + axis);
+                        columns.push(column);
+                        values.push(sign * value);
+                    }
+                }
+            }
+        }
+        let push = 3 * joints;
+        for (block, mass) in self.masses.iter().enumerate() {
+            rows.push(3 * block);
+            columns.push(push);
+            values.push(*mass);
+            right[3 * block + 1] = *mass;
+        }
+        let equations = right.len();
+        let parted = pulls.iter().filter(|(_, touching)| !touching).count();
+        let (mut zero, mut press) = (equations, equations + parted);
+        for (column, touching) in pulls {
+            let row = if touching { &mut press } else { &mut zero };
+            rows.push(*row);
+            columns.push(column);
+            values.push(-1.0);
+            right.push(0.0);
+            *row += 1;
+        }
+        let matrix = CscMatrix::new_from_triplets(right.len(), push + 1, rows, columns, values);
+        let mut goal = vec![0.0; push + 1];
+        goal[push] = -1.0;
+        let none = CscMatrix::zeros((push + 1, push + 1));
+        let settings = DefaultSettings {
+            verbose: false,
+            tol_gap_abs: 1e-11,
+            tol_gap_rel: 1e-11,
+            tol_feas: 1e-11,
+            ..DefaultSettings::default()
+        };
+        let cones = [
+            ZeroConeT(equations + parted),
+            NonnegativeConeT(right.len() - equations - parted),
+        ];
+        let mut solver =
+            DefaultSolver::new(&none, &goal, &matrix, &right, &cones, settings).unwrap();
+        solver.solve();
+        assert_eq!(solver.solution.status, SolverStatus::Solved);
+        solver.solution.x[push]
+    }
+
+    /// How much lower the crown's extrados is.
+    fn crown_drop(&self) -> f64 {
+        let joint = self.joints.len() / 2;
+        let crown = self.joints[joint][1];
+        crown[1] - self.place(joint, crown, [0.0; 3])[1]
+    }
+}
+
+/// The least energy of all blocks, followed in steps of the support from the undeformed arch, is lost in the same step in which the path of hinges
+/// ends; and half way there the crown is as low. Thin and thick semicircles, and one that is flatter.
+#[test]
+fn an_arch_falls_where_its_least_energy_is_lost() {
+    for (embrace_deg, thickness, voussoirs, way, steps) in [
+        (180.0, 0.12, 12, OUT, 20),
+        (180.0, 0.15, 20, OUT, 40),
+        (180.0, 0.20, 16, OUT, 30),
+        (180.0, 0.12, 12, DOWN, 20),
+        (180.0, 0.15, 16, DOWN, 30),
+        (180.0, 0.15, 16, INWARDS, 20),
+        (157.5, 0.20, 12, DIAGONAL, 30),
+    ] {
+        let what = format!("{embrace_deg} degrees, {thickness}, {voussoirs}, {way:?}");
+        let row = arch(embrace_deg, thickness, voussoirs);
+        let falls_at = falls_at(&row, way);
+        let mut blocks = Blocks::new(embrace_deg, thickness, voussoirs);
+        let stride = falls_at / (f64::from(steps) - 0.5);
+        for step in 1..=steps {
+            blocks.support = way.map(|part| part * stride * f64::from(step));
+            let stands = blocks.settle();
+            assert_eq!(stands, step < steps, "{what}: step {step}");
+            if step == steps / 2 {
+                let mut follower = Follower::new(&row).unwrap();
+                let reached = follower.move_supports(right(way), 0.0, stride * f64::from(step));
+                assert_eq!(reached.unwrap(), Reached::End);
+                let crown = row.joints()[voussoirs / 2].extrados_m;
+                let pose = follower.placement().poses()[voussoirs / 2 - 1];
+                let drop = (crown - pose.of(crown)).y;
+                // The judge rests where no block goes by more than 1e-7.
+                assert!((drop - blocks.crown_drop()).abs() < 1e-6, "{what}: {drop}");
+            }
+        }
+    }
+}
+
+/// The push that makes hinges give way where the right foot has moved is that of the linear programme of forces at the corners that touch; and
+/// the push at which the arch falls is that of the programme in the last place where it rests under a growing push.
+#[test]
+fn both_pushes_are_those_of_programmes_in_moved_places() {
+    for (embrace_deg, thickness, voussoirs, way, at) in [
+        (180.0, 0.15, 16, OUT, 0.04),
+        (180.0, 0.15, 16, DOWN, 0.1),
+        (157.5, 0.15, 12, OUT, 0.08),
+    ] {
+        let what = format!("{embrace_deg} degrees, {way:?}");
+        let row = arch(embrace_deg, thickness, voussoirs);
+        let mut follower = Follower::new(&row).unwrap();
+        follower.move_supports(right(way), 0.0, at).unwrap();
+        let [first_g, capacity_g] = follower.pushes_g(Sway::Right).unwrap().unwrap();
+        let mut blocks = Blocks::new(embrace_deg, thickness, voussoirs);
+        for step in 1..=20 {
+            blocks.support = way.map(|part| part * at * f64::from(step) / 20.0);
+            assert!(blocks.settle(), "{what}");
+        }
+        assert!(
+            (blocks.first_motion() - first_g).abs() < 1e-6,
+            "{what}: {first_g}"
+        );
+        let mut last = blocks.clone();
+        for step in 1.. {
+            blocks.push = 0.004 * f64::from(step);
+            if !blocks.settle() {
+                break;
+            }
+            last = blocks.clone();
+        }
+        let own_g = last.first_motion();
+        assert!(
+            (own_g - capacity_g).abs() < 1e-6,
+            "{what}: {own_g} {capacity_g}"
+        );
+        assert!(capacity_g >= first_g, "{what}");
+    }
+}
+
+/// Numbers of another program: Newton's method on the stationary energy of hinges, with their changes bisected, and descents in block
+/// coordinates between.
+#[test]
+fn paths_are_those_of_another_program() {
+    let e = Edge::Extrados;
+    let i = Edge::Intrados;
+    for (embrace_deg, thickness, voussoirs, way, expected) in [
+        (180.0, 0.15, 20, OUT, 0.107_852),
+        (180.0, 0.15, 36, OUT, 0.111_646_18),
+        (180.0, 0.15, 72, OUT, 0.123_689),
+        (180.0, 0.15, 36, INWARDS, 0.070_144_98),
+        (180.0, 0.15, 36, DOWN, 0.262_390_91),
+        (180.0, 0.15, 36, DIAGONAL, 0.158_417_79),
+        (180.0, 0.20, 36, OUT, 0.269_296_76),
+        (180.0, 0.20, 72, INWARDS, 0.193_854),
+        (157.5, 0.15, 36, OUT, 0.199_574_50),
+        (157.5, 0.20, 72, DOWN, 0.766_293),
+        (140.0, 0.15, 72, OUT, 0.221_228),
+        (140.0, 0.20, 36, DIAGONAL, 0.448_308),
+    ] {
+        let found = falls_at(&arch(embrace_deg, thickness, voussoirs), way);
+        // They are known to six digits.
+        assert!(
+            (found - expected).abs() < 6e-7,
+            "{embrace_deg} {thickness} {way:?}: {found}"
+        );
+    }
+    let semicircle = arch(180.0, 0.15, 36);
+    for (way, at, thrust, hinges) in [
+        (
+            OUT,
+            0.027_912,
+            0.185_861,
+            [(6, i, -0.02314), (18, e, 0.04627), (30, i, -0.02314)],
+        ),
+        (
+            OUT,
+            0.111_646,
+            0.231_941,
+            [(7, i, -0.11139), (18, e, 0.22278), (29, i, -0.11139)],
+        ),
+        (
+            INWARDS,
+            0.035_072,
+            0.206_553,
+            [(0, e, 0.01009), (27, i, -0.05291), (36, e, 0.04282)],
+        ),
+        (
+            DOWN,
+            0.131_195,
+            0.196_615,
+            [(7, i, -0.10368), (18, e, 0.05616), (36, e, 0.04752)],
+        ),
+        (
+            DIAGONAL,
+            0.079_209,
+            0.198_102,
+            [(6, i, -0.08225), (18, e, 0.09784), (29, i, -0.01559)],
+        ),
+    ] {
+        let mut follower = Follower::new(&semicircle).unwrap();
+        follower.move_supports(right(way), 0.0, at).unwrap();
+        let state = follower.state().unwrap();
+        // The movement is given to six digits, and the thrust changes up to three times as fast as it.
+        assert!(
+            (state.right_reaction.linear.x.abs() - thrust).abs() < 2e-6,
+            "{at}"
+        );
+        for ((hinge, turn), (joint, edge, expected)) in
+            state.hinges().iter().zip(state.turns_rad).zip(hinges)
+        {
+            assert_eq!((hinge.joint, hinge.edge), (joint, edge), "{at}");
+            assert!((turn - expected).abs() < 6e-6, "{at}: {turn}");
+        }
+    }
+    for (at, first_g, capacity_g) in [
+        (0.25, 0.006_437_48, 0.115_773),
+        (0.5, 0.006_302_81, 0.094_315),
+        (0.9, 0.001_970_59, 0.020_574),
+    ] {
+        let mut follower = Follower::new(&semicircle).unwrap();
+        follower
+            .move_supports(right(OUT), 0.0, at * 0.111_646_18)
+            .unwrap();
+        for sway in [Sway::Right, Sway::Left] {
+            let [first, capacity] = follower.pushes_g(sway).unwrap().unwrap();
+            assert!((first - first_g).abs() < 2e-8, "{at}: {first}");
+            assert!((capacity - capacity_g).abs() < 1e-6, "{at}: {capacity}");
+        }
+    }
+}
+
+/// What moves outwards to the right does so to the left; and half to each side is the same.
+#[test]
+fn either_springing_moves_an_arch_alike() {
+    let row = arch(157.5, 0.15, 15);
+    let both = |s: f64, [left, right]: [f64; 2]| Movements {
+        left: Movement {
+            spread_m: s * left,
+            settlement_m: 0.5 * s * left,
+            rotation_rad: -0.2 * s * left,
+        },
+        right: Movement {
+            spread_m: s * right,
+            settlement_m: 0.5 * s * right,
+            rotation_rad: 0.2 * s * right,
+        },
+    };
+    let fall = |parts: [f64; 2]| {
+        let mut follower = Follower::new(&row).unwrap();
+        match follower
+            .move_supports(|s| both(s, parts), 0.0, 0.5)
+            .unwrap()
+        {
+            Reached::Falls(at) => at,
+            Reached::End => panic!("it stands"),
+        }
+    };
+    assert!((fall([1.0, 0.0]) - fall([0.0, 1.0])).abs() < 1e-12);
+    // Without rotation and settlement only the distance counts.
+    let spread = |parts: [f64; 2]| {
+        let mut follower = Follower::new(&row).unwrap();
+        let movements = |s: f64| Movements {
+            left: Movement {
+                spread_m: s * parts[0],
+                ..Movement::default()
+            },
+            right: Movement {
+                spread_m: s * parts[1],
+                ..Movement::default()
+            },
+        };
+        match follower.move_supports(movements, 0.0, 0.5).unwrap() {
+            Reached::Falls(at) => at,
+            Reached::End => panic!("it stands"),
+        }
+    };
+    assert!((spread([0.5, 0.5]) - spread([0.0, 1.0])).abs() < 1e-12);
+}
+
+/// A springing that turns about the middle of its joint: the arch of three pins that this makes keeps its hinges' lengths, and shuts at both ends.
+#[test]
+fn a_springing_that_turns_leaves_an_arch_that_fits() {
+    let row = arch(157.5, 0.15, 20);
+    let mut follower = Follower::new(&row).unwrap();
+    let turned = |s: f64| Movements {
+        right: Movement {
+            rotation_rad: -s,
+            ..Movement::default()
+        },
+        ..Movements::default()
+    };
+    assert_eq!(
+        follower.move_supports(turned, 0.0, 0.02).unwrap(),
+        Reached::End
+    );
+    let state = follower.state().unwrap();
+    let sum: f64 = state.turns_rad.iter().sum();
+    assert!((sum + 0.02).abs() < 1e-14 && state.margin() >= -1e-12);
+    assert!(follower.placement().closure_error() < 1e-13);
+}
+
+const SEMICIRCLE: &str =
+    "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n";
+
+#[test]
+fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("arch.toml"), SEMICIRCLE).unwrap();
+    let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
+    assert!(
+        words.contains(
+            "right springing outwards: falls at 0.558231 m, 0.06035 of the clear span of 9.250 m"
+        ),
+        "{words}"
+    );
+    let told = json(&folder.path().join("results/arch/spread.json"));
+    let path = &told["paths"][0];
+    assert!((path["falls_at_m"].as_f64().unwrap() - 0.558_230_9).abs() < 1e-6);
+    let undeformed = &path["stages"][0]["capacity_g"]["right"];
+    assert!((undeformed.as_f64().unwrap() - 0.144_799_62).abs() < 1e-8);
+    assert!(path["stages"][0]["thrust_n"].is_null());
+    let rows = Table::read(folder.path().join("results/arch/spread.csv"));
+    assert_eq!(rows.numbers("movement_m").len(), 3 * 21);
+    // Five metres of radius, and the weight of the ring.
+    let half = &path["stages"][10];
+    let weight_n = told["weight_n"].as_f64().unwrap();
+    let thrust = half["thrust_n"].as_f64().unwrap() / weight_n;
+    assert!((thrust - 0.197_138).abs() < 2e-6, "{thrust}");
+    let picture = std::fs::read_to_string(folder.path().join("results/arch/spread.svg")).unwrap();
+    assert_eq!(picture.matches("data-name=\"hinge\"").count(), 9);
+    assert!(!picture.contains("NaN"));
+    // As many hinges, mirrored.
+    let left = printed(
+        folder.path(),
+        &[
+            "--quiet",
+            "spread",
+            "arch.toml",
+            "--springing",
+            "left",
+            "--angle",
+            "0",
+            "--format",
+            "json",
+            "--out",
+            "left",
+        ],
+    );
+    let left: serde_json::Value = serde_json::from_str(&left).unwrap();
+    let at = left["paths"][0]["falls_at_m"].as_f64().unwrap();
+    assert!((at - 0.558_230_9).abs() < 1e-6);
+}
+
+#[test]
+fn what_has_no_two_springings_has_no_spread() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("ring.toml"),
+        SEMICIRCLE.replace("voussoirs = 36", ""),
+    )
+    .unwrap();
+    std::fs::write(
+        folder.path().join("column.toml"),
+        "[column]\nheight_m = 4\nwidth_m = 1\n",
+    )
+    .unwrap();
+    refused(
+        folder.path(),
+        &["spread", "ring.toml"],
+        &["give the number of voussoirs"],
+    );
+    refused(
+        folder.path(),
+        &["spread", "column.toml"],
+        &["stands on one support alone"],
+    );
+    refused(
+        folder.path(),
+        &["spread", "ring.toml", "--angle", "200"],
+        &["from -180 to 180"],
+    );
+}
