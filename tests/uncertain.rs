@@ -8,13 +8,13 @@ use std::path::Path;
 
 use archrock::Scenario;
 use archrock::studies::ensemble::histories::{Histories, Went};
-use archrock::studies::ensemble::matters::what_matters;
+use archrock::studies::ensemble::matters::{total_indices, what_matters};
 use archrock::studies::ensemble::statistics::Share;
 use archrock::studies::ensemble::{Ensemble, SampleRow};
 use archrock::studies::runner::Runner;
 
 use crate::common::{ARCH, COLUMN, GRAVITY, parsed};
-use crate::program::{archrock, done, files, names, printed, refused, scenarios};
+use crate::program::{archrock, done, files, names, printed, refused, scenarios, shown_commands};
 use crate::results::{Table, json};
 
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
@@ -150,6 +150,64 @@ fn first_order_indices_are_those_of_ishigami() {
     }
     // For 95 % intervals, 28.5 of 30 are expected, with a deviation of 1.2.
     assert!(inside >= 25, "{inside} of 30");
+}
+
+/// Total indices of the function of Ishigami and Homma are known as well: 0.5574, 0.4424, 0.2436. The design takes three further
+/// samples for each of 1,024; the samples themselves stay what they are without it.
+#[test]
+fn total_indices_are_those_of_ishigami() {
+    let known = {
+        let (a, b) = (7.0_f64, 0.1_f64);
+        let first = 0.5 * (1.0 + b * PI.powi(4) / 5.0).powi(2);
+        let second = a * a / 8.0;
+        let third = b * b * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
+        let all = first + second + third;
+        [(first + third) / all, second / all, third / all]
+    };
+    assert!((known[0] - 0.5574).abs() < 1e-3 && (known[2] - 0.2436).abs() < 1e-3);
+    let mut inside = 0;
+    for seed in 1..=5 {
+        let text = format!(
+            "{ARCH}{PULSE}[uncertain]\nsamples = 1024\nseed = {seed}\n\
+             'arch.depth_m' = {{ from = 1.0, to = 2.0 }}\n\
+             'arch.thickness_ratio' = {{ from = 0.12, to = 0.2 }}\n\
+             'ground.rectangular.amplitude_g' = {{ from = 0.1, to = 1.0 }}\n"
+        );
+        let plain = parsed(&text);
+        let scenario = parsed(&text.replace("[uncertain]", "[uncertain]\ntotal_indices = true"));
+        assert_eq!(parsed(&scenario.to_toml()), scenario);
+        let uncertain = scenario.uncertain().unwrap();
+        assert_eq!(uncertain.cases(), 4 * 1024);
+        assert_eq!(plain.uncertain().unwrap().cases(), 1024);
+        let ishigami = |sample: usize| {
+            let point = uncertain.point(sample);
+            let x: Vec<f64> = point.iter().map(|part| PI * (2.0 * part - 1.0)).collect();
+            Some(x[0].sin() + 7.0 * x[1].sin().powi(2) + 0.1 * x[2].powi(4) * x[0].sin())
+        };
+        assert_eq!(uncertain.point(17), plain.uncertain().unwrap().point(17));
+        let answers: Vec<Option<f64>> = (0..1024).map(ishigami).collect();
+        let moved: Vec<Option<f64>> = (1024..4096).map(ishigami).collect();
+        let totals = total_indices(&answers, &moved).unwrap();
+        for (known, total) in known.iter().zip(&totals) {
+            assert!(
+                (total.total - known).abs() < 0.05,
+                "seed {seed}: {total:?} {known}"
+            );
+            let [low, high] = total.total_interval;
+            inside += u32::from(low <= *known && *known <= high);
+        }
+        // One number differs from the sample, and no other.
+        let [own, moved_by_one] = [17, 1024 + 3 * 17 + 1].map(|sample| uncertain.values(sample));
+        assert!(
+            own[0] == moved_by_one[0] && own[1] != moved_by_one[1] && own[2] == moved_by_one[2]
+        );
+        // A sample without an answer is left out.
+        let mut gaps = answers.clone();
+        gaps[5] = None;
+        let without = total_indices(&gaps, &moved).unwrap();
+        assert!((without[0].total - totals[0].total).abs() < 0.01 && without != totals);
+    }
+    assert!(inside >= 12, "{inside} of 15");
 }
 
 /// For a sum, the shares are those of the squares, and ranks agree.
@@ -568,6 +626,103 @@ fn the_worked_case_is_there() {
     }
 }
 
+/// The thickness of a circular arch varies at its mean radius, whatever that is, and the drums of a column in proportion.
+#[test]
+fn numbers_that_go_with_others_take_these_along() {
+    let scenario = parsed(&format!(
+        "{ARCH}{PULSE}[uncertain]\n'arch.mean_radius_m' = {{ from = 4.0, to = 6.0 }}\n'arch.thickness_m' = {{ deviation = 0.02 }}\n"
+    ));
+    let uncertain = scenario.uncertain().unwrap();
+    assert_eq!(uncertain.keys[1].own, Some(0.75));
+    let values = uncertain.values(3);
+    let sample = uncertain.scenario(&scenario, &values).unwrap().to_json();
+    let ratio = sample["arch"]["thickness_ratio"].as_f64().unwrap();
+    assert!((ratio - values[1] / values[0]).abs() < 1e-15);
+    let joints = parsed(&format!(
+        "[arch]\nmean_radius_m = 3.0\nthickness_m = 0.6\nembrace_deg = 150.0\n\
+         joints_deg = [0.0, 20.0, 50.0, 75.0, 100.0, 150.0]\n{PULSE}[free_hinges]\n"
+    ));
+    let wider = joints.with_values(&[("arch.embrace_deg", 165.0)]).unwrap();
+    let angles = wider.to_json()["arch"]["joints_deg"].clone();
+    for (angle, wanted) in angles
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip([0.0, 22.0, 55.0, 82.5, 110.0, 165.0])
+    {
+        assert!((angle.as_f64().unwrap() - wanted).abs() < 1e-9, "{angles}");
+    }
+    let heights = "drum_heights_m = [1.0, 2.0, 0.5, 0.5]";
+    for (drums, key, wanted) in [
+        ("drums = 4", "column.height_m", [1.1; 4]),
+        (heights, "column.height_m", [1.1, 2.2, 0.55, 0.55]),
+        (heights, "column.drum_heights_m.2", [1.0, 4.4, 0.5, 0.5]),
+    ] {
+        let scenario = parsed(&format!("{COLUMN}{drums}\n{PULSE}[free_hinges]\n"));
+        let changed = scenario.with_values(&[(key, 4.4)]).unwrap().to_json();
+        let heights = changed["column"]["drum_heights_m"].as_array().unwrap();
+        let heights: Vec<f64> = heights
+            .iter()
+            .map(|height| height.as_f64().unwrap())
+            .collect();
+        for (height, wanted) in heights.iter().zip(wanted) {
+            assert!((height - wanted).abs() < 1e-12, "{key} {heights:?}");
+        }
+        let sum: f64 = heights.iter().sum();
+        assert!((changed["column"]["height_m"].as_f64().unwrap() - sum).abs() < 1e-9);
+    }
+}
+
+/// With eight samples in place of 200, the first of these, the commands of the page run; what they say of the scenario itself is what
+/// the page shows, and their intervals hold the shares that it shows.
+#[test]
+fn the_worked_case_says_what_it_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::copy(
+        scenarios().join("uncertain/arch.toml"),
+        at.join("arch.toml"),
+    )
+    .unwrap();
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/uncertain.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, case) = page
+        .split_once("## A worked case, in four commands")
+        .unwrap();
+    let commands = shown_commands(case);
+    assert_eq!(commands.len(), 4);
+    for (command, shown) in commands {
+        let fewer = ["--set", "uncertain.samples=8"];
+        let fast: &[&str] = if command[0] == "run" {
+            &["--no-report"]
+        } else {
+            &[]
+        };
+        let command: Vec<&str> = command.iter().map(String::as_str).collect();
+        let said = printed(at, &[&command[..], &fewer, fast].concat());
+        for line in shown.iter().filter(|line| *line != "...") {
+            let Some((beginning, rest)) = line.split_once(" % (95 %: ") else {
+                assert!(said.contains(line), "{line} is not in: {said}");
+                continue;
+            };
+            assert!(rest.ends_with("of 200 samples"));
+            let (outcome, quoted) = beginning.trim().split_once(": ").unwrap();
+            // An outcome to which no sample came is not told.
+            let told = said.split_once(&format!("\n  {outcome}: "));
+            let count = told.map_or(0, |(_, told)| {
+                let (_, count) = told.split_once("), ").unwrap();
+                count.split(' ').next().unwrap().parse().unwrap()
+            });
+            let share = Share::of(count, 8).unwrap();
+            let quoted = 0.01 * quoted.parse::<f64>().unwrap();
+            assert!(
+                share.low <= quoted && quoted <= share.high,
+                "{line} {share:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_uncertain_is_refused() {
     let refusal = |keys: &str| {
@@ -647,12 +802,20 @@ fn what_cannot_be_uncertain_is_refused() {
             "is the same as a key before it",
         ),
         (
-            "'arch.thickness_m' = { deviation = 0.1 }",
+            "'arch.thickness_m' = { deviation = 0.02 }\n'arch.thickness_ratio' = { deviation = 0.005 }",
+            "contradicts the keys before it: ",
+        ),
+        (
+            "'impact.restitution' = { deviation = 0.1 }",
             "has no value in the scenario that it could deviate from",
         ),
         (
-            "'arch.thickness_m' = { from = 0.7, to = 0.8 }",
-            "cannot be combined with",
+            "'arch.span_m' = { from = 9.0, to = 11.0 }",
+            "the arch is resolved to mean_radius_m",
+        ),
+        (
+            "total_indices = 3\n'arch.depth_m' = { deviation = 0.1 }",
+            "must be true or false",
         ),
     ] {
         let said = refusal(keys);
@@ -682,12 +845,16 @@ fn all_numbers_may_be_uncertain() {
         format!(
             "{COLUMN}drums = 3\ntop_width_m = 0.7\n[free_hinges]\nlongest_step_s = 3e-4\nshortest_step_s = 1e-5\n"
         ),
+        format!("{COLUMN}drum_heights_m = [1.0, 2.5, 0.5]\n[free_hinges]\n"),
+        "[arch]\nmean_radius_m = 3.0\nthickness_m = 0.6\nembrace_deg = 150.0\n\
+         joints_deg = [0.0, 20.0, 50.0, 75.0, 100.0, 150.0]\n[free_hinges]\n"
+            .to_owned(),
         format!("[pointed_arch]\nspan_m = 4.0\nrise_m = 3.0\n{voussoirs}[free_hinges]\n"),
         format!("[elliptic_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
         format!("[basket_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
         format!(
             "[pointed_arch]\nspan_m = 4.0\nrise_m = 3.0\n{voussoirs}[piers]\nheight_m = 2.0\nwidth_m = 1.0\n\
-             [fill]\nabove_crown_m = 0.2\ndensity_kg_m3 = 1500.0\n"
+             [fill]\nabove_crown_m = 0.2\ndensity_kg_m3 = 1500.0\n[[load]]\nmass_kg = 1500.0\nx_m = 0.5\n"
         ),
     ] {
         for ground in [
@@ -704,8 +871,8 @@ fn all_numbers_may_be_uncertain() {
                 let mut all = Vec::new();
                 numbers(table, keys, &mut all);
                 for (key, value) in all {
-                    // The heights of drums are in the scenario, and must add up to its height.
-                    if key == "column.height_m" && keys.get("drum_heights_m").is_some() {
+                    // The first and the last joint are the springings: they follow the embrace angle.
+                    if ["arch.joints_deg.1", "arch.joints_deg.6"].contains(&&*key) {
                         continue;
                     }
                     // The value itself may be a bound: an arch of 180 degrees, a phase of zero.
@@ -739,6 +906,11 @@ fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
         serde_json::Value::Object(table) => {
             for (name, value) in table {
                 numbers(&format!("{key}.{name}"), value, all);
+            }
+        }
+        serde_json::Value::Array(entries) => {
+            for (number, value) in (1..).zip(entries) {
+                numbers(&format!("{key}.{number}"), value, all);
             }
         }
         serde_json::Value::Number(number) if number.is_f64() => {

@@ -18,7 +18,8 @@ use serde_json::{Value, json};
 
 use super::Scenario;
 use super::sequence::Spacing;
-use super::table::{Count, Number, OneOf, Reading, Table};
+use super::table::{Count, Number, OneOf, Reading, Switch, Table};
+use super::variant::{number, parts};
 use crate::argument::{plain, short};
 use crate::bisection::{Width, bisect, middle};
 
@@ -76,6 +77,8 @@ pub struct Uncertain {
     pub samples: usize,
     /// The seed of the scrambling.
     pub seed: u32,
+    /// Whether total indices are asked for, which take further samples.
+    pub total_indices: bool,
 }
 
 /// No more samples than the sequence has points.
@@ -195,6 +198,9 @@ impl Serialize for Uncertain {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("samples", &self.samples)?;
         map.serialize_entry("seed", &self.seed)?;
+        if self.total_indices {
+            map.serialize_entry(TOTAL_INDICES, &true)?;
+        }
         for key in &self.keys {
             map.serialize_entry(&key.key, key)?;
         }
@@ -203,12 +209,14 @@ impl Serialize for Uncertain {
 }
 
 const TABLE: &str = "uncertain";
+const TOTAL_INDICES: &str = "total_indices";
 
 impl Uncertain {
     /// Reads `[uncertain]`. It is [checked](Uncertain::check) later against the rest of the scenario.
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let samples = table.or("samples", &SAMPLES, 100);
         let seed = table.or("seed", &SEED, 1);
+        let total_indices = table.or(TOTAL_INDICES, &Switch, false);
         let names = table.keys_of_other_tables();
         let keys: Vec<_> = names
             .into_iter()
@@ -229,11 +237,16 @@ impl Uncertain {
                  \"arch.thickness_ratio\" = {{ deviation = 0.003 }}"
             )));
         }
-        let (samples, seed) = (samples?, seed?);
+        let (samples, seed, total_indices) = (samples?, seed?, total_indices?);
+        if total_indices && 2 * keys.len() > MAX_KEYS {
+            let wrong = format!("goes with at most {} keys", MAX_KEYS / 2);
+            return Err(table.wrong(TOTAL_INDICES, wrong));
+        }
         Ok(Self {
             keys,
             samples,
             seed: u32::try_from(seed).unwrap_or(u32::MAX),
+            total_indices,
         })
     }
 
@@ -269,23 +282,13 @@ impl Uncertain {
         let (before, [key, ..]) = self.keys.split_at_mut(index) else {
             return Ok(());
         };
-        let parts = |key: &str| -> Vec<String> {
-            key.split('.').map(|part| part.trim().to_owned()).collect()
-        };
         if before
             .iter()
             .any(|other| parts(&other.key) == parts(&key.key))
         {
             return Err("is the same as a key before it; leave one out".to_owned());
         }
-        let own = parts(&key.key)
-            .iter()
-            .try_fold(resolved, |table, part| match table {
-                // Entries of lists are counted from 1.
-                Value::Array(entries) => entries.get(part.parse::<usize>().ok()?.checked_sub(1)?),
-                table => table.get(part),
-            });
-        match own {
+        match number(resolved, &key.key) {
             Some(Value::Number(number)) if number.is_f64() => key.own = number.as_f64(),
             Some(Value::Number(number)) => {
                 return Err(format!(
@@ -296,6 +299,12 @@ impl Uncertain {
             Some(_) => {
                 return Err("is no number in the scenario; only numbers are uncertain".to_owned());
             }
+        }
+        if let (None, ["arch", "span_m" | "rise_m"]) = (key.own, &parts(&key.key)[..]) {
+            return Err(
+                "is not uncertain by itself: the arch is resolved to mean_radius_m, thickness_ratio and embrace_deg, which may be"
+                    .to_owned(),
+            );
         }
         if key.own.is_none() && matches!(key.spread, Spread::About { .. }) {
             return Err(format!(
@@ -319,18 +328,41 @@ impl Uncertain {
         Ok(())
     }
 
+    /// The number of samples with those of total indices: then each sample is followed, behind all others, by one for each key, in
+    /// which that key alone has another value.
+    #[must_use]
+    pub fn cases(&self) -> usize {
+        let keys = if self.total_indices {
+            self.keys.len()
+        } else {
+            0
+        };
+        self.samples.saturating_mul(1 + keys)
+    }
+
     /// The point of a sample, counted from 0: one number above 0 and below 1 for each key.
     #[must_use]
     pub fn point(&self, sample: usize) -> Vec<f64> {
+        let keys = self.keys.len();
+        // Of those behind the samples: which of them it is like, but for this key.
+        let (like, other) = match sample.checked_sub(self.samples) {
+            Some(behind) if self.total_indices => (behind / keys, Some(behind % keys)),
+            _ => (sample, None),
+        };
+        let at = |key: usize| {
+            let dimension = if other == Some(key) { keys + key } else { key };
+            self.coordinate(like, dimension)
+        };
+        (0..keys).map(at).collect()
+    }
+
+    /// A coordinate of a point of the sequence.
+    fn coordinate(&self, index: usize, dimension: usize) -> f64 {
         // The sequence has numbers of 24 bits: each stands for the middle of the interval that rounds down to it.
         const HALF_BIT: f64 = 0.5 / (1_u32 << 24) as f64;
-        let index = u32::try_from(sample).unwrap_or(u32::MAX);
-        (0..)
-            .zip(&self.keys)
-            .map(|(dimension, _)| {
-                f64::from(sobol_burley::sample(index, dimension, self.seed)) + HALF_BIT
-            })
-            .collect()
+        let whole = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        let part = sobol_burley::sample(whole(index), whole(dimension), self.seed);
+        f64::from(part) + HALF_BIT
     }
 
     /// The values of a sample, counted from 0, in the order of the keys.
@@ -404,6 +436,7 @@ mod tests {
                 keys: (0..20).map(|_| key("a.b")).collect(),
                 samples: 256,
                 seed,
+                total_indices: false,
             };
             let points: Vec<_> = (0..256).map(|sample| uncertain.point(sample)).collect();
             let part = |value: f64, parts: f64| (value * parts).floor();

@@ -40,6 +40,7 @@ impl Scenario {
                 table.shift_remove("ground");
             }
         }
+        make_room(&mut table, values);
         let text = table.as_object().map_or(String::new(), toml_text);
         let changes = Changes {
             hinges: None,
@@ -58,6 +59,101 @@ impl Scenario {
             changed.ground = Some(Ground::Record(Box::new(record)));
         }
         Ok(changed)
+    }
+}
+
+/// The parts of a key, `table.key`.
+pub(super) fn parts(key: &str) -> Vec<&str> {
+    key.split('.').map(str::trim).collect()
+}
+
+/// A number of a resolved scenario by its key, entries of lists counted from 1; also the thickness of a circular arch, of which the
+/// resolved scenario has the ratio.
+pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
+    let parts = parts(key);
+    let found = parts.iter().try_fold(resolved, |table, part| match table {
+        Value::Array(entries) => entries.get(part.parse::<usize>().ok()?.checked_sub(1)?),
+        table => table.get(part),
+    });
+    if let Some(found) = found {
+        return Some(found.clone());
+    }
+    let other = |keys: &[&str]| {
+        let found = keys.iter().try_fold(resolved, |table, key| table.get(key));
+        found.and_then(Value::as_f64)
+    };
+    match parts[..] {
+        ["arch", "thickness_m"] => {
+            let ratio = other(&["arch", "thickness_ratio"])?;
+            Some(Value::from(ratio * other(&["arch", "mean_radius_m"])?))
+        }
+        _ => None,
+    }
+}
+
+/// Changes what has to go with other numbers in a resolved scenario: of an arch either the thickness is there or its ratio, its last
+/// joint is at the other springing, and the drums of a column add up to its height.
+fn make_room(table: &mut Value, values: &[(&str, f64)]) {
+    let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
+    if keys.iter().any(|key| key[..] == ["arch", "thickness_m"])
+        && let Some(Value::Object(arch)) = table.get_mut("arch")
+    {
+        arch.shift_remove("thickness_ratio");
+    }
+    let given = |wanted: [&str; 2]| {
+        let index = keys.iter().position(|key| key[..] == wanted)?;
+        Some(values[index].1)
+    };
+    if let (Some(embrace_deg), Some(Value::Array(joints_deg))) = (
+        given(["arch", "embrace_deg"]),
+        table.pointer_mut("/arch/joints_deg"),
+    ) && let Some(last_deg) = joints_deg.last().and_then(Value::as_f64)
+    {
+        let angles_deg = joints_deg.iter().filter_map(Value::as_f64);
+        let mut angles_deg: Vec<f64> = angles_deg
+            .map(|angle_deg| angle_deg / last_deg * embrace_deg)
+            .collect();
+        if let Some(last) = angles_deg.last_mut() {
+            *last = embrace_deg;
+        }
+        *joints_deg = angles_deg.into_iter().map(Value::from).collect();
+    }
+    let height_m = given(["column", "height_m"]);
+    let is_drum = |key: &[&str]| matches!(key, ["column", "drum_heights_m", _]);
+    fit_drums(table, values, height_m, keys.iter().any(|key| is_drum(key)));
+}
+
+/// Drums share a new height in their proportions; the height is that of new drums.
+fn fit_drums(table: &mut Value, values: &[(&str, f64)], height_m: Option<f64>, drums_change: bool) {
+    let Some(Value::Object(column)) = table.get_mut("column") else {
+        return;
+    };
+    let Some(Value::Array(drums)) = column.get("drum_heights_m") else {
+        return;
+    };
+    let mut drums_m: Vec<f64> = drums.iter().filter_map(Value::as_f64).collect();
+    let sum_m: f64 = drums_m.iter().sum();
+    match (height_m, drums_change) {
+        (Some(height_m), false) => {
+            for drum_m in &mut drums_m {
+                *drum_m *= height_m / sum_m;
+            }
+            column.insert("drum_heights_m".to_owned(), Value::from(drums_m));
+        }
+        (None, true) => {
+            for (key, value) in values {
+                if let ["column", "drum_heights_m", entry] = parts(key)[..]
+                    && let Some(index) = entry.parse::<usize>().ok().and_then(|n| n.checked_sub(1))
+                    && let Some(drum_m) = drums_m.get_mut(index)
+                {
+                    *drum_m = *value;
+                }
+            }
+            let sum_m: f64 = drums_m.iter().sum();
+            column.insert("height_m".to_owned(), Value::from(sum_m));
+        }
+        // Both: they say different things, unless they add up.
+        _ => {}
     }
 }
 

@@ -102,7 +102,7 @@ pub fn scenario_files() -> Vec<PathBuf> {
 }
 
 /// The commands that a page of the documentation shows, each with the lines of its output that are shown.
-fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
+pub fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     let mut commands: Vec<(Vec<String>, Vec<String>)> = Vec::new();
     for line in page.lines() {
         let Some(line) = line.strip_prefix("    ") else {

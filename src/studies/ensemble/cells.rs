@@ -101,12 +101,12 @@ impl<'a> CellsOfSamples<'a> {
                 ));
             }
         }
-        let histories = map.count().saturating_mul(1 + uncertain.samples);
+        let histories = map.count().saturating_mul(1 + uncertain.cases());
         if histories > MAX_HISTORIES {
             return Err(format!(
                 "{} cells of [map] and {} samples of [uncertain] are {histories} histories; at most {MAX_HISTORIES} are allowed",
                 map.count(),
-                uncertain.samples
+                uncertain.cases()
             ));
         }
         Ok(Self {
@@ -189,7 +189,7 @@ impl Study for CellsOfSamples<'_> {
     }
 
     fn count(&self) -> usize {
-        self.map.count() * (1 + self.uncertain.samples)
+        self.map.count() * (1 + self.uncertain.cases())
     }
 
     fn row(&self, index: usize) -> Came {
@@ -313,12 +313,19 @@ impl CellsOfSamples<'_> {
     #[must_use]
     pub fn likely(&self, rows: &[Came]) -> Vec<Likely> {
         let cells = self.map.count();
-        let samples = rows.get(cells..).unwrap_or_default();
+        let samples = self.samples(rows);
         let of = |cell: usize| {
             let rows = samples.iter().skip(cell).step_by(cells);
             Likely::of(self.map.coordinates(cell), rows)
         };
         (0..cells).map(of).collect()
+    }
+
+    /// The rows of samples, without those of the scenario itself and of total indices.
+    fn samples<'r>(&self, rows: &'r [Came]) -> &'r [Came] {
+        let cells = self.map.count();
+        let to = cells * (1 + self.uncertain.samples);
+        rows.get(cells..to).unwrap_or_default()
     }
 
     /// Where the probability first reaches the [`LEVELS`], column by column.

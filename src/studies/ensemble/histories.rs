@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::statistics::{Share, band};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::dynamics::history::{Outcome, Sample};
+use crate::dynamics::model::Model;
 use crate::dynamics::spread::doubts;
 use crate::output::OutputError;
 use crate::scenario::Scenario;
@@ -79,9 +80,22 @@ impl Question for Histories {
     const NAME: &'static str = "uncertain";
 
     fn answer(&self, scenario: &Scenario) -> Result<Went, NoAnswer> {
-        let model = scenario
-            .model()
-            .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        let model = scenario.motion().model_for_many_cases(scenario.structure());
+        let model = model.map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        self.went(scenario, &*model)
+    }
+
+    /// With the steps of a run.
+    fn own_answer(&self, scenario: &Scenario) -> Result<Went, NoAnswer> {
+        let model = scenario.model();
+        let model = model.map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        self.went(scenario, &*model)
+    }
+}
+
+impl Histories {
+    /// How the history of a scenario goes.
+    fn went(&self, scenario: &Scenario, model: &dyn Model) -> Result<Went, NoAnswer> {
         let (ground, mut request) = (scenario.ground_motion(), scenario.request());
         // Output times do not influence the motion of mechanisms; for rows of blocks, steps may end at output times.
         if model.as_mechanisms().is_some() {
@@ -104,7 +118,7 @@ impl Question for Histories {
         let failed = |error: String| NoAnswer::Failed(error);
         let case = (ground.clone(), request);
         let own = [model.simulate(ground, &request, Some(&mut record))];
-        let doubt = doubts(&*model, &[case], &own).remove(0);
+        let doubt = doubts(model, &[case], &own).remove(0);
         let [summary] = own;
         let summary = summary.map_err(|error| failed(error.to_string()))?;
         let ending = Ending::from_summary(&summary, None, doubt).map_err(failed)?;

@@ -21,6 +21,59 @@ pub struct Matters {
     pub rank_correlation: f64,
     /// Its 95 % interval, by bootstrap with the original ranks.
     pub rank_correlation_interval: [f64; 2],
+    /// Its total index, if that was asked for.
+    #[serde(flatten)]
+    pub total: Option<Total>,
+}
+
+/// The total index of a number: the part of the variance of the answer that would be left, on average, if all other numbers were
+/// known, `E[Var(Y | all others)] / Var(Y)`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Total {
+    /// The index, from 0 to 1.
+    pub total: f64,
+    /// Its 95 % interval, by bootstrap.
+    pub total_interval: [f64; 2],
+}
+
+/// The total index of each number, by the estimator of Jansen (Computer Physics Communications 117, 1999) with the design of Saltelli and
+/// others (Computer Physics Communications 181, 2010): `answers` of the samples, and behind each other, for every sample and number,
+/// the answers `moved` where that number alone has another value. `None` stands for no answer. `None` if the answers do not vary.
+#[must_use]
+pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<Vec<Total>> {
+    let numbers = moved.len() / answers.len().max(1);
+    let samples: Vec<usize> = (0..answers.len())
+        .filter(|sample| answers[*sample].is_some())
+        .collect();
+    if samples.len() < LEAST_SAMPLES {
+        return None;
+    }
+    let half_square = |sample: usize, number: usize| {
+        let difference = answers[sample]? - (*moved.get(sample * numbers + number)?)?;
+        Some(0.5 * difference * difference)
+    };
+    let index = |number: usize, chosen: &[usize]| {
+        let chosen = chosen.iter().map(|place| samples[*place]);
+        let known: Vec<f64> = chosen
+            .clone()
+            .filter_map(|sample| answers[sample])
+            .collect();
+        let terms: Vec<f64> = chosen
+            .filter_map(|sample| half_square(sample, number))
+            .collect();
+        let ([_, variance], [mean, _]) = (moments(&known), moments(&terms));
+        (variance > 0.0 && !terms.is_empty()).then(|| (mean / variance).clamp(0.0, 1.0))
+    };
+    let all: Vec<usize> = (0..samples.len()).collect();
+    let resampled: Vec<Vec<usize>> = bootstrap(samples.len()).collect();
+    let of = |number: usize| {
+        let drawn = resampled.iter().filter_map(|drawn| index(number, drawn));
+        Some(Total {
+            total: index(number, &all)?,
+            total_interval: interval(drawn.collect())?,
+        })
+    };
+    (0..numbers).map(of).collect()
 }
 
 /// With fewer samples than these, nothing is reported.
@@ -68,6 +121,7 @@ pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>
             first_order_interval: [low.min(first_order), high.max(first_order)],
             rank_correlation,
             rank_correlation_interval: interval(drawn.collect())?,
+            total: None,
         })
     };
     (0..numbers).map(of).collect()

@@ -17,7 +17,7 @@ mod told;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use self::matters::{Matters, what_matters};
+use self::matters::{Matters, total_indices, what_matters};
 use super::runner::Study;
 use crate::scenario::{Scenario, Uncertain};
 
@@ -34,6 +34,14 @@ pub trait Question: Sync {
     /// # Errors
     /// Explains why there is none.
     fn answer(&self, scenario: &Scenario) -> Result<Self::Answer, NoAnswer>;
+
+    /// The answer for the scenario itself, where that is computed with more care than its samples.
+    ///
+    /// # Errors
+    /// As [`Question::answer`].
+    fn own_answer(&self, scenario: &Scenario) -> Result<Self::Answer, NoAnswer> {
+        self.answer(scenario)
+    }
 
     /// Other settings on which the answers depend, in words.
     fn settings(&self) -> Vec<String> {
@@ -142,14 +150,14 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
     }
 
     fn count(&self) -> usize {
-        1 + self.uncertain.samples
+        1 + self.uncertain.cases()
     }
 
     fn row(&self, index: usize) -> Self::Row {
         let Some(sample) = index.checked_sub(1) else {
             return SampleRow {
                 values: Vec::new(),
-                answer: self.question.answer(self.scenario),
+                answer: self.question.own_answer(self.scenario),
             };
         };
         let values = self.uncertain.values(sample);
@@ -170,6 +178,8 @@ pub(crate) struct Told<'a, A> {
     pub(crate) own: &'a Result<A, NoAnswer>,
     /// The samples, in their order.
     pub(crate) samples: &'a [SampleRow<A>],
+    /// Those in which one number has another value, as [`Uncertain::cases`] says; empty unless total indices are asked for.
+    moved: &'a [SampleRow<A>],
 }
 
 impl<'a, A> Told<'a, A> {
@@ -179,11 +189,13 @@ impl<'a, A> Told<'a, A> {
         rows: &'a [SampleRow<A>],
     ) -> Self {
         let (own, samples) = rows.split_first().expect("the scenario itself is a case");
+        let (samples, moved) = samples.split_at(uncertain.samples.min(samples.len()));
         Self {
             scenario,
             uncertain,
             own: &own.answer,
             samples,
+            moved,
         }
     }
 
@@ -202,9 +214,40 @@ impl<'a, A> Told<'a, A> {
         reasons.filter(|reason| reason.name() == name).count()
     }
 
-    /// Which uncertain numbers matter for `numbers`, one for each sample that has an answer, in their order.
-    pub(crate) fn what_matters(&self, numbers: &[f64]) -> Option<Vec<Matters>> {
+    /// Which uncertain numbers matter for a number of each sample, or for its rank.
+    pub(crate) fn what_matters(
+        &self,
+        by_rank: bool,
+        number: impl Fn(&A) -> f64,
+    ) -> Option<Vec<Matters>> {
+        let known = |rows: &[SampleRow<A>]| -> Vec<Option<f64>> {
+            let answers = rows.iter().map(|row| row.answer.as_ref().ok());
+            answers.map(|answer| answer.map(&number)).collect()
+        };
         let values: Vec<Vec<f64>> = self.answered().map(|(values, _)| values.to_vec()).collect();
-        what_matters(&values, numbers)
+        let own = numbers(&known(self.samples), by_rank);
+        let answers: Vec<f64> = own.iter().flatten().copied().collect();
+        let mut matters = what_matters(&values, &answers)?;
+        if !self.moved.is_empty() {
+            let all = [self.samples, self.moved].map(known).concat();
+            let all = numbers(&all, by_rank);
+            let (own, moved) = all.split_at(self.samples.len());
+            for (matters, total) in matters.iter_mut().zip(total_indices(own, moved)?) {
+                matters.total = Some(total);
+            }
+        }
+        Some(matters)
     }
+}
+
+/// The numbers that there are as they are, or their ranks.
+fn numbers(of: &[Option<f64>], by_rank: bool) -> Vec<Option<f64>> {
+    if !by_rank {
+        return of.to_vec();
+    }
+    let known: Vec<f64> = of.iter().flatten().copied().collect();
+    let mut ranks = statistics::ranks(&known).into_iter();
+    of.iter()
+        .map(|number| number.and_then(|_| ranks.next()))
+        .collect()
 }

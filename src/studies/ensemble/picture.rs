@@ -232,8 +232,11 @@ pub(super) fn matters<A>(figure: Figure, told: &Told<'_, A>, decides: &[Decides<
         for (key, matters) in of {
             let at = |part: f64| axes.place(part, 0.0).x;
             let name = spoken(&key.key, told.uncertain);
+            let total = matters.total.map_or(String::new(), |total| {
+                format!(", {:.2} in all", total.total)
+            });
             let text = format!(
-                "{name}: {:.2} (r {:+.2})",
+                "{name}: {:.2}{total} (r {:+.2})",
                 matters.first_order, matters.rank_correlation
             );
             let label = Vector2::new(frame.left + 4.0, row + 15.0);
@@ -244,6 +247,10 @@ pub(super) fn matters<A>(figure: Figure, told: &Told<'_, A>, decides: &[Decides<
                 width: at(matters.first_order) - frame.left,
                 height: BAR_PX,
             };
+            if let Some(total) = matters.total {
+                let width = at(total.total) - frame.left;
+                drawing.band("total", &Frame { width, ..bar }, color::BLUE, 0.2);
+            }
             drawing.band(&key.key, &bar, color::BLUE, 0.6);
             let middle = row + 20.0 + 0.5 * BAR_PX;
             let ends = matters

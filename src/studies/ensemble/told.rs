@@ -7,7 +7,7 @@ use super::edges::{FirstEdge, ProbabilityAt};
 use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
 use super::records::{AtLevel, Capacities, Capacity};
-use super::statistics::{Share, band, ranks};
+use super::statistics::{Share, band};
 use super::{NoAnswer, Told, picture};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, pretty};
@@ -65,9 +65,10 @@ impl<'a> Decides<'a> {
     pub(super) fn new<A>(
         told: &Told<'a, A>,
         [name, what]: [&'static str; 2],
-        numbers: &[f64],
+        by_rank: bool,
+        number: impl Fn(&A) -> f64,
     ) -> Self {
-        let of = told.what_matters(numbers);
+        let of = told.what_matters(by_rank, number);
         let keys = &told.uncertain.keys;
         Self {
             what,
@@ -246,11 +247,11 @@ pub(super) fn histories(
     let bands = told.bands(asked);
     let outcomes = told.outcomes();
     let peaks: Vec<f64> = told.answered().map(|(_, went)| went.peak_rad()).collect();
-    let overturned: Vec<f64> = told.answered().map(|(_, went)| went.overturned()).collect();
-    let overturning = Decides::new(told, ["overturning", "whether it overturns"], &overturned);
+    let names = ["overturning", "whether it overturns"];
+    let overturning = Decides::new(told, names, false, Went::overturned);
     // A sample that overturned has no largest rotation, but it ranks above all others.
     let names = ["peak_rotation_rank", "how far it rocks"];
-    let far = Decides::new(told, names, &ranks(&peaks));
+    let far = Decides::new(told, names, true, Went::peak_rad);
     let decides = [overturning, far];
     let mut json = beginning(told);
     let shares = outcomes
@@ -399,10 +400,9 @@ fn far_in_words(told: &Told<'_, Went>) -> String {
 pub(super) fn edges(told: &Told<'_, FirstEdge>, figure: Figure) -> Result<Results, OutputError> {
     let probabilities = told.probabilities();
     // A sample that never overturns counts with the largest factor tried.
-    let strength = |(_, edge): (_, &FirstEdge)| edge.factor.unwrap_or(edge.tried_to);
-    let strengths: Vec<f64> = told.answered().map(strength).collect();
+    let strength = |edge: &FirstEdge| edge.factor.unwrap_or(edge.tried_to);
     let names = ["first_factor", "the first factor that overturns"];
-    let decides = [Decides::new(told, names, &strengths)];
+    let decides = [Decides::new(told, names, false, strength)];
     let at_one = told.share_up_to(1.0);
     let mut json = beginning(told);
     json["first_factor"] = band_to_json(told.band());
@@ -511,13 +511,12 @@ pub(super) fn capacities(
     let levels = told.at_levels(asked);
     // The median over the records for each sample; the largest level if half of the records do not overturn the sample.
     let most = asked.levels().last().copied().unwrap_or(1.0);
-    let median = |(_, capacity): (_, &Capacity)| {
+    let median = |capacity: &Capacity| {
         let strengths = capacity.0.iter().map(FirstEdge::strength).collect();
         band(strengths).map_or(most, |[_, median, _]| median.min(most))
     };
-    let medians: Vec<f64> = told.answered().map(median).collect();
     let names = ["median_intensity", "the median intensity that overturns"];
-    let decides = [Decides::new(told, names, &medians)];
+    let decides = [Decides::new(told, names, false, median)];
     let column_name = asked.measure().column();
     let mut json = beginning(told);
     json["intensity"] = json!(column_name);

@@ -76,7 +76,9 @@ pub(super) fn tell(
     };
     let parts: Vec<f64> = told.answered().map(|(_, share)| share.share).collect();
     let names = ["part_that_overturns", "how much of the map overturns"];
-    let decides = [Decides::new(told, names, &parts)];
+    let decides = [Decides::new(told, names, false, |share: &Share| {
+        share.share
+    })];
     let title = study.scenario.title();
     let title = title.unwrap_or("Probability of overturning");
     let screen = Look {
@@ -84,7 +86,7 @@ pub(super) fn tell(
         ..look
     };
     let page = page_cells(&found).page(title, &study.map, &draw(title, study, &found, screen));
-    let samples = &rows[found.likely.len()..];
+    let samples = study.samples(rows);
     let counted = |wanted: &str| -> usize {
         samples
             .iter()
