@@ -60,6 +60,8 @@ fn the_reference_has_the_keys_that_are_read() {
         ("column", vec!["column"]),
         ("free_hinges", vec!["free_hinges"]),
         ("elastic_joints", vec!["elastic_joints"]),
+        ("supports", vec!["supports"]),
+        ("supports.right", vec!["supports.right", "supports.left"]),
         (
             "ground.<kind>",
             vec!["ground.rectangular", "ground.gabor", "ground.windowed_sine"],

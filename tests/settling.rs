@@ -1,7 +1,11 @@
 //! Rows that follow supports that move slowly, beside a computation that shares nothing with the program: the least potential energy
 //! of all blocks, found by convex programmes over joints that may open anywhere.
 
+use archrock::ElasticJoints;
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::model::{Model as _, Request};
 use archrock::mechanics::blocks::Row;
+use archrock::mechanics::elastic_joint::{ElasticProperties, ElasticStructure, RestError};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::settling::{Follower, Movement, Movements, Reached};
 use archrock::mechanics::sway::Sway;
@@ -11,7 +15,7 @@ use clarabel::solver::{
 };
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use crate::program::{printed, refused};
+use crate::program::{done, printed, refused};
 use crate::results::{Table, json};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
@@ -628,5 +632,184 @@ fn what_has_no_two_springings_has_no_spread() {
         folder.path(),
         &["spread", "ring.toml", "--angle", "200"],
         &["from -180 to 180"],
+    );
+}
+
+/// The semicircle above as elastic joints.
+fn elastic(normal_gpa_m: f64) -> ElasticProperties {
+    ElasticProperties {
+        friction_coefficient: None,
+        ..ElasticProperties::of_stiffness(1e9 * normal_gpa_m)
+    }
+}
+
+fn semicircle_of_5_m() -> Row {
+    let ring = Ring::new(0.15, std::f64::consts::PI).unwrap();
+    Row::arch(&ring, 36, 5.0, 1.0, 2000.0).unwrap()
+}
+
+/// Springings that spread over 300 s, half to each side, in explicit steps of another program with mass damping, let elastic joints fall at these
+/// movements over the radius; the delay of that and the damping are worth 0.002. They tend to those of rigid joints.
+#[test]
+fn elastic_joints_fall_earlier_and_tend_to_rigid_ones() {
+    let row = semicircle_of_5_m();
+    let mut last = 0.0;
+    for (normal_gpa_m, expected) in [(1.0, 0.0657), (10.0, 0.0956), (100.0, 0.1064)] {
+        let joints = ElasticStructure::of_row(&row, &elastic(normal_gpa_m)).unwrap();
+        let joints = joints.on_supports([[-0.3, 0.0, 0.0], [0.3, 0.0, 0.0]]);
+        let Err(RestError::Supports(part)) = joints.rest([0.0, -9.81]) else {
+            panic!("it stands");
+        };
+        let found = part * 0.6 / 5.0;
+        assert!((found - expected).abs() < 0.003, "{normal_gpa_m}: {found}");
+        assert!(found > last && found < 0.111_646, "{normal_gpa_m}: {found}");
+        last = found;
+    }
+}
+
+fn spread_out(spread_m: f64) -> Movements {
+    Movements {
+        right: Movement {
+            spread_m,
+            settlement_m: 0.3 * spread_m,
+            rotation_rad: -0.002,
+        },
+        ..Movements::default()
+    }
+}
+
+/// An arch on springings that have moved stays where it stands: the ground begins to move after 10 s, by too little to be seen.
+#[test]
+fn a_settled_arch_is_at_rest() {
+    let model = ElasticJoints::new(semicircle_of_5_m(), elastic(10.0)).unwrap();
+    let model = model.on_supports(spread_out(0.15)).unwrap();
+    let ground = GroundMotion::pulse(Pulse::HalfSine, 1e-9, 0.2, 9.9).unwrap();
+    let request = Request {
+        end_s: 10.2,
+        ..Request::default()
+    };
+    let summary = model.simulate(&ground, &request, None).unwrap();
+    // Rounding of the equilibrium, and then the pulse of 1e-10 g.
+    let largest = summary
+        .peak_rotations_rad
+        .iter()
+        .fold(0.0_f64, |most, peak| most.max(*peak));
+    assert!(largest < 1e-8, "{largest:e}");
+    assert!(summary.end_s > 10.0, "{}", summary.end_s);
+}
+
+/// What starts it is what makes the hinges of its rigid twin give way; and a symmetric arch that was moved as a whole is the same arch.
+#[test]
+fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
+    let row = semicircle_of_5_m();
+    let movements = spread_out(0.15);
+    let mut follower = Follower::new(&row).unwrap();
+    follower
+        .move_supports(|part| movements.times(part), 0.0, 1.0)
+        .unwrap();
+    let model = ElasticJoints::new(row.clone(), elastic(10.0)).unwrap();
+    let settled = model.clone().on_supports(movements).unwrap();
+    for sway in [Sway::Right, Sway::Left] {
+        let [first_g, _] = follower.pushes_g(sway).unwrap().unwrap();
+        assert_eq!(settled.incipient_acceleration_g(sway), Some(first_g));
+        assert!(first_g < 0.5 * model.incipient_acceleration_g(sway).unwrap());
+    }
+    let along = Movements {
+        left: Movement {
+            spread_m: -0.2,
+            settlement_m: 0.1,
+            rotation_rad: 0.0,
+        },
+        right: Movement {
+            spread_m: 0.2,
+            settlement_m: 0.1,
+            rotation_rad: 0.0,
+        },
+    };
+    let built = model.rest(9.81).unwrap();
+    let joints = model.structure().clone().on_supports(along.displacements());
+    let moved = joints.rest([0.0, -9.81]).unwrap();
+    for (built, moved) in built.moved.iter().zip(&moved.moved) {
+        for (axis, shift) in [0.2, -0.1, 0.0].into_iter().enumerate() {
+            // Equilibria are found to 1e-8 of the weight or better, with a compliance of 1e-4 m per weight.
+            assert!((moved[axis] - built[axis] - shift).abs() < 1e-10);
+        }
+    }
+}
+
+const ELASTIC: &str = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.half_sine]\namplitude_g = 0.03\nduration_s = 0.2\n";
+
+#[test]
+fn a_scenario_says_where_its_springings_have_gone() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, supports: &str| {
+        let text = format!("{SEMICIRCLE}{ELASTIC}[supports]\n{supports}\n");
+        std::fs::write(folder.path().join(name), text).unwrap();
+    };
+    write(
+        "arch.toml",
+        "right = { spread_m = 0.15, settlement_m = 0.05 }",
+    );
+    let resolved = printed(folder.path(), &["check", "arch.toml"]);
+    assert!(
+        resolved.contains("spread_m = 0.15") && resolved.contains("settlement_m = 0.05"),
+        "{resolved}"
+    );
+    let told = printed(
+        folder.path(),
+        &[
+            "--quiet",
+            "run",
+            "arch.toml",
+            "--no-spread",
+            "--format",
+            "json",
+        ],
+    );
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    assert!(told["incipient_acceleration_g"]["right"].as_f64().unwrap() < 0.08);
+    // Its rigid twin would stand on other springings.
+    let said = done(folder.path(), &["run", "arch.toml"]);
+    assert!(
+        said.contains(
+            "with rigid joints (free hinges): they start on the springings that were built"
+        ),
+        "{said}"
+    );
+    for (supports, words) in [
+        (
+            "right = { spread_m = -9.5 }",
+            "pushes the springings 9.5 m towards each other",
+        ),
+        ("right = { spread_m = 0.7 }", "with joints that are rigid"),
+        (
+            "right = { spread_m = 0.53 }",
+            "with joints as soft as these",
+        ),
+        ("right = { spread = 0.1 }", "unknown key `spread`"),
+        ("right = { rotation_rad = 3.0 }", "out of range"),
+    ] {
+        write("wrong.toml", supports);
+        refused(
+            folder.path(),
+            &["run", "wrong.toml"],
+            &[words, "wrong.toml:"],
+        );
+    }
+    refused(
+        folder.path(),
+        &["run", "arch.toml", "--hinges", "four"],
+        &["four links start undeformed"],
+    );
+    refused(
+        folder.path(),
+        &["limit", "arch.toml"],
+        &["leave [supports] out"],
+    );
+    std::fs::write(folder.path().join("column.toml"), format!("[column]\nheight_m = 4\nwidth_m = 1\n{ELASTIC}[supports]\nright = {{ spread_m = 0.1 }}\n")).unwrap();
+    refused(
+        folder.path(),
+        &["run", "column.toml"],
+        &["stands on one support"],
     );
 }

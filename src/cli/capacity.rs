@@ -40,7 +40,7 @@ fn point(text: &str) -> Result<Vector2<f64>, String> {
 
 pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.read(None)?;
+    let scenario = input.read_as_built()?;
     let sides = capacities(&scenario, arguments.point)
         .map_err(|error| Failure::Input(error.to_string()))?;
     let place = input.results(arguments.out.as_deref())?;

@@ -22,7 +22,7 @@ pub struct Arguments {
 
 pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.read(None)?;
+    let scenario = input.read_as_built()?;
     let Some(arch) = scenario.structure().circular() else {
         let message = "chart is for arches only; the scenario has a column";
         return Err(Failure::Input(message.to_owned()));

@@ -27,7 +27,7 @@ pub fn limit(
     format: Format,
     plot: Option<(&Path, Figure, Sway)>,
 ) -> Result<(), Failure> {
-    let scenario = file.open()?.read(None)?;
+    let scenario = file.open()?.read_as_built()?;
     if let Some((plot, figure, first)) = plot {
         let model = four_links(&scenario, "--plot is")?;
         write_picture(

@@ -55,7 +55,7 @@ impl Arguments {
 }
 
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
-    let scenario = arguments.scenario.open()?.read(None)?;
+    let scenario = arguments.scenario.open()?.read_as_built()?;
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
     if !scenario.structure().thrusts() && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;

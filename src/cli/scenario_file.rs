@@ -122,6 +122,18 @@ impl Input<'_> {
         })
     }
 
+    /// The scenario for what is computed of a structure as it was built.
+    pub fn read_as_built(&self) -> Result<Scenario, Failure> {
+        let scenario = self.read(None)?;
+        let settled = scenario.motion().supports();
+        if settled.is_some_and(|movements| !movements.is_none()) {
+            let message = "this command is about the structure on the springings that were built: leave [supports] out; `archrock spread` tells \
+                           what push it bears where they have moved";
+            return Err(self.about(Failure::Input(message.to_owned())));
+        }
+        Ok(scenario)
+    }
+
     /// The failure, with the name of the scenario file in front.
     pub fn about(&self, failure: Failure) -> Failure {
         match failure {

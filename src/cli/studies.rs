@@ -223,7 +223,7 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
 pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let input = options.open()?;
-    let scenario = input.read(None)?;
+    let scenario = input.read_as_built()?;
     let look = Look::of(arguments.figure.get());
     options.study(StudyKind::Spectrum, &input, &scenario, look, quiet)
 }

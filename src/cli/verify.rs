@@ -21,7 +21,7 @@ pub struct Arguments {
 
 pub fn verify(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.read(None)?;
+    let scenario = input.read_as_built()?;
     if !quiet {
         warn(&scenario.unlikely());
     }

@@ -13,6 +13,7 @@ mod descent;
 mod three_pins;
 
 use nalgebra::Vector2;
+use serde::Serialize;
 use thiserror::Error;
 
 use self::descent::Descent;
@@ -37,7 +38,7 @@ const ROUNDING: f64 = 1e-12;
 const LARGEST_PUSH_G: f64 = 100.0;
 
 /// How a support has moved from where it was built.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Movement {
     /// Outwards, away from the other support, in metres.
     pub spread_m: f64,
@@ -75,7 +76,7 @@ impl Movement {
 }
 
 /// How the supports of a row have moved.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Movements {
     /// The left one.
     pub left: Movement,
@@ -102,19 +103,35 @@ impl Movements {
         }
     }
 
+    /// Whether nothing has moved.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Displacements to the right and upwards, in metres, and rotations of the left and the right support.
+    #[must_use]
+    pub fn displacements(&self) -> [[f64; 3]; 2] {
+        let of = |outwards: f64, movement: &Movement| {
+            [
+                outwards * movement.spread_m,
+                -movement.settlement_m,
+                movement.rotation_rad,
+            ]
+        };
+        [of(-1.0, &self.left), of(1.0, &self.right)]
+    }
+
     /// Where the left and the right support of a row are then.
     #[must_use]
     pub fn poses(&self, row: &Row) -> [Pose; 2] {
         let joints = row.joints();
-        let pose = |joint: usize, outwards: f64, movement: &Movement| {
+        let pose = |joint: usize, [x, y, rotation_rad]: [f64; 3]| {
             let middle = joints[joint].middle_m();
-            let shift = Vector2::new(outwards * movement.spread_m, -movement.settlement_m);
-            Pose::about(middle, middle + shift, movement.rotation_rad)
+            Pose::about(middle, middle + Vector2::new(x, y), rotation_rad)
         };
-        [
-            pose(0, -1.0, &self.left),
-            pose(joints.len() - 1, 1.0, &self.right),
-        ]
+        let [left, right] = self.displacements();
+        [pose(0, left), pose(joints.len() - 1, right)]
     }
 
     fn extent(&self, size_m: f64) -> f64 {
@@ -272,21 +289,28 @@ impl<'a> Follower<'a> {
         self.follow(&way, [from, to], (to - from) / extent)
     }
 
+    /// The push to a side, in units of gravity, that makes the row give way where it stands; `None` where none does.
+    ///
+    /// # Errors
+    /// When the velocities of a trial are not found.
+    pub fn first_motion_g(&self, sway: Sway) -> Result<Option<f64>, ContactError> {
+        match onset_at(self.row, &self.placement, sway) {
+            // Where it is about to fall, rounding may leave it on either side of zero.
+            Ok(onset) => Ok(onset.map(|onset| onset.acceleration_g.max(0.0))),
+            Err(StabilityError::CannotStand(_)) => Ok(Some(0.0)),
+            Err(StabilityError::Contact(error)) => Err(error),
+        }
+    }
+
     /// Pushes the row to a side until it falls; the pushes, in units of gravity, of its first motion and at its fall. The row itself
     /// stays where it is. `None` where no push moves it.
     ///
     /// # Errors
     /// When the row is lost where it gives way.
     pub fn pushes_g(&self, sway: Sway) -> Result<Option<[f64; 2]>, SettlingError> {
-        let first = match onset_at(self.row, &self.placement, sway) {
-            Err(StabilityError::CannotStand(_)) => return Ok(Some([0.0; 2])),
-            first => first?,
-        };
-        let Some(first) = first else {
+        let Some(first_g) = self.first_motion_g(sway)? else {
             return Ok(None);
         };
-        // Where it is about to fall, rounding may leave it on either side of zero.
-        let first_g = first.acceleration_g.max(0.0);
         // Undeformed, its joints hold it until they are four.
         if self.hinges.is_none() {
             return Ok(Some([first_g; 2]));

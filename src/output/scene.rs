@@ -20,6 +20,8 @@ use crate::scenario::Structure;
 pub struct Scene {
     shape: Shape,
     sections: Vec<Section>,
+    /// Where the left and the right support of an arch are.
+    supports: [Pose; 2],
 }
 
 #[derive(Clone, Debug)]
@@ -157,6 +159,7 @@ impl Scene {
         let (ring, mean_radius_m) = (arch.ring(), arch.mean_radius_m());
         let sections = arch.thrust_sections_rad().into_iter();
         Self {
+            supports: [Pose::UNDEFORMED; 2],
             sections: sections
                 .map(|angle_rad| Section {
                     middle_m: ring.radial(angle_rad) * mean_radius_m,
@@ -183,6 +186,7 @@ impl Scene {
         ];
         let heights_m = column.thrust_sections_m().into_iter();
         Self {
+            supports: [Pose::UNDEFORMED; 2],
             sections: heights_m
                 .map(|height_m| Section {
                     middle_m: Vector2::new(0.0, height_m),
@@ -205,6 +209,7 @@ impl Scene {
     fn of_blocks(row: &Row, linked: bool) -> Self {
         let joints = row.joints().iter();
         Self {
+            supports: [Pose::UNDEFORMED; 2],
             sections: joints
                 .map(|joint| Section {
                     middle_m: joint.middle_m(),
@@ -217,6 +222,13 @@ impl Scene {
                 linked,
             },
         }
+    }
+
+    /// The same with its left and right support at these places.
+    #[must_use]
+    pub const fn on_supports(mut self, poses: [Pose; 2]) -> Self {
+        self.supports = poses;
+        self
     }
 
     /// The sections at which the position of the line of thrust is known.
@@ -235,9 +247,13 @@ impl Scene {
             Shape::Row { outlines_m, .. } => self.sections.len() > outlines_m.len(),
         };
         let ends = [self.sections.first(), self.sections.last()];
-        let faces = ends.into_iter().flatten().filter(|_| is_arch);
+        let faces = ends.into_iter().zip(&self.supports);
+        let faces = faces.filter_map(|(section, pose)| Some((section?, pose)));
         faces
-            .map(|section| [-0.5, 0.5].map(|part| section.middle_m + section.across_m * part))
+            .filter(|_| is_arch)
+            .map(|(section, pose)| {
+                [-0.5, 0.5].map(|part| pose.of(section.middle_m + section.across_m * part))
+            })
             .collect()
     }
 

@@ -13,6 +13,7 @@ use crate::dynamics::free_hinges::FreeHingesError;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, ElasticStructure, JointStiffness, Materials, RestError, Stiffness,
 };
+use crate::mechanics::settling::Movements;
 
 /// Converts a stiffness in GPa/m to Pa/m, and a modulus in GPa to Pa.
 const GPA: f64 = 1e9;
@@ -80,6 +81,9 @@ pub struct ElasticTable {
     /// The longest time step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
+    /// Where the supports have gone before time begins, by `[supports]`.
+    #[serde(skip)]
+    pub supports: Movements,
 }
 
 impl ElasticTable {
@@ -109,6 +113,7 @@ impl ElasticTable {
             compressive_strength_mpa: compressive_strength_mpa?,
             contact_points: contact_points?,
             longest_step_s: longest_step_s?,
+            supports: Movements::default(),
         })
     }
 
@@ -161,16 +166,28 @@ impl ElasticTable {
         else {
             return Ok(());
         };
+        let joints = joints.on_supports(self.supports.displacements());
+        let rest = joints.rest([0.0, -simulation.gravity_m_s2]);
+        if let Err(RestError::Supports(part)) = rest {
+            return Err(table.wrong(
+                "supports",
+                format!(
+                    "lets the arch fall when its springings have gone {:.2} % of this way, with joints as soft as these: give less, or \
+                     stiffer joints",
+                    1e2 * part
+                ),
+            ));
+        }
         let mut wrong =
             |key: &str, wrong: String| Err(table.wrong_in("elastic_joints", key, wrong));
-        if let Err(error) = joints.rest([0.0, -simulation.gravity_m_s2]) {
+        if let Err(error) = rest {
             let key = match error {
                 RestError::Friction => "friction_coefficient",
                 RestError::Strength => "compressive_strength_mpa",
                 RestError::Points => "contact_points",
                 RestError::Stiffness if self.stone_modulus_gpa.is_some() => "stone_modulus_gpa",
                 RestError::Stiffness => "normal_stiffness_gpa_m",
-                RestError::NotFound => return Ok(()),
+                RestError::NotFound | RestError::Supports(_) => return Ok(()),
             };
             return wrong(key, format!("is not possible here: {error}"));
         }
@@ -202,7 +219,8 @@ impl ElasticTable {
     pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
         let row = structure.row().map_err(FreeHingesError::from)?;
         let (depth_m, _) = structure.depth_and_density();
-        let model = ElasticJoints::new(row, self.properties(depth_m))?;
+        let model =
+            ElasticJoints::new(row, self.properties(depth_m))?.on_supports(self.supports)?;
         let options = ElasticOptions {
             longest_step_s: self.longest_step_s,
         };

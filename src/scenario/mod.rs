@@ -45,6 +45,7 @@ mod span;
 mod spectrum;
 mod structure;
 mod suite;
+mod supports;
 mod table;
 mod toml_text;
 mod uncertain;
@@ -485,8 +486,15 @@ impl Scenario {
         let Value::Object(structure) = json(&self.structure) else {
             unreachable!("a structure is some tables");
         };
+        let supports = self.motion.supports();
         let tables = [
             motion(true),
+            (
+                "supports",
+                supports
+                    .filter(|movements| !movements.is_none())
+                    .map_or(Value::Null, |movements| json(&movements)),
+            ),
             ("ground", json(&self.ground)),
             motion(false),
             ("initial", json(&self.initial)),

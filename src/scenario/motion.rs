@@ -6,11 +6,12 @@ use super::elastic_joints::ElasticTable;
 use super::simulation::Simulation;
 use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
-use super::{free_hinges, impact};
+use super::{free_hinges, impact, supports};
 use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::model::{Model, Request};
 use crate::dynamics::variation::Variation;
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
+use crate::mechanics::settling::Movements;
 
 named! {
     /// A model of motion.
@@ -111,6 +112,9 @@ impl Motion {
         variations.push(Variation {
             name: "rigid joints (free hinges)".to_owned(),
             model: match rigid {
+                _ if !joints.supports.is_none() => {
+                    Err("they start on the springings that were built".to_owned())
+                }
                 Ok(rigid) => Ok(Box::new(rigid)),
                 Err(error) => Err(error.to_string()),
             },
@@ -173,6 +177,9 @@ impl Motion {
         structure: &Structure,
         simulation: Option<&Simulation>,
     ) -> Reading<()> {
+        if let Some(movements) = self.supports() {
+            supports::check(table, structure, &movements)?;
+        }
         match self {
             Self::FourLinks(_) => Ok(()),
             Self::FreeHinges(options) => free_hinges::carries(
@@ -188,6 +195,15 @@ impl Motion {
                     joints.check(table, structure, simulation)
                 })
             }
+        }
+    }
+
+    /// Where the supports have gone before time begins; `None` of models that start on those that were built.
+    #[must_use]
+    pub const fn supports(&self) -> Option<Movements> {
+        match self {
+            Self::FourLinks(_) | Self::FreeHinges(_) => None,
+            Self::ElasticJoints(joints) => Some(joints.supports),
         }
     }
 
@@ -226,6 +242,7 @@ pub(super) struct Tables {
     asked: bool,
     free_hinges: Reading<Option<RowOptions>>,
     elastic_joints: Reading<Option<ElasticTable>>,
+    supports: Reading<Option<Movements>>,
 }
 
 impl Tables {
@@ -233,6 +250,7 @@ impl Tables {
     pub(super) fn read(table: &mut Table<'_>, asked: Option<Hinges>) -> Self {
         let free_hinges = table.table("free_hinges", free_hinges::read);
         let elastic_joints = table.table("elastic_joints", ElasticTable::read);
+        let supports = table.table("supports", supports::read);
         let chosen = if table.gives_table("elastic_joints") {
             Hinges::Elastic
         } else if table.gives_table("free_hinges") {
@@ -245,6 +263,7 @@ impl Tables {
             asked: asked.is_some(),
             free_hinges,
             elastic_joints,
+            supports,
         }
     }
 
@@ -266,11 +285,21 @@ impl Tables {
             return Err(table.wrong("impact", wrong));
         }
         let (law, free_hinges, elastic_joints) = (law?, self.free_hinges?, self.elastic_joints?);
+        let supports = self.supports?;
+        if supports.is_some() && self.hinges != Hinges::Elastic {
+            return Err(table.wrong("supports", match self.hinges {
+                Hinges::Four => "needs joints that follow: four links start undeformed; choose [elastic_joints], or leave it out",
+                _ => "goes with [elastic_joints] so far: rigid joints start on the springings that were built; choose those, or leave it out",
+            }));
+        }
         let motion = match self.hinges {
             Hinges::Four => Motion::FourLinks(law),
             Hinges::Free => Motion::FreeHinges(free_hinges.unwrap_or_default()),
             Hinges::Elastic => match elastic_joints {
-                Some(joints) => Motion::ElasticJoints(joints),
+                Some(joints) => Motion::ElasticJoints(ElasticTable {
+                    supports: supports.unwrap_or_default(),
+                    ..joints
+                }),
                 None => {
                     return Err(table.wrong_itself(
                         "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there; \

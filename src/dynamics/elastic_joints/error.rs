@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::argument::ArgumentError;
 use crate::dynamics::model::SimulationError;
+use crate::dynamics::row::standing::SettledError;
 use crate::mechanics::elastic_joint::RestError;
 use crate::mechanics::friction::FrictionError;
 use crate::mechanics::stability::StabilityError;
@@ -23,6 +24,9 @@ pub enum ElasticJointsError {
     /// It does not rest on its joints.
     #[error(transparent)]
     Rest(#[from] RestError),
+    /// It cannot follow its supports with rigid joints.
+    #[error(transparent)]
+    Settled(#[from] SettledError),
 }
 
 /// Why a motion could not be computed.

@@ -16,6 +16,7 @@ use crate::mechanics::blocks::Row;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, ElasticStructure, JointStiffness, Rest, Stiffness,
 };
+use crate::mechanics::settling::Movements;
 use crate::mechanics::sway::Sway;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints carry no tension, deform elastically, slip, and crush.
@@ -91,6 +92,21 @@ impl ElasticJoints {
             barrier_j: Arc::default(),
             steps_times: 1.0,
         })
+    }
+
+    /// The same on supports that have moved slowly before time begins, from where they were built.
+    ///
+    /// # Errors
+    /// When it falls on the way, with these joints or with rigid ones.
+    pub fn on_supports(self, movements: Movements) -> Result<Self, ElasticJointsError> {
+        if movements.is_none() {
+            return Ok(self);
+        }
+        let structure = self.structure.on_supports(movements.displacements());
+        let rigid = self.rigid.on_supports(&movements)?;
+        let options = self.options;
+        let settled = Self::standing(rigid, self.properties, structure, self.rest.0)?;
+        Ok(Self { options, ..settled })
     }
 
     /// The same with other options.
@@ -194,6 +210,7 @@ impl ElasticJoints {
 
     fn varied(&self, properties: ElasticProperties) -> Result<Self, ElasticJointsError> {
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
+        let structure = structure.on_supports(*self.structure.supports());
         Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 

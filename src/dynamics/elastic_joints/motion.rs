@@ -45,8 +45,10 @@ pub(super) struct Motion<'a, const L: usize> {
     pub structure: &'a ElasticStructure,
     gravity_m_s2: f64,
     arch: Arch,
-    /// The last one is the ground, to which all supports are fixed.
+    /// The last two are the left and the right support.
     bodies: Vec<Moving<Lanes<L>>>,
+    /// From what displacements and rotations of the bodies they are measured: of settled rows those at rest, else none.
+    datum: Vec<[f64; 3]>,
     memories: Vec<Memory<Lanes<L>>>,
     /// Of each place of each joint, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
@@ -142,7 +144,8 @@ impl<'a, const L: usize> Motion<'a, L> {
             structure,
             gravity_m_s2,
             arch: Arch::new(),
-            bodies: vec![body; structure.bodies().len() + 1],
+            bodies: vec![body; structure.bodies().len() + 2],
+            datum: vec![[0.0; 3]; structure.bodies().len()],
             memories: vec![Memory::none(); joints],
             fibres: vec![Fibre::none(); joints * structure.fibres()],
             spent: Spent {
@@ -157,6 +160,9 @@ impl<'a, const L: usize> Motion<'a, L> {
     /// Starts the motion of a lane from rest.
     pub(super) fn start(&mut self, lane: usize, rest: &Rest) {
         let alone = Motion::at_rest(self.structure, self.gravity_m_s2, rest);
+        if self.structure.has_settled() {
+            self.datum.clone_from(&rest.moved);
+        }
         for (body, from) in self.bodies.iter_mut().zip(&alone.bodies) {
             for (part, from) in body.parts_mut().into_iter().zip(from.clone().parts_mut()) {
                 part.0[lane] = from.0[0];
@@ -260,7 +266,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             let (joint, memory) = (&joints[index], &mut self.memories[index]);
             let fibres = &mut self.fibres[index * each..(index + 1) * each];
             index += 1;
-            let [first, second] = both!(end: joint.link.bodies[end].min(ground));
+            let [first, second] = both!(end: joint.link.bodies[end].min(ground + 1));
             let places = [&self.bodies[first].place, &self.bodies[second].place];
             let (action, pressure) = structure.act(joint, places, damping, memory, fibres);
             let body = &mut self.bodies[first];
@@ -290,6 +296,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             deepest: [zero; 2],
         };
         for (index, (constants, body)) in structure.bodies().iter().zip(&self.bodies).enumerate() {
+            let datum = self.datum[index].map(|part| Lanes([part; L]));
             let (mass, inertia) = (constants.mass_kg, constants.inertia_kg_m2);
             let velocity = self.velocity(index, half);
             let before = [body.velocity_m_s[0], body.velocity_m_s[1], body.rate_rad_s];
@@ -308,11 +315,14 @@ impl<'a, const L: usize> Motion<'a, L> {
             for slide in slides {
                 let along = structure.joints()[slide.joint].link.along;
                 let slid = self.memories[slide.joint].slipped_m * slide.sense;
-                let beside = [x - slid * along[0], y - slid * along[1]];
+                let beside = [
+                    x - datum[0] - slid * along[0],
+                    y - datum[1] - slid * along[1],
+                ];
                 nearest = nearest.min(beside[0] * beside[0] + beside[1] * beside[1]);
             }
             seen.farthest_m2 = seen.farthest_m2.max(nearest);
-            seen.turned_rad = seen.turned_rad.max(body.angle_rad.abs());
+            seen.turned_rad = seen.turned_rad.max((body.angle_rad - datum[2]).abs());
         }
         let each = structure.fibres();
         for (index, (joint, memory)) in structure.joints().iter().zip(&self.memories).enumerate() {
@@ -349,9 +359,13 @@ impl<'a, const L: usize> Motion<'a, L> {
         self.bodies[body].place.moved_m.map(|part| part.0[lane])
     }
 
-    /// Rotations and their rates half a step before, in a lane.
+    /// Rotations, of settled rows from those at rest, and their rates half a step before, in a lane.
     pub(super) fn turns(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
-        (0..self.structure.bodies().len()).map(move |body| self.turn(body, lane))
+        let bodies = self.datum.iter().enumerate();
+        bodies.map(move |(body, datum)| {
+            let (rotation_rad, rate_rad_s) = self.turn(body, lane);
+            (rotation_rad - datum[2], rate_rad_s)
+        })
     }
 
     /// Rotation of a body and its rate half a step before, in a lane.
@@ -405,6 +419,10 @@ impl<'a> Motion<'a, 1> {
         for (body, moved) in motion.bodies.iter_mut().zip(&rest.moved) {
             body.place = Place::at(moved);
             body.angle_rad = Lanes([moved[2]]);
+        }
+        let supports = motion.bodies.iter_mut().skip(rest.moved.len());
+        for (support, moved) in supports.zip(structure.supports()) {
+            support.place = Place::at(moved);
         }
         motion.memories.copy_from_slice(&rest.memories);
         motion.fibres.copy_from_slice(&rest.fibres);

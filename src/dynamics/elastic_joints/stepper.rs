@@ -186,7 +186,7 @@ impl<'a, const L: usize> Group<'a, L> {
         self.motion.start(lane, self.start.rest);
         let mut begun = Lane::new(task, recorder);
         let moved_m = |moved: &[f64; 3]| moved[0].hypot(moved[1]);
-        let weighted = self.row.blocks().iter().zip(&self.start.rest.moved);
+        let weighted = self.row.blocks().iter().zip(&self.start.rest.bent);
         let moved_kg_m: f64 = weighted
             .map(|(block, moved)| block.mass_kg * moved_m(moved))
             .sum();
@@ -385,7 +385,7 @@ impl<'a> ElasticStepper<'a> {
         let structure = self.group.start.structure;
         let ground = structure.bodies().len();
         let pair = structure.joints()[joint].link.bodies;
-        pair.map(|body| self.group.motion.place(body.min(ground), 0))
+        pair.map(|body| self.group.motion.place(body.min(ground + 1), 0))
     }
 
     /// Forces and stresses of a joint, by its elastic stress.

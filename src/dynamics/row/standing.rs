@@ -1,5 +1,7 @@
 //! What is known of a row of rigid blocks before it moves: the push that starts it, and its first mechanism.
 
+use thiserror::Error;
+
 use crate::argument::ArgumentError;
 use crate::dynamics::model::Initial;
 use crate::mechanics::blocks::{Row, Supports};
@@ -8,8 +10,26 @@ use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::settling::{Follower, Movements, Reached, SettlingError};
 use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::sway::Sway;
+
+/// Why a row does not stand on supports that have moved.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SettledError {
+    /// It falls.
+    #[error(
+        "with rigid joints the structure falls when its supports have moved {:.2} % of the way",
+        1e2 * .0
+    )]
+    Falls(
+        /// At this part of the movement.
+        f64,
+    ),
+    /// It cannot be followed.
+    #[error(transparent)]
+    Settling(#[from] SettlingError),
+}
 
 /// A row of rigid blocks that stands.
 #[derive(Clone, Debug)]
@@ -92,6 +112,30 @@ impl RigidRow {
         };
         self.with_friction_g = Some([push_g(Sway::Right)?, push_g(Sway::Left)?]);
         Ok(self)
+    }
+
+    /// The same row on supports that have moved: the push that starts it is that which makes its hinges give way, and its first mechanism
+    /// is none of one degree of freedom whose barrier is known.
+    ///
+    /// # Errors
+    /// When it falls on the way.
+    pub(in crate::dynamics) fn on_supports(
+        self,
+        movements: &Movements,
+    ) -> Result<Self, SettledError> {
+        let mut follower = Follower::new(&self.row)?;
+        let way = |part: f64| movements.times(part);
+        if let Reached::Falls(part) = follower.move_supports(way, 0.0, 1.0)? {
+            return Err(SettledError::Falls(part));
+        }
+        let first_g = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
+        let incipient_g = [first_g(Sway::Right)?, first_g(Sway::Left)?];
+        Ok(Self {
+            incipient_g,
+            with_friction_g: None,
+            first: None,
+            row: self.row,
+        })
     }
 
     /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is

@@ -22,6 +22,16 @@ impl<R: Real> Place<R> {
         }
     }
 
+    /// Moved and turned by this much, in m and rad.
+    #[must_use]
+    pub fn at(moved: &[f64; 3]) -> Self {
+        let half = (0.5 * moved[2]).sin();
+        Self {
+            moved_m: [R::of(moved[0]), R::of(moved[1])],
+            turn: [R::of(-2.0 * half * half), R::of(moved[2].sin())],
+        }
+    }
+
     /// How far rotation moves the end of an arm that starts at the centre.
     #[inline(always)]
     fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {

@@ -16,6 +16,8 @@ type Alone = Lanes<1>;
 pub struct Rest {
     /// Displacements (m) and rotations (rad) of the bodies.
     pub moved: Vec<[f64; 3]>,
+    /// The same by the weight alone, on supports where they were built.
+    pub bent: Vec<[f64; 3]>,
     /// What the joints remember.
     pub memories: Vec<Memory<Alone>>,
     /// What the places along the joints remember, joint by joint.
@@ -27,7 +29,7 @@ pub struct Rest {
 }
 
 /// Why a structure does not rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RestError {
     /// It would if nothing slipped.
     #[error(
@@ -51,6 +53,12 @@ pub enum RestError {
          or a greater thickness"
     )]
     Stiffness,
+    /// It falls while its supports move.
+    #[error("the structure falls when its supports have moved {:.2} % of the way", 1e2 * .0)]
+    Supports(
+        /// At this part of the movement.
+        f64,
+    ),
     /// No equilibrium was found.
     #[error("no equilibrium was found under the weight of the structure")]
     NotFound,
@@ -72,11 +80,8 @@ impl Rest {
     #[must_use]
     pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
-        let place = |body: usize| {
-            self.moved
-                .get(body)
-                .map_or_else(Place::undeformed, Place::at)
-        };
+        let place =
+            |body: usize| Place::at(self.moved.get(body).unwrap_or(structure.support(body)));
         let joints = structure.joints().iter().enumerate();
         let eccentricities = joints.map(|(index, joint)| {
             let [first, second] = joint.link.bodies.map(place);
@@ -102,6 +107,10 @@ impl ElasticStructure {
     /// # Errors
     /// When it does not rest, with the reason.
     pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Rest, RestError> {
+        if self.has_settled() {
+            let rest = self.on_part_of_the_way(0.0).rest(load_m_s2)?;
+            return self.settled(load_m_s2, rest);
+        }
         if let Some(rest) = self.balanced(load_m_s2) {
             return Ok(rest);
         }
@@ -122,6 +131,58 @@ impl ElasticStructure {
             return Err(RestError::Stiffness);
         }
         Err(RestError::NotFound)
+    }
+
+    /// Where it rests once its supports have moved slowly, from where it rested before: steps of the movement, each from the equilibrium
+    /// that the last two let expect. Joints slip by what they have slipped in all.
+    fn settled(&self, load_m_s2: [f64; 2], built: Rest) -> Result<Rest, RestError> {
+        let bent = built.bent.clone();
+        let length_m = Search::new(self, load_m_s2).length_m;
+        let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
+        let extent_m = self.supports().iter().map(far).sum::<f64>();
+        // Parts of the whole movement.
+        let longest = LONGEST_SETTLING * length_m / extent_m;
+        let (mut part, mut stride) = (0.0, 0.1 * longest);
+        let mut here = built;
+        let mut before: Option<(f64, Vec<[f64; 3]>)> = None;
+        while part < 1.0 {
+            let next = (part + stride).min(1.0);
+            let mut expected = here.moved.clone();
+            if let Some((earlier, moved)) = &before {
+                let ahead = (next - part) / (part - earlier);
+                for (expected, earlier) in expected.iter_mut().zip(moved) {
+                    for (expected, earlier) in expected.iter_mut().zip(earlier) {
+                        *expected += ahead * (*expected - earlier);
+                    }
+                }
+            }
+            let on_way = self.on_part_of_the_way(next);
+            let most_m = FARTHEST * (next - part) * extent_m;
+            let near = |rest: &Rest| {
+                let moved = rest.moved.iter().zip(&here.moved);
+                let by = |(now, then): (&[f64; 3], &[f64; 3])| {
+                    far(&[0, 1, 2].map(|axis| now[axis] - then[axis]))
+                };
+                moved.map(by).fold(0.0, f64::max) < most_m
+            };
+            let search = Search::new(&on_way, load_m_s2);
+            let found = search.from(expected, here.steps).filter(near);
+            let Some(found) = found else {
+                stride *= 0.5;
+                if stride < SHORTEST_SETTLING * longest {
+                    return Err(RestError::Supports(part));
+                }
+                continue;
+            };
+            let taken = found.steps - here.steps;
+            if taken <= QUICK_STEPS {
+                stride = (1.5 * stride).min(longest);
+            }
+            before = Some((part, here.moved));
+            (here, part) = (found, next);
+        }
+        here.bent = bent;
+        Ok(here)
     }
 
     /// Its equilibrium, if one is found.
@@ -152,6 +213,15 @@ impl ElasticStructure {
         })
     }
 }
+
+/// Supports move in steps of at most this part of the length of a joint, ...
+const LONGEST_SETTLING: f64 = 2e-2;
+/// ... and the structure falls where they would be shorter than this part of that.
+const SHORTEST_SETTLING: f64 = 1e-5;
+/// A step of supports moves no body by more than so many times as much: else it snapped to another equilibrium.
+const FARTHEST: f64 = 50.0;
+/// Steps of Newton's method that let the next step be longer.
+const QUICK_STEPS: usize = 8;
 
 /// The path along which a structure is pushed over is followed in steps of this fraction of its joints' length at first, ...
 const FIRST_STRIDE: f64 = 2e-3;
@@ -272,7 +342,7 @@ impl<'a> Search<'a> {
             let pair = joint.link.bodies;
             let place = |end: usize| {
                 let Some(at) = moved.get(pair[end]) else {
-                    return Place::undeformed();
+                    return Place::at(self.structure.support(pair[end]));
                 };
                 let variable = |axis: usize| Dual::<6>::variable(at[axis], 3 * end + axis);
                 let angle = variable(2);
@@ -493,7 +563,8 @@ impl<'a> Search<'a> {
         let mut memories = vec![Memory::none(); joints.len()];
         let mut fibres = vec![Fibre::none(); joints.len() * each];
         for (index, joint) in joints.iter().enumerate() {
-            let place = |body: usize| moved.get(body).map_or_else(Place::undeformed, Place::at);
+            let place =
+                |body: usize| Place::at(moved.get(body).unwrap_or(self.structure.support(body)));
             let [one, other] = joint.link.bodies.map(place);
             let gap = joint.link.gap(&one, &other);
             let fibres = &mut fibres[index * each..(index + 1) * each];
@@ -502,6 +573,7 @@ impl<'a> Search<'a> {
                 .press(joint, None, &gap, &mut memories[index], fibres);
         }
         Rest {
+            bent: moved.clone(),
             moved,
             memories,
             fibres,
@@ -513,15 +585,3 @@ impl<'a> Search<'a> {
 
 /// The most places along a joint.
 const MOST_FIBRES: usize = 100;
-
-impl Place<Alone> {
-    /// Moved and turned by this much, in m and rad.
-    #[must_use]
-    pub fn at(moved: &[f64; 3]) -> Self {
-        let half = (0.5 * moved[2]).sin();
-        Self {
-            moved_m: [Lanes([moved[0]]), Lanes([moved[1]])],
-            turn: [Lanes([-2.0 * half * half]), Lanes([moved[2].sin()])],
-        }
-    }
-}

@@ -184,10 +184,13 @@ pub struct ElasticJoint {
     pub area_m2: f64,
 }
 
-/// Rigid bodies with elastic joints between them. An index beyond the last body stands for a support, which does not move.
+/// Rigid bodies with elastic joints between them. The body after the last one is the left support (or the only one), and
+/// whatever joints name beyond that is the right one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticStructure {
     bodies: Vec<Body>,
+    /// Displacements (m) and rotations (rad) of the supports.
+    supports: [[f64; 3]; 2],
     joints: Vec<ElasticJoint>,
     law: Law,
     damping_time_s: f64,
@@ -207,13 +210,13 @@ impl ElasticStructure {
             inertia_kg_m2: block.inertia_kg_m2,
         });
         let joint = |(index, joint): (usize, &crate::mechanics::blocks::Joint)| {
-            let right = if index < ground { index } else { ground };
+            let right = if index < ground { index } else { ground + 1 };
             let pair = [index.checked_sub(1).unwrap_or(ground), right];
             let middle_m = joint.middle_m();
             let along = joint.along();
             let centres = pair.map(|body| blocks.get(body).map(|block| block.centre_m));
-            // The support's centre is the origin.
-            let arms_m = centres.map(|centre| middle_m - centre.unwrap_or_else(Vector2::zeros));
+            // The support's centre is the middle of its joint.
+            let arms_m = centres.map(|centre| middle_m - centre.unwrap_or(middle_m));
             let across_m = |centre: Option<Vector2<f64>>| {
                 centre.map_or(0.0, |centre| along.perp(&(centre - middle_m)).abs())
             };
@@ -260,6 +263,7 @@ impl ElasticStructure {
         };
         Self {
             bodies,
+            supports: [[0.0; 3]; 2],
             joints,
             law: Law {
                 section: Section::new(properties.contact, crushes),
@@ -280,6 +284,38 @@ impl ElasticStructure {
     #[must_use]
     pub fn joints(&self) -> &[ElasticJoint] {
         &self.joints
+    }
+
+    /// The same with supports that have moved by these displacements (m) and rotations (rad), those of a row about the middle of its
+    /// first and last joint.
+    #[must_use]
+    pub const fn on_supports(mut self, moved: [[f64; 3]; 2]) -> Self {
+        self.supports = moved;
+        self
+    }
+
+    /// Displacements (m) and rotations (rad) of the left and the right support.
+    #[must_use]
+    pub const fn supports(&self) -> &[[f64; 3]; 2] {
+        &self.supports
+    }
+
+    /// Those of the support that joints name so.
+    #[must_use]
+    pub fn support(&self, body: usize) -> &[f64; 3] {
+        &self.supports[usize::from(body > self.bodies.len())]
+    }
+
+    /// Whether a support has moved.
+    #[must_use]
+    pub fn has_settled(&self) -> bool {
+        self.supports != [[0.0; 3]; 2]
+    }
+
+    /// The same when its supports have gone this part of their way.
+    pub(super) fn on_part_of_the_way(&self, part: f64) -> Self {
+        let supports = self.supports.map(|moved| moved.map(|axis| part * axis));
+        self.clone().on_supports(supports)
     }
 
     /// Whether joints slip for good.

@@ -315,7 +315,13 @@ pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
 #[must_use]
 pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     match model.row() {
-        Some(row) => Scene::of_row(row),
+        Some(row) => {
+            let scene = Scene::of_row(row);
+            match scenario.motion().supports() {
+                Some(movements) if !movements.is_none() => scene.on_supports(movements.poses(row)),
+                _ => scene,
+            }
+        }
         None => Scene::new(scenario.structure()),
     }
 }

@@ -146,7 +146,7 @@ pub enum NoSpread {
     Settling(#[from] SettlingError),
 }
 
-/// Moves a springing of the arch of a scenario along each of these ways, from where it was built.
+/// Moves a springing of the arch of a scenario along each of these ways, from where it was built or `[supports]` has it.
 ///
 /// # Errors
 /// When it is no row of blocks between two supports, does not stand, or is lost on the way.
@@ -155,26 +155,33 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<SpreadPaths, NoSpread
     let joints = row.joints();
     let across = joints[joints.len() - 1].intrados_m - joints[0].intrados_m;
     let clear_span_m = across.norm();
-    let paths = ways
-        .iter()
-        .map(|way| path(&row, *way, LONGEST * clear_span_m));
+    let settled = scenario.motion().supports().unwrap_or_default();
+    let longest_m = LONGEST * clear_span_m;
+    let mut paths = Vec::new();
+    for way in ways {
+        paths.push(path(&row, settled, *way, longest_m)?);
+    }
     Ok(SpreadPaths {
-        paths: paths.collect::<Result<_, _>>()?,
+        paths,
         clear_span_m,
         row: row.clone(),
     })
 }
 
 /// First how far it goes, then the stages on the way there.
-fn path(row: &Row, way: Way, longest_m: f64) -> Result<Path, SettlingError> {
-    let movements = |movement_m: f64| way.movements(movement_m);
-    let mut scout = Follower::new(row)?;
+fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path, SettlingError> {
+    let movements = |movement_m: f64| settled.and(&way.movements(movement_m));
+    let mut start = Follower::new(row)?;
+    // That it stands there was seen when the scenario was read.
+    start.move_supports(|part| settled.times(part), 0.0, 1.0)?;
+    let before = start.snaps().len();
+    let mut scout = start.clone();
     let falls_at_m = match scout.move_supports(movements, 0.0, longest_m)? {
         Reached::Falls(at_m) => Some(at_m),
         Reached::End => None,
     };
     let end_m = falls_at_m.unwrap_or(longest_m);
-    let mut follower = Follower::new(row)?;
+    let mut follower = start;
     let mut stages = vec![stage(&follower, 0.0)?];
     let mut here_m = 0.0;
     for step in 1..=STEPS {
@@ -190,7 +197,7 @@ fn path(row: &Row, way: Way, longest_m: f64) -> Result<Path, SettlingError> {
     Ok(Path {
         way,
         stages,
-        snaps: scout.snaps().to_vec(),
+        snaps: scout.snaps()[before..].to_vec(),
         falls_at_m,
     })
 }

@@ -1,0 +1,78 @@
+//! Where the springings have gone before time begins: `[supports]`.
+
+use std::ops::Bound::Included;
+
+use super::structure::Structure;
+use super::table::{Number, Reading, Table};
+use crate::argument::{plain, short};
+use crate::mechanics::blocks::Supports;
+use crate::mechanics::settling::{Follower, Movement, Movements, Reached};
+
+/// Nothing stands on springings that have gone farther.
+const MOVEMENT_M: Number = Number(Included(-1e3), Included(1e3));
+const ROTATION_RAD: Number = Number(Included(-1.0), Included(1.0));
+
+/// Reads `[supports]`.
+pub(super) fn read(table: &mut Table<'_>) -> Reading<Movements> {
+    let left = table.table("left", read_one);
+    let right = table.table("right", read_one);
+    Ok(Movements {
+        left: left?.unwrap_or_default(),
+        right: right?.unwrap_or_default(),
+    })
+}
+
+fn read_one(table: &mut Table<'_>) -> Reading<Movement> {
+    let spread_m = table.or("spread_m", &MOVEMENT_M, 0.0);
+    let settlement_m = table.or("settlement_m", &MOVEMENT_M, 0.0);
+    let rotation_rad = table.or("rotation_rad", &ROTATION_RAD, 0.0);
+    Ok(Movement {
+        spread_m: spread_m?,
+        settlement_m: settlement_m?,
+        rotation_rad: rotation_rad?,
+    })
+}
+
+/// Refuses movements on which a structure does not stand: as rigid blocks, from which elastic joints fall earlier.
+pub(super) fn check(
+    table: &mut Table<'_>,
+    structure: &Structure,
+    movements: &Movements,
+) -> Reading<()> {
+    // Whatever is wrong with the row is told where it is used.
+    let Ok(row) = structure.row() else {
+        return Ok(());
+    };
+    if movements.is_none() {
+        return Ok(());
+    }
+    let mut wrong = |message: String| Err(table.wrong("supports", message));
+    if row.supports() == Supports::Left {
+        return wrong(
+            "needs two springings, of which one can move against the other, and this stands on one support: leave it out"
+                .to_owned(),
+        );
+    }
+    let joints = row.joints();
+    let apart_m = (joints[joints.len() - 1].intrados_m - joints[0].intrados_m).x;
+    let closer_m = -(movements.left.spread_m + movements.right.spread_m);
+    if closer_m >= apart_m {
+        return wrong(format!(
+            "pushes the springings {} m towards each other, and they are {} m apart: spread_m is positive outwards",
+            plain(closer_m),
+            short(apart_m)
+        ));
+    }
+    let Ok(mut follower) = Follower::new(&row) else {
+        return Ok(());
+    };
+    match follower.move_supports(|part| movements.times(part), 0.0, 1.0) {
+        Ok(Reached::Falls(part)) => wrong(format!(
+            "lets the arch fall when its springings have gone {:.2} % of this way, with joints that are rigid: give less; \
+             `archrock spread` tells how far they may go",
+            1e2 * part
+        )),
+        Ok(Reached::End) => Ok(()),
+        Err(error) => wrong(format!("cannot be followed: {error}")),
+    }
+}
