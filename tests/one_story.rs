@@ -2,9 +2,11 @@
 
 use std::fs;
 
+use crate::browser;
 use crate::common::Random;
 use crate::program::printed;
-use crate::results::{Table, data_of, summary, texts};
+use crate::results::{Row, Table, data_of, summary, texts};
+use serde_json::{Value, json};
 
 /// A random structure on a random pulse, and its number of blocks; none if links or a whole column move.
 fn scenario(random: &mut Random, model: &str) -> String {
@@ -35,7 +37,8 @@ fn words_page_picture_and_tables_agree() {
     let mut random = Random(26);
     let elastic = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\n";
     let (mut overturned, mut stood) = (0, 0);
-    for case in 0..12 {
+    let mut shown = Vec::new();
+    for case in 0..20 {
         let model = ["", "[free_hinges]\n", elastic][case % 3];
         let folder = tempfile::tempdir().unwrap();
         let text = scenario(&mut random, model);
@@ -79,6 +82,7 @@ fn words_page_picture_and_tables_agree() {
         let is_down = told["verdict"] == "overturns";
         assert_eq!(is_down, told["outcome"] == "overturned", "{said}");
         stood += usize::from(!is_down);
+        shown.push((page.clone(), facts(&told, &rotations, verdict, &happens)));
         if model.is_empty() || told["outcome"] == "never_moved" {
             continue;
         }
@@ -111,4 +115,56 @@ fn words_page_picture_and_tables_agree() {
         assert!(texts(&picture).contains(&named), "{named}");
     }
     assert!(overturned > 1 && stood > 3, "{overturned} {stood}");
+    check_in_a_browser(&shown);
+}
+
+/// What a page has to show: the row of the table with the largest rotation, how it ended, and what was said.
+fn facts(told: &Value, rotations: &Table, verdict: &str, happens: &str) -> Value {
+    let names = rotations.header.iter();
+    let columns: Vec<&String> = names
+        .filter(|name| name.starts_with("rotation_") && name.ends_with("rad"))
+        .collect();
+    let largest = |row: &Row| {
+        let turned = columns.iter().map(|name| row.number(*name).abs());
+        turned.fold(0.0, f64::max)
+    };
+    let rows = &rotations.rows;
+    let peak = rows
+        .iter()
+        .max_by(|a, b| largest(a).total_cmp(&largest(b)))
+        .unwrap();
+    json!({
+        "verdict": verdict,
+        "happens": happens,
+        "peak_s": peak.number("time_s"),
+        "peak_rad": largest(peak),
+        "state": &peak["state"],
+        "end_s": rows[rows.len() - 1].number("time_s"),
+        "overturned": told["outcome"] == "overturned",
+    })
+}
+
+/// All pages at once, each in a frame of one: a browser takes long to start.
+fn check_in_a_browser(shown: &[(String, Value)]) {
+    let folder = tempfile::tempdir().unwrap();
+    let frames = shown.iter().map(|(page, _)| {
+        let page = page.replace('&', "&amp;").replace('"', "&quot;");
+        format!("<iframe width=\"1000\" height=\"900\" srcdoc=\"{page}\"></iframe>")
+    });
+    let frames: String = frames.collect();
+    let path = folder.path().join("all.html");
+    fs::write(
+        &path,
+        format!("<!doctype html><html><head></head><body>{frames}</body></html>"),
+    )
+    .unwrap();
+    let facts: Vec<&Value> = shown.iter().map(|(_, facts)| facts).collect();
+    let script = include_str!("browser/one_story.js");
+    browser::assert_checked(
+        &path,
+        script,
+        &json!(facts).to_string(),
+        &[],
+        5 * shown.len(),
+    );
 }

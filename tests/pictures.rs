@@ -106,7 +106,7 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
         let arch = arch(thickness_ratio, embrace_deg);
         let chain = arch.chain();
-        let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right);
+        let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
         let document = Document::parse(&picture).unwrap();
         let sheet = check_hinges(&document, chain, 0, Sway::Right);
         let lines = named(&document, "thrust line");
@@ -135,14 +135,14 @@ fn joints_are_drawn_where_there_are_voussoirs() {
     let arch = four_links(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();
     for picture in [
-        pictures::limit(Figure::SCREEN, chain, Sway::Right),
+        pictures::limit(Figure::SCREEN, chain, Sway::Right, None),
         pictures::impact(Figure::SCREEN, &impact(&arch, 1)).unwrap(),
     ] {
         let document = Document::parse(&picture).unwrap();
         assert_eq!(named(&document, "joint").len(), 8);
     }
     // The hinges are at joints.
-    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right);
+    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 0, Sway::Right);
 }
@@ -170,7 +170,7 @@ fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
 fn limit_shows_rigid_bodies_joined_at_hinges() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right);
+    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
     let document = Document::parse(&picture).unwrap();
     let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
     assert_eq!(hinges.len(), 4);
@@ -457,7 +457,7 @@ fn run_draws_the_history() {
         assert!((from_zero - scale * 0.031_048).abs() < 0.1);
     }
     // One time axis: the curves begin and end together, at the frame.
-    let (left, right) = (85.0, 875.0);
+    let (left, right) = (66.0, 875.0);
     for name in ["ground", "middle", "energy", "excess"] {
         let points = curve(name);
         assert!((points[0].x - left).abs() < PIXEL);
@@ -572,7 +572,7 @@ fn bands_have_the_sway_of_the_events() {
     }
     let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
     let end_s = summary["outcome_time_s"].as_f64().unwrap();
-    let place = |time_s: f64| 85.0 + 790.0 * time_s / end_s;
+    let place = |time_s: f64| 66.0 + 809.0 * time_s / end_s;
     let mut hops = 0;
     let mut swaying = [0, 0];
     for name in ["right", "left", "hops"] {
@@ -592,7 +592,7 @@ fn bands_have_the_sway_of_the_events() {
             // Events inside a visible band that have another sway take less than a pixel together.
             let first = within.iter().map(|(time_s, _)| place(*time_s) - left);
             assert!(first.fold(0.0, f64::max) < 1.0, "{name} {left} {width}");
-            let middle_s = (left + 0.5 * width - 85.0) / 790.0 * end_s;
+            let middle_s = (left + 0.5 * width - 66.0) / 809.0 * end_s;
             let here = events
                 .iter()
                 .rfind(|(time_s, _)| *time_s <= middle_s)

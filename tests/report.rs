@@ -2,7 +2,7 @@
 
 use crate::browser;
 use crate::program;
-use crate::results::{Table, data_of};
+use crate::results::{Table, data_of, summary};
 use std::fs;
 use std::path::Path;
 
@@ -59,7 +59,13 @@ fn check(scenario: &str, names: &[&str], least_hinges: usize, settings: &[&str])
     };
     // Frames are every first, second, fourth or eighth row.
     let rows: Vec<Value> = (0..last).step_by(16).chain([last]).map(row).collect();
+    let summary = summary(folder.path());
     let facts = json!({
+        "largest_rad": names.iter().map(|name| {
+            let column = rotations.numbers(&key("rotation", name, "rad"));
+            column.iter().fold(0.0_f64, |most, one| most.max(one.abs()))
+        }).fold(0.0, f64::max),
+        "overturned_s": (summary["outcome"] == "overturned").then(|| summary["outcome_time_s"].clone()),
         "rows": rows,
         "peak_s": rotations.rows[peak].number("time_s"),
         "end_s": rotations.rows[last].number("time_s"),
@@ -91,6 +97,88 @@ fn free_hinges_in_a_dark_browser() {
     let blocks: Vec<String> = (1..=36).map(|block| block.to_string()).collect();
     let names: Vec<&str> = blocks.iter().map(String::as_str).collect();
     check("free-hinges.toml", &names, 4, &["--force-dark-mode"]);
+}
+
+/// An arch with all that it can have beside it under a scaled record, as wide as a phone, and on paper.
+#[test]
+fn an_arch_on_piers_on_a_phone_and_on_paper() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = fs::read_to_string(program::scenarios().join("pointed-arch-on-piers.toml")).unwrap();
+    let (arch, _) = own.split_once("[ground.half_sine]").unwrap();
+    let ground =
+        "[ground.record]\nfile = \"synthetic.at2\"\npeak_g = 0.3\n[simulation]\nduration_s = 2.0\n";
+    fs::write(folder.path().join("s.toml"), format!("{arch}{ground}")).unwrap();
+    let record = program::scenarios().join("synthetic.at2");
+    fs::copy(record, folder.path().join("synthetic.at2")).unwrap();
+    let arguments = ["run", "s.toml", "--out", ".", "--no-spread"];
+    program::printed(folder.path(), &arguments);
+    let page = folder.path().join("report.html");
+    let text = fs::read_to_string(&page).unwrap();
+    let data = data_of(&text);
+    let layout = &data["layouts"][0];
+    assert_eq!(layout["loads"].as_array().unwrap().len(), 1);
+    assert!(layout["fill"].as_array().unwrap().len() >= 4);
+    assert_eq!(data["dimensions"].as_array().unwrap().len(), 5);
+    let script = "const what = document.getElementById('what').textContent;\
+        for (const words of ['pointed arch', 'synthetic.at2', '0.3 g', 'fill', '1500 kg']) verify(what.includes(words), what);\
+        verify(innerWidth === 400, `window ${innerWidth}`);\
+        verify(document.documentElement.scrollWidth <= 400, `as wide as ${document.documentElement.scrollWidth}`);\
+        for (const plot of document.querySelectorAll('.plot')) verify(/: -?[0-9]/.test(plot.querySelector('.legend').textContent), 'legend');";
+    browser::assert_checked(&page, script, "null", &["--window-size=400,900"], 9);
+    assert!(browser::sheets(&page).is_none_or(|sheets| sheets == 1));
+}
+
+/// The frames of a film are numbered, evenly spaced in time, and go with the next run.
+#[test]
+fn a_film_is_numbered_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = program::scenarios().join("semicircle-pulse.toml");
+    let own = own.to_str().unwrap();
+    let frames = |a_second: &str| {
+        let arguments = [
+            "run",
+            own,
+            "--out",
+            ".",
+            "--film",
+            a_second,
+            "--exaggerate",
+            "3",
+        ];
+        program::printed(folder.path(), &arguments);
+        let names = fs::read_dir(folder.path().join("film")).unwrap();
+        let mut names: Vec<_> = names
+            .map(|file| file.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    let end_s = |folder: &Path| {
+        Table::read(folder.join("rotations.csv"))
+            .numbers("time_s")
+            .pop()
+            .unwrap()
+    };
+    let names = frames("20");
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a few"
+    )]
+    let due = (end_s(folder.path()) * 20.0) as usize + 1;
+    assert_eq!(names.len(), due);
+    for (number, name) in (1..).zip(&names) {
+        assert_eq!(*name, format!("frame-{number:04}.svg"));
+        let frame = fs::read_to_string(folder.path().join("film").join(name)).unwrap();
+        let time = format!(">{:.3} s, ", 0.05 * f64::from(number - 1));
+        assert!(frame.contains(&time), "{time}");
+    }
+    assert!(frames("5").len() < due / 3, "old ones go");
+    let said = program::refusal(&program::archrock(
+        folder.path(),
+        &["run", own, "--exaggerate", "3"],
+    ));
+    assert!(said.contains("--film"), "{said}");
 }
 
 #[test]

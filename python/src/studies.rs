@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use archrock::output::{Figure, Folder};
+use archrock::studies::capacity::{capacities, tell as tell_capacity};
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
@@ -167,6 +168,18 @@ pub fn threshold<'py>(
             ThresholdError::Runner(error) => not_run(error),
         })?;
         let results = tell(&[&scenario], &factors, &found, Figure::SCREEN).map_err(not_written)?;
+        Ok(results.files)
+    })?;
+    Ok(to_python(py, files))
+}
+
+/// The capacity curves of a scenario to both sides, as `archrock capacity`.
+#[pyfunction]
+pub fn capacity<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py>> {
+    let scenario = Arc::clone(&scenario.inner);
+    let files = watched(py, None, move |_| {
+        let sides = capacities(&scenario, None).map_err(refused)?;
+        let results = tell_capacity(&scenario, &sides, Figure::SCREEN).map_err(not_written)?;
         Ok(results.files)
     })?;
     Ok(to_python(py, files))

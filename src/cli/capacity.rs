@@ -43,8 +43,10 @@ pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let scenario = input.read_as_built()?;
     let sides = capacities(&scenario, arguments.point)
         .map_err(|error| Failure::Input(error.to_string()))?;
-    let place = input.results(arguments.out.as_deref())?;
-    let results = tell(&scenario, &sides, arguments.figure.get())?;
+    let place = arguments
+        .figure
+        .printed(input.results(arguments.out.as_deref())?);
+    let results = tell(&scenario, &sides, arguments.figure.get()?)?;
     place.write(&results, quiet)?;
     show(&results, arguments.format)
 }

@@ -29,9 +29,11 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     };
     // An arch that has no results of its own is refused here, with the reason.
     commands::model(&scenario)?;
-    let place = input.results(arguments.out.as_deref())?;
+    let place = arguments
+        .figure
+        .printed(input.results(arguments.out.as_deref())?);
     let law = scenario.motion().impact();
-    let results = Chart::of(arch, law).tell(arguments.figure.get())?;
+    let results = Chart::of(arch, law).tell(arguments.figure.get()?)?;
     place.write(&results, true)?;
     if !quiet {
         say(&format!("{} in {}", results.words, place.holds(&results)));

@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
-use archrock::output::record as output;
-use archrock::scenario::{Form, Format, Layout, Recorded, Series};
+use archrock::output::dimensions::described;
+use archrock::output::scene::Scene;
+use archrock::output::{elevation, record as output};
+use archrock::scenario::{Form, Format, Layout, Recorded, Scenario, Series};
 use serde_json::{Value, json};
 
 use super::figure::FigureOption;
@@ -19,7 +21,7 @@ pub struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     set: SetOption,
-    /// Draw the record to this SVG file.
+    /// Draw the structure with its dimensions and the numbers of its joints, or the record, to this file (SVG).
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// Output format; JSON for several files is an array.
@@ -34,7 +36,7 @@ const GRAVITY_M_S2: f64 = 9.81;
 
 pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     if arguments.plot.is_some() && arguments.files.len() > 1 {
-        let message = "--plot is of one record: check them one by one";
+        let message = "--plot is of one file: check them one by one";
         return Err(Failure::Input(message.to_owned()));
     }
     let (mut texts, mut told) = (Vec::new(), Vec::new());
@@ -66,15 +68,28 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
     if Format::of_file(file).is_some() || is_format_given(arguments) {
         return check_record(file, arguments, quiet);
     }
-    if arguments.plot.is_some() {
-        let message = format!("--plot is of records; {} is a scenario", file.display());
-        return Err(Failure::Input(message));
-    }
     let scenario = arguments.set.open(file)?.read(None)?;
     if !quiet {
         super::warn(&scenario.unlikely());
     }
+    if let Some(plot) = &arguments.plot {
+        let scene = drawn(&scenario);
+        let title = scenario.title().unwrap_or("Structure");
+        let text = described(scenario.structure());
+        let figure = arguments.figure.get()?;
+        let picture = figure.fitted(|figure| elevation::draw(figure, title, &scene, &text));
+        commands::write_picture(plot, &picture)?;
+    }
     Ok((scenario.to_toml(), scenario.to_json()))
+}
+
+/// The blocks of the structure, as its model of motion has them where that has any.
+fn drawn(scenario: &Scenario) -> Scene {
+    let joints = scenario.motion().hinges().has_joints();
+    match scenario.structure().row().ok().filter(|_| joints) {
+        Some(row) => Scene::of_row(&row).of_structure(scenario.structure()),
+        None => Scene::new(scenario.structure()),
+    }
 }
 
 /// Whether a key given with `--set` shows that the file is a record.
@@ -108,13 +123,10 @@ fn check_record(
     let intensity = Intensity::of(&samples, GRAVITY_M_S2);
     if let Some(plot) = &arguments.plot {
         let title = file.file_name().unwrap_or_default().to_string_lossy();
-        let picture = output::draw(
-            arguments.figure.get(),
-            &title,
-            &samples,
-            &intensity,
-            GRAVITY_M_S2,
-        );
+        let picture = arguments
+            .figure
+            .get()?
+            .fitted(|figure| output::draw(figure, &title, &samples, &intensity, GRAVITY_M_S2));
         commands::write_picture(plot, &picture)?;
     }
     Ok((

@@ -7,12 +7,15 @@ use std::path::Path;
 use archrock::dynamics::model::{FourLinkModel, MechanismModel};
 use archrock::mechanics::friction::FrictionError;
 use archrock::mechanics::sway::Sway;
-use archrock::output::{Figure, pretty};
+use archrock::output::pretty;
+use archrock::output::print::{PictureFormat, PrintError};
+use archrock::output::scene::Scene;
 use archrock::scenario::Scenario;
 use archrock::studies::limit::{self, NoLimit};
 use archrock::studies::pictures;
 use archrock::studies::results::Answer;
 
+use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, print};
 
@@ -25,14 +28,19 @@ pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
 pub fn limit(
     file: &ScenarioFile,
     format: Format,
-    plot: Option<(&Path, Figure, Sway)>,
+    plot: Option<(&Path, FigureOption, Sway)>,
 ) -> Result<(), Failure> {
     let scenario = file.open()?.read_as_built()?;
     if let Some((plot, figure, first)) = plot {
         let model = four_links(&scenario, "--plot is")?;
         write_picture(
             plot,
-            &pictures::limit(figure, model.chain_from(first), first),
+            &pictures::limit(
+                figure.get()?,
+                model.chain_from(first),
+                first,
+                Some(&Scene::new(scenario.structure())),
+            ),
         )?;
     }
     answer(&limit::limit(&scenario)?, format)
@@ -65,6 +73,9 @@ pub fn four_links(scenario: &Scenario, what: &str) -> Result<Box<dyn FourLinkMod
 
 /// Writes a picture to the file named by `--plot`.
 pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
+    let input = |wrong: PrintError| Failure::Input(format!("--plot: {wrong}"));
+    let format = PictureFormat::of_file(path).map_err(input)?;
+    let picture = format.of_picture(picture).map_err(input)?;
     let cannot = |error: io::Error| format!("cannot write {}: {error}", path.display());
     let mut file = File::create(path).map_err(|error| {
         Failure::Input(format!(
@@ -72,6 +83,6 @@ pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
             cannot(error)
         ))
     })?;
-    file.write_all(picture.as_bytes())
+    file.write_all(&picture)
         .map_err(|error| Failure::Work(cannot(error)))
 }

@@ -41,7 +41,7 @@ Examples:
 pub const CHART: &str = "\
 Examples:
   archrock chart arch.toml
-  archrock chart arch.toml --figure-width 84";
+  archrock chart arch.toml --figure-width 84mm";
 
 pub const MAP: &str = "\
 Examples:

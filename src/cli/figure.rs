@@ -1,17 +1,80 @@
-//! The width of pictures.
+//! How pictures look.
 
-use archrock::output::Figure;
+use archrock::output::figure::{Figure, Height, Panel};
+use archrock::output::print::PictureFormat;
 
-/// The option of every command that draws.
+use super::Failure;
+use super::scenario_file::Destination;
+
+/// The options of every command that draws.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct FigureOption {
     /// Draw for print at this width, such as 85mm, with text of 8 pt at that width [default: for the screen].
     #[arg(long, value_name = "WIDTH", allow_hyphen_values = true)]
     figure_width: Option<Figure>,
+    /// Draw this high in print, such as 60mm [default: what fits the width; at most 120 mm below 100 mm of width].
+    #[arg(
+        long,
+        value_name = "HEIGHT",
+        requires = "figure_width",
+        allow_hyphen_values = true
+    )]
+    figure_height: Option<Height>,
+    /// Size of the text in print, in points, from 5 to 14 [default: 8].
+    #[arg(long, value_name = "PT", requires = "figure_width", value_parser = text_pt, allow_hyphen_values = true)]
+    font_size: Option<f64>,
+    /// Draw no titles: the figure has a caption.
+    #[arg(long)]
+    no_title: bool,
+    /// Also write every picture in this format, beside its SVG: pdf or png.
+    #[arg(long, value_name = "FORMAT")]
+    figure_format: Option<PictureFormat>,
 }
 
 impl FigureOption {
-    pub fn get(self) -> Figure {
-        self.figure_width.unwrap_or(Figure::SCREEN)
+    /// How pictures are laid out.
+    pub fn get(self) -> Result<Figure, Failure> {
+        let mut figure = self.figure_width.unwrap_or(Figure::SCREEN);
+        if let Some(text_pt) = self.font_size {
+            let sized = figure.with_text_pt(text_pt);
+            figure = sized.map_err(|wrong| Failure::Input(format!("--font-size: {wrong}")))?;
+        }
+        if let Some(height) = self.figure_height {
+            figure = figure.with_height(height);
+        }
+        if self.no_title {
+            figure = figure.without_title();
+        }
+        Ok(figure)
     }
+
+    /// A folder whose pictures are written in the format that is asked for.
+    pub fn printed(self, place: Destination) -> Destination {
+        place.with_pictures(self.figure_format)
+    }
+}
+
+/// Which panels the picture of a history has.
+#[derive(clap::Args, Clone, Debug)]
+pub struct PanelsOption {
+    /// Panels of history.svg: ground, rotation, joints, slip, points, energy, thrust [default: all that show something; below 100 mm
+    /// of width ground, rotation and energy].
+    #[arg(long, value_name = "P1,P2,...", value_delimiter = ',')]
+    panels: Vec<Panel>,
+}
+
+impl PanelsOption {
+    /// The same with the panels that are asked for.
+    pub fn of(&self, figure: Figure) -> Figure {
+        match self.panels[..] {
+            [] => figure,
+            _ => figure.with_panels(&self.panels),
+        }
+    }
+}
+
+fn text_pt(text: &str) -> Result<f64, String> {
+    let size = text.trim_end_matches("pt").trim().parse().ok();
+    let size = size.filter(|text_pt| (5.0..=14.0).contains(text_pt));
+    size.ok_or_else(|| "give a size from 5 to 14 points, such as 7".to_owned())
 }

@@ -88,7 +88,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(plot) = &arguments.plot {
         chosen()?;
-        let picture = pictures::impact(arguments.figure.get(), &asked);
+        let picture = pictures::impact(arguments.figure.get()?, &asked);
         let picture = picture.ok_or_else(|| {
             Failure::Input(format!(
                 "--plot: impact {} stops the arch; there is no mechanism after it to draw",

@@ -177,7 +177,7 @@ pub fn main() -> ExitCode {
             figure,
         } => {
             let plot = plot.as_deref();
-            let plot = plot.map(|path| (path, figure.get(), first.get()));
+            let plot = plot.map(|path| (path, figure, first.get()));
             commands::limit(&scenario, format, plot)
         }
         Command::Impact(arguments) => impact::impact(&arguments),

@@ -16,7 +16,7 @@ use nalgebra::Vector2;
 use serde_json::{Map, Value};
 
 use self::progress::RunProgress;
-use super::figure::FigureOption;
+use super::figure::{FigureOption, PanelsOption};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::study::Work;
 use super::uncertain::{Asked, Telling, words};
@@ -61,9 +61,12 @@ pub struct Arguments {
     /// rotations.
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', value_parser = time_s, allow_negative_numbers = true)]
     snapshots: Vec<f64>,
-    /// Magnify the displacements in the snapshots by this factor.
-    #[arg(long, value_name = "K", default_value_t = 1.0, value_parser = factor, requires = "snapshots", allow_negative_numbers = true)]
-    exaggerate: f64,
+    /// Draw the deformed structure so many times a second, as numbered pictures in the folder film.
+    #[arg(long, value_name = "FPS", value_parser = a_second, allow_negative_numbers = true)]
+    film: Option<f64>,
+    /// Displacements in snapshots and film are drawn so many times as large.
+    #[arg(long, value_name = "K", value_parser = factor, allow_negative_numbers = true)]
+    exaggerate: Option<f64>,
     /// Write position and rotation of every body to poses.csv.
     #[arg(long)]
     poses: bool,
@@ -76,6 +79,8 @@ pub struct Arguments {
     work: Work,
     #[command(flatten)]
     figure: FigureOption,
+    #[command(flatten)]
+    panels: PanelsOption,
 }
 
 /// Models of motion.
@@ -200,7 +205,7 @@ impl Job {
     fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
         let samples = Telling {
             work: arguments.work,
-            figure: arguments.figure.get(),
+            figure: arguments.figure.get()?,
             quiet,
         };
         let mut told = if samples.is_part(&self.scenarios)? {
@@ -258,7 +263,7 @@ impl Job {
         let beside = scenarios.iter().map(|one| one.motion().hinges());
         let wanted = Wanted {
             beside: beside.collect(),
-            ..arguments.wanted(place.to_stdout)
+            ..arguments.wanted(place.to_stdout)?
         };
         let run = |scenario| Run::new(scenario, wanted.clone());
         let runs: Result<Vec<_>, String> = scenarios.iter().map(run).collect();
@@ -334,28 +339,35 @@ impl Models {
 
 impl Arguments {
     /// What a run has to produce.
-    fn wanted(&self, to_stdout: bool) -> Wanted {
-        Wanted {
-            figure: self.figure.get(),
+    fn wanted(&self, to_stdout: bool) -> Result<Wanted, Failure> {
+        if self.exaggerate.is_some() && self.snapshots.is_empty() && self.film.is_none() {
+            let message = "--exaggerate goes with --snapshots or --film";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        Ok(Wanted {
+            figure: self.panels.of(self.figure.get()?),
             rotations: !to_stdout,
             dimensionless: self.dimensionless,
             spread: !self.no_spread,
             report: !self.no_report,
             snapshots_s: self.snapshots.clone(),
-            exaggeration: self.exaggerate,
+            film_a_second: self.film,
+            exaggeration: self.exaggerate.unwrap_or(1.0),
             poses: self.poses,
             points_m: self.points_m.clone(),
             ..Wanted::default()
-        }
+        })
     }
 
     /// The name of a given option that writes a file.
     fn of_files(&self) -> Option<&'static str> {
-        match (self.snapshots.is_empty(), self.poses) {
-            (false, _) => Some("--snapshots"),
-            (true, true) => Some("--poses"),
-            (true, false) => None,
-        }
+        let options = [
+            (!self.snapshots.is_empty(), "--snapshots"),
+            (self.film.is_some(), "--film"),
+            (self.poses, "--poses"),
+        ];
+        let given = options.into_iter().find(|(given, _)| *given);
+        given.map(|(_, option)| option)
     }
 }
 
@@ -384,7 +396,7 @@ impl Place {
             (results, _) => results,
         };
         Ok(Self {
-            results,
+            results: results.map(|results| arguments.figure.printed(results)),
             to_stdout,
             of_files: arguments.of_files(),
         })
@@ -441,6 +453,13 @@ fn time_s(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|time_s| (0.0..=1e9).contains(time_s));
     time_s.ok_or_else(|| "give times in seconds from 0 on, such as 0.2,0.5,1.0".to_owned())
+}
+
+fn a_second(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number| (0.1..=1000.0).contains(number));
+    number
+        .ok_or_else(|| "give a number of pictures a second from 0.1 to 1000, such as 25".to_owned())
 }
 
 fn point_m(text: &str) -> Result<Vector2<f64>, String> {

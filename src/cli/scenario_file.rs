@@ -7,6 +7,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use archrock::output::Folder;
+use archrock::output::print::PictureFormat;
 use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
@@ -179,6 +180,8 @@ pub struct Destination {
     path: PathBuf,
     /// The scenario file after which the folder is named.
     origin: Option<String>,
+    /// What pictures are written in beside SVG.
+    pictures: Option<PictureFormat>,
 }
 
 impl Destination {
@@ -187,6 +190,7 @@ impl Destination {
         Self {
             path: path.to_owned(),
             origin: None,
+            pictures: None,
         }
     }
 
@@ -197,7 +201,12 @@ impl Destination {
 
     /// A folder inside this one.
     pub fn within(&self, name: impl AsRef<Path>) -> Self {
-        Self::of(&self.path.join(name))
+        Self::of(&self.path.join(name)).with_pictures(self.pictures)
+    }
+
+    /// The same with every picture in this format too.
+    pub fn with_pictures(self, pictures: Option<PictureFormat>) -> Self {
+        Self { pictures, ..self }
     }
 
     /// Refuses two results in one place; each place comes with the name of its scenario.
@@ -224,7 +233,8 @@ impl Destination {
     /// The folder inside this one for the results of one record of the suite.
     pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
         let name = Path::new(record).file_name().unwrap_or_default();
-        Self::checked(self.path.join(name), self.origin.clone())
+        let place = Self::checked(self.path.join(name), self.origin.clone())?;
+        Ok(place.with_pictures(self.pictures))
     }
 
     /// The folder, unless it holds the results of another scenario file.
@@ -241,7 +251,11 @@ impl Destination {
                 shown(theirs.trim_end())
             )));
         }
-        Ok(Self { path, origin })
+        Ok(Self {
+            path,
+            origin,
+            pictures: None,
+        })
     }
 
     /// Writes results into the folder, and reports it.
@@ -255,7 +269,16 @@ impl Destination {
 
     /// The folder and the names of the result files in it.
     pub fn holds(&self, results: &Results) -> String {
-        format!("{}: {}", self.path.display(), results.names().join(", "))
+        let also = self.pictures.filter(|format| *format != PictureFormat::Svg);
+        let also = also.map_or("", |format| match format {
+            PictureFormat::Pdf => ", pictures also as PDF",
+            _ => ", pictures also as PNG",
+        });
+        format!(
+            "{}: {}{also}",
+            self.path.display(),
+            results.names().join(", ")
+        )
     }
 
     /// Opens the folder for files of these names, the seal last; a failure suggests `--out`.
@@ -271,6 +294,6 @@ impl Destination {
             writeln!(folder.file(ORIGIN), "{origin}")
                 .map_err(|error| Failure::Work(format!("cannot write {ORIGIN}: {error}")))?;
         }
-        Ok(folder)
+        Ok(folder.with_pictures(self.pictures))
     }
 }

@@ -163,7 +163,7 @@ pub fn map(arguments: &MapArguments, quiet: bool) -> Result<(), Failure> {
     let input = options.open()?;
     let scenario = arguments.hinges.read(&input, quiet)?;
     OverturningMap::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
-    let look = arguments.map.look(&scenario, arguments.figure.get());
+    let look = arguments.map.look(&scenario, arguments.figure.get()?);
     let look = look.map_err(Failure::Input)?;
     if scenario.uncertain().is_some() {
         CellsOfSamples::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
@@ -173,7 +173,7 @@ pub fn map(arguments: &MapArguments, quiet: bool) -> Result<(), Failure> {
         Asked::Map(look),
         options,
         (&input, &scenario),
-        look,
+        (look, arguments.figure),
         quiet,
     )
 }
@@ -184,7 +184,7 @@ fn with_samples(
     asked: Asked,
     options: &Options,
     (input, scenario): (&Input<'_>, &Scenario),
-    look: Look,
+    (look, figure): (Look, FigureOption),
     quiet: bool,
 ) -> Result<(), Failure> {
     let samples = Telling {
@@ -193,9 +193,9 @@ fn with_samples(
         quiet,
     };
     if scenario.uncertain().is_none() || !samples.work.is_part() {
-        options.study(kind, input, scenario, look, quiet)?;
+        options.study(kind, input, scenario, (look, figure), quiet)?;
     }
-    let place = options.place(input)?;
+    let place = options.place(input, figure)?;
     let told = samples.tell(scenario, asked, &place)?;
     if let Some(results) = told
         && !quiet
@@ -209,13 +209,13 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let input = options.open()?;
     let scenario = arguments.hinges.read(&input, quiet)?;
-    let look = Look::of(arguments.figure.get());
+    let look = Look::of(arguments.figure.get()?);
     with_samples(
         StudyKind::Suite,
         Asked::Suite,
         options,
         (&input, &scenario),
-        look,
+        (look, arguments.figure),
         quiet,
     )
 }
@@ -224,16 +224,23 @@ pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failur
     let options = &arguments.options;
     let input = options.open()?;
     let scenario = input.read_as_built()?;
-    let look = Look::of(arguments.figure.get());
-    options.study(StudyKind::Spectrum, &input, &scenario, look, quiet)
+    let look = Look::of(arguments.figure.get()?);
+    options.study(
+        StudyKind::Spectrum,
+        &input,
+        &scenario,
+        (look, arguments.figure),
+        quiet,
+    )
 }
 
 pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
-    let (parts, figure) = (&arguments.parts, arguments.figure.get());
+    let (parts, figure) = (&arguments.parts, arguments.figure.get()?);
     let beside = parts[0].parent();
     let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
     let beside = beside.unwrap_or(Path::new("."));
     let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
+    let place = arguments.figure.printed(place);
     let (_, results) = merged(parts, None, |kind, scenario| match (kind, scenario) {
         (StudyKind::Map, Some(scenario)) => arguments.map.look(scenario, figure),
         (StudyKind::UncertainMap, Some(scenario)) => arguments.map.of_samples(scenario, figure),

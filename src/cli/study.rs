@@ -16,6 +16,7 @@ use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::figure::FigureOption;
 use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format};
 
@@ -144,8 +145,8 @@ impl Options {
     }
 
     /// Where results go.
-    pub fn place(&self, input: &Input<'_>) -> Result<Destination, Failure> {
-        input.results(self.out.as_deref())
+    pub fn place(&self, input: &Input<'_>, figure: FigureOption) -> Result<Destination, Failure> {
+        Ok(figure.printed(input.results(self.out.as_deref())?))
     }
 
     /// Computes the study of a scenario, or the part that was asked for, and writes the results once all rows are computed.
@@ -154,10 +155,10 @@ impl Options {
         kind: StudyKind,
         input: &Input<'_>,
         scenario: &Scenario,
-        look: Look,
+        (look, figure): (Look, FigureOption),
         quiet: bool,
     ) -> Result<(), Failure> {
-        let place = self.place(input)?;
+        let place = self.place(input, figure)?;
         let done = self
             .work
             .compute(kind.name(), &place, quiet, |runner, task, watch| {

@@ -54,7 +54,9 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let models = Models::read(&arguments.hinges, &input)?;
     let about = |failure| input.about(failure);
-    let place = input.results(arguments.out.as_deref())?;
+    let place = arguments
+        .figure
+        .printed(input.results(arguments.out.as_deref())?);
     let (mut names, mut tasks) = (Vec::new(), Vec::new());
     for (record, scenarios) in arguments.suite.choose(models).map_err(about)? {
         check(&scenarios[0]).map_err(|message| about(Failure::Input(message)))?;
@@ -82,7 +84,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         }
         let samples = Telling {
             work: arguments.work,
-            figure: arguments.figure.get(),
+            figure: arguments.figure.get()?,
             quiet,
         };
         let mut results = if samples.is_part(scenarios)? {
@@ -156,7 +158,7 @@ fn find(
     }
 
     let of_models: Vec<&Scenario> = scenarios.iter().collect();
-    let results = tell(&of_models, factors, &found, arguments.figure.get())?;
+    let results = tell(&of_models, factors, &found, arguments.figure.get()?)?;
     results.write(folder)?;
     if !quiet {
         say(&format!("results in {}", place.holds(&results)));

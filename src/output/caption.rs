@@ -1,7 +1,7 @@
 //! One line that tells what a picture was computed from: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::scenario::{Axis, Ground, Quantity, Scenario, Series, Structure};
+use crate::scenario::{Axis, Ground, Quantity, Scaling, Scenario, Series, Structure};
 
 /// The caption. It leaves out what varies along the axes.
 #[must_use]
@@ -11,8 +11,21 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
             .any(|axis| quantities.contains(&axis.quantity) || axis.key == key)
     };
     let mut parts = structure(scenario, &varies);
-    match scenario.ground() {
-        Some(Ground::Pulse(pulse)) => {
+    parts.extend(ground(scenario, &varies));
+    parts.push(model(scenario, &varies));
+    parts.join("; ")
+}
+
+/// How the ground moves: the pulse, or the record with its scale.
+#[must_use]
+pub fn ground_in_words(scenario: &Scenario) -> String {
+    let words = ground(scenario, &|_, _| false);
+    words.unwrap_or_else(|| "the ground stays still".to_owned())
+}
+
+fn ground(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Option<String> {
+    match scenario.ground()? {
+        Ground::Pulse(pulse) => {
             let kind = pulse.kind.name();
             let mut part = format!("{} pulse", kind.replace('_', " "));
             let durations = [Quantity::Duration, Quantity::Frequency];
@@ -23,16 +36,20 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
             if !varies(&[Quantity::Amplitude], &key) {
                 part += &format!(", {} g", pulse.amplitude_g);
             }
-            parts.push(part);
+            Some(part)
         }
-        Some(Ground::Record(record)) => {
+        Ground::Record(record) => {
             let files: Vec<_> = record.series().map(Series::name).collect();
-            parts.push(format!("record {}", files.join(" and ")));
+            let name = format!("record {}", files.join(" and "));
+            let varied = varies(&[Quantity::Scale, Quantity::PeakG], "ground.record.scale");
+            Some(match record.main.scaling {
+                _ if varied => name,
+                Scaling::Factor(1.0) => name,
+                Scaling::Factor(factor) => format!("{name} times {}", short(factor)),
+                Scaling::PeakG(peak_g) => format!("{name} scaled to {} g", short(peak_g)),
+            })
         }
-        None => {}
     }
-    parts.push(model(scenario, &varies));
-    parts.join("; ")
 }
 
 fn structure(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Vec<String> {

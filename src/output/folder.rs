@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use super::OutputError;
+use super::print::PictureFormat;
 
 /// A folder in which results are being prepared.
 ///
@@ -27,6 +28,8 @@ pub struct Folder {
     files: Vec<(String, BufWriter<NamedTempFile>)>,
     /// Results that earlier runs may have left and that this run does not write.
     obsolete: Vec<String>,
+    /// What pictures are written in beside SVG.
+    pictures: Option<PictureFormat>,
 }
 
 /// How the hidden names begin.
@@ -44,6 +47,7 @@ impl Folder {
             made: Vec::new(),
             files: Vec::new(),
             obsolete: Vec::new(),
+            pictures: None,
         };
         for ancestor in path.ancestors().collect::<Vec<_>>().into_iter().rev() {
             if ancestor.as_os_str().is_empty() || ancestor.exists() {
@@ -87,6 +91,13 @@ impl Folder {
         self.obsolete.push(name.to_owned());
     }
 
+    /// The same with every picture in this format too, beside its SVG.
+    #[must_use]
+    pub fn with_pictures(mut self, pictures: Option<PictureFormat>) -> Self {
+        self.pictures = pictures;
+        self
+    }
+
     /// The path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -120,6 +131,17 @@ impl Folder {
             let file = writer
                 .into_inner()
                 .map_err(|error| failed(&name)(error.into_error()))?;
+            if let Some(stem) = name.strip_suffix(".svg") {
+                for format in PictureFormat::OTHERS {
+                    let other = format!("{stem}.{}", format.extension());
+                    if self.pictures == Some(format) {
+                        let converted = converted(&file, format, &path).map_err(failed(&other))?;
+                        files.push((other, converted));
+                    } else {
+                        self.obsolete.push(other);
+                    }
+                }
+            }
             file.as_file().sync_data().map_err(failed(&name))?;
             files.push((name, file));
         }
@@ -147,6 +169,23 @@ impl Drop for Folder {
             let _ = fs::remove_dir(made);
         }
     }
+}
+
+/// A picture in another format, as a hidden file of this folder.
+fn converted(
+    picture: &NamedTempFile,
+    format: PictureFormat,
+    folder: &Path,
+) -> io::Result<NamedTempFile> {
+    let picture = fs::read_to_string(picture.path())?;
+    let picture = format.of_picture(&picture).map_err(io::Error::other)?;
+    let mut file = tempfile::Builder::new()
+        .prefix(PREFIX)
+        .permissions_like_others()
+        .tempfile_in(folder)?;
+    file.write_all(&picture)?;
+    file.as_file().sync_data()?;
+    Ok(file)
 }
 
 /// Locks a folder, for one run alone or for several that write single files. The system unlocks it when the program ends,

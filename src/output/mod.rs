@@ -3,12 +3,16 @@
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
 pub mod caption;
+pub mod dimensions;
+pub mod elevation;
 pub(crate) mod envelope;
+pub mod figure;
 mod folder;
 pub(crate) mod ground;
 pub mod mechanisms;
 pub(crate) mod page;
 pub(crate) mod panels;
+pub mod print;
 pub mod record;
 pub mod scene;
 pub(crate) mod svg;
@@ -17,10 +21,11 @@ pub(crate) mod table;
 use std::io;
 use std::path::PathBuf;
 
+pub use figure::Figure;
 pub use folder::Folder;
 pub use panels::Subject;
 use serde_json::Value;
-pub use svg::Figure;
+
 use table::NotFinite;
 use thiserror::Error;
 

@@ -10,7 +10,7 @@ use crate::mechanics::sway::Sway;
 const NARROWEST_PX: f64 = 1.0;
 
 /// Gap between panels.
-const GAP_PX: f64 = 22.0;
+const GAP_PX: f64 = 30.0;
 
 /// The subject of the picture of a history.
 #[derive(Clone, Copy, Debug)]
@@ -110,14 +110,14 @@ impl Panels {
     ) {
         let height = self.figure.height_px(height_px);
         let axes = Axes {
-            frame: self.figure.plot(self.top, height),
+            frame: self.figure.panel(self.top, height),
             x: Scale::exactly(self.start_s, self.end_s, self.figure.ticks(10)),
             y,
         };
         if let Some(doing) = doing {
             self.hops |= shade(&mut self.drawing, &axes, self.end_s, doing);
         }
-        axes.draw(&mut self.drawing, None, label);
+        axes.draw_panel(&mut self.drawing, label);
         draw(&mut self.drawing, &axes);
         self.top += height + GAP_PX;
         self.last = Some(axes);
@@ -191,7 +191,7 @@ impl Panels {
         if self.incipient {
             keys.push(("A_L, which starts it from rest", Sign::Line(INCIPIENT)));
         }
-        let left = self.figure.plot(0.0, 0.0).left;
+        let left = self.figure.panel(0.0, 0.0).left;
         let end = self.drawing.legend(left, self.top + 30.0, &keys);
         self.drawing.finish(end + 12.0)
     }

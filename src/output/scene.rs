@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
+use super::dimensions::{Dimension, dimensions};
 use crate::dynamics::history::{OpenHinge, Sample};
 use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::Row;
@@ -22,6 +23,22 @@ pub struct Scene {
     sections: Vec<Section>,
     /// Where the left and the right support of an arch are.
     supports: [Pose; 2],
+    /// What lies on blocks, outline by outline: with the block.
+    fill_m: Vec<(usize, Vec<Vector2<f64>>)>,
+    loads: Vec<Load>,
+    dimensions: Vec<Dimension>,
+}
+
+/// A mass on a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    block: usize,
+    /// Where its middle stands in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+    /// The mass in kg.
+    pub mass_kg: f64,
+    /// Over which width it is spread, in metres; zero: a point.
+    pub width_m: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -147,10 +164,43 @@ impl Scene {
     /// A structure that rocks as mechanisms; masonry is a row of linked blocks.
     #[must_use]
     pub fn new(structure: &Structure) -> Self {
-        match structure {
+        let scene = match structure {
             Structure::Arch(arch) => Self::of_arch(arch),
             Structure::Column(column) => Self::of_column(column),
             Structure::Masonry(masonry) => Self::of_blocks(masonry.row(), true),
+        };
+        scene.of_structure(structure)
+    }
+
+    /// The same with what the structure carries, and its dimensions.
+    #[must_use]
+    pub fn of_structure(mut self, structure: &Structure) -> Self {
+        self.dimensions = dimensions(structure);
+        if let Structure::Masonry(masonry) = structure {
+            let carried = masonry.carried();
+            self.fill_m.clone_from(&carried.fill_m);
+            let loads = masonry.loads.iter().zip(&carried.loads_m);
+            self.loads = loads
+                .map(|(load, (block, at_m))| Load {
+                    block: *block,
+                    at_m: *at_m,
+                    mass_kg: load.mass_kg,
+                    width_m: load.width_m,
+                })
+                .collect();
+        }
+        self
+    }
+
+    /// Of this shape, with nothing on it.
+    const fn bare(shape: Shape, sections: Vec<Section>) -> Self {
+        Self {
+            shape,
+            sections,
+            supports: [Pose::UNDEFORMED; 2],
+            fill_m: Vec::new(),
+            loads: Vec::new(),
+            dimensions: Vec::new(),
         }
     }
 
@@ -158,21 +208,17 @@ impl Scene {
     fn of_arch(arch: &Arch) -> Self {
         let (ring, mean_radius_m) = (arch.ring(), arch.mean_radius_m());
         let sections = arch.thrust_sections_rad().into_iter();
-        Self {
-            supports: [Pose::UNDEFORMED; 2],
-            sections: sections
-                .map(|angle_rad| Section {
-                    middle_m: ring.radial(angle_rad) * mean_radius_m,
-                    across_m: ring.radial(angle_rad) * (ring.thickness_ratio() * mean_radius_m),
-                    angle_rad: Some(angle_rad),
-                })
-                .collect(),
-            shape: Shape::Ring {
-                joints_rad: arch.voussoirs().map_or_else(Vec::new, |n| ring.sections(n)),
-                ring,
-                mean_radius_m,
-            },
-        }
+        let sections = sections.map(|angle_rad| Section {
+            middle_m: ring.radial(angle_rad) * mean_radius_m,
+            across_m: ring.radial(angle_rad) * (ring.thickness_ratio() * mean_radius_m),
+            angle_rad: Some(angle_rad),
+        });
+        let shape = Shape::Ring {
+            joints_rad: arch.voussoirs().map_or_else(Vec::new, |n| ring.sections(n)),
+            ring,
+            mean_radius_m,
+        };
+        Self::bare(shape, sections.collect())
     }
 
     /// A column that rocks as one block.
@@ -184,20 +230,14 @@ impl Scene {
             (half_m, height_m),
             (half_m, 0.0),
         ];
-        let heights_m = column.thrust_sections_m().into_iter();
-        Self {
-            supports: [Pose::UNDEFORMED; 2],
-            sections: heights_m
-                .map(|height_m| Section {
-                    middle_m: Vector2::new(0.0, height_m),
-                    across_m: Vector2::new(column.width_m(), 0.0),
-                    angle_rad: None,
-                })
-                .collect(),
-            shape: Shape::Block {
-                outline_m: corners.map(|(x, y)| Vector2::new(x, y)).to_vec(),
-            },
-        }
+        let sections = column.thrust_sections_m().into_iter();
+        let sections = sections.map(|height_m| Section {
+            middle_m: Vector2::new(0.0, height_m),
+            across_m: Vector2::new(column.width_m(), 0.0),
+            angle_rad: None,
+        });
+        let outline_m = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
+        Self::bare(Shape::Block { outline_m }, sections.collect())
     }
 
     /// A row of blocks.
@@ -207,21 +247,16 @@ impl Scene {
     }
 
     fn of_blocks(row: &Row, linked: bool) -> Self {
-        let joints = row.joints().iter();
-        Self {
-            supports: [Pose::UNDEFORMED; 2],
-            sections: joints
-                .map(|joint| Section {
-                    middle_m: joint.middle_m(),
-                    across_m: joint.extrados_m - joint.intrados_m,
-                    angle_rad: None,
-                })
-                .collect(),
-            shape: Shape::Row {
-                outlines_m: row.outlines_m().to_vec(),
-                linked,
-            },
-        }
+        let sections = row.joints().iter().map(|joint| Section {
+            middle_m: joint.middle_m(),
+            across_m: joint.extrados_m - joint.intrados_m,
+            angle_rad: None,
+        });
+        let shape = Shape::Row {
+            outlines_m: row.outlines_m().to_vec(),
+            linked,
+        };
+        Self::bare(shape, sections.collect())
     }
 
     /// The same with its left and right support at these places.
@@ -268,6 +303,94 @@ impl Scene {
         })
     }
 
+    /// The same with what it carries.
+    #[must_use]
+    pub fn frame_m(&self) -> [Vector2<f64>; 2] {
+        let corners = self.fill_m.iter().flat_map(|(_, outline)| outline);
+        let corners = corners.chain(self.loads.iter().map(|load| &load.at_m));
+        corners.fold(self.bounds_m(), |[low, high], corner| {
+            [low.inf(corner), high.sup(corner)]
+        })
+    }
+
+    /// What lies on the bodies in pieces when these hinges are open.
+    #[must_use]
+    pub fn fill(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
+        let mut pieces = self.fill_of_blocks();
+        for piece in &mut pieces {
+            piece.body = piece.body.and_then(|block| self.body_of(block, hinges));
+        }
+        pieces
+    }
+
+    /// The same, each with its block, whatever moves together.
+    #[must_use]
+    pub fn fill_of_blocks(&self) -> Vec<Piece> {
+        let pieces = self.fill_m.iter().map(|(block, outline_m)| Piece {
+            body: Some(*block),
+            outline_m: outline_m.clone(),
+        });
+        pieces.collect()
+    }
+
+    /// The masses, each with its block, whatever moves together.
+    #[must_use]
+    pub fn loads_of_blocks(&self) -> Vec<(Mark, Load)> {
+        let loads = self.loads.iter().map(|load| {
+            let (body, at_m) = (Some(load.block), load.at_m);
+            (Mark { body, at_m }, *load)
+        });
+        loads.collect()
+    }
+
+    /// The masses on the bodies when these hinges are open, each with where its middle stands.
+    #[must_use]
+    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(Mark, Load)> {
+        let mut loads = self.loads_of_blocks();
+        for (mark, load) in &mut loads {
+            mark.body = self.body_of(load.block, hinges);
+        }
+        loads
+    }
+
+    /// The dimensions of the structure.
+    #[must_use]
+    pub fn dimensions(&self) -> &[Dimension] {
+        &self.dimensions
+    }
+
+    /// Joints from left to right, or from below, each from the intrados to the extrados, in metres; none where hinges open
+    /// anywhere.
+    #[must_use]
+    pub fn joints_m(&self) -> Vec<[Vector2<f64>; 2]> {
+        match &self.shape {
+            Shape::Ring {
+                ring,
+                mean_radius_m,
+                joints_rad,
+            } => {
+                let ends = |angle_rad: &f64| {
+                    [Edge::Intrados, Edge::Extrados]
+                        .map(|edge| ring.point(*angle_rad, edge) * *mean_radius_m)
+                };
+                joints_rad.iter().map(ends).collect()
+            }
+            Shape::Block { .. } => Vec::new(),
+            Shape::Row { .. } => (0..)
+                .map_while(|joint| self.corners(joint))
+                .map(|corners| corners.map(|corner| corner.at_m))
+                .collect(),
+        }
+    }
+
+    /// The body that a block of a row is part of when these hinges are open.
+    fn body_of(&self, block: usize, hinges: &[OpenHinge]) -> Option<usize> {
+        match self.shape {
+            Shape::Row { linked: true, .. } => linked_body(hinges, block),
+            _ => Some(block),
+        }
+    }
+
     /// The bodies cut into pieces while these hinges are open. A ring is cut at its hinges and its joints.
     #[must_use]
     pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
@@ -276,15 +399,11 @@ impl Scene {
                 body: Some(0),
                 outline_m: outline_m.clone(),
             }],
-            Shape::Row { outlines_m, linked } => {
+            Shape::Row { outlines_m, .. } => {
                 let outlines = outlines_m.iter().enumerate();
                 outlines
                     .map(|(block, outline_m)| Piece {
-                        body: if *linked {
-                            linked_body(hinges, block)
-                        } else {
-                            Some(block)
-                        },
+                        body: self.body_of(block, hinges),
                         outline_m: outline_m.clone(),
                     })
                     .collect()
@@ -489,8 +608,7 @@ impl Scene {
     pub fn mark(&self, point: &Point, hinges: &[OpenHinge]) -> Mark {
         let body = match (point.part, &self.shape) {
             (Part::Section(angle_rad), _) => link(&sections_rad(hinges), angle_rad),
-            (Part::Block(block), Shape::Row { linked: true, .. }) => linked_body(hinges, block),
-            (Part::Block(block), _) => Some(block),
+            (Part::Block(block), _) => self.body_of(block, hinges),
         };
         Mark {
             body,

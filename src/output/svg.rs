@@ -4,11 +4,11 @@
 //! stand for a result carry its name in `data-name`, for scripts and tests.
 
 use std::fmt::Write as _;
-use std::ops::RangeInclusive;
-use std::str::FromStr;
 
 use nalgebra::Vector2;
 
+pub use super::figure::Figure;
+use super::figure::{LINE_PX, TEXT_PX, lines, text_px};
 use crate::scenario::shown_lines;
 
 /// Colours that colour-blind people can tell apart (Okabe and Ito), the dark ones.
@@ -84,139 +84,13 @@ pub struct Frame {
     pub height: f64,
 }
 
-/// The width of a picture. Layout is in pixels, with text of 13 pixels; a wider picture has more room, not larger text.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figure {
-    width_px: f64,
-    /// Width in print, if given.
-    width_mm: Option<f64>,
-}
-
-/// Size of text in pixels.
-const TEXT_PX: f64 = 13.0;
-/// Size of text in print, in points.
-const TEXT_PT: f64 = 8.0;
-const MM_PER_PT: f64 = 25.4 / 72.0;
-
-/// Approximate mean width of a character.
-const CHARACTER_PX: f64 = 6.6;
+/// Fonts of the measures that texts are laid out by.
+pub(crate) const FONTS: &str = "Helvetica, Arial, Liberation Sans, Nimbus Sans, sans-serif";
 
 /// Largest number of lines of a title; the rest is cut off.
 const TITLE_LINES: usize = 3;
-/// Distance between the baselines of two lines of text.
-const LINE_PX: f64 = 17.0;
-
-impl Figure {
-    /// For the screen: 900 pixels.
-    pub const SCREEN: Self = Self {
-        width_px: 900.0,
-        width_mm: None,
-    };
-
-    /// Widths for print, in mm.
-    const WIDTHS_MM: RangeInclusive<f64> = 60.0..=500.0;
-
-    /// For print at this width, in mm, at which text is 8 pt.
-    fn of_width_mm(width_mm: f64) -> Self {
-        Self {
-            width_px: width_mm / (MM_PER_PT * TEXT_PT) * TEXT_PX,
-            width_mm: Some(width_mm),
-        }
-    }
-
-    /// Width in pixels.
-    #[must_use]
-    pub const fn width_px(&self) -> f64 {
-        self.width_px
-    }
-
-    /// A height that suits the width, for something that has this height on the screen, in pixels.
-    #[must_use]
-    pub fn height_px(&self, on_screen_px: f64) -> f64 {
-        on_screen_px * (0.35 + 0.65 * self.width_px / Self::SCREEN.width_px)
-    }
-
-    /// Number of ticks along the width, from the number on the screen.
-    #[must_use]
-    pub fn ticks(&self, on_screen: u32) -> u32 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a few"
-        )]
-        let ticks = (f64::from(on_screen) * self.width_px / Self::SCREEN.width_px).round() as u32;
-        ticks.max(3)
-    }
-
-    /// How many columns of at least this width fit side by side, at most `wanted`.
-    #[must_use]
-    pub fn columns(&self, wanted: usize, least_px: f64) -> usize {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a few"
-        )]
-        let fit = (self.width_px / least_px) as usize;
-        fit.clamp(1, wanted)
-    }
-
-    /// The frame of a plot over the whole width, below `top`, with room for its labels.
-    #[must_use]
-    pub fn plot(&self, top: f64, height: f64) -> Frame {
-        let left = 85.0;
-        Frame {
-            left,
-            top,
-            width: self.width_px - left - 25.0,
-            height,
-        }
-    }
-
-    /// Text broken into lines of at most this width, in pixels.
-    fn lines(text: &str, width_px: f64) -> Vec<String> {
-        let mut lines = vec![String::new()];
-        for word in text.split_whitespace() {
-            let mut shown: String = word.chars().take(LONGEST_WORD).collect();
-            if shown.len() < word.len() {
-                shown.push_str("...");
-            }
-            let last = lines.len() - 1;
-            let line = &mut lines[last];
-            if line.is_empty() {
-                *line = shown;
-            } else if text_px(line) + text_px(&shown) + CHARACTER_PX <= width_px {
-                *line += &format!(" {shown}");
-            } else {
-                lines.push(shown);
-            }
-        }
-        lines
-    }
-}
-
-impl FromStr for Figure {
-    type Err = String;
-
-    /// A width with its unit, such as `85mm` or `8.5cm`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let units = [("mm", 1.0), ("cm", 10.0), ("in", 25.4)];
-        let number = |(unit, mm): (&str, f64)| {
-            let number: f64 = text.trim().strip_suffix(unit)?.trim().parse().ok()?;
-            // Removes rounding errors.
-            Some((number * mm * 1e6).round() / 1e6)
-        };
-        let width_mm = units.into_iter().find_map(number);
-        let fits = width_mm.filter(|width_mm| Self::WIDTHS_MM.contains(width_mm));
-        fits.map(Self::of_width_mm)
-            .ok_or_else(|| "give a width from 60mm to 500mm, such as 85mm or 17cm".to_owned())
-    }
-}
-
-/// Approximate width of a text, in pixels.
-#[expect(clippy::cast_precision_loss, reason = "the length of a label")]
-fn text_px(text: &str) -> f64 {
-    CHARACTER_PX * text.chars().count() as f64
-}
+/// Where a drawing begins that has no title.
+const NO_TITLE_PX: f64 = 4.0;
 
 /// A drawing.
 #[derive(Clone, Debug)]
@@ -237,24 +111,27 @@ impl Drawing {
 
     /// A centred title above everything else, in a few lines; a very long one is cut off. Returns the position of its lower end.
     pub fn title(&mut self, title: &str) -> f64 {
-        let width_px = self.figure.width_px - 20.0;
-        let mut lines = Figure::lines(title, width_px);
+        if !self.figure.has_title() {
+            return NO_TITLE_PX;
+        }
+        let width_px = self.figure.width_px() - 20.0;
+        let mut lines = lines(title, width_px);
         if lines.len() > TITLE_LINES {
             lines.truncate(TITLE_LINES);
             lines[TITLE_LINES - 1].push_str(" ...");
         }
-        self.paragraph(&lines, Vector2::new(0.5 * self.figure.width_px, 26.0))
+        self.paragraph(&lines, Vector2::new(0.5 * self.figure.width_px(), 26.0))
     }
 
     /// Centred text, its first baseline at `y`, in as many lines as it needs; returns the position of its lower end.
     pub fn caption(&mut self, y: f64, text: &str) -> f64 {
-        let middle = Vector2::new(0.5 * self.figure.width_px, y);
-        self.caption_at(middle, self.figure.width_px - 20.0, text)
+        let middle = Vector2::new(0.5 * self.figure.width_px(), y);
+        self.caption_at(middle, self.figure.width_px() - 20.0, text)
     }
 
     /// The same around the middle of its first baseline, with this width at most.
     pub fn caption_at(&mut self, middle: Vector2<f64>, width_px: f64, text: &str) -> f64 {
-        self.paragraph(&Figure::lines(text, width_px), middle)
+        self.paragraph(&lines(text, width_px), middle)
     }
 
     fn paragraph(&mut self, lines: &[String], middle: Vector2<f64>) -> f64 {
@@ -270,7 +147,7 @@ impl Drawing {
     /// The complete file, with this height in pixels.
     #[must_use]
     pub fn finish(self, height: f64) -> String {
-        let Figure { width_px, width_mm } = self.figure;
+        let (width_px, width_mm) = (self.figure.width_px(), self.figure.width_mm());
         let thousandths = |length: f64| (length * 1e3).round() / 1e3;
         let (width_px, height) = (thousandths(width_px), thousandths(height));
         let (wide, high) = match width_mm {
@@ -282,7 +159,7 @@ impl Drawing {
         };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{high}\" \
-             viewBox=\"0 0 {width_px} {height}\" font-family=\"Helvetica, Arial, sans-serif\" \
+             viewBox=\"0 0 {width_px} {height}\" font-family=\"{FONTS}\" \
              font-size=\"{TEXT_PX}\">\n\
              <rect width=\"{width_px}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
             self.text
@@ -421,7 +298,7 @@ impl Drawing {
         if entries.is_empty() {
             return top;
         }
-        let right = self.figure.width_px - 15.0;
+        let right = self.figure.width_px() - 15.0;
         let (mut x, mut y) = (left, top + 0.5 * LEGEND_ROW_PX);
         for (text, sign) in entries {
             let advance = KEY_PX + 6.0 + text_px(text) + 18.0;
@@ -452,7 +329,7 @@ impl Drawing {
             }
             let at = Vector2::new(x + KEY_PX + 6.0, y + 4.5);
             // A text wider than the picture continues on the next line.
-            let lines = Figure::lines(text, (right - at.x).max(CHARACTER_PX));
+            let lines = lines(text, (right - at.x).max(TEXT_PX));
             for (number, line) in (0_u32..).zip(&lines) {
                 let down = Vector2::new(0.0, LINE_PX * f64::from(number));
                 self.label(at + down, Anchor::Start, 0.0, line);
@@ -498,8 +375,6 @@ pub enum Sign {
 const KEY_PX: f64 = 24.0;
 /// Height of a row of a legend.
 const LEGEND_ROW_PX: f64 = 24.0;
-/// Number of characters at which a word is cut off.
-const LONGEST_WORD: usize = 130;
 
 /// The attribute that names a mark for a result; empty for other marks.
 fn name_attribute(name: &str) -> String {
@@ -704,8 +579,34 @@ impl Axes {
         )
     }
 
-    /// Draws the frame, ticks and labels; without `x_label` the lower side has ticks only.
+    /// Draws frame, ticks and labels, that of the y axis along it; without `x_label` the lower side has ticks only.
     pub fn draw(&self, drawing: &mut Drawing, x_label: Option<&str>, y_label: &str) {
+        let widest = self.grid(drawing);
+        let Frame {
+            left, top, height, ..
+        } = self.frame;
+        // Beside the texts of the ticks, in as many lines as it takes.
+        let lines = lines(y_label, height.max(120.0));
+        let mut x = (left - TICK_TEXT_PX - widest - 6.0).min(left - 54.0);
+        for line in lines.iter().rev() {
+            let at = Vector2::new(x, top + 0.5 * height);
+            drawing.label(at, Anchor::Middle, 90.0, line);
+            x -= LINE_PX;
+        }
+        if let Some(label) = x_label {
+            self.label_x(drawing, label);
+        }
+    }
+
+    /// The same of a panel: the label of the y axis is above it.
+    pub fn draw_panel(&self, drawing: &mut Drawing, y_label: &str) {
+        self.grid(drawing);
+        let at = Vector2::new(self.frame.left, self.frame.top - 7.0);
+        drawing.label(at, Anchor::Start, 0.0, y_label);
+    }
+
+    /// Draws frame and ticks, those of the y axis with their texts; returns the width of the widest of these.
+    fn grid(&self, drawing: &mut Drawing) -> f64 {
         let thin = Stroke::new(color::BLACK, 0.8, "");
         let faint = Stroke::new("#dddddd", 0.6, "");
         let Frame {
@@ -715,12 +616,19 @@ impl Axes {
             height,
         } = self.frame;
         let (right, bottom) = (left + width, top + height);
+        let mut widest: f64 = 0.0;
+        // Texts come from below, and none is on another.
+        let mut highest = f64::INFINITY;
         for (value, text) in self.y.ticks() {
             let y = self.place(self.x.low, value).y;
             drawing.line(Vector2::new(left, y), Vector2::new(right, y), faint);
             drawing.line(Vector2::new(left - 5.0, y), Vector2::new(left, y), thin);
-            let at = Vector2::new(left - 8.0, y + 4.5);
-            drawing.label(at, Anchor::End, 0.0, &text);
+            if highest - y >= TEXT_PX {
+                let at = Vector2::new(left - TICK_TEXT_PX, y + 4.5);
+                drawing.label(at, Anchor::End, 0.0, &text);
+                widest = widest.max(text_px(&text));
+                highest = y;
+            }
         }
         for (value, _) in self.x.ticks() {
             let x = self.place(value, self.y.low).x;
@@ -728,24 +636,33 @@ impl Axes {
         }
         let frame = format!("M{left} {top}H{right}V{bottom}H{left}Z");
         drawing.path("", &frame, "none", thin);
-        let at = Vector2::new(left - 58.0, top + 0.5 * height);
-        drawing.label(at, Anchor::Middle, 90.0, y_label);
-        if let Some(label) = x_label {
-            self.label_x(drawing, label);
-        }
+        widest
     }
 
     /// Draws the labels of the ticks on the lower side, and the label of the axis.
     pub fn label_x(&self, drawing: &mut Drawing, label: &str) {
         let bottom = self.frame.top + self.frame.height;
+        // Texts come from the left, and none is on another.
+        let mut farthest = f64::NEG_INFINITY;
         for (value, text) in self.x.ticks() {
             let at = Vector2::new(self.place(value, self.y.low).x, bottom + 19.0);
-            drawing.label(at, Anchor::Middle, 0.0, &text);
+            let half = 0.5 * text_px(&text);
+            if at.x - half >= farthest {
+                drawing.label(at, Anchor::Middle, 0.0, &text);
+                farthest = at.x + half + 5.0;
+            }
         }
-        let at = Vector2::new(self.frame.left + 0.5 * self.frame.width, bottom + 38.0);
+        // In the middle, unless it would leave the sheet.
+        let middle = self.frame.left + 0.5 * self.frame.width;
+        let half = 0.5 * text_px(label);
+        let most = drawing.figure.width_px() - half - 4.0;
+        let at = Vector2::new(middle.min(most), bottom + 38.0);
         drawing.label(at, Anchor::Middle, 0.0, label);
     }
 }
+
+/// Texts of ticks of the y axis end so far from it.
+const TICK_TEXT_PX: f64 = 8.0;
 
 #[cfg(test)]
 mod tests {
@@ -791,22 +708,6 @@ mod tests {
         );
         let scale = Scale::logarithmic(0.1, 10.0);
         assert!((scale.part(1.0) - 0.5).abs() < 1e-15);
-    }
-
-    #[test]
-    fn text_is_8_points_at_the_width_of_a_figure() {
-        for (text, width_mm) in [("85mm", 85.0), ("17 cm", 170.0), ("3.5in", 88.9)] {
-            let figure: Figure = text.parse().unwrap();
-            let sheet = Drawing::new(figure).finish(figure.width_px());
-            // A square sheet has equal width and height.
-            let size = format!("width=\"{width_mm}mm\" height=\"{width_mm:.3}mm\"");
-            assert!(sheet.contains(&size), "{sheet}");
-            let points = TEXT_PX / figure.width_px() * width_mm / 25.4 * 72.0;
-            assert!((points - 8.0).abs() < 1e-12);
-        }
-        for wrong in ["85", "5mm", "-85mm", "NaNmm", "infmm", "85 px", ""] {
-            assert!(wrong.parse::<Figure>().is_err(), "{wrong}");
-        }
     }
 
     #[test]

@@ -54,11 +54,11 @@ impl Kind {
         kind("overturned-1", "overturns after 1 impact", color::ORANGE),
         kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
         kind("overturned-more", "overturns after more", color::PURPLE),
-        kind("overturned", "overturns", color::VERMILION),
+        kind("overturned", "overturns", "#a6361c"),
         kind(UNCERTAIN, "uncertain whether it overturns", color::GREEN),
         kind(CANNOT_STAND, "cannot stand", "#ffffff"),
         kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
-        kind(GROUND_FALLS, "the ground falls freely", "#ffffff"),
+        kind(GROUND_FALLS, "the ground falls freely", "#d9cfe8"),
         kind(FAILED, "failed", color::BLACK),
     ];
 
@@ -83,4 +83,15 @@ pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key<'static>> {
     present
         .map(|kind| (kind.label, Sign::Band(kind.fill, 1.0)))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_colour_means_two_outcomes() {
+        let fills: std::collections::BTreeSet<_> = Kind::ALL.iter().map(|kind| kind.fill).collect();
+        assert_eq!(fills.len(), Kind::ALL.len());
+    }
 }

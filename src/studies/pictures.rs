@@ -14,6 +14,8 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
+use crate::output::elevation::{FILL, FILL_LINE, draw_load};
+use crate::output::scene::Scene;
 use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
 /// Fraction of the way to the limit position at which a mechanism is drawn, so that it is visibly open.
@@ -35,6 +37,8 @@ struct Place<'a> {
     scale: f64,
     /// Lowest point of the structure at rest.
     bottom: f64,
+    /// What the structure carries, where that is drawn.
+    scene: Option<&'a Scene>,
 }
 
 /// Left, lower, right and upper bounds of a structure at rest.
@@ -59,13 +63,20 @@ fn bounds(profile: &dyn Profile) -> [f64; 4] {
 
 impl<'a> Place<'a> {
     /// Fits the structure into a rectangle of that width, no higher than wide, with the crown at `top`.
-    fn new(chain: &'a Chain, first: Sway, middle: f64, top: f64, width: f64) -> Self {
+    fn new(
+        (chain, scene): (&'a Chain, Option<&'a Scene>),
+        first: Sway,
+        middle: f64,
+        top: f64,
+        width: f64,
+    ) -> Self {
         let mut place = Self {
             chain,
             first,
             origin: Vector2::zeros(),
             scale: 1.0,
             bottom: 0.0,
+            scene,
         };
         let [left, low, right, high] = bounds(place.profile(Sway::Right));
         place.scale = (width / (right - left)).min(width / (high - low));
@@ -129,6 +140,49 @@ impl<'a> Place<'a> {
         drawing.path(name, &path, fill, stroke);
     }
 
+    /// What the structure carries: the fill behind its blocks, and its loads; with the mechanism as it is drawn, or at rest.
+    fn carried(&self, drawing: &mut Drawing, mechanism: Option<(&ArchLink, Sway)>) {
+        let Some(scene) = self.scene else { return };
+        let profile = self.profile(Sway::Right);
+        // Profiles have units of their own.
+        let [left, low, right, _] = bounds(profile);
+        let [low_m, high_m] = scene.bounds_m();
+        let per_metre = (right - left) / (high_m.x - low_m.x);
+        let seen = |at_m: Vector2<f64>| (at_m - low_m) * per_metre + Vector2::new(left, low);
+        let mut poses = Vec::new();
+        if let Some((link, _)) = mechanism {
+            let q_rad = DRAWN_PART * link.link.limit_rad;
+            link.link
+                .mechanism
+                .place(q_rad, &mut poses, &mut Vec::new());
+        }
+        let px = |block: Option<usize>, at_m: Vector2<f64>| {
+            let Some((link, sway)) = mechanism else {
+                return self.px(seen(at_m), Sway::Right);
+            };
+            let at = seen(at_m);
+            let mirrored = Vector2::new(sway.sign() * at.x, at.y);
+            #[expect(clippy::cast_precision_loss, reason = "few blocks")]
+            let section = block.map_or(0.0, |block| block as f64 + 0.5);
+            let section = match sway {
+                Sway::Right => section,
+                Sway::Left => profile.end() - section,
+            };
+            let before = link.mechanism.hinges_rad().into_iter();
+            let before = before.filter(|hinge| *hinge < section).count();
+            let pose = before.checked_sub(1).and_then(|body| poses.get(body));
+            self.px(pose.map_or(mirrored, |pose| pose.of(mirrored)), sway)
+        };
+        for piece in scene.fill_of_blocks() {
+            let corners = piece.outline_m.iter();
+            let outline = corners.map(|corner| px(piece.body, *corner));
+            drawing.polygon("fill", outline, FILL, FILL_LINE);
+        }
+        for (mark, _) in scene.loads_of_blocks() {
+            draw_load(drawing, px(mark.body, mark.at_m));
+        }
+    }
+
     /// Draws the joints, if there are voussoirs.
     fn joints(&self, drawing: &mut Drawing) {
         if let HingeSites::Voussoirs(count) = self.chain.sites() {
@@ -150,6 +204,7 @@ impl<'a> Place<'a> {
 
     /// Draws the open mechanism over the ring at rest; returns the rotations drawn, as seen.
     fn mechanism(&self, drawing: &mut Drawing, link: &ArchLink, sway: Sway) -> [f64; 3] {
+        self.carried(drawing, Some((link, sway)));
         self.whole(drawing, "none", Stroke::new(color::GREY, 0.8, "3 3"));
         let linkage = &link.link.mechanism;
         let q_rad = DRAWN_PART * link.link.limit_rad;
@@ -251,9 +306,14 @@ fn rotations_text([left, middle, right]: [f64; 3]) -> String {
 /// Incipient rocking to one side: the thrust line at `A_L`, through its hinges, and the mechanism. The chain must begin
 /// with that sway.
 ///
-/// The mechanism is drawn at true scale with finite rotations, a quarter of the way to its limit position.
+/// The mechanism is drawn to scale at finite rotations, at a quarter of the way to its limit position; of a scene, with what it
+/// carries.
 #[must_use]
-pub fn limit(figure: Figure, chain: &Chain, first: Sway) -> String {
+pub fn limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>) -> String {
+    figure.fitted(|figure| draw_limit(figure, chain, first, scene))
+}
+
+fn draw_limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>) -> String {
     let link = chain
         .link(0)
         .expect("a chain begins with the mechanism that starts");
@@ -265,9 +325,10 @@ pub fn limit(figure: Figure, chain: &Chain, first: Sway) -> String {
         shape(chain.profile(0))
     );
     let top = drawing.title(&title);
-    let cells = Cells::new(figure, chain, first);
+    let cells = Cells::new(figure, (chain, scene), first);
 
     let (left, middle) = cells.first(top);
+    left.carried(&mut drawing, None);
     left.whole(&mut drawing, "#f4f4f4", Stroke::new(color::BLACK, 1.2, ""));
     left.joints(&mut drawing);
     left.resultants(&mut drawing, "thrust line", &incipient.thrust_line, first);
@@ -291,7 +352,8 @@ pub fn limit(figure: Figure, chain: &Chain, first: Sway) -> String {
 
 /// Two arches side by side, or one below the other if there is not enough room.
 struct Cells<'a> {
-    chain: &'a Chain,
+    figure: Figure,
+    chain: (&'a Chain, Option<&'a Scene>),
     /// First sway of the chain.
     first: Sway,
     /// Width of a cell in pixels.
@@ -303,9 +365,10 @@ struct Cells<'a> {
 const ABOVE_PX: f64 = 42.0;
 
 impl<'a> Cells<'a> {
-    fn new(figure: Figure, chain: &'a Chain, first: Sway) -> Self {
+    fn new(figure: Figure, chain: (&'a Chain, Option<&'a Scene>), first: Sway) -> Self {
         let columns = figure.columns(2, 340.0);
         Self {
+            figure,
             chain,
             first,
             width: figure.width_px() / if columns == 2 { 2.0 } else { 1.0 },
@@ -319,7 +382,7 @@ impl<'a> Cells<'a> {
     }
 
     fn place(&self, middle: f64, top: f64) -> (Place<'a>, f64) {
-        let (top, width) = (top + ABOVE_PX, 0.8 * self.width);
+        let (top, width) = (top + ABOVE_PX, self.figure.squeezed_px(0.8 * self.width));
         let place = Place::new(self.chain, self.first, middle, top, width);
         (place, middle)
     }
@@ -345,6 +408,15 @@ impl<'a> Cells<'a> {
 #[must_use]
 pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
     let (before, after) = (impact.before()?, impact.after()?);
+    Some(figure.fitted(|figure| draw_impact(figure, impact, before, after)))
+}
+
+fn draw_impact(
+    figure: Figure,
+    impact: &LinkImpact<'_>,
+    before: &ArchLink,
+    after: &ArchLink,
+) -> String {
     let (chain, first, index) = (impact.chain(), impact.first, impact.index);
     let (profile, sway_after) = (impact.profile(), impact.sway());
     let sway_before = sway_after.opposite();
@@ -356,7 +428,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
         shape(profile)
     );
     let top = drawing.title(&title);
-    let cells = Cells::new(figure, chain, first);
+    let cells = Cells::new(figure, (chain, None), first);
     let caption = |text: &str, mark: &str, rotations: [f64; 3]| {
         let rotations = rotations_text(rotations);
         format!("{text}, hinges A{mark} to D{mark}, drawn at rotations of {rotations}")
@@ -371,8 +443,11 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
     let second_end = cells.caption(&mut drawing, middle, place.bottom, &text);
 
     let lower_top = first_end.max(second_end) + ABOVE_PX + 14.0;
-    let (wide, middle) = (0.71 * figure.width_px(), 0.5 * figure.width_px());
-    let place = Place::new(chain, first, middle, lower_top, wide);
+    let (wide, middle) = (
+        figure.squeezed_px(0.71 * figure.width_px()),
+        0.5 * figure.width_px(),
+    );
+    let place = Place::new((chain, None), first, middle, lower_top, wide);
     let closing = closing_field(&before.mechanism, profile);
     let field = after.mechanism.field();
     // Everything is in the frame of the new mechanism, which is mirrored if it sways left.
@@ -436,7 +511,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
                 impact; grey circles: the hinges A to D of u, which close; 1, 2 ...: the bodies that both together cut \
                 out of the arch";
     let end = drawing.caption(place.bottom + 34.0, text);
-    Some(drawing.finish(end + 12.0))
+    drawing.finish(end + 12.0)
 }
 
 /// The place for the number of a body: for a ring, at a distance outside the extrados. For a row, at a distance inside

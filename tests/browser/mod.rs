@@ -12,20 +12,25 @@ const BROWSERS: [&str; 4] = [
     "google-chrome",
 ];
 
+/// The browser that there is.
+fn browser() -> Option<&'static str> {
+    let browser = BROWSERS.into_iter().find(|name| {
+        let version = Command::new(name).arg("--version").output();
+        version.is_ok_and(|output| output.status.success())
+    });
+    if browser.is_none() {
+        eprintln!("no browser here ({BROWSERS:?}): the page is not checked in one");
+    }
+    browser
+}
+
 /// The result of a page's own script `check`, which has `data` and calls `verify(true or false, "what")`;
 /// `None`, with a message, if there is no browser. Errors on the console count as failed checks.
 ///
 /// `settings` are arguments of the browser. Its time is virtual and it draws no frames, so a timer replaces
 /// them.
 pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Option<String> {
-    let browser = BROWSERS.iter().find(|name| {
-        let version = Command::new(name).arg("--version").output();
-        version.is_ok_and(|output| output.status.success())
-    });
-    let Some(browser) = browser else {
-        eprintln!("no browser here ({BROWSERS:?}): the page is not checked in one");
-        return None;
-    };
+    let browser = browser()?;
     let html = fs::read_to_string(page).unwrap();
     let before = "<script>window.failures = []; window.passed = 0;\
         window.verify = (holds, what) => { if (holds) passed += 1; else failures.push(what); };\
@@ -68,6 +73,22 @@ pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Optio
         )
     });
     Some(verdict.to_owned())
+}
+
+/// How many sheets of paper a page is printed on; `None`, with a message, where there is no browser.
+pub fn sheets(page: &Path) -> Option<usize> {
+    let pdf = page.with_extension("pdf");
+    let output = Command::new(browser()?)
+        .args(["--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"])
+        .arg(format!("--print-to-pdf={}", pdf.display()))
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .unwrap();
+    let printed =
+        fs::read(&pdf).unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&output.stderr)));
+    let printed = String::from_utf8_lossy(&printed);
+    let pages = printed.matches("/Type /Page").count() - printed.matches("/Type /Pages").count();
+    Some(pages)
 }
 
 /// Asserts that all checks of a page pass, at least this many.

@@ -4,6 +4,20 @@ const find = (id) => document.getElementById(id);
 const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
 const units = report.data.frames;
 
+// It opens at the strongest instant: the largest rotation, or where it can no longer come back.
+{
+  const { time, poses } = report.shown();
+  const turned = Math.max(...poses.map(({ rotation }) => Math.abs(rotation)));
+  if (data.overturned_s) verify(near(time, data.overturned_s, 1e-9), `opens at ${time}`);
+  else verify(turned > 0.97 * data.largest_rad, `opens at ${turned} rad`);
+  const times = Number(find("times").textContent);
+  verify(times >= 1 && times <= 50, "exaggeration");
+}
+for (const plot of document.querySelectorAll(".plot")) {
+  const legend = plot.querySelector(".legend").textContent;
+  verify(/[a-z]/.test(legend) && /: -?[0-9]/.test(legend), `legend ${legend}`);
+}
+
 // Frames at given times are compared with the tables.
 for (const { time_s, state, bodies } of data.rows) {
   report.seek(time_s);

@@ -21,6 +21,7 @@ from ._history import Event, History, Impact
 from ._scenario import Scenario, simulate
 from ._structure import Arch, Column, Structure
 from ._studies import (
+    Capacity,
     Check,
     Ensemble,
     FirstFactors,
@@ -32,6 +33,7 @@ from ._studies import (
     Spectrum,
     Suite,
     Threshold,
+    capacity,
     compute_part,
     ensemble,
     map_scenario,
@@ -47,6 +49,7 @@ from ._studies import (
 
 __all__ = [
     "Arch",
+    "Capacity",
     "ChainLink",
     "Check",
     "Column",
@@ -72,6 +75,7 @@ __all__ = [
     "Structure",
     "Suite",
     "Threshold",
+    "capacity",
     "compute_part",
     "ensemble",
     "map_scenario",

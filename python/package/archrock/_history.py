@@ -16,6 +16,7 @@ from ._hinge import Hinge
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ._scenario import Scenario
@@ -107,6 +108,28 @@ class Event:
                 "impact": None if impact is None else Impact._of(impact),
             }
         )
+
+
+def _figure_of(ax: Axes) -> Figure:
+    """The figure that axes belong to."""
+    from matplotlib.figure import Figure
+
+    figure = ax.get_figure()
+    while figure is not None and not isinstance(figure, Figure):
+        figure = figure.figure
+    if figure is None:
+        raise ValueError("`ax` belongs to no figure")
+    return figure
+
+
+def _axes(ax: Axes | None) -> Axes:
+    """The axes that are given, or those of a new figure."""
+    from matplotlib.figure import Figure
+
+    if ax is not None:
+        return ax
+    axes: Axes = Figure(figsize=(9.0, 5.0), layout="constrained").subplots()
+    return axes
 
 
 class History:
@@ -380,25 +403,50 @@ class History:
         table: pandas.DataFrame = pandas.DataFrame(columns)
         return table
 
-    def plot(self) -> Figure:
-        """Ground acceleration and rotations over time. Needs matplotlib."""
+    def plot(self, ax: Axes | None = None) -> Figure:
+        """Ground acceleration in g and rotations in rad over time in s. Needs matplotlib.
+
+        Args:
+            ax: axes to draw the rotations into, with a legend and without the ground; ``None``: a new figure with both.
+
+        Returns:
+            The figure.
+        """
+        if ax is not None:
+            self._plot_rotations(ax)
+            return _figure_of(ax)
         from matplotlib.figure import Figure
 
         figure = Figure(figsize=(9.0, 6.0), layout="constrained")
         ground, rotations = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
         gravity_m_s2 = self.summary["scenario"]["simulation"]["gravity_m_s2"]
-        ground.plot(self.time, self.ground_acceleration_m_s2 / gravity_m_s2, color="0.3")
+        ground.plot(
+            self.time, self.ground_acceleration_m_s2 / gravity_m_s2, color="0.3", label="ground"
+        )
         ground.set_ylabel("ground acceleration (g)")
-        few = len(self.bodies) <= 6
-        for index, body in enumerate(self.bodies):
-            rotations.plot(self.time, self.rotations[:, index], label=body, lw=1.2 if few else 0.6)
-        if few and len(self.bodies) > 1:
-            rotations.legend()
-        rotations.axhline(0.0, color="0.8", lw=0.8, zorder=0)
-        rotations.set_ylabel("rotation (rad)")
-        rotations.set_xlabel("time (s)")
+        ground.legend()
+        self._plot_rotations(rotations)
         ground.set_title(self._words())
         return figure
+
+    def _plot_rotations(self, ax: Axes) -> None:
+        few = len(self.bodies) <= 6
+        largest = int(np.argmax(np.abs(self.rotations).max(axis=0)))
+        for index, body in enumerate(self.bodies):
+            label: str | None = body or "rotation"
+            if not few:
+                # Of many blocks the one that turns most is named.
+                label = f"block {body}, which turns most" if index == largest else None
+                if index == (largest + 1) % len(self.bodies):
+                    label = "other blocks"
+            look = {"lw": 1.2} if few else {"lw": 0.6, "color": "0.5"}
+            if not few and index == largest:
+                look = {"lw": 1.6, "color": "C0", "zorder": 3}
+            ax.plot(self.time, self.rotations[:, index], label=label, **look)
+        ax.axhline(0.0, color="0.8", lw=0.8, zorder=0)
+        ax.set_ylabel("rotation (rad)")
+        ax.set_xlabel("time (s)")
+        ax.legend()
 
     def report_html(self) -> str:
         """The program's page ``report.html``: the structure in motion, with curves. Needs no network."""

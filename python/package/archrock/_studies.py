@@ -15,12 +15,15 @@ import numpy as np
 
 from . import _native
 from ._ground import Ground, Pulse, Record, _csv
+from ._history import _axes, _figure_of
 from ._scenario import Scenario
 from ._structure import Structure
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Progress = Callable[[int, int], object]
 """Called with the number of cases done and of all cases; an exception that it raises ends the work."""
@@ -223,6 +226,33 @@ class Suite(Results):
         """Whether overturning is uncertain, one entry for each row of ``suite.csv``."""
         return np.asarray(self.columns()["outcome"] == "uncertain")
 
+    def plot(self, ax: Axes | None = None) -> Figure:
+        """The fraction of cases that overturn over the intensity, the curve and its 95 % band. Needs matplotlib.
+
+        Intensities are peak accelerations in g, or factors on the records, as in ``fragility.csv``.
+
+        Args:
+            ax: axes to draw into; ``None``: those of a new figure.
+
+        Returns:
+            The figure.
+        """
+        ax = _axes(ax)
+        table = self.fragility
+        intensity = next(iter(table))
+        levels = table[intensity]
+        ax.plot(levels, table["fraction"], "o", mfc="none", label="fraction of cases")
+        if "probability" in table and np.isfinite(table["probability"]).any():
+            ax.plot(levels, table["probability"], label="lognormal curve")
+            low, high = table["probability_low"], table["probability_high"]
+            ax.fill_between(levels, low, high, alpha=0.2, label="95 % band")
+        names = {"peak_g": "peak ground acceleration (g)", "scale": "factor on the records"}
+        ax.set_xlabel(names.get(intensity, intensity))
+        ax.set_ylabel("fraction that overturns")
+        ax.set_ylim(-0.02, 1.02)
+        ax.legend()
+        return _figure_of(ax)
+
 
 class Threshold(Results):
     """Factors on a ground motion that overturn a structure: bands, safe gaps between them, and uncertain ranges."""
@@ -255,11 +285,78 @@ class Threshold(Results):
         gaps: list[dict[str, Any]] = self._model()["gaps"]
         return gaps
 
+    def plot(self, ax: Axes | None = None) -> Figure:
+        """The largest rotation over the factor on the ground motion, and which factors overturn. Needs matplotlib.
+
+        Rotations are over the critical one where that is known, else in rad. What overturns has no largest rotation.
+
+        Args:
+            ax: axes to draw into; ``None``: those of a new figure.
+
+        Returns:
+            The figure.
+        """
+        ax = _axes(ax)
+        table = self.columns()
+        ratio, rad = table["peak_rotation_over_critical"], table["peak_rotation_rad"]
+        known = bool(np.isfinite(ratio).any())
+        peak = np.where(table["outcome"] == "overturned", np.nan, ratio if known else rad)
+        ax.plot(table["factor"], peak, color="k", label="largest rotation")
+        for ranges, look in (
+            (self.bands, {"color": "C3", "alpha": 0.3, "label": "overturns"}),
+            (self.uncertain, {"color": "C2", "alpha": 0.3, "hatch": "//", "label": "uncertain"}),
+        ):
+            for index, told in enumerate(ranges):
+                shown = {**look, "label": look["label"] if index == 0 else None}
+                ax.axvspan(told["from"], told["to"], **shown)
+        ax.set_xscale("log")
+        ax.set_xlabel("factor on the ground motion")
+        ax.set_ylabel("largest / critical rotation" if known else "largest rotation (rad)")
+        ax.legend()
+        return _figure_of(ax)
+
     @property
     def uncertain(self) -> list[dict[str, Any]]:
         """The ranges in which overturning is uncertain, ascending, as in ``threshold.json``."""
         ranges: list[dict[str, Any]] = self._model()["uncertain"]
         return ranges
+
+
+class Capacity(Results):
+    """The quasi-static capacity of the first mechanism to both sides: acceleration against displacement."""
+
+    __slots__ = ()
+
+    _picture = "capacity.svg"
+    _table = "capacity.csv"
+    _json = "capacity.json"
+
+    def side(self, sway: Literal["right", "left"]) -> dict[str, npt.NDArray[np.float64]]:
+        """The curve to a side: ``displacement_m`` of the control point, ``acceleration_g``, and the other columns of ``capacity.csv``."""
+        columns = self.columns()
+        own = columns["sway"] == sway
+        return {name: values[own] for name, values in columns.items() if name != "sway"}
+
+    def plot(self, ax: Axes | None = None) -> Figure:
+        """Acceleration in g against displacement of the control point in m, to both sides. Needs matplotlib.
+
+        Args:
+            ax: axes to draw into; ``None``: those of a new figure.
+
+        Returns:
+            The figure.
+        """
+        ax = _axes(ax)
+        for sway, line in (("right", "-"), ("left", "--")):
+            own = self.columns()["sway"] == sway
+            columns = {name: values[own] for name, values in self.columns().items()}
+            ax.plot(
+                columns["displacement_m"], columns["acceleration_g"], line, label=f"to the {sway}"
+            )
+        ax.set_xlabel("displacement of the control point (m)")
+        ax.set_ylabel("acceleration (g)")
+        ax.legend()
+        return _figure_of(ax)
 
 
 class Ensemble(Results):
@@ -769,6 +866,24 @@ def _record_files(records: Sequence[Record]) -> tuple[dict[str, Any], dict[str, 
         "quantity": next((record.quantity for record in records), None),
     }
     return layout, files
+
+
+def capacity(of: Structure | Scenario) -> Capacity:
+    """The quasi-static capacity of the first mechanism to both sides, as ``archrock capacity``.
+
+    >>> arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
+    >>> round(float(capacity(arch).side("right")["acceleration_g"][0]), 8)
+    0.14432644
+
+    Args:
+        of: a structure, or a scenario.
+
+    Raises:
+        ValueError: when it does not rock as a mechanism of one degree of freedom.
+    """
+    if not isinstance(of, (Structure, Scenario)):
+        raise TypeError(f"give a structure or a scenario, not {type(of).__name__}")
+    return Capacity(_native.capacity(of._native))
 
 
 def compute_part(

@@ -43,16 +43,7 @@ impl Fill {
         material: Material,
     ) -> Result<(), ArgumentError> {
         within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
-        let level_m = match self.level {
-            FillLevel::AboveSpringing(height_m) => {
-                within("height_m", height_m, MAGNITUDE)?;
-                arch.joints()[0].extrados_m.y + height_m
-            }
-            FillLevel::AboveCrown(height_m) => {
-                within("above_crown_m", height_m, 0.0..=1e6)?;
-                arch.crown_m() + height_m
-            }
-        };
+        let level_m = self.level_m(arch)?;
         for (voussoir, extra) in extra.iter_mut().enumerate() {
             let below = arch
                 .extrados_of(voussoir)
@@ -79,7 +70,47 @@ impl Fill {
         }
         Ok(())
     }
+
+    /// How high its top is, in metres.
+    fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
+        match self.level {
+            FillLevel::AboveSpringing(height_m) => {
+                within("height_m", height_m, MAGNITUDE)?;
+                Ok(arch.joints()[0].extrados_m.y + height_m)
+            }
+            FillLevel::AboveCrown(height_m) => {
+                within("above_crown_m", height_m, 0.0..=1e6)?;
+                Ok(arch.crown_m() + height_m)
+            }
+        }
+    }
+
+    /// What of it is above each voussoir: the voussoir, and corners of polygons that look like it.
+    pub(super) fn outlines_for_drawing(
+        &self,
+        arch: &CutArch,
+    ) -> Result<Vec<(usize, Vec<Vector2<f64>>)>, ArgumentError> {
+        let level_m = self.level_m(arch)?;
+        let outline = |piece: &Curve| {
+            let parts = (0..=DRAWN_POINTS).map(|i| f64::from(i) / f64::from(DRAWN_POINTS));
+            let mut outline: Vec<Vector2<f64>> = parts.map(|part| piece.point(part)).collect();
+            let ends = [outline[outline.len() - 1].x, outline[0].x];
+            outline.extend(ends.map(|x| Vector2::new(x, level_m)));
+            outline
+        };
+        let columns = (0..arch.voussoirs()).flat_map(|voussoir| {
+            let pieces = arch.extrados_of(voussoir).into_iter();
+            let below = pieces.flat_map(|piece| below(&piece, level_m));
+            below
+                .map(|piece| (voussoir, outline(&piece)))
+                .collect::<Vec<_>>()
+        });
+        Ok(columns.collect())
+    }
 }
+
+/// Parts that the curved side of a column of fill is drawn with.
+const DRAWN_POINTS: u32 = 4;
 
 /// The parts of a piece of the extrados that lie below a level.
 fn below(piece: &Curve, level_m: f64) -> Vec<Curve> {

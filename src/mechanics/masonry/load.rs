@@ -90,6 +90,20 @@ impl PlacedLoad {
     }
 }
 
+impl PlacedLoad {
+    /// The voussoir under its middle, and where it stands there.
+    pub(super) fn place_m(&self, arch: &CutArch) -> Option<(usize, Vector2<f64>)> {
+        (0..arch.voussoirs()).find_map(|voussoir| {
+            arch.extrados_of(voussoir).into_iter().find_map(|piece| {
+                let ends = [piece.point(0.0).x, piece.point(1.0).x];
+                let part = piece.first(|part| piece.point(part).x >= self.x_m);
+                let within = (ends[0]..=ends[1]).contains(&self.x_m);
+                within.then(|| (voussoir, piece.point(part)))
+            })
+        })
+    }
+}
+
 fn at_point(mass_kg: f64, centre_m: Vector2<f64>) -> Block {
     Block {
         mass_kg,

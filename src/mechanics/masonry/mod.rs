@@ -13,11 +13,12 @@ mod pier;
 mod pointed;
 mod remedy;
 
+use nalgebra::Vector2;
 use serde::Serialize;
 use thiserror::Error;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
-use super::blocks::{MAX_BLOCKS, Row, RowError, Supports};
+use super::blocks::{Joint, MAX_BLOCKS, Row, RowError, Supports};
 use super::stability::falls;
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::contact::ContactError;
@@ -198,6 +199,17 @@ pub struct Masonry {
     loads: Vec<PlacedLoad>,
     #[serde(skip)]
     row: Row,
+    #[serde(skip)]
+    carried: Carried,
+}
+
+/// What an arch carries, as it is drawn: each part with the block of the row that it moves with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Carried {
+    /// Corners of what of the fill is above a block, in metres.
+    pub fill_m: Vec<(usize, Vec<Vector2<f64>>)>,
+    /// Where the middle of each load stands, in metres.
+    pub loads_m: Vec<(usize, Vector2<f64>)>,
 }
 
 /// Why there is no such masonry.
@@ -325,12 +337,24 @@ impl Masonry {
                 row = row.carrying(first + voussoir, extra);
             }
         }
+        let fill_m = fill.map_or(Ok(Vec::new()), |fill| fill.outlines_for_drawing(&arch));
+        let mut carried = Carried {
+            fill_m: fill_m.map_err(MasonryError::Fill)?,
+            loads_m: loads
+                .iter()
+                .filter_map(|load| load.place_m(&arch))
+                .collect(),
+        };
+        let voussoirs = carried.fill_m.iter_mut().map(|(voussoir, _)| voussoir);
+        let loaded = carried.loads_m.iter_mut().map(|(voussoir, _)| voussoir);
+        voussoirs.chain(loaded).for_each(|block| *block += first);
         Ok(Self {
             shape,
             piers,
             fill,
             loads,
             row,
+            carried,
         })
     }
 
@@ -362,6 +386,24 @@ impl Masonry {
     #[must_use]
     pub const fn row(&self) -> &Row {
         &self.row
+    }
+
+    /// What the arch carries, as it is drawn.
+    #[must_use]
+    pub const fn carried(&self) -> &Carried {
+        &self.carried
+    }
+
+    /// The joints at the springings of the arch; none of blocks, whose arch may begin anywhere.
+    #[must_use]
+    pub fn springings(&self) -> Option<[Joint; 2]> {
+        if matches!(self.shape, Shape::Blocks(_)) {
+            return None;
+        }
+        let courses = |pier: &Option<Pier>| pier.map_or(0, |pier| pier.blocks);
+        let joints = self.row.joints();
+        let last = joints.len().checked_sub(1 + courses(&self.piers.right))?;
+        Some([joints[courses(&self.piers.left)], joints[last]])
     }
 
     /// Whether it stands under its own weight.

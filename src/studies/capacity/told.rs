@@ -35,7 +35,9 @@ pub fn tell(
     json["masses"] = masses.into();
     json["scenario"] = scenario.to_json();
     let contents = [
-        draw(figure, title, sides).into_bytes(),
+        figure
+            .fitted(|figure| draw(figure, title, sides))
+            .into_bytes(),
         table(sides)?,
         pretty(&json).into_bytes(),
     ];

@@ -15,7 +15,7 @@ impl Chart {
     /// # Errors
     /// When a value is not finite.
     pub fn tell(&self, figure: Figure) -> Result<Results, OutputError> {
-        let picture = draw(figure, &self.shapes, self.own.as_ref());
+        let picture = figure.fitted(|figure| draw(figure, &self.shapes, self.own.as_ref()));
         let contents = [picture.into_bytes(), table(&self.shapes)?];
         Ok(Results {
             files: FILES.into_iter().zip(contents).collect(),

@@ -307,11 +307,15 @@ pub(super) fn histories(
         files: vec![
             (
                 "bands.svg",
-                picture::bands(figure, told, &bands, asked).into_bytes(),
+                figure
+                    .fitted(|figure| picture::bands(figure, told, &bands, asked))
+                    .into_bytes(),
             ),
             (
                 "matters.svg",
-                picture::matters(figure, told, &decides).into_bytes(),
+                figure
+                    .fitted(|figure| picture::matters(figure, told, &decides))
+                    .into_bytes(),
             ),
             ("bands.csv", csv(band_columns(), &bands)?),
             ("samples.csv", csv(all, &lines(told))?),
@@ -431,11 +435,15 @@ pub(super) fn edges(told: &Told<'_, FirstEdge>, figure: Figure) -> Result<Result
         files: vec![
             (
                 "probability.svg",
-                picture::probability(figure, told, &probabilities).into_bytes(),
+                figure
+                    .fitted(|figure| picture::probability(figure, told, &probabilities))
+                    .into_bytes(),
             ),
             (
                 "matters.svg",
-                picture::matters(figure, told, &decides).into_bytes(),
+                figure
+                    .fitted(|figure| picture::matters(figure, told, &decides))
+                    .into_bytes(),
             ),
             (
                 "probability.csv",
@@ -600,11 +608,15 @@ pub(super) fn capacities(
         files: vec![
             (
                 "fragility.svg",
-                picture::fragility(figure, told, asked).into_bytes(),
+                figure
+                    .fitted(|figure| picture::fragility(figure, told, asked))
+                    .into_bytes(),
             ),
             (
                 "matters.svg",
-                picture::matters(figure, told, &decides).into_bytes(),
+                figure
+                    .fitted(|figure| picture::matters(figure, told, &decides))
+                    .into_bytes(),
             ),
             ("fragility.csv", csv(at_levels, &levels)?),
             ("capacities.csv", csv(of_edges, &reached)?),

@@ -2,6 +2,7 @@
 
 use super::boundary::{Boundary, BoundaryRow, MapRow};
 use super::{CellResult, CellRow, OverturningMap, page, picture};
+use crate::argument::plain;
 use crate::dynamics::history::Outcome;
 use crate::output::table::{Column, column, csv};
 use crate::output::{OutputError, pretty};
@@ -26,7 +27,9 @@ impl OverturningMap<'_> {
         let title = scenario.title().unwrap_or("Overturning map");
         let remarks = remarks(self, &cells, &boundaries);
         let summary = remarks::summary(scenario, cells.len(), &remarks);
-        let picture = picture::draw(title, self, &cells, &boundaries, look);
+        let picture = look.figure.fitted(|figure| {
+            picture::draw(title, self, &cells, &boundaries, Look { figure, ..look })
+        });
         let page = page::page(title, self, &cells, &boundaries, look);
         let mut files = vec![
             ("map.svg", picture.into_bytes()),
@@ -118,7 +121,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRo
     let [x_name, y_name] = map.axes().map(|axis| axis.key.as_str());
     let mut remarks = Remarks::default();
     for cell in cells {
-        let case = || format!("{x_name} {:?}, {y_name} {:?}", cell.x, cell.y);
+        let case = || format!("{x_name} {}, {y_name} {}", plain(cell.x), plain(cell.y));
         match &cell.result {
             CellResult::Ended(ending) => remarks.note(case, Ok(ending)),
             CellResult::Failed(reason) => remarks.note(case, Err(reason)),
@@ -130,7 +133,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRo
     }
     for row in boundaries {
         if let Err(reason) = &row.result {
-            let case = format!("boundary without impact at {x_name} {:?}", row.x);
+            let case = format!("boundary without impact at {x_name} {}", plain(row.x));
             remarks.failures.push(Remark::new(case, reason));
         }
     }

@@ -15,8 +15,10 @@ mod verdict;
 mod words;
 
 use std::fmt::Write as _;
+use std::fs;
 use std::io::{self, Write as _};
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -78,7 +80,9 @@ pub struct Wanted {
     pub report: bool,
     /// The times at which the deformed structure is drawn, in seconds.
     pub snapshots_s: Vec<f64>,
-    /// The factor on the displacements in these drawings.
+    /// How many pictures a second a film of the structure has; `None`: there is none.
+    pub film_a_second: Option<f64>,
+    /// What displacements are multiplied by in snapshots and film.
     pub exaggeration: f64,
     /// Whether to write a table of the poses of all bodies.
     pub poses: bool,
@@ -97,6 +101,7 @@ impl Default for Wanted {
             spread: true,
             report: true,
             snapshots_s: Vec::new(),
+            film_a_second: None,
             exaggeration: 1.0,
             poses: false,
             beside: Vec::new(),
@@ -308,7 +313,8 @@ pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
     }
     let subject = first.subject(first.scenario.title().unwrap_or(&all));
     let named: Vec<_> = names.into_iter().zip(curves).collect();
-    overlay::draw(first.wanted.figure, &subject, &named)
+    let figure = first.wanted.figure;
+    figure.fitted(|figure| overlay::draw(figure, &subject, &named))
 }
 
 /// The drawable parts of a structure, as a model moves them.
@@ -316,7 +322,7 @@ pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
 pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     match model.row() {
         Some(row) => {
-            let scene = Scene::of_row(row);
+            let scene = Scene::of_row(row).of_structure(scenario.structure());
             match scenario.motion().supports() {
                 Some(movements) if !movements.is_none() => scene.on_supports(movements.poses(row)),
                 _ => scene,
@@ -331,11 +337,33 @@ fn write(folder: &mut Folder, name: &str, what: &str, text: &str) -> Result<(), 
     written.map_err(OutputError::io(format!("cannot write {what}")))
 }
 
+/// The folder of a film, in that of the results.
+const FILM: &str = "film";
+
+/// Writes the pictures of a film, numbered; those of an earlier one go.
+fn write_film(path: &Path, stills: &[String]) -> Result<(), OutputError> {
+    let names: Vec<String> = (1..=stills.len())
+        .map(|number| format!("frame-{number:04}.svg"))
+        .collect();
+    let mut folder = Folder::open(path, &names.iter().map(String::as_str).collect::<Vec<_>>())?;
+    let old = fs::read_dir(path).into_iter().flatten().flatten();
+    for name in old.filter_map(|file| file.file_name().into_string().ok()) {
+        if name.starts_with("frame-") && !names.contains(&name) {
+            folder.forget(&name);
+        }
+    }
+    for (name, still) in names.iter().zip(stills) {
+        write(&mut folder, name, "a picture of the film", still)?;
+    }
+    folder.complete()
+}
+
 /// What is collected from a history for its words and pictures.
 struct Shown {
     picture: Box<dyn Picture>,
     report: Option<Report>,
     snapshots: Option<Snapshots>,
+    film: Option<Snapshots>,
     notable: Notable,
     points: Points,
     curves: Curves,
@@ -356,6 +384,10 @@ impl Shown {
                 .then(|| Report::new(run.scenario, model).watching(run.points.clone())),
             snapshots: snapshots
                 .then(|| Snapshots::new(scene(), &wanted.snapshots_s, wanted.exaggeration)),
+            film: wanted
+                .film_a_second
+                .filter(|_| has_folder)
+                .map(|a_second| Snapshots::film(scene(), a_second, wanted.exaggeration)),
             notable: Notable::default(),
             points: run.points.clone(),
             curves: Curves::new(),
@@ -369,6 +401,9 @@ impl Shown {
         }
         if let Some(snapshots) = &mut self.snapshots {
             snapshots.push(sample);
+        }
+        if let Some(film) = &mut self.film {
+            film.push(sample);
         }
         self.points.push(sample);
         self.curves.push(sample);
@@ -389,16 +424,27 @@ impl Shown {
     ) -> Result<(), OutputError> {
         let (scenario, figure) = (run.scenario, run.wanted.figure);
         let title = scenario.title().unwrap_or("Rocking history");
-        let picture = self
-            .picture
-            .draw(figure, &run.subject(title), history, &self.points);
+        let subject = run.subject(title);
+        let draw = |figure| self.picture.draw(figure, &subject, history, &self.points);
+        let picture = figure.fitted(draw);
         write(folder, PICTURE, "the picture", &picture)?;
         if let Some(report) = &self.report {
             let page = report.page(scenario, scenario.ground_motion(), history, said);
             write(folder, REPORT, "the report", &page)?;
         }
+        if let Some(film) = &self.film {
+            let path = folder.path().join(FILM);
+            let stills = film.stills(figure, title);
+            write_film(&path, &stills)?;
+            let _ = writeln!(
+                said,
+                "  {} pictures of a film in {}",
+                stills.len(),
+                path.display()
+            );
+        }
         if let Some(snapshots) = &self.snapshots {
-            let picture = snapshots.draw(figure, title);
+            let picture = figure.fitted(|figure| snapshots.draw(figure, title));
             write(folder, SNAPSHOTS, "the snapshots", &picture)?;
             let beyond: Vec<_> = snapshots.beyond_s().iter().map(f64::to_string).collect();
             if !beyond.is_empty() {
@@ -550,6 +596,12 @@ impl Recorder for Recording<'_, '_> {
     }
 
     fn wants_thrust_line(&self) -> bool {
-        self.shown.report.is_some() || self.shown.snapshots.is_some()
+        let Shown {
+            report,
+            snapshots,
+            film,
+            ..
+        } = &self.shown;
+        report.is_some() || snapshots.is_some() || film.is_some()
     }
 }

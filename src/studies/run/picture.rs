@@ -4,6 +4,7 @@ use super::points::Points;
 use crate::dynamics::history::{Event, Outcome, Sample, State, Summary};
 use crate::mechanics::sway::Sway;
 use crate::output::envelope::Envelope;
+use crate::output::figure::Panel;
 use crate::output::panels::{
     Curve, IMPACT, MAIN, OVERTURNS, Panels, States, Subject, around, draw_curves, mark_impacts,
     mark_overturning,
@@ -153,7 +154,11 @@ impl Picture for Timeline {
     ) -> String {
         let mut panels = Panels::new(figure, subject.title, self.end_s);
         let doing = Some(&self.doing);
-        panels.ground(130.0, subject, doing);
+        let watched = points.any();
+        let shows = |panel| figure.shows(panel, watched);
+        if shows(Panel::Ground) {
+            panels.ground(130.0, subject, doing);
+        }
 
         let bodies = self.bodies.iter().zip(CURVES);
         let rotations: Vec<Curve> = bodies
@@ -168,24 +173,41 @@ impl Picture for Timeline {
         let unstable_rad = self.far.iter().map(|cycle| cycle.unstable_rad);
         let y = around(values.map(|point| point.1).chain(unstable_rad), 6);
         let overturned_s = summary.overturned_s();
-        panels.panel("Rotation (rad)", 260.0, y, doing, |drawing, axes| {
-            draw_curves(drawing, axes, &rotations);
-            for cycle in &self.far {
-                let ends = [cycle.from_s, cycle.to_s].map(|t| axes.place(t, cycle.unstable_rad));
-                drawing.curve("unstable", ends, unstable(cycle.body));
-            }
-            mark_impacts(drawing, axes, self.impacts_s.iter().copied());
-            if let Some(time_s) = overturned_s {
-                mark_overturning(drawing, axes, time_s);
-            }
-        });
+        let turns = shows(Panel::Rotation);
+        if turns {
+            panels.panel("Rotation (rad)", 260.0, y, doing, |drawing, axes| {
+                draw_curves(drawing, axes, &rotations);
+                for cycle in &self.far {
+                    let ends =
+                        [cycle.from_s, cycle.to_s].map(|t| axes.place(t, cycle.unstable_rad));
+                    drawing.curve("unstable", ends, unstable(cycle.body));
+                }
+                mark_impacts(drawing, axes, self.impacts_s.iter().copied());
+                if let Some(time_s) = overturned_s {
+                    mark_overturning(drawing, axes, time_s);
+                }
+            });
+        }
 
         let (names, mut of_points) = (points.names(), Vec::new());
-        points.draw(&mut panels, doing, &names, &mut of_points);
-        for (label, name, envelope) in [
-            ("Energy / barrier", "energy", &self.energy_ratio),
-            ("Thrust outside / t", "excess", &self.excess_ratio),
-        ] {
+        if shows(Panel::Points) {
+            points.draw(&mut panels, doing, &names, &mut of_points);
+        }
+        let more = [
+            (
+                Panel::Energy,
+                "Energy / barrier",
+                "energy",
+                &self.energy_ratio,
+            ),
+            (
+                Panel::Thrust,
+                "Thrust line outside / t",
+                "excess",
+                &self.excess_ratio,
+            ),
+        ];
+        for (_, label, name, envelope) in more.into_iter().filter(|more| shows(more.0)) {
             let curve = Curve::new(name, envelope.points(), MAIN);
             // An empty panel would only take up room.
             if !curve.is_flat() {
@@ -193,22 +215,22 @@ impl Picture for Timeline {
             }
         }
 
-        let named = bodies.filter(|(body, _)| !body.is_empty());
+        let named = bodies.filter(|(body, _)| turns && !body.is_empty());
         let mut keys: Vec<Key<'_>> = named
             .map(|(body, stroke)| (body.as_str(), Sign::Line(stroke)))
             .collect();
-        if !self.impacts_s.is_empty() {
+        if turns && !self.impacts_s.is_empty() {
             keys.push(("impacts", Sign::Tick(IMPACT)));
         }
-        if let Some(cycle) = self.far.first() {
+        if let Some(cycle) = self.far.first().filter(|_| turns) {
             let words = match self.bodies.len() {
                 1 => "unstable rotation",
-                _ => "unstable rotation of the body of that colour, of the mechanism that moves",
+                _ => "unstable rotation of the body of that colour alone: others may go beyond it",
             };
             keys.push((words, Sign::Line(unstable(cycle.body))));
         }
         let moved = summary.outcome != Outcome::NeverMoved;
-        if overturned_s.is_some() {
+        if turns && overturned_s.is_some() {
             keys.push(OVERTURNS);
         }
         keys.extend(of_points);

@@ -84,6 +84,11 @@ impl Points {
         Ok(Self { scene, watched })
     }
 
+    /// Whether there are any.
+    pub(super) const fn any(&self) -> bool {
+        !self.watched.is_empty()
+    }
+
     /// Takes a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         for watched in &mut self.watched {

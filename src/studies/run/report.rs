@@ -17,10 +17,12 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
+use crate::output::caption::ground_in_words;
+use crate::output::dimensions::{Side, described, metres};
 use crate::output::envelope::Envelope;
 use crate::output::ground::curve_g;
 use crate::output::page::{escaped, filled, script_safe};
-use crate::output::scene::{FARTHEST, Mark, Scene};
+use crate::output::scene::{FARTHEST, Mark, Piece, Scene};
 use crate::scenario::Scenario;
 
 /// Largest size of the frames of a page, in bytes.
@@ -123,6 +125,11 @@ impl Report {
             .iter()
             .map(|line| format!("<li>{}</li>\n", escaped(line)));
         let frames = self.film.frames();
+        let what = format!(
+            "{}; {}",
+            described(scenario.structure()),
+            ground_in_words(scenario)
+        );
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
         filled(
             include_str!("report/page.html"),
@@ -130,6 +137,7 @@ impl Report {
                 ("PROGRAM", &program),
                 ("TITLE", &escaped(title)),
                 ("OUTCOME", &escaped(outcome)),
+                ("WHAT", &escaped(&what)),
                 ("WORDS", &items.collect::<String>()),
                 ("SCENARIO", &escaped(&scenario.to_toml())),
                 ("FRAMES", &frames.len().to_string()),
@@ -196,6 +204,17 @@ impl Report {
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
         let across = across.map(|across| json!([across.x, across.y]));
         let supports = self.scene.supports_m();
+        let [frame_low_m, frame_high_m] = self.scene.frame_m();
+        let dimensions = self.scene.dimensions().iter().map(|dimension| {
+            let [from, to] = dimension.ends_m;
+            let side = match dimension.side {
+                Side::Below => "below",
+                Side::Left => "left",
+                Side::Right => "right",
+            };
+            json!({ "ends_m": [from.x, from.y, to.x, to.y], "side": side, "text": dimension.text })
+        });
+        let opens_s = strongest_s(frames, history);
         let energy_label = if self.in_barriers {
             match history.row {
                 None => "Energy (1: gravity alone overturns the mechanism that moves)",
@@ -213,6 +232,9 @@ impl Report {
             "largest_body": history.largest_body(),
             "unit_m": unit_m,
             "bounds_m": [[low_m.x, low_m.y], [high_m.x, high_m.y]],
+            "frame_m": [[frame_low_m.x, frame_low_m.y], [frame_high_m.x, frame_high_m.y]],
+            "dimensions": dimensions.collect::<Vec<_>>(),
+            "opens_s": opens_s,
             "supports": supports.iter().map(|[a, b]| json!([a.x, a.y, b.x, b.y])).collect::<Vec<_>>(),
             "sections": sections.collect::<Vec<_>>(),
             "joints": joints,
@@ -231,14 +253,24 @@ impl Report {
 
     /// The outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], unit_m: f64) -> Value {
-        let pieces = self.scene.pieces(hinges).into_iter().map(|piece| {
-            let coordinates = piece
-                .outline_m
-                .iter()
-                .flat_map(|corner| [corner.x, corner.y]);
+        let drawn = |piece: Piece| {
+            let corners = piece.outline_m.iter();
+            let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
             #[expect(clippy::cast_possible_truncation, reason = "a few ten thousand units")]
             let outline: Vec<i64> = coordinates.map(|x| (x / unit_m).round() as i64).collect();
             json!({ "body": body_number(piece.body), "outline": outline })
+        };
+        let pieces = self.scene.pieces(hinges).into_iter().map(drawn);
+        let fill = self.scene.fill(hinges).into_iter().map(drawn);
+        let loads = self.scene.loads(hinges).into_iter().map(|(mark, load)| {
+            let text = format!("{} kg", metres(load.mass_kg));
+            json!([
+                body_number(mark.body),
+                mark.at_m.x,
+                mark.at_m.y,
+                load.width_m,
+                text
+            ])
         });
         let marks = self
             .scene
@@ -257,6 +289,8 @@ impl Report {
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
         json!({
             "pieces": pieces.collect::<Vec<_>>(),
+            "fill": fill.collect::<Vec<_>>(),
+            "loads": loads.collect::<Vec<_>>(),
             "hinges": marks.collect::<Vec<_>>(),
             "section_bodies": bodies.map(body_number).collect::<Vec<_>>(),
             "point_bodies": self.points.as_ref().map_or_else(Vec::new, |points| {
@@ -335,6 +369,22 @@ impl Report {
             "layouts": encoded(layout_of.into_iter().map(u16::to_le_bytes)),
         })
     }
+}
+
+/// When the page opens: where the structure is farthest from rest, or, if it falls, where it can no longer come back.
+fn strongest_s(frames: &[&Frame], history: &Summary) -> f64 {
+    if let Some(overturned_s) = history.overturned_s() {
+        return overturned_s;
+    }
+    let body = history.largest_body();
+    let turned = |frame: &&&Frame| {
+        frame
+            .poses
+            .get(body)
+            .map_or(0.0, |pose| pose.rotation_rad().abs())
+    };
+    let farthest = frames.iter().max_by(|a, b| turned(a).total_cmp(&turned(b)));
+    farthest.map_or(0.0, |frame| frame.time_s)
 }
 
 /// A fraction in eight bits; only zero becomes zero.

@@ -9,6 +9,7 @@ use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::output::envelope::{COLUMNS, Envelope};
+use crate::output::figure::Panel;
 use crate::output::panels::{
     Curve, MAIN, OVERTURNS, Panels, States, Subject, around, draw_curves, mark_overturning,
 };
@@ -90,7 +91,11 @@ impl Picture for RowTimeline {
         let mut panels = Panels::new(figure, subject.title, self.end_s);
         let doing = doing(summary);
         let doing = Some(&doing);
-        panels.ground(110.0, subject, doing);
+        let watched = points.any();
+        let shows = |panel| figure.shows(panel, watched);
+        if shows(Panel::Ground) {
+            panels.ground(110.0, subject, doing);
+        }
 
         // The block that rotates most is drawn on top of the others.
         let largest = summary.largest_body();
@@ -106,23 +111,26 @@ impl Picture for RowTimeline {
         let values = rotations.iter().flat_map(|curve| &curve.points);
         let y = around(values.map(|point| point.1), 6);
         let overturned_s = summary.overturned_s();
-        panels.panel("Rotation (rad)", 240.0, y, doing, |drawing, axes| {
-            draw_curves(drawing, axes, &rotations);
-            if let Some(time_s) = overturned_s {
-                mark_overturning(drawing, axes, time_s);
-            }
-        });
+        let turns = shows(Panel::Rotation);
+        if turns {
+            panels.panel("Rotation (rad)", 240.0, y, doing, |drawing, axes| {
+                draw_curves(drawing, axes, &rotations);
+                if let Some(time_s) = overturned_s {
+                    mark_overturning(drawing, axes, time_s);
+                }
+            });
+        }
 
         let mut keys = Vec::new();
         let name = format!("block {}, which turns most", largest + 1);
-        if self.rotations_rad.len() > 1 {
+        if turns && self.rotations_rad.len() > 1 {
             keys.extend([
                 (name.as_str(), Sign::Line(LARGEST)),
                 ("others", Sign::Line(BLOCK)),
             ]);
         }
         // An empty panel would only take up room.
-        if self.joints.any() {
+        if shows(Panel::Joints) && self.joints.any() {
             #[expect(clippy::cast_precision_loss, reason = "few joints")]
             let (height, highest) = (
                 (14 * self.joints.count).clamp(60, 260) as f64,
@@ -148,13 +156,15 @@ impl Picture for RowTimeline {
             .map(|(joint, slip)| Curve::new(format!("slip {joint}"), slip.points(), BLOCK))
             .filter(|slip| !slip.is_flat())
             .collect();
-        if !slips.is_empty() {
+        if shows(Panel::Slip) && !slips.is_empty() {
             panels.curves("Slip (mm)", 120.0, &slips, doing);
         }
         let names = points.names();
-        points.draw(&mut panels, doing, &names, &mut keys);
+        if shows(Panel::Points) {
+            points.draw(&mut panels, doing, &names, &mut keys);
+        }
         let energy = Curve::new("energy", self.energy.points(), MAIN);
-        if !energy.is_flat() {
+        if shows(Panel::Energy) && !energy.is_flat() {
             let label = if self.in_barriers {
                 "Energy / barrier"
             } else {
@@ -173,7 +183,7 @@ impl Picture for RowTimeline {
             }
             panels.curves(label, 120.0, &curves, doing);
         }
-        if overturned_s.is_some() {
+        if turns && overturned_s.is_some() {
             keys.push(OVERTURNS);
         }
         panels.finish(&keys, summary.outcome != Outcome::NeverMoved)

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
+use crate::output::elevation::{Place, STONE, draw_carried};
 use crate::output::scene::{Mark, Scene};
 use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
@@ -15,9 +16,13 @@ pub(super) struct Snapshots {
     exaggeration: f64,
     /// The requested times, in seconds, each with the nearest sample so far.
     taken: Vec<(f64, Option<Sample>)>,
+    /// Of a film: the time from picture to picture, and when the next is taken.
+    film: Option<(f64, f64)>,
     end_s: f64,
 }
 
+/// A film has so many pictures, at most.
+const MOST_STILLS: usize = 9999;
 /// Largest number of pictures side by side.
 const COLUMNS: usize = 3;
 /// Least width of a picture.
@@ -30,13 +35,33 @@ impl Snapshots {
             scene,
             exaggeration,
             taken: times_s.iter().map(|time_s| (*time_s, None)).collect(),
+            film: None,
             end_s: 0.0,
+        }
+    }
+
+    /// The same at so many instants a second, for a film.
+    pub(super) fn film(scene: Scene, a_second: f64, exaggeration: f64) -> Self {
+        Self {
+            film: Some((1.0 / a_second, 0.0)),
+            ..Self::new(scene, &[], exaggeration)
         }
     }
 
     /// Takes a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         self.end_s = sample.time_s;
+        if let Some((every_s, next_s)) = &mut self.film
+            && sample.time_s >= *next_s - 1e-9
+            && self.taken.len() < MOST_STILLS
+        {
+            *next_s += *every_s;
+            self.taken.push((sample.time_s, Some(sample.clone())));
+            return;
+        }
+        if self.film.is_some() {
+            return;
+        }
         for (time_s, nearest) in &mut self.taken {
             let miss_s = |sample: &Sample| (sample.time_s - *time_s).abs();
             if nearest
@@ -69,17 +94,34 @@ impl Snapshots {
         thicknesses_m.fold(f64::INFINITY, f64::min)
     }
 
+    /// The instants that are drawn.
+    fn shown(&self) -> Vec<&Sample> {
+        let taken = self.taken.iter();
+        taken.filter_map(|(_, sample)| sample.as_ref()).collect()
+    }
+
     /// The picture.
     pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
-        let taken = self.taken.iter();
-        let shown: Vec<&Sample> = taken.filter_map(|(_, sample)| sample.as_ref()).collect();
+        self.sheet(figure, title, &self.shown())
+    }
+
+    /// Each instant as a picture of its own, all to one scale.
+    pub(super) fn stills(&self, figure: Figure, title: &str) -> Vec<String> {
+        let shown = self.shown().into_iter();
+        shown
+            .map(|sample| self.sheet(figure, title, &[sample]))
+            .collect()
+    }
+
+    fn sheet(&self, figure: Figure, title: &str, shown: &[&Sample]) -> String {
         let columns = figure.columns(shown.len().clamp(1, COLUMNS), LEAST_PX);
         #[expect(clippy::cast_precision_loss, reason = "few pictures")]
         let cell_px = figure.width_px() / columns as f64;
-        let [low_m, high_m] = self.scene.bounds_m();
+        let [low_m, high_m] = self.scene.frame_m();
         let (width_m, height_m) = (high_m.x - low_m.x, high_m.y - low_m.y);
         // Leaves room for the sway; no higher than wide.
         let scale = ((cell_px - 30.0) / (1.25 * width_m)).min(cell_px / (1.1 * height_m));
+        let scale = figure.squeezed_px(scale);
         let tall_px = 1.1 * scale * height_m;
         let mut drawing = Drawing::new(figure);
         let mut top = drawing.title(title) + 14.0;
@@ -125,11 +167,14 @@ impl Snapshots {
             let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
             drawing.polygon("", outline, "none", Stroke::new(color::GREY, 0.7, "3 3"));
         }
-        for piece in self.scene.pieces(&sample.hinges) {
+        let hinges = &sample.hinges[..];
+        let displaced = (poses, self.exaggeration);
+        draw_carried(drawing, place, &self.scene, hinges, displaced);
+        for piece in self.scene.pieces(hinges) {
             let fill = match piece.body {
                 None => "#e4e4e4",
                 Some(body) if poses.len() == LINKS.len() => LINKS[body],
-                Some(_) => "#f3efe6",
+                Some(_) => STONE,
             };
             let outline = piece.moved(poses, self.exaggeration).into_iter();
             let name = match piece.body {
@@ -173,18 +218,3 @@ const PRESSED: &str = "#e3c3dc";
 
 /// Colours of the bodies of a four-link mechanism.
 const LINKS: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];
-
-/// The position of the structure on the sheet.
-struct Place {
-    middle_m: Vector2<f64>,
-    at: Vector2<f64>,
-    /// Pixels per metre.
-    scale: f64,
-}
-
-impl Place {
-    fn px(&self, point_m: Vector2<f64>) -> Vector2<f64> {
-        let away_m = point_m - self.middle_m;
-        self.at + Vector2::new(away_m.x, -away_m.y) * self.scale
-    }
-}

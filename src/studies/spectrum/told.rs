@@ -1,6 +1,7 @@
 //! Reports an overturning spectrum: its table, its summary and its words.
 
 use super::{OverturningSpectrum, PointRow, picture};
+use crate::argument::plain;
 use crate::output::table::{Column, column, csv};
 use crate::output::{Figure, OutputError, pretty};
 use crate::studies::ending::columns::number;
@@ -23,7 +24,9 @@ impl OverturningSpectrum<'_> {
             files: vec![
                 (
                     "spectrum.svg",
-                    picture::draw(figure, title, self, rows).into_bytes(),
+                    figure
+                        .fitted(|figure| picture::draw(figure, title, self, rows))
+                        .into_bytes(),
                 ),
                 (SUMMARY, pretty(&summary).into_bytes()),
                 ("spectrum.csv", csv(columns(), rows)?),
@@ -64,10 +67,14 @@ fn remarks(rows: &[PointRow]) -> Remarks {
     for row in rows {
         for failure in &row.failures {
             let what = match failure.over_incipient {
-                Some(over_incipient) => format!("at {over_incipient:?} A_L"),
+                Some(over_incipient) => format!("at {} A_L", plain(over_incipient)),
                 None => "least without impact".to_owned(),
             };
-            let case = format!("{} with p t_p {:?}, {what}", row.structure.name(), row.p_t);
+            let case = format!(
+                "{} with p t_p {}, {what}",
+                row.structure.name(),
+                plain(row.p_t)
+            );
             let remark = Remark::new(case, &failure.reason);
             remarks.failures.push(remark);
         }

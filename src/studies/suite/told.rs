@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::fragility::{Errors, Fragility, NoFit};
 use super::{CaseRow, CurvePoint, FragilityRow, SuiteFragility, ida, picture};
+use crate::argument::plain;
 use crate::output::table::{Column, column, csv};
 use crate::output::{Figure, OutputError, finite, pretty};
 use crate::scenario::{Measure, Scenario, Spacing, Suite, shown};
@@ -67,9 +68,16 @@ impl Heading {
             files: vec![
                 (
                     "suite.svg",
-                    picture::draw(figure, self, &results).into_bytes(),
+                    figure
+                        .fitted(|figure| picture::draw(figure, self, &results))
+                        .into_bytes(),
                 ),
-                ("ida.svg", ida::draw(figure, self, &results).into_bytes()),
+                (
+                    "ida.svg",
+                    figure
+                        .fitted(|figure| ida::draw(figure, self, &results))
+                        .into_bytes(),
+                ),
                 ("fragility.csv", csv(self.level_columns(), &results.levels)?),
                 (FRAGILITY, pretty(&to_json(self, &results)?).into_bytes()),
                 ("suite.csv", csv(self.case_columns(), &results.cases)?),
@@ -240,7 +248,7 @@ fn remarks(results: &SuiteFragility) -> Remarks {
         let name = || {
             let mirrored = if case.mirrored { " mirrored" } else { "" };
             let (column, level) = (results.measure.column(), case.level(results.measure));
-            format!("{}{mirrored}, {column} {level:?}", case.record)
+            format!("{}{mirrored}, {column} {}", case.record, plain(level))
         };
         remarks.note(name, case.result.as_ref().map_err(String::as_str));
     }

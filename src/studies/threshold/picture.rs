@@ -4,9 +4,7 @@ use nalgebra::Vector2;
 
 use super::told::{outcome, rounded};
 use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
-use crate::output::svg::{
-    Anchor, Axes, CURVES, Drawing, Figure, Frame, Scale, Sign, Stroke, color,
-};
+use crate::output::svg::{Anchor, Axes, Drawing, Figure, Frame, Scale, Sign, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::kind::{self, Kind};
 
@@ -19,6 +17,8 @@ const LABEL_ADVANCE: f64 = 15.0;
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
 const EDGE: Stroke = Stroke::new(color::GREY, 0.8, "");
 const HATCH: Stroke = Stroke::new("#ffffff", 1.2, "");
+/// A band is so wide at least.
+const LEAST_PX: f64 = 1.5;
 /// Distance between the lines of a hatch, along the strip.
 const HATCH_PX: f64 = 6.0;
 
@@ -88,24 +88,75 @@ pub fn draw(
                 let [bottom, top] = [axes.y.low, axes.y.high].map(|y| axes.place(edge, y));
                 drawing.line(bottom, top, Stroke::new(stroke.color, 0.5, "2 3"));
             }
-            // The curve is interrupted where there is no rotation to show.
+            // Where it overturns there is no peak to show: the curve ends, and begins again behind.
+            let peak = |sample: &FactorSample| {
+                let overturns = sample.verdict() == Some(Verdict::Overturns);
+                rotation.peak(sample).filter(|_| !overturns)
+            };
             for run in threshold
                 .samples
-                .chunk_by(|a, b| rotation.peak(a).is_some() == rotation.peak(b).is_some())
+                .chunk_by(|a, b| peak(a).is_some() == peak(b).is_some())
             {
                 let points = run
                     .iter()
-                    .filter_map(|sample| Some(axes.place(sample.factor, rotation.peak(sample)?)));
+                    .filter_map(|sample| Some(axes.place(sample.factor, peak(sample)?)));
                 drawing.curve(&format!("{} peak", threshold.model), points, stroke);
             }
         }
     });
-    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+    let bottom = axes.frame.top + axes.frame.height + 56.0;
+    let narrow = narrow(thresholds, &names, &axes);
+    if narrow.is_empty() {
+        return drawing.finish(bottom);
+    }
+    let end = drawing.caption(bottom + 8.0, &narrow);
+    drawing.finish(end + 8.0)
 }
 
-/// The strokes of the models' curves.
+/// What the curves of the models look like: in no colour of an outcome.
 fn curves() -> impl Iterator<Item = Stroke> {
+    const CURVES: [Stroke; 3] = [
+        Stroke::new(color::BLACK, 1.6, ""),
+        Stroke::new("#0033a0", 1.6, "7 3"),
+        Stroke::new("#6a3d9a", 1.8, "2 2"),
+    ];
     CURVES.into_iter().cycle()
+}
+
+/// Narrower bands, in pixels, are hard to see: they are listed.
+const NARROW_PX: f64 = 4.0;
+/// So many of them, at most.
+const LISTED: usize = 8;
+
+/// The bands and uncertain ranges that are hardly seen in a strip, in words; empty without any.
+fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
+    let place = |factor: f64| axes.place(factor, axes.y.low).x;
+    let mut listed = Vec::new();
+    for (threshold, name) in thresholds.iter().zip(names) {
+        for (verdict, range) in &threshold.ranges {
+            let what = match verdict {
+                Verdict::Overturns => "overturns",
+                Verdict::Uncertain => "uncertain",
+                Verdict::Survives => "survives",
+            };
+            if place(range.to) - place(range.from) < NARROW_PX {
+                let [from, to] = [range.from, range.to].map(rounded);
+                listed.push(match names {
+                    [_] => format!("{what} {from} to {to}"),
+                    _ => format!("{name} {what} {from} to {to}"),
+                });
+            }
+        }
+    }
+    let more = listed.len().saturating_sub(LISTED);
+    listed.truncate(LISTED);
+    if more > 0 {
+        listed.push(format!("{more} more in threshold.csv"));
+    }
+    match listed[..] {
+        [] => String::new(),
+        _ => format!("Narrow: {}", listed.join("; ")),
+    }
 }
 
 /// The name of its model in words.
@@ -205,6 +256,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let Frame { top, height, .. } = axes.frame;
     let place = |factor: f64| axes.place(factor, axes.y.low).x;
     let mut from = axes.x.low;
+    let mut bands = Vec::new();
     let runs: Vec<_> = threshold
         .samples
         .chunk_by(|a, b| kind_of(a) == kind_of(b))
@@ -213,23 +265,25 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         let last = &run[run.len() - 1];
         let next = runs.get(index + 1);
         let to = next.map_or(axes.x.high, |next| border(last, &next[0]));
+        // A narrow one is seen all the same.
+        let (left, wide) = (place(from), place(to) - place(from));
         let frame = Frame {
-            left: place(from),
+            left: left + 0.5 * (wide - wide.max(LEAST_PX)),
             top,
-            width: place(to) - place(from),
+            width: wide.max(LEAST_PX),
             height,
         };
-        let kind = kind_of(last);
-        drawing.band(
-            &format!("{} {}", threshold.model, kind.name),
-            &frame,
-            kind.fill,
-            1.0,
-        );
-        if last.verdict() == Some(Verdict::Uncertain) {
+        bands.push((wide, frame, kind_of(last), last.verdict()));
+        from = to;
+    }
+    // Narrow ones lie above those beside them.
+    bands.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (_, frame, kind, verdict) in bands {
+        let name = format!("{} {}", threshold.model, kind.name);
+        drawing.band(&name, &frame, kind.fill, 1.0);
+        if verdict == Some(Verdict::Uncertain) {
             hatch(drawing, &frame);
         }
-        from = to;
     }
     let Frame { left, width, .. } = axes.frame;
     let outline = format!("M{left} {top}h{width}v{height}h-{width}z");

@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use super::{Check, Mechanism, StateCheck, Way};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::field::turned;
+use crate::output::elevation::{Place, draw_carried};
 use crate::output::scene::{Piece, Scene};
 use crate::output::svg::{Anchor, Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::scenario::{LimitState, Structure};
@@ -20,23 +21,21 @@ const STILL: &str = "#e9e9e9";
 /// virtual displacements.
 pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mechanism) -> String {
     let pieces = pieces(structure, mechanism);
-    let corners = || pieces.iter().flat_map(|piece| &piece.outline_m);
-    let mut low = Vector2::repeat(f64::INFINITY);
-    let mut high = -low;
-    for corner in corners() {
-        (low, high) = (low.inf(corner), high.sup(corner));
-    }
+    let scene = Scene::new(structure);
+    let [low, high] = scene.frame_m();
     let size = high - low;
     let (left, width_px) = (40.0, figure.width_px() - 80.0);
     let tall_px = figure.height_px(420.0);
     let scale = (width_px / size.x).min(tall_px / size.y);
     let top = 30.0;
-    let middle_px = left + 0.5 * width_px;
-    let px = |point: Vector2<f64>| {
-        let x = middle_px + scale * (point.x - 0.5 * (low.x + high.x));
-        Vector2::new(x, top + scale * (high.y - point.y))
+    let place = Place {
+        middle_m: Vector2::new(0.5 * (low.x + high.x), high.y),
+        at: Vector2::new(left + 0.5 * width_px, top),
+        scale,
     };
+    let px = |point_m: Vector2<f64>| place.px(point_m);
     let mut drawing = Drawing::new(figure);
+    draw_carried(&mut drawing, &place, &scene, &[], (&[], 1.0));
     let thin = Stroke::new("#777777", 0.6, "");
     for piece in &pieces {
         let (name, fill) = match piece.body {

@@ -74,9 +74,10 @@
 
   // ---- the stage ----
   const stage = find("stage");
-  const [low, high] = data.bounds_m;
+  const [low, high] = data.frame_m;
   const width = high[0] - low[0];
   const height = high[1] - low[1];
+  const loaded = layouts.some(({ loads }) => loads.length > 0);
 
   /** A round number of metres between the marks of the rule. */
   function roundStep(rough) {
@@ -103,8 +104,12 @@
     const soft = css("--soft");
     pen.fillStyle = css("--paper");
     pen.fillRect(0, 0, wide, tall);
-    const below = 64;
-    const scale = Math.min((wide - 40) / (1.5 * width), (tall - below - 24) / (1.2 * height));
+    const sizes = find("sizes").checked && data.dimensions.length > 0;
+    const below = sizes ? 92 : 64;
+    // Room beside the structure for its sway, and for its dimensions.
+    const beside = Math.max(sizes ? 54 : 10, 0.1 * wide);
+    const above = loaded ? 44 : 16;
+    const scale = Math.min((wide - 2 * beside) / width, (tall - below - above) / (1.05 * height));
     const at = moment(time);
     const exaggeration = Number(find("exaggeration").value);
     const ground = [blend(groundM, 2, 0, at), blend(groundM, 2, 1, at)];
@@ -154,6 +159,8 @@
       pen.lineTo(x + 8, floor);
     }
     pen.stroke();
+    if (sizes) drawSizes(pen, onScreen, floor);
+    pen.strokeStyle = ink;
     for (const [ax, ay, bx, by] of data.supports) {
       pen.lineWidth = 4;
       path([[ax - 0.3 * (bx - ax), ay - 0.3 * (by - ay)], [bx + 0.3 * (bx - ax), by + 0.3 * (by - ay)]]);
@@ -180,6 +187,13 @@
       pen.stroke();
     }
     pen.setLineDash([]);
+    pen.strokeStyle = pen.fillStyle = css("--fill");
+    pen.lineWidth = 1;
+    for (const piece of layout.fill) {
+      path(outline(piece).map(point), true);
+      pen.fill();
+      pen.stroke();
+    }
     pen.strokeStyle = ink;
     pen.lineWidth = 1.3;
     for (const piece of layout.pieces) {
@@ -187,6 +201,24 @@
       path(outline(piece).map(point), true);
       pen.fill();
       pen.stroke();
+    }
+
+    // Loads stand on their blocks.
+    pen.strokeStyle = pen.fillStyle = css("--mark");
+    pen.lineWidth = 2;
+    pen.textAlign = "center";
+    for (const [body, x, y, over, text] of layout.loads) {
+      const [px, py] = onScreen(point([body, x, y]));
+      pen.beginPath();
+      pen.moveTo(px, py - 22);
+      pen.lineTo(px, py - 2);
+      pen.moveTo(px - 4, py - 8);
+      pen.lineTo(px, py - 1);
+      pen.lineTo(px + 4, py - 8);
+      pen.moveTo(px - 0.5 * scale * over, py - 22);
+      pen.lineTo(px + 0.5 * scale * over, py - 22);
+      pen.stroke();
+      pen.fillText(text, px, py - 27);
     }
 
     // Where elastic joints press, and the stress there as a wedge.
@@ -266,7 +298,7 @@
     const most = farthest(groundG);
     if (most > 0) {
       const length = (0.2 * wide * g) / most;
-      const y = floor + 26;
+      const y = tall - 38;
       pen.strokeStyle = pen.fillStyle = css("--curve-2");
       pen.lineWidth = 3;
       pen.beginPath();
@@ -284,6 +316,50 @@
       pen.fillText(`ground ${fixed(g, 3)} g`, wide / 2 + (g < 0 ? 10 : -10), y + 4);
     }
     find("now").textContent = inWords(at, poses);
+  }
+
+  /** The dimensions of the structure at rest, outside it: heights left and right, widths below the ground. */
+  function drawSizes(pen, onScreen, floor) {
+    const [left, right] = [onScreen(low)[0], onScreen(high)[0]];
+    pen.strokeStyle = pen.fillStyle = css("--soft");
+    pen.lineWidth = 1;
+    // Those that would be on another go one line farther.
+    const taken = { below: [], left: [], right: [] };
+    for (const { ends_m: [ax, ay, bx, by], side, text } of data.dimensions) {
+      const [a, b] = [onScreen([ax, ay]), onScreen([bx, by])];
+      const axis = side === "below" ? 0 : 1;
+      const span = [a[axis], b[axis]].sort((x, y) => x - y);
+      const lines = taken[side];
+      let line = lines.findIndex((spans) => spans.every(([from, to]) => span[1] <= from + 1 || to <= span[0] + 1));
+      if (line < 0) line = lines.push([]) - 1;
+      lines[line].push(span);
+      const at = side === "below" ? floor + 26 + 14 * line : side === "left" ? left - 16 - 16 * line : right + 16 + 16 * line;
+      const foot = (end) => (axis === 0 ? [end[0], at] : [at, end[1]]);
+      const ends = [foot(a), foot(b)];
+      pen.beginPath();
+      pen.moveTo(...ends[0]);
+      pen.lineTo(...ends[1]);
+      for (const [x, y] of ends) {
+        pen.moveTo(x - 3, y + 3);
+        pen.lineTo(x + 3, y - 3);
+      }
+      pen.stroke();
+      pen.save();
+      pen.textAlign = "center";
+      pen.translate((ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2);
+      if (axis === 1) pen.rotate(-Math.PI / 2);
+      // On paper of its own, where the line would strike it through.
+      const wide = pen.measureText(text).width + 6;
+      if (axis === 0) {
+        pen.fillStyle = css("--paper");
+        pen.fillRect(-wide / 2, -6, wide, 12);
+        pen.fillStyle = css("--soft");
+        pen.fillText(text, 0, 4);
+      } else {
+        pen.fillText(text, 0, side === "left" ? -4 : 12);
+      }
+      pen.restore();
+    }
   }
 
   const INTRADOS = 1;
@@ -350,7 +426,7 @@
         width: holder.clientWidth || 800,
         height: tall,
         title: label,
-        legend: { show: legend },
+        legend: { show: false },
         scales: { x: { time: false } },
         cursor: { sync: { key: "archrock" }, drag: { x: true, y: false } },
         axes: [
@@ -372,6 +448,8 @@
       [xs, ...curves.map((curve) => curve.values)],
       holder,
     );
+    plot.values = explain(holder, xs, curves, legend);
+    plot.tall = tall;
     const instant = document.createElement("div");
     instant.className = "instant";
     plot.over.style.overflow = "hidden";
@@ -386,7 +464,41 @@
     plots.push(plot);
   }
 
+  /** The legend of a plot: each curve with its value at the instant, or of many only some names. Returns what shows the values. */
+  function explain(holder, xs, curves, names) {
+    const list = document.createElement("p");
+    list.className = "legend";
+    holder.append(list);
+    const shown = names ?? curves;
+    const values = shown.map(({ name, color, dash, width: thick, values: ys }) => {
+      const entry = document.createElement("span");
+      entry.innerHTML = `<svg viewBox="0 0 28 8"><line x1="0" x2="28" y1="4" y2="4" stroke="var(${color})"
+        stroke-width="${Math.max(thick ?? 2, 1)}" stroke-dasharray="${(dash ?? []).join(" ")}"/></svg> `;
+      const text = document.createElement("span");
+      entry.append(text);
+      list.append(entry);
+      return () => {
+        text.textContent = ys ? `${name}: ${Number((valueAt(xs, ys, time) ?? 0).toPrecision(4))}` : name;
+      };
+    });
+    return () => values.forEach((show) => show());
+  }
+
+  /** A curve at a time, straight between its points. */
+  function valueAt(xs, ys, t) {
+    let [low, high] = [0, xs.length - 1];
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (xs[middle] <= t) low = middle;
+      else high = middle;
+    }
+    if (ys[low] == null || ys[high] == null || xs[high] === xs[low]) return ys[high] ?? ys[low];
+    const part = Math.min(Math.max((t - xs[low]) / (xs[high] - xs[low]), 0), 1);
+    return ys[low] * (1 - part) + ys[high] * part;
+  }
+
   function showInstant(plot) {
+    plot.values?.();
     const instant = plot.over.querySelector(".instant");
     if (instant) instant.style.left = `${plot.valToPos(time, "x")}px`;
   }
@@ -408,7 +520,7 @@
   }
 
   const [groundT, groundY] = curve(data.curves.ground_g);
-  addPlot("Ground acceleration (g)", 150, groundT, [{ name: "ground", color: "--ink", values: groundY }], true);
+  addPlot("Ground acceleration (g)", 150, groundT, [{ name: "ground", color: "--ink", values: groundY }]);
   const turns = data.bodies.map((_, body) =>
     Array.from(times, (_t, i) => rotations[i * bodies + body] * frames.rotation_unit_rad),
   );
@@ -429,20 +541,20 @@
     230,
     Array.from(times),
     order.map((body) => ({ ...look(body), values: turns[body] })),
-    few,
+    few ? undefined : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }],
   );
   for (const { curves } of data.points ?? []) {
     // Each is thinned by itself, so that their times differ.
     const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
     const look = ({ name }, axis) => ({ name, color: `--curve-${axis + 1}`, dash: dashes[axis], values: values[axis] });
-    addPlot("Displacement (mm)", 150, ts, curves.map(look), true);
+    addPlot("Displacement (mm)", 150, ts, curves.map(look));
   }
   const [energyT, energyY] = curve(data.curves.energy);
-  addPlot(data.energy_label, 150, energyT, [{ name: "energy", color: "--ink", values: energyY }], true);
+  addPlot(data.energy_label, 150, energyT, [{ name: "energy", color: "--ink", values: energyY }]);
   if (data.curves.excess) {
     const [excessT, excessY] = curve(data.curves.excess);
     const label = "Thrust line outside the arch (parts of the thickness, cut off at 1)";
-    addPlot(label, 150, excessT, [{ name: "excess", color: "--ink", values: excessY }], true);
+    addPlot(label, 150, excessT, [{ name: "excess", color: "--ink", values: excessY }]);
   }
   showAll();
 
@@ -505,6 +617,8 @@
   find("exaggeration").addEventListener("input", () => exaggerate(find("exaggeration").value));
   find("thrust").addEventListener("change", draw);
   find("ride").addEventListener("change", draw);
+  find("sizes").addEventListener("change", draw);
+  find("sizes-choice").hidden = data.dimensions.length === 0;
   find("thrust-choice").hidden = !frames.thrust_unit;
   find("stress").hidden = !frames.largest_stress_pa;
   if (frames.largest_stress_pa) {
@@ -538,32 +652,58 @@
     for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height });
     seek(time);
   });
+  // On paper all is on one sheet: the structure and the plots share what the words leave.
+  const SHEET_PX = { width: 715, height: 1030 };
+  const LEAST_PX = { stage: 200, plot: 70 };
+  // Title and legend of a plot.
+  const BESIDE_PLOT_PX = 36;
+  window.addEventListener("beforeprint", () => {
+    document.documentElement.classList.add("print");
+    const { width: wide, height: tall } = SHEET_PX;
+    const holder = find("plots");
+    stage.style.height = "0";
+    holder.style.display = "none";
+    const words = document.body.scrollHeight;
+    holder.style.display = "";
+    const all = plots.reduce((sum, plot) => sum + plot.tall, 0);
+    const least = words + LEAST_PX.stage + plots.length * (LEAST_PX.plot + BESIDE_PLOT_PX);
+    const free = Math.max(tall - least, 0);
+    stage.style.height = `${LEAST_PX.stage + 0.3 * free}px`;
+    for (const plot of plots) {
+      plot.setSize({ width: wide, height: Math.floor(LEAST_PX.plot + (0.65 * free * plot.tall) / all) });
+    }
+    if (least > tall) document.body.style.zoom = tall / least;
+    seek(time);
+  });
+  window.addEventListener("afterprint", () => {
+    document.documentElement.classList.remove("print");
+    stage.style.height = document.body.style.zoom = "";
+    for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.tall });
+    seek(time);
+  });
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     for (const plot of plots) plot.redraw();
     draw();
   });
 
-  /** Displacements that can be seen: a twentieth of the width, unless the structure falls. */
-  function visible() {
+  /** An exaggeration with which the displacements at an instant can be seen: a fifteenth of the size of the structure. */
+  function visible(at) {
     let farthestM = 0;
-    for (let frame = 0; frame < count; frame += 1) {
-      const poses = posesAt({ frame, next: frame, part: 0 });
-      for (const { body, outline } of layouts[layoutOf[frame]].pieces) {
-        const [x, y] = [outline[0] * unitM, outline[1] * unitM];
+    const poses = posesAt(at);
+    for (const { body, outline } of layouts[layoutOf[at.frame]].pieces) {
+      for (let i = 0; i < outline.length; i += 2) {
+        const [x, y] = [outline[i] * unitM, outline[i + 1] * unitM];
         const [nowX, nowY] = moved(body, x, y, poses, 1);
         farthestM = Math.max(farthestM, Math.hypot(nowX - x, nowY - y));
       }
     }
-    return farthestM > 0 ? Math.round(Math.min(Math.max((0.05 * width) / farthestM, 1), 50)) : 1;
+    const seen = Math.max(width, height) / 15;
+    return farthestM > 0 ? Math.round(Math.min(Math.max(seen / farthestM, 1), 50)) : 1;
   }
 
-  exaggerate(visible());
-  // It opens where the structure is farthest from rest.
-  const farthestFrame = turns[most].reduce(
-    (best, value, i) => (Math.abs(value) > Math.abs(turns[most][best]) ? i : best),
-    0,
-  );
-  seek(STATES[states[count - 1]] === "overturned" ? 0 : times[farthestFrame]);
+  // It opens at the strongest instant.
+  exaggerate(visible(moment(data.opens_s)));
+  seek(data.opens_s);
 
   // For scripts: what the page shows, and ways to change it.
   window.archrock = {

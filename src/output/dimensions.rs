@@ -1,0 +1,215 @@
+//! The dimensions of a structure, as a drawing has them, and the same in words.
+
+use nalgebra::Vector2;
+
+use crate::mechanics::arch::Arch;
+use crate::mechanics::column::Column;
+use crate::mechanics::masonry::{FillLevel, Masonry, Pier, Shape};
+use crate::scenario::Structure;
+
+/// A length of a structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dimension {
+    /// Its ends, in metres: of a width from left to right, of a height from below.
+    pub ends_m: [Vector2<f64>; 2],
+    /// Where it is drawn.
+    pub side: Side,
+    /// Its name and value.
+    pub text: String,
+}
+
+/// Where a dimension is drawn: outside the structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// A width.
+    Below,
+    /// A height.
+    Left,
+    /// A height.
+    Right,
+}
+
+impl Dimension {
+    fn new(side: Side, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
+        let [from, to] = ends_m;
+        let length_m = match side {
+            Side::Below => to.x - from.x,
+            Side::Left | Side::Right => to.y - from.y,
+        };
+        let value = metres(length_m);
+        let text = match name {
+            "" => format!("{value} m"),
+            name => format!("{name} {value} m"),
+        };
+        Self { ends_m, side, text }
+    }
+}
+
+/// A number for a drawing: to a millimetre, or three digits.
+#[must_use]
+pub fn metres(length_m: f64) -> String {
+    let rounded = if length_m.abs() < 0.1 {
+        format!("{length_m:.2e}").parse().unwrap_or(length_m)
+    } else {
+        (length_m * 1e3).round() / 1e3
+    };
+    rounded.to_string()
+}
+
+/// The dimensions of a structure.
+pub(super) fn dimensions(structure: &Structure) -> Vec<Dimension> {
+    match structure {
+        Structure::Arch(arch) => of_arch(arch),
+        Structure::Column(column) => of_column(column),
+        Structure::Masonry(masonry) => of_masonry(masonry),
+    }
+}
+
+fn of_arch(arch: &Arch) -> Vec<Dimension> {
+    let (ring, radius_m) = (arch.ring(), arch.mean_radius_m());
+    let ends = [0.0, ring.embrace_rad()].map(|angle_rad| ring.radial(angle_rad) * radius_m);
+    let crown = Vector2::new(ends[0].x, radius_m);
+    vec![
+        Dimension::new(Side::Below, ends, "span"),
+        Dimension::new(Side::Left, [ends[0], crown], "rise"),
+    ]
+}
+
+fn of_column(column: &Column) -> Vec<Dimension> {
+    let half_m = 0.5 * column.width_m();
+    let [left, right] = [-half_m, half_m].map(|x| Vector2::new(x, 0.0));
+    let top = Vector2::new(-half_m, column.height_m());
+    vec![
+        Dimension::new(Side::Below, [left, right], ""),
+        Dimension::new(Side::Left, [left, top], ""),
+    ]
+}
+
+fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
+    let outlines = || masonry.row().outlines_m().iter().flatten();
+    let Some([left, right]) = masonry.springings() else {
+        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
+        let [low, high] = outlines().fold(empty, |[low, high], corner| {
+            [low.inf(corner), high.sup(corner)]
+        });
+        return vec![
+            Dimension::new(Side::Below, [low, Vector2::new(high.x, low.y)], ""),
+            Dimension::new(Side::Left, [low, Vector2::new(low.x, high.y)], ""),
+        ];
+    };
+    let ends = [left.middle_m(), right.middle_m()];
+    let thickness_m = (left.extrados_m - left.intrados_m).norm();
+    let top_m = outlines().map(|corner| corner.y).fold(ends[0].y, f64::max);
+    // The thickness at the crown is that at the springing, and normal to what is level there.
+    let rise_m = match masonry.shape {
+        Shape::PointedArch(arch) => arch.dimensions.rise_m,
+        Shape::EllipticArch(arch) => arch.dimensions.rise_m,
+        Shape::BasketArch(arch) => arch.dimensions.rise_m,
+        Shape::Circular(_) | Shape::Blocks(_) => top_m - 0.5 * thickness_m - ends[0].y,
+    };
+    let crown = Vector2::new(ends[0].x, ends[0].y + rise_m);
+    let mut dimensions = vec![
+        Dimension::new(Side::Below, ends, "span"),
+        Dimension::new(Side::Left, [ends[0], crown], "rise"),
+    ];
+    let piers = [
+        (masonry.piers.left, left.intrados_m, Side::Left),
+        (masonry.piers.right, right.intrados_m, Side::Right),
+    ];
+    let same = masonry.piers.left == masonry.piers.right;
+    for (pier, inner, side) in piers {
+        let Some(pier) = pier.filter(|_| !(same && side == Side::Right)) else {
+            continue;
+        };
+        dimensions.extend(of_pier(&pier, inner, side));
+    }
+    let fill = masonry.carried().fill_m.iter();
+    let level_m = fill
+        .flat_map(|(_, outline)| outline)
+        .map(|corner| corner.y)
+        .reduce(f64::max);
+    if let Some(level_m) = level_m {
+        let from = right.extrados_m;
+        let to = Vector2::new(from.x, level_m);
+        dimensions.push(Dimension::new(Side::Right, [from, to], "fill"));
+    }
+    dimensions
+}
+
+/// Height and width of a pier, whose inner corner at the springing is given.
+fn of_pier(pier: &Pier, inner: Vector2<f64>, side: Side) -> [Dimension; 2] {
+    let foot = inner - Vector2::new(0.0, pier.height_m);
+    let base = match side {
+        Side::Left => [foot - Vector2::new(pier.width_m, 0.0), foot],
+        _ => [foot, foot + Vector2::new(pier.width_m, 0.0)],
+    };
+    [
+        Dimension::new(side, [foot, inner], ""),
+        Dimension::new(Side::Below, base, ""),
+    ]
+}
+
+/// A structure in words, with what its drawing does not tell.
+#[must_use]
+pub fn described(structure: &Structure) -> String {
+    let (depth_m, density_kg_m3) = structure.depth_and_density();
+    let mut parts = Vec::new();
+    match structure {
+        Structure::Arch(arch) => {
+            let thick_m = arch.mean_radius_m() * arch.thickness_ratio();
+            parts.push(format!(
+                "circular arch of {} degrees, {} m thick",
+                metres(arch.embrace_deg()),
+                metres(thick_m)
+            ));
+            if let Some(voussoirs) = arch.voussoirs() {
+                parts.push(format!("{voussoirs} voussoirs"));
+            }
+        }
+        Structure::Column(_) => parts.push("column".to_owned()),
+        Structure::Masonry(masonry) => parts.extend(of_masonry_in_words(masonry)),
+    }
+    parts.push(format!(
+        "{} m deep, {} kg/m3",
+        metres(depth_m),
+        metres(density_kg_m3)
+    ));
+    parts.join("; ")
+}
+
+fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
+    let name = match &masonry.shape {
+        Shape::Circular(_) => "circular arch",
+        Shape::PointedArch(_) => "pointed arch",
+        Shape::EllipticArch(_) => "elliptic arch",
+        Shape::BasketArch(_) => "basket-handle arch",
+        Shape::Blocks(_) => "blocks",
+    };
+    let mut parts = vec![match masonry.springings() {
+        Some([left, _]) => {
+            let thick_m = (left.extrados_m - left.intrados_m).norm();
+            format!("{name}, {} m thick", metres(thick_m))
+        }
+        None => name.to_owned(),
+    }];
+    parts.push(format!("{} blocks", masonry.row().blocks().len()));
+    if let Some(fill) = &masonry.fill {
+        let level = match fill.level {
+            FillLevel::AboveSpringing(height_m) => {
+                format!("{} m above the springing", metres(height_m))
+            }
+            FillLevel::AboveCrown(height_m) => format!("{} m above the crown", metres(height_m)),
+        };
+        let density = metres(fill.density_kg_m3);
+        parts.push(format!("fill to {level}, {density} kg/m3"));
+    }
+    for load in &masonry.loads {
+        let over = match load.width_m {
+            0.0 => String::new(),
+            width_m => format!(" over {} m", metres(width_m)),
+        };
+        let (mass, x) = (metres(load.mass_kg), metres(load.x_m));
+        parts.push(format!("load of {mass} kg{over} at x = {x} m"));
+    }
+    parts
+}

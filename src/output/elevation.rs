@@ -1,0 +1,310 @@
+//! A structure at rest as a drawing: its blocks with the numbers of their joints, what it stands on and carries, its dimensions.
+
+use nalgebra::Vector2;
+
+use super::dimensions::{Dimension, Side};
+use super::figure::{TEXT_PX, text_px};
+use super::scene::{Mark, Scene};
+use super::svg::{Anchor, Drawing, Figure, Stroke, color};
+use crate::dynamics::history::OpenHinge;
+use crate::mechanics::geometry::pose::Pose;
+
+/// Blocks and what else is drawn of a structure.
+pub const STONE: &str = "#f3efe6";
+/// What lies on them.
+pub const FILL: &str = "#e3d5bd";
+const OUTLINE: Stroke = Stroke::new(color::BLACK, 1.1, "");
+/// Its outline.
+pub const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
+const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
+const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
+const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
+
+/// From the structure to the first line of dimensions.
+const BESIDE_PX: f64 = 34.0;
+/// From one to the next.
+const APART_PX: f64 = 26.0;
+/// Length of the arrow of a load.
+const ARROW_PX: f64 = 30.0;
+
+/// Places metres on the sheet.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// A point of the structure.
+    pub middle_m: Vector2<f64>,
+    /// Where that is.
+    pub at: Vector2<f64>,
+    /// Pixels per metre.
+    pub scale: f64,
+}
+
+impl Place {
+    /// The place of a point.
+    #[must_use]
+    pub fn px(&self, point_m: Vector2<f64>) -> Vector2<f64> {
+        let away_m = point_m - self.middle_m;
+        self.at + Vector2::new(away_m.x, -away_m.y) * self.scale
+    }
+}
+
+/// Draws a structure at rest with its dimensions and the numbers of its joints; below it this text.
+#[must_use]
+pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
+    let mut drawing = Drawing::new(figure);
+    let top = drawing.title(title) + 12.0;
+    let levels = levels(scene.dimensions());
+    let room = |side: Side| {
+        let own = scene.dimensions().iter().zip(&levels);
+        let deepest = own.filter(|(dimension, _)| dimension.side == side);
+        let deepest = deepest.map(|(_, level)| BESIDE_PX + APART_PX * f64::from(*level));
+        deepest.reduce(f64::max).map_or(24.0, |px| px + 20.0)
+    };
+    let [low_m, high_m] = scene.frame_m();
+    let size_m = high_m - low_m;
+    let above = if scene.loads(&[]).is_empty() {
+        6.0
+    } else {
+        ARROW_PX + 26.0
+    };
+    // Supports go on a little beyond the structure.
+    let sides = (room(Side::Left) + 10.0) + (room(Side::Right) + 10.0);
+    let scale = ((figure.width_px() - sides) / size_m.x)
+        .min(figure.height_px(520.0) / size_m.y)
+        .max(1e-9);
+    let free_px = figure.width_px() - sides - scale * size_m.x;
+    let left = room(Side::Left) + 10.0 + 0.5 * free_px;
+    let place = Place {
+        middle_m: Vector2::new(low_m.x, high_m.y),
+        at: Vector2::new(left, top + above),
+        scale,
+    };
+    let bottom = place.px(low_m).y;
+    for (dimension, level) in scene.dimensions().iter().zip(&levels) {
+        draw_dimension(&mut drawing, &place, [low_m, high_m], dimension, *level);
+    }
+    supports(&mut drawing, &place, scene);
+    for piece in scene.fill(&[]) {
+        let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
+        drawing.polygon("fill", outline, FILL, FILL_LINE);
+    }
+    for piece in scene.pieces(&[]) {
+        let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
+        drawing.polygon("block", outline, STONE, OUTLINE);
+    }
+    loads(
+        &mut drawing,
+        scene,
+        &[],
+        &|mark| place.px(mark.at_m),
+        Some(top + above),
+    );
+    joint_numbers(&mut drawing, &place, scene);
+    let end = drawing.caption(bottom + room(Side::Below) + 22.0, text);
+    drawing.finish(end + 10.0)
+}
+
+/// The fill and the loads of a structure whose bodies are at these poses, displacements drawn so many times as large.
+pub fn draw_carried(
+    drawing: &mut Drawing,
+    place: &Place,
+    scene: &Scene,
+    hinges: &[OpenHinge],
+    (poses, exaggeration): (&[Pose], f64),
+) {
+    for piece in scene.fill(hinges) {
+        let outline = piece.moved(poses, exaggeration).into_iter();
+        drawing.polygon(
+            "fill",
+            outline.map(|corner| place.px(corner)),
+            FILL,
+            FILL_LINE,
+        );
+    }
+    let px = |mark: &Mark| place.px(mark.moved(poses, exaggeration));
+    loads(drawing, scene, hinges, &px, None);
+}
+
+/// Arrows for loads, and their masses above all else, where there is room for text from a height on.
+fn loads(
+    drawing: &mut Drawing,
+    scene: &Scene,
+    hinges: &[OpenHinge],
+    px: &dyn Fn(&Mark) -> Vector2<f64>,
+    text_above: Option<f64>,
+) {
+    let mut farthest = f64::NEG_INFINITY;
+    let mut loads = scene.loads(hinges);
+    loads.sort_by(|a, b| a.1.at_m.x.total_cmp(&b.1.at_m.x));
+    for (mark, load) in loads {
+        let foot = px(&mark);
+        let tail = match text_above {
+            Some(top) => Vector2::new(foot.x, top - 8.0),
+            None => foot - Vector2::new(0.0, 20.0),
+        };
+        draw_arrow(drawing, tail, foot);
+        if load.width_m > 0.0 {
+            let edge = |side: f64| {
+                let at_m = mark.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
+                Vector2::new(px(&Mark { at_m, ..mark }).x, tail.y)
+            };
+            drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
+        }
+        if text_above.is_some() {
+            let text = format!("{} kg", super::dimensions::metres(load.mass_kg));
+            let half = 0.5 * text_px(&text);
+            // Beside the last one, or not at all: the words below have it.
+            if foot.x - half > farthest {
+                let at = tail - Vector2::new(0.0, 6.0);
+                drawing.label(at, Anchor::Middle, 0.0, &text);
+                farthest = foot.x + half + 8.0;
+            }
+        }
+    }
+}
+
+/// The arrow of a load that stands there.
+pub fn draw_load(drawing: &mut Drawing, foot: Vector2<f64>) {
+    draw_arrow(drawing, foot - Vector2::new(0.0, 20.0), foot);
+}
+
+fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {
+    drawing.curve("load", [tail, foot], LOAD);
+    let barb = |side: f64| foot + Vector2::new(4.0 * side, -7.0);
+    drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
+}
+
+/// What carries the structure: hatched ground under its supports.
+fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
+    let mut faces = scene.supports_m();
+    if faces.is_empty() {
+        let [low_m, high_m] = scene.bounds_m();
+        let middle = Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y);
+        let half = Vector2::new(0.5 * (high_m.x - low_m.x), 0.0);
+        faces.push([middle - half, middle + half]);
+    }
+    let centre = {
+        let [low_m, high_m] = scene.bounds_m();
+        place.px(0.5 * (low_m + high_m))
+    };
+    for face in faces {
+        let [a, b] = face.map(|end| place.px(end));
+        let along = (b - a).normalize();
+        let (from, to) = (a - along * 10.0, b + along * 10.0);
+        drawing.curve("support", [from, to], Stroke::new(color::BLACK, 2.0, ""));
+        // Away from the structure.
+        let across = Vector2::new(-along.y, along.x);
+        let away = across
+            * if across.dot(&(0.5 * (a + b) - centre)) < 0.0 {
+                -1.0
+            } else {
+                1.0
+            };
+        let long = (to - from).norm();
+        let mut at = 2.0;
+        while at < long {
+            let foot = from + along * at;
+            let end = foot + away * 7.0 - along * 5.0;
+            drawing.line(foot, end, Stroke::new(color::BLACK, 0.7, ""));
+            at += 7.0;
+        }
+    }
+}
+
+/// The line of each dimension, counted from the structure, so that none is on another.
+fn levels(dimensions: &[Dimension]) -> Vec<u32> {
+    let mut levels: Vec<u32> = Vec::new();
+    for (index, own) in dimensions.iter().enumerate() {
+        let span = |dimension: &Dimension| {
+            let [from, to] = dimension.ends_m;
+            match dimension.side {
+                Side::Below => [from.x, to.x],
+                Side::Left | Side::Right => [from.y, to.y],
+            }
+        };
+        let [low, high] = span(own);
+        let meets = |other: &Dimension| {
+            let [l, h] = span(other);
+            let tolerance = 1e-6 * (high - low);
+            other.side == own.side && low < h - tolerance && l < high - tolerance
+        };
+        let taken: Vec<u32> = (0..index)
+            .filter(|other| meets(&dimensions[*other]))
+            .map(|other| levels[other])
+            .collect();
+        let free = (0..).find(|level| !taken.contains(level));
+        levels.push(free.unwrap_or(0));
+    }
+    levels
+}
+
+fn draw_dimension(
+    drawing: &mut Drawing,
+    place: &Place,
+    [low_m, high_m]: [Vector2<f64>; 2],
+    dimension: &Dimension,
+    level: u32,
+) {
+    let away = BESIDE_PX + APART_PX * f64::from(level);
+    let (low, high) = (place.px(low_m), place.px(high_m));
+    let ends = dimension.ends_m.map(|end| place.px(end));
+    let tick = Vector2::new(4.0, -4.0);
+    let feet = ends.map(|end| match dimension.side {
+        Side::Below => Vector2::new(end.x, low.y + away),
+        Side::Left => Vector2::new(low.x - away, end.y),
+        Side::Right => Vector2::new(high.x + away, end.y),
+    });
+    for (end, foot) in ends.into_iter().zip(feet) {
+        drawing.line(end, foot, EXTENSION);
+        drawing.line(foot - tick, foot + tick, DIMENSION);
+    }
+    drawing.curve("dimension", feet, DIMENSION);
+    let middle = 0.5 * (feet[0] + feet[1]);
+    let beside = 5.0;
+    match dimension.side {
+        Side::Below => {
+            let at = middle - Vector2::new(0.0, beside);
+            drawing.label(at, Anchor::Middle, 0.0, &dimension.text);
+        }
+        Side::Left | Side::Right => {
+            let at = middle - Vector2::new(beside, 0.0);
+            drawing.label(at, Anchor::Middle, 90.0, &dimension.text);
+        }
+    }
+}
+
+/// Numbers of the joints inside the intrados, or left of a column: all, or every second, fifth, tenth as there is room.
+fn joint_numbers(drawing: &mut Drawing, place: &Place, scene: &Scene) {
+    let joints = scene.joints_m();
+    let last = joints.len().saturating_sub(1);
+    let numbers: Vec<(String, Vector2<f64>)> = joints
+        .iter()
+        .enumerate()
+        .map(|(joint, [intrados_m, extrados_m])| {
+            let (inner, outer) = (place.px(*intrados_m), place.px(*extrados_m));
+            // Supports go on beyond their faces.
+            let away = if joint == 0 || joint == last {
+                22.0
+            } else {
+                15.0
+            };
+            (
+                joint.to_string(),
+                inner + (inner - outer).normalize() * away,
+            )
+        })
+        .collect();
+    let apart = |(text, at): &(String, Vector2<f64>), (other, to): &(String, Vector2<f64>)| {
+        let wide = 0.5 * (text_px(text) + text_px(other)) + 4.0;
+        (at.x - to.x).abs() >= wide || (at.y - to.y).abs() >= TEXT_PX
+    };
+    let of_every = |step: usize| numbers.iter().step_by(step).collect::<Vec<_>>();
+    let steps = [1, 2, 5, 10, 20, 50, 100, 200, 500];
+    let shown = steps.into_iter().map(of_every).find(|shown| {
+        let mut pairs = shown.windows(2);
+        pairs.all(|pair| apart(pair[0], pair[1]))
+    });
+    for (text, at) in shown.unwrap_or_default() {
+        let at = at + Vector2::new(0.0, 4.5);
+        drawing.label(at, Anchor::Middle, 0.0, text);
+    }
+}

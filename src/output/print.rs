@@ -1,0 +1,223 @@
+//! Pictures as PDF and PNG, for journals and programs that do not take SVG. The feature `print` makes them; the program builds
+//! without it, in half the time.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+/// In what a picture is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Lines and texts, for browsers and drawing programs.
+    Svg,
+    /// The same for print, with its fonts embedded.
+    Pdf,
+    /// Pixels: 600 to an inch of print, 2 to a pixel of the screen.
+    Png,
+}
+
+/// Why a picture is not written in a format.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum PrintError {
+    /// The program was built without.
+    #[error(
+        "this archrock was built without PDF and PNG: build it with cargo install --features print, or take the picture as SVG"
+    )]
+    NotBuilt,
+    /// There is no such format.
+    #[error("pictures are written as svg, pdf and png, not as {0:?}")]
+    Unknown(String),
+    /// The system has no font for its texts.
+    #[error(
+        "the system has no font like Helvetica: install one, such as Liberation Sans, or take the picture as SVG"
+    )]
+    NoFont,
+    /// The picture cannot be converted.
+    #[error("the picture cannot be converted: {0}")]
+    Failed(String),
+}
+
+impl FromStr for PictureFormat {
+    type Err = PrintError;
+
+    fn from_str(text: &str) -> Result<Self, PrintError> {
+        let format = match text.to_ascii_lowercase().as_str() {
+            "svg" => Self::Svg,
+            "pdf" => Self::Pdf,
+            "png" => Self::Png,
+            _ => return Err(PrintError::Unknown(text.to_owned())),
+        };
+        if cfg!(feature = "print") || format == Self::Svg {
+            Ok(format)
+        } else {
+            Err(PrintError::NotBuilt)
+        }
+    }
+}
+
+impl PictureFormat {
+    /// Those that stand beside an SVG.
+    pub(super) const OTHERS: [Self; 2] = [Self::Pdf, Self::Png];
+
+    /// The format of a file, by its extension; SVG without one.
+    ///
+    /// # Errors
+    /// When there is no such format, or the program was built without it.
+    pub fn of_file(path: &Path) -> Result<Self, PrintError> {
+        match path.extension() {
+            Some(extension) => extension.to_string_lossy().parse(),
+            None => Ok(Self::Svg),
+        }
+    }
+
+    /// The extension of its files.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Pdf => "pdf",
+            Self::Png => "png",
+        }
+    }
+
+    /// A picture in this format.
+    ///
+    /// # Errors
+    /// When the program was built without it, or the system lacks a font.
+    pub fn of_picture(self, picture: &str) -> Result<Vec<u8>, PrintError> {
+        match self {
+            Self::Svg => Ok(picture.as_bytes().to_vec()),
+            Self::Pdf => converted::pdf(picture),
+            Self::Png => converted::png(picture),
+        }
+    }
+}
+
+#[cfg(not(feature = "print"))]
+mod converted {
+    use super::PrintError;
+
+    pub const fn pdf(_: &str) -> Result<Vec<u8>, PrintError> {
+        Err(PrintError::NotBuilt)
+    }
+
+    pub const fn png(_: &str) -> Result<Vec<u8>, PrintError> {
+        Err(PrintError::NotBuilt)
+    }
+}
+
+#[cfg(feature = "print")]
+mod converted {
+    use resvg::tiny_skia::{Pixmap, Transform};
+    use resvg::usvg::fontdb::{Family, Query};
+    use resvg::usvg::{self, Options, Tree};
+    use svg2pdf::{ConversionOptions, PageOptions};
+
+    use super::PrintError;
+    use crate::output::svg::FONTS;
+
+    /// Dots to an inch of print, and to one of the screen.
+    const PRINT_DPI: f32 = 600.0;
+    const SCREEN_DPI: f32 = 192.0;
+    /// Pixels of CSS to an inch.
+    const CSS_DPI: f32 = 96.0;
+
+    pub fn pdf(picture: &str) -> Result<Vec<u8>, PrintError> {
+        let page = PageOptions { dpi: CSS_DPI };
+        svg2pdf::to_pdf(&tree(picture)?, ConversionOptions::default(), page)
+            .map_err(|error| PrintError::Failed(error.to_string()))
+    }
+
+    pub fn png(picture: &str) -> Result<Vec<u8>, PrintError> {
+        let failed = |what: &str| PrintError::Failed(what.to_owned());
+        let tree = tree(picture)?;
+        let header = picture.lines().next().unwrap_or_default();
+        let dpi = if header.contains("mm\"") {
+            PRINT_DPI
+        } else {
+            SCREEN_DPI
+        };
+        let scale = dpi / CSS_DPI;
+        let size = tree.size().to_int_size().scale_by(scale);
+        let size = size.ok_or_else(|| failed("it has no size"))?;
+        let pixels = Pixmap::new(size.width(), size.height());
+        let mut pixels = pixels.ok_or_else(|| failed("it is too large"))?;
+        let scaled = Transform::from_scale(scale, scale);
+        resvg::render(&tree, scaled, &mut pixels.as_mut());
+        pixels
+            .encode_png()
+            .map_err(|error| PrintError::Failed(error.to_string()))
+    }
+
+    fn tree(picture: &str) -> Result<Tree, PrintError> {
+        let mut options = Options::default();
+        let fonts = options.fontdb_mut();
+        fonts.load_system_fonts();
+        let names = FONTS.split(", ").map(|name| match name {
+            "sans-serif" => Family::SansSerif,
+            name => Family::Name(name),
+        });
+        let query = Query {
+            families: &names.collect::<Vec<_>>(),
+            ..Query::default()
+        };
+        // Without a font texts would be left out, without a word.
+        fonts.query(&query).ok_or(PrintError::NoFont)?;
+        usvg::Tree::from_str(picture, &options)
+            .map_err(|error| PrintError::Failed(error.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_format_is_that_of_the_extension() {
+        let format = |path: &str| PictureFormat::of_file(Path::new(path));
+        assert_eq!(format("out/history.svg"), Ok(PictureFormat::Svg));
+        assert_eq!(format("out/history"), Ok(PictureFormat::Svg));
+        assert_eq!(format("a.EPS"), Err(PrintError::Unknown("EPS".to_owned())));
+        if cfg!(feature = "print") {
+            assert_eq!(format("a.PDF"), Ok(PictureFormat::Pdf));
+        } else {
+            assert_eq!(format("a.PDF"), Err(PrintError::NotBuilt));
+            let picture = PictureFormat::Png.of_picture("<svg/>");
+            assert_eq!(picture, Err(PrintError::NotBuilt));
+        }
+    }
+
+    /// Runs with `cargo test --features print`.
+    #[cfg(feature = "print")]
+    #[test]
+    fn a_picture_keeps_its_size_and_its_texts() {
+        use crate::output::svg::{Anchor, Drawing, Figure};
+        use nalgebra::Vector2;
+        let figure: Figure = "84mm".parse().unwrap();
+        let mut drawing = Drawing::new(figure);
+        drawing.label(
+            Vector2::new(9.0, 30.0),
+            Anchor::Start,
+            0.0,
+            "Rotation (rad)",
+        );
+        let picture = drawing.finish(0.5 * figure.width_px());
+        let pdf = PictureFormat::Pdf.of_picture(&picture).unwrap();
+        let text = String::from_utf8_lossy(&pdf);
+        assert!(text.starts_with("%PDF-") && text.contains("/FontFile"));
+        let (_, page) = text.split_once("/MediaBox [").unwrap();
+        let numbers = page.split_once(']').unwrap().0.split(' ');
+        let numbers: Vec<f64> = numbers.filter_map(|text| text.parse().ok()).collect();
+        for (points, mm) in [(numbers[2], 84.0), (numbers[3], 42.0)] {
+            assert!((points - mm / 25.4 * 72.0).abs() < 0.01, "{points}");
+        }
+        let png = PictureFormat::Png.of_picture(&picture).unwrap();
+        assert!(png.starts_with(b"\x89PNG"));
+        let width = u32::from_be_bytes(png[16..20].try_into().unwrap());
+        assert!((f64::from(width) - 84.0 / 25.4 * 600.0).abs() <= 7.0);
+        // Black on white: the text is there.
+        let empty = Drawing::new(figure).finish(0.5 * figure.width_px());
+        assert!(png.len() > 1000 + PictureFormat::Png.of_picture(&empty).unwrap().len());
+    }
+}
