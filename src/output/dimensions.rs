@@ -101,7 +101,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     let thickness_m = (left.extrados_m - left.intrados_m).norm();
     let top_m = outlines().map(|corner| corner.y).fold(ends[0].y, f64::max);
     // The thickness at the crown is that at the springing, and normal to what is level there.
-    let rise_m = match masonry.shape {
+    let rise_m = match masonry.shape() {
         Shape::PointedArch(arch) => arch.dimensions.rise_m,
         Shape::EllipticArch(arch) => arch.dimensions.rise_m,
         Shape::BasketArch(arch) => arch.dimensions.rise_m,
@@ -113,10 +113,10 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
         Dimension::new(Side::Left, [ends[0], crown], "rise"),
     ];
     let piers = [
-        (masonry.piers.left, left.intrados_m, Side::Left),
-        (masonry.piers.right, right.intrados_m, Side::Right),
+        (masonry.piers().left, left.intrados_m, Side::Left),
+        (masonry.piers().right, right.intrados_m, Side::Right),
     ];
-    let same = masonry.piers.left == masonry.piers.right;
+    let same = masonry.piers().left == masonry.piers().right;
     for (pier, inner, side) in piers {
         let Some(pier) = pier.filter(|_| !(same && side == Side::Right)) else {
             continue;
@@ -178,7 +178,7 @@ pub fn described(structure: &Structure) -> String {
 }
 
 fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
-    let name = match &masonry.shape {
+    let name = match masonry.shape() {
         Shape::Circular(_) => "circular arch",
         Shape::PointedArch(_) => "pointed arch",
         Shape::EllipticArch(_) => "elliptic arch",
@@ -193,7 +193,7 @@ fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
         None => name.to_owned(),
     }];
     parts.push(format!("{} blocks", masonry.row().blocks().len()));
-    if let Some(fill) = &masonry.fill {
+    if let Some(fill) = masonry.fill() {
         let level = match fill.level {
             FillLevel::AboveSpringing(height_m) => {
                 format!("{} m above the springing", metres(height_m))
@@ -203,7 +203,7 @@ fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
         let density = metres(fill.density_kg_m3);
         parts.push(format!("fill to {level}, {density} kg/m3"));
     }
-    for load in &masonry.loads {
+    for load in masonry.loads() {
         let over = match load.width_m {
             0.0 => String::new(),
             width_m => format!(" over {} m", metres(width_m)),

@@ -179,7 +179,7 @@ impl Scene {
         if let Structure::Masonry(masonry) = structure {
             let carried = masonry.carried();
             self.fill_m.clone_from(&carried.fill_m);
-            let loads = masonry.loads.iter().zip(&carried.loads_m);
+            let loads = masonry.loads().iter().zip(&carried.loads_m);
             self.loads = loads
                 .map(|(load, (block, at_m))| Load {
                     block: *block,
