@@ -312,6 +312,17 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     assert np.array_equal(rotations.get_lines()[2].get_ydata(), history.rotations[:, 2])
     assert ground.get_title() == "still rocking at 1.0000 s without impact"
     figure.savefig(tmp_path / "history.png")
+    assert ground.get_legend() is not None and rotations.get_legend() is not None
+    # Into axes of one's own.
+    from matplotlib.figure import Figure
+
+    own = Figure()
+    one, other = own.subplots(1, 2)
+    assert history.plot(ax=other) is own
+    assert len(one.get_lines()) == 0
+    assert other.get_xlabel() == "time (s)" and other.get_ylabel() == "rotation (rad)"
+    names = [text.get_text() for text in other.get_legend().get_texts()]
+    assert names == ["left", "middle", "right"]
     page = history.report_html()
     assert page.startswith("<!DOCTYPE html>") or page.lower().startswith("<!doctype html>")
     assert "still rocking at 1.0000 s without impact" in page

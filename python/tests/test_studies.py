@@ -19,6 +19,7 @@ from archrock import (
     Record,
     Results,
     Scenario,
+    capacity,
     compute_part,
     ensemble,
     map_scenario,
@@ -156,6 +157,9 @@ def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> Non
     assert found.fragility["overturned"].max() == 4
     assert found.summary["median"] > 0.0
     assert len(found.columns()["record"]) == 4 * 6 * 2
+    (ax,) = found.plot().axes
+    assert np.array_equal(ax.get_lines()[0].get_ydata(), found.fragility["fraction"])
+    assert legend(ax) == ["fraction of cases", "lognormal curve", "95 % band"]
 
     given = Record.read(RECORDS / records[0].name, peak_g=1.0)
     wrong: list[tuple[Any, str]] = [
@@ -179,6 +183,29 @@ def test_a_threshold_is_that_of_the_program(program: Program, tmp_path: Path) ->
     assert found.lowest_factor == found.bands[0]["from"] and found.gaps == found.summary["models"][0]["gaps"]
     with pytest.raises(ValueError, match="`stride = 0.0`"):
         threshold(column, pulse, stride=0.0)
+    # What overturns has no largest rotation, and is shaded.
+    (ax,) = found.plot().axes
+    peak = np.asarray(ax.get_lines()[0].get_ydata(), dtype=float)
+    assert np.array_equal(np.isnan(peak), found.columns()["outcome"] == "overturned")
+    assert legend(ax)[:2] == ["largest rotation", "overturns"]
+
+
+def test_a_capacity_is_that_of_the_program(program: Program, tmp_path: Path, arch: Arch) -> None:
+    found = capacity(arch)
+    scenario = Scenario.of(arch, COSINE)
+    assert capacity(scenario).files["capacity.csv"] == found.files["capacity.csv"]
+    assert_files(capacity(scenario), by_program(program, tmp_path, "capacity", scenario.to_toml()))
+    right = found.side("right")
+    assert right["acceleration_g"][0] == pytest.approx(arch.limit().right.acceleration_g, rel=1e-9)
+    (ax,) = found.plot().axes
+    assert np.array_equal(ax.get_lines()[0].get_xdata(), right["displacement_m"])
+    assert legend(ax) == ["to the right", "to the left"]
+    with pytest.raises(TypeError, match="not str"):
+        capacity("arch")  # type: ignore[arg-type]
+
+
+def legend(ax: Any) -> list[str]:
+    return [text.get_text() for text in ax.get_legend().get_texts()]
 
 
 def test_parts_join_to_the_bytes_of_the_whole(program: Program, tmp_path: Path, arch: Arch) -> None:

@@ -6,6 +6,7 @@ import csv
 import html
 import io
 import json
+import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -242,10 +243,14 @@ class Suite(Results):
         intensity = next(iter(table))
         levels = table[intensity]
         ax.plot(levels, table["fraction"], "o", mfc="none", label="fraction of cases")
-        if "probability" in table and np.isfinite(table["probability"]).any():
-            ax.plot(levels, table["probability"], label="lognormal curve")
+        median, dispersion = self.summary["median"], self.summary["dispersion"]
+        if median is not None and dispersion is not None:
+            along = np.geomspace(levels[0], levels[-1], 200)
+            curve = [0.5 * math.erfc(-math.log(x / median) / (dispersion * math.sqrt(2.0))) for x in along]
+            ax.plot(along, curve, label="lognormal curve")
             low, high = table["probability_low"], table["probability_high"]
-            ax.fill_between(levels, low, high, alpha=0.2, label="95 % band")
+            ax.vlines(levels, low, high, color="C1", alpha=0.25, lw=5, label="95 % band")
+        ax.set_xscale("log")
         names = {"peak_g": "peak ground acceleration (g)", "scale": "factor on the records"}
         ax.set_xlabel(names.get(intensity, intensity))
         ax.set_ylabel("fraction that overturns")
@@ -302,13 +307,14 @@ class Threshold(Results):
         known = bool(np.isfinite(ratio).any())
         peak = np.where(table["outcome"] == "overturned", np.nan, ratio if known else rad)
         ax.plot(table["factor"], peak, color="k", label="largest rotation")
-        for ranges, look in (
-            (self.bands, {"color": "C3", "alpha": 0.3, "label": "overturns"}),
-            (self.uncertain, {"color": "C2", "alpha": 0.3, "hatch": "//", "label": "uncertain"}),
-        ):
+        looks: tuple[tuple[list[dict[str, Any]], str, str, str | None], ...] = (
+            (self.bands, "overturns", "C3", None),
+            (self.uncertain, "uncertain", "C2", "//"),
+        )
+        for ranges, label, color, hatch in looks:
             for index, told in enumerate(ranges):
-                shown = {**look, "label": look["label"] if index == 0 else None}
-                ax.axvspan(told["from"], told["to"], **shown)
+                name = label if index == 0 else None
+                ax.axvspan(told["from"], told["to"], color=color, alpha=0.3, hatch=hatch, label=name)
         ax.set_xscale("log")
         ax.set_xlabel("factor on the ground motion")
         ax.set_ylabel("largest / critical rotation" if known else "largest rotation (rad)")
