@@ -461,7 +461,7 @@ fn faults_are_found() {
     assert_eq!(found(&(text(20.0, 100.0) + &line("M0 106H300"))), "");
     // An arc above it, whose chord would strike it through, and one that does.
     assert_eq!(
-        found(&(text(20.0, 100.0) + &line("M0 97A30 30 0 0 1 60 97"))),
+        found(&(text(20.0, 100.0) + &line("M0 97A40 40 0 0 1 80 97"))),
         ""
     );
     assert!(found(&(text(20.0, 100.0) + &line("M0 127A30 30 0 0 1 60 127"))).contains("struck"));

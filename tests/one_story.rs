@@ -149,6 +149,7 @@ fn check_in_a_browser(shown: &[(String, Value)]) {
     let folder = tempfile::tempdir().unwrap();
     let frames = shown.iter().map(|(page, _)| {
         let page = page.replace('&', "&amp;").replace('"', "&quot;");
+        let page = page.replace('<', "&lt;");
         format!("<iframe width=\"1000\" height=\"900\" srcdoc=\"{page}\"></iframe>")
     });
     let frames: String = frames.collect();
