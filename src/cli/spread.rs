@@ -68,8 +68,10 @@ pub fn spread(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         })
         .collect();
     let found = paths(&scenario, &ways).map_err(|error| input.about(error.into()))?;
-    let place = input.results(arguments.out.as_deref())?;
-    let results = tell(&scenario, &found, arguments.figure.get())?;
+    let place = arguments
+        .figure
+        .printed(input.results(arguments.out.as_deref())?);
+    let results = tell(&scenario, &found, arguments.figure.get()?)?;
     place.write(&results, quiet)?;
     show(&results, arguments.format)
 }

@@ -13,6 +13,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::column::Column;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::masonry::FillColumn;
 use crate::mechanics::sway::Sway;
 use crate::scenario::Structure;
 
@@ -24,7 +25,7 @@ pub struct Scene {
     /// Where the left and the right support of an arch are.
     supports: [Pose; 2],
     /// What lies on blocks, outline by outline: with the block.
-    fill_m: Vec<(usize, Vec<Vector2<f64>>)>,
+    fill_m: Vec<FillColumn>,
     loads: Vec<Load>,
     dimensions: Vec<Dimension>,
 }

@@ -89,7 +89,7 @@ impl Fill {
     pub(super) fn outlines_for_drawing(
         &self,
         arch: &CutArch,
-    ) -> Result<Vec<(usize, Vec<Vector2<f64>>)>, ArgumentError> {
+    ) -> Result<Vec<FillColumn>, ArgumentError> {
         let level_m = self.level_m(arch)?;
         let outline = |piece: &Curve| {
             let parts = (0..=DRAWN_POINTS).map(|i| f64::from(i) / f64::from(DRAWN_POINTS));
@@ -108,6 +108,9 @@ impl Fill {
         Ok(columns.collect())
     }
 }
+
+/// The fill above a block: its index, and the corners of a polygon that looks like the fill, in metres.
+pub type FillColumn = (usize, Vec<Vector2<f64>>);
 
 /// Parts that the curved side of a column of fill is drawn with.
 const DRAWN_POINTS: u32 = 4;

@@ -24,7 +24,7 @@ use crate::argument::{ArgumentError, within};
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::sway::Sway;
 use cut::CutArch;
-pub use fill::{Fill, FillLevel};
+pub use fill::{Fill, FillColumn, FillLevel};
 pub use given::{GivenBlocks, OutlineError};
 pub use load::PlacedLoad;
 pub use middle_line::{BasketArch, CircularArch, EllipticArch};
@@ -207,7 +207,7 @@ pub struct Masonry {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Carried {
     /// Corners of what of the fill is above a block, in metres.
-    pub fill_m: Vec<(usize, Vec<Vector2<f64>>)>,
+    pub fill_m: Vec<FillColumn>,
     /// Where the middle of each load stands, in metres.
     pub loads_m: Vec<(usize, Vector2<f64>)>,
 }

@@ -34,7 +34,9 @@ pub fn tell(
     let mut json = to_json(spread, weight_n);
     json["scenario"] = scenario.to_json();
     let contents = [
-        draw(figure, title, spread).into_bytes(),
+        figure
+            .fitted(|figure| draw(figure, title, spread))
+            .into_bytes(),
         table(spread, weight_n)?,
         pretty(&json).into_bytes(),
     ];

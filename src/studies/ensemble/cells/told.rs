@@ -104,12 +104,16 @@ pub(super) fn tell(
         files: vec![
             (
                 "map.svg",
-                draw(title, study, &found, look).picture.into_bytes(),
+                look.figure
+                    .fitted(|figure| draw(title, study, &found, Look { figure, ..look }).picture)
+                    .into_bytes(),
             ),
             ("map.html", page.into_bytes()),
             (
                 "matters.svg",
-                picture::matters(look.figure, told, &decides).into_bytes(),
+                look.figure
+                    .fitted(|figure| picture::matters(figure, told, &decides))
+                    .into_bytes(),
             ),
             ("probability.csv", csv(line_columns(study), &found.reached)?),
             ("map.csv", csv(columns(study), &found.likely)?),
