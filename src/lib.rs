@@ -88,7 +88,7 @@ pub use dynamics::history::{
     Samples, Shape, State, Summary,
 };
 pub use dynamics::model::{
-    Case, Initial, MechanismModel, Model, Recorder, Request, SimulationError,
+    Case, Initial, MechanismModel, Model, Recorder, Request, SimulationError, Until,
 };
 pub use mechanics::arch::Arch;
 pub use mechanics::blocks::Row;

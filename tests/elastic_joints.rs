@@ -315,7 +315,7 @@ fn blocks_and_arches_overturn_where_an_independent_program_has_them() {
     );
 }
 
-/// Eight lanes, more cases than lanes, histories of different lengths and steps: every summary is bit-identical to that of the history alone.
+/// More cases than lanes, histories of different lengths and steps: every summary is bit-identical to that of the history alone.
 #[test]
 fn histories_side_by_side_have_the_bits_of_each_alone() {
     for contact in [Contact::Continuous, Contact::Points(3)] {
@@ -560,13 +560,43 @@ fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
     assert!((0.999..1.0).contains(&(elastic_j / rigid_j)));
 }
 
+/// If the path over is lost, that of softer joints gives a lower bound of the barrier: not much less than that of soft joints, and less than
+/// that of rigid ones.
+#[test]
+fn softer_joints_tell_of_less_energy_than_a_structure_needs() {
+    let barrier_j = |stiffness: f64, contact| {
+        let model = ElasticJoints::new(semicircle(13), joints(stiffness, contact)).unwrap();
+        let rigid_j = model.barrier_j(9.81).unwrap();
+        model.elastic_barrier_j(9.81).unwrap() / rigid_j
+    };
+    let of_soft = barrier_j(3e9, Contact::Continuous);
+    for (stiffness, contact) in [
+        (1e10, Contact::Continuous),
+        (1e11, Contact::Continuous),
+        (1e12, Contact::Continuous),
+        (1e10, Contact::Points(3)),
+        (1e11, Contact::Points(5)),
+    ] {
+        let found = barrier_j(stiffness, contact);
+        assert!(
+            (0.5 * of_soft..1.0).contains(&found),
+            "{stiffness:e} {contact:?}: {found} {of_soft}"
+        );
+    }
+}
+
 /// After a pulse, any structure that overturns had more energy than the easiest way over needs; one that never had half of it stands.
 #[test]
 fn what_overturns_had_more_energy_than_its_barrier() {
-    for (row, stiffness) in [(semicircle(9), 3e9), (stack(3, 5.0), 2e9)] {
+    // Of stiff joints and of points a part of the barrier is found, from softer joints.
+    for (row, stiffness, contact, found) in [
+        (semicircle(9), 3e9, Contact::Continuous, 1.0),
+        (stack(3, 5.0), 2e9, Contact::Continuous, 1.0),
+        (semicircle(9), 1e10, Contact::Points(3), 0.4),
+    ] {
         let properties = ElasticProperties {
             damping_time_s: 2e-4,
-            ..joints(stiffness, Contact::Continuous)
+            ..joints(stiffness, contact)
         };
         let model = ElasticJoints::new(row, properties).unwrap();
         let barrier_j = model.elastic_barrier_j(9.81).unwrap();
@@ -585,7 +615,7 @@ fn what_overturns_had_more_energy_than_its_barrier() {
             let ratio = row.largest_potential_j / barrier_j;
             seen[usize::from(falls(&summary))] = true;
             assert!(
-                falls(&summary) == (ratio >= 1.0) || (0.7..1.5).contains(&ratio),
+                falls(&summary) == (ratio >= 1.0) || (0.7..1.5 / found).contains(&ratio),
                 "{ratio}"
             );
             assert!(!falls(&summary) || ratio > 0.95, "{ratio}");
@@ -594,13 +624,13 @@ fn what_overturns_had_more_energy_than_its_barrier() {
     }
 }
 
-/// Any row on any joints, under pulses or noise, also vertical. A history that can be computed has a closed energy balance, and friction,
-/// damping and crushing create no energy. If the row does not stand or needs shorter steps, the error says so. `ARCHROCK_CASES` sets the number.
+/// Any row on any joints, under pulses or noise, also vertical. Every history has a closed energy balance, and friction, damping and crushing
+/// create no energy. If the row does not stand, the error says so. `ARCHROCK_CASES` sets the number.
 #[test]
 fn no_history_fails_silently() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(20, |cases| cases.parse().unwrap());
     let mut random = Random(1);
-    let (mut moved, mut none, mut refused) = (0, 0, Vec::new());
+    let (mut moved, mut none) = (0, 0);
     for case in 0..cases {
         let row = random_row(&mut random, 60);
         let stiffness = 1e9 * 1e3_f64.powf(random.next());
@@ -644,19 +674,8 @@ fn no_history_fails_silently() {
             none += 1;
             continue;
         };
-        let summary = match model.simulate(&ground, &request(9.81, end_s), None) {
-            Ok(summary) => summary,
-            // A refusal names the step that is short enough.
-            Err(error)
-                if error
-                    .to_string()
-                    .contains("give a longest_step_s of at most") =>
-            {
-                refused.push(format!("{case}: {error}; {properties:?}"));
-                continue;
-            }
-            Err(error) => panic!("{case}: {error}"),
-        };
+        let summary = model.simulate(&ground, &request(9.81, end_s), None);
+        let summary = summary.unwrap_or_else(|error| panic!("{case}: {error}; {properties:?}"));
         let row = summary.row.as_ref().unwrap();
         let elastic = row.elastic.unwrap();
         for taken_j in [elastic.friction_j, elastic.damped_j, elastic.crushed_j] {
@@ -666,7 +685,6 @@ fn no_history_fails_silently() {
         moved += 1;
     }
     assert!(2 * moved > none, "{moved} {none}");
-    assert!(20 * refused.len() <= cases, "{refused:#?}");
 }
 
 /// Ratios of the rates after and before landings, from successive turning points, relative to Housner's, for a block five times as high

@@ -109,6 +109,67 @@ fn what_is_no_joint_is_refused_with_its_place() {
     }
 }
 
+/// What a structure does not rest on, and steps that are not stable or too many, are placed at the key that makes them so.
+#[test]
+fn joints_that_do_not_carry_are_refused_with_their_place() {
+    let arch = |keys: &str| {
+        format!(
+            "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.125\nembrace_deg = 180.0\nvoussoirs = 17\n[elastic_joints]\n{keys}\n"
+        )
+    };
+    let stiff = "normal_stiffness_gpa_m = 10.0\n";
+    let stiffest = "normal_stiffness_gpa_m = 1000.0\n";
+    let long = |keys: &str| block(keys).replace("duration_s = 3.0", "duration_s = 300.0");
+    for (text, place, words) in [
+        (
+            block(&format!("{stiff}compressive_strength_mpa = 0.1")),
+            "7:28",
+            "crush under the weight",
+        ),
+        (
+            block(&format!("{stiff}longest_step_s = 0.1")),
+            "7:18",
+            "is too long",
+        ),
+        (
+            long(&format!("{stiffest}damping_time_s = 1.0")),
+            "7:18",
+            "too many for a motion of 300 s",
+        ),
+        (
+            long(&format!(
+                "{stiffest}damping_ratio = 1.0\ndamping_frequency_hz = 0.32"
+            )),
+            "7:17",
+            "too many for a motion of 300 s",
+        ),
+        (
+            arch(&format!("{stiff}contact_points = 2")),
+            "8:18",
+            "the structure is a mechanism",
+        ),
+        (
+            arch("normal_stiffness_gpa_m = 0.3"),
+            "7:26",
+            "needs a larger stiffness",
+        ),
+        (
+            arch("stone_modulus_gpa = 0.1"),
+            "7:21",
+            "needs a larger stiffness",
+        ),
+        (
+            arch(&format!("{stiff}friction_coefficient = 0.2")),
+            "8:24",
+            "friction_coefficient",
+        ),
+    ] {
+        let errors = Scenario::parse(&text, "s.toml").unwrap_err().to_string();
+        let placed = errors.starts_with(&format!("s.toml:{place}: "));
+        assert!(placed && errors.contains(words), "{text}: {errors}");
+    }
+}
+
 /// At rest a column stands on its weight: `N = m g`, evenly over the base.
 #[test]
 fn a_run_tells_what_joints_bear() {

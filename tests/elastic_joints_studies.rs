@@ -16,10 +16,11 @@ use crate::program::scenarios;
 
 /// A slender block that rocks for two seconds.
 fn block(more: &str) -> String {
+    // With given steps those of a map are those of a run.
     format!(
         "[column]\nheight_m = 5.0\nwidth_m = 1.0\n\
          [elastic_joints]\nnormal_stiffness_gpa_m = 0.5\ndamping_time_s = 1e-3\nfriction_coefficient = 0.5\n\
-         [simulation]\nduration_s = 2.5\n{more}"
+         longest_step_s = 1e-3\n[simulation]\nduration_s = 2.5\n{more}"
     )
 }
 
@@ -45,19 +46,19 @@ fn run(scenario: &Scenario, values: &[(&str, f64)]) -> Summary {
 /// Asserts that an ending is that of a run, to the last bit.
 fn assert_is_of(ending: &Ending, own: &Summary, what: &str) {
     assert_eq!(
-        (ending.outcome, ending.outcome_time_s, ending.peak.rad()),
-        (
-            own.outcome,
-            own.outcome_time_s,
-            Some(own.largest_rotation_rad())
-        ),
+        (ending.outcome, ending.peak.rad()),
+        (own.outcome, Some(own.largest_rotation_rad())),
         "{what}"
     );
+    if ending.safe_from_s.is_some() {
+        assert!(ending.energy_defect_ratio <= own.energy_defect_ratio);
+        return;
+    }
     assert_eq!(
-        ending.energy_defect_ratio, own.energy_defect_ratio,
+        (ending.outcome_time_s, ending.energy_defect_ratio),
+        (own.outcome_time_s, own.energy_defect_ratio),
         "{what}"
     );
-    assert_eq!(ending.safe_from_s, None);
 }
 
 /// Pulses of different length and strength are computed side by side; structures of different stiffness, on another axis, are not.

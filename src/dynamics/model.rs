@@ -71,9 +71,14 @@ pub trait Model: Debug + Send + Sync {
         false
     }
 
-    /// Its motions on several grounds, in their order, as [`Model::simulate`] gives them without a recorder. A model that computes
-    /// several at once does so here; no result depends on the other cases.
+    /// Its motions on several grounds, in their order, as [`Model::simulate`] gives them without a recorder.
     fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
+        self.simulate_until(Until::End, cases)
+    }
+
+    /// The same, followed no further than this by a model that can tell. A model that computes several at once does so here; no result
+    /// depends on what is beside it.
+    fn simulate_until(&self, _: Until, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
         let alone = |(ground, request): &Case| self.simulate(ground, request, None);
         cases.iter().map(alone).collect()
     }
@@ -127,6 +132,18 @@ pub trait Model: Debug + Send + Sync {
 
 /// A ground motion, and a request for the motion on it.
 pub type Case = (GroundMotion, Request);
+
+/// How far a motion is followed. One that is followed no further is [`StillRocking`](super::history::Outcome::StillRocking) before its
+/// end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// To its end.
+    End,
+    /// Up to where it cannot overturn any more, turns no block as far as it did, and comes to rest by its end.
+    Settled,
+    /// Up to where it cannot overturn any more.
+    Safe,
+}
 
 /// A copy of a model that is computed in another way.
 #[derive(Debug)]

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::ground::GroundMotion;
 use super::history::{HalfCycle, Outcome, Sample, State, Summary};
-use super::model::{Case, Model, Recorder, Repetition, Request, SimulationError};
+use super::model::{Case, Model, Recorder, Repetition, Request, SimulationError, Until};
 use crate::mechanics::sway::Sway;
 
 /// Peaks are called certain to within this fraction of them.
@@ -271,7 +271,7 @@ pub(crate) fn doubts<E>(
 /// Histories up to where they cannot overturn any more.
 fn until_decided(model: &dyn Model, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
     if model.is_faster_together() {
-        return model.simulate_all(cases);
+        return model.simulate_until(Until::Safe, cases);
     }
     let alone = |(ground, request): &Case| {
         let mut until_safe = UntilSafe::new(ground, f64::INFINITY);
@@ -281,7 +281,7 @@ fn until_decided(model: &dyn Model, cases: &[Case]) -> Vec<Result<Summary, Simul
 }
 
 /// If slip and crushing took more than this fraction of the barrier, elastic joints no longer lie as they did when it was found.
-const GONE: f64 = 0.01;
+pub(super) const GONE: f64 = 0.01;
 
 /// A survivor that never reached this fraction of the energy barrier of its first mechanism is not repeated.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
@@ -332,18 +332,34 @@ pub(crate) fn until_safe(
     cases: &[Case],
 ) -> (Vec<Result<Summary, SimulationError>>, Vec<Option<f64>>) {
     // If the result does not depend on how it is computed, the fast way serves.
-    if model.is_faster_together() || model.repetitions().is_empty() {
+    if model.repetitions().is_empty() {
         return (model.simulate_all(cases), vec![None; cases.len()]);
     }
-    let alone = |(ground, request): &Case| {
-        let mut until_safe = UntilSafe::new(ground, request.end_s);
-        let mut own = model.simulate(ground, request, Some(&mut until_safe));
-        let ended = own.as_mut().ok().filter(|_| until_safe.ended);
+    let resting = |mut own: Result<Summary, SimulationError>, ended: bool| {
+        let ended = own.as_mut().ok().filter(|_| ended);
         let safe_from_s = ended.map(|summary| {
             summary.outcome = Outcome::Rest;
             summary.end_s
         });
         (own, safe_from_s)
+    };
+    if model.is_faster_together() {
+        let own = model.simulate_until(Until::Settled, cases);
+        let own = own.into_iter().zip(cases);
+        return own
+            .map(|(own, (_, request))| {
+                let before_its_end = |own: &Summary| {
+                    own.outcome == Outcome::StillRocking && own.end_s < request.end_s
+                };
+                let ended = own.as_ref().is_ok_and(before_its_end);
+                resting(own, ended)
+            })
+            .unzip();
+    }
+    let alone = |(ground, request): &Case| {
+        let mut until_safe = UntilSafe::new(ground, request.end_s);
+        let own = model.simulate(ground, request, Some(&mut until_safe));
+        resting(own, until_safe.ended)
     };
     cases.iter().map(alone).unzip()
 }

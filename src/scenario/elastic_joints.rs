@@ -178,8 +178,9 @@ impl ElasticTable {
                 ),
             ));
         }
-        let mut wrong =
-            |key: &str, wrong: String| Err(table.wrong_in("elastic_joints", key, wrong));
+        let wrong = |table: &mut Table<'_>, key: &str, wrong: String| {
+            Err(table.wrong_in("elastic_joints", key, wrong))
+        };
         if let Err(error) = rest {
             let key = match error {
                 RestError::Friction => "friction_coefficient",
@@ -189,7 +190,7 @@ impl ElasticTable {
                 RestError::Stiffness => "normal_stiffness_gpa_m",
                 RestError::NotFound | RestError::Supports(_) => return Ok(()),
             };
-            return wrong(key, format!("is not possible here: {error}"));
+            return wrong(table, key, format!("is not possible here: {error}"));
         }
         let stable_s = joints.stable_step_s();
         match self.longest_step_s {
@@ -198,17 +199,25 @@ impl ElasticTable {
                 let what = format!(
                     "is too long: half of what is stable with these joints is {most} s; leave it out, or give that"
                 );
-                wrong("longest_step_s", what)
+                wrong(table, "longest_step_s", what)
             }
-            None if simulation.duration_s > ElasticOptions::MOST_STEPS * stable_s => {
+            Some(_) => Ok(()),
+            None => {
+                let step_s = ElasticJoints::default_step_s(&joints);
+                if simulation.duration_s <= ElasticOptions::MOST_STEPS * step_s {
+                    return Ok(());
+                }
                 let most = format!(
                     "makes steps of {} s, too many for a motion of {} s: give less damping, or a shorter [simulation] duration_s",
-                    short(stable_s),
+                    short(step_s),
                     short(simulation.duration_s)
                 );
-                wrong("damping_time_s", most)
+                let keys = ["damping_ratio", "damping_time_s"];
+                let given = keys
+                    .iter()
+                    .find(|key| table.gives_in("elastic_joints", key));
+                wrong(table, given.unwrap_or(&"damping_time_s"), most)
             }
-            _ => Ok(()),
         }
     }
 

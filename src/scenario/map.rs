@@ -293,7 +293,7 @@ fn suits(
             "applies to a circular [arch] without piers and loads"
         }
         Quantity::Restitution if hinges.has_joints() => {
-            "goes with four links: with free hinges impacts follow from the blocks"
+            "goes with four links: with free hinges impacts follow from the blocks, and elastic joints have none"
         }
         Quantity::Restitution
             if motion.is_some_and(|motion| {

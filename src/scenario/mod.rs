@@ -220,8 +220,11 @@ impl Scenario {
     /// Reports a table that the text gives but the model of motion ignores, if there is one.
     #[must_use]
     pub fn ignored(&self) -> Option<&'static str> {
-        self.ignores_impact
-            .then_some("[impact] is ignored: with free hinges impacts follow from the blocks")
+        let why = match self.motion().hinges() {
+            Hinges::Elastic => "[impact] is ignored: elastic joints have no impacts",
+            _ => "[impact] is ignored: with free hinges impacts follow from the blocks",
+        };
+        self.ignores_impact.then_some(why)
     }
 }
 

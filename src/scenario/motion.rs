@@ -122,7 +122,8 @@ impl Motion {
         Ok(variations)
     }
 
-    /// The same model for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases).
+    /// The same model for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases)
+    /// and [`ElasticJoints::for_many_cases`].
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -131,7 +132,8 @@ impl Motion {
         structure: &Structure,
     ) -> Result<Box<dyn Model>, ModelError> {
         match self {
-            Self::FourLinks(_) | Self::ElasticJoints(_) => self.model(structure),
+            Self::FourLinks(_) => self.model(structure),
+            Self::ElasticJoints(joints) => Ok(Box::new(joints.model(structure)?.for_many_cases())),
             Self::FreeHinges(options) => {
                 let row = structure.free_hinges(*options)?;
                 Ok(Box::new(row.for_many_cases()))

@@ -332,9 +332,13 @@ impl<'a> Table<'a> {
         key: &str,
         message: impl fmt::Display,
     ) -> Reported {
-        let inner = self.entries.get(table).map(Spanned::get_ref);
-        let entry = inner.and_then(|inner| inner.as_table()?.get(key));
-        self.wrong_entry(entry, key, message)
+        let outer = self.entries.get(table);
+        let entry = outer.and_then(|outer| outer.get_ref().as_table()?.get(key));
+        match (outer, entry) {
+            // What is not given is missing in its table.
+            (Some(outer), None) => self.fault(outer.span().start, format!("`{key}` {message}")),
+            _ => self.wrong_entry(entry, key, message),
+        }
     }
 
     /// The same for a value in nested tables inside this one. If the innermost table does not give it, the table

@@ -8,8 +8,8 @@ use super::stepper::{ElasticStepper, Group, Start};
 use crate::argument::{ArgumentError, short, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
-use crate::dynamics::model::{Case, Model, Recorder, Repetition, Request, SimulationError};
-use crate::dynamics::row::course::{self, Clock, Task};
+use crate::dynamics::model::{Case, Model, Recorder, Repetition, Request, SimulationError, Until};
+use crate::dynamics::row::course::{self, Clock, LARGEST_ENERGY_ERROR, Task};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
@@ -31,8 +31,10 @@ pub struct ElasticJoints {
     structure: ElasticStructure,
     /// A gravity, and the equilibrium at rest under it.
     rest: (f64, Rest),
-    /// Energy under that gravity beyond which it overturns, once requested.
-    barrier_j: Arc<OnceLock<Option<f64>>>,
+    /// A gravity, and the energy beyond which it overturns under it, once requested.
+    barrier_j: Arc<OnceLock<(f64, Option<f64>)>>,
+    /// Whether it serves a study of many cases, whose steps are longer where none is given.
+    many_cases: bool,
     /// Factor on the longest step, for a repetition.
     steps_times: f64,
 }
@@ -56,10 +58,10 @@ impl ElasticOptions {
 const STEP_RATIO: [f64; 2] = [0.25, 0.5];
 /// Damping of the fastest vibration, as a fraction of the critical one, with which the longer steps are enough.
 const DAMPED: f64 = 0.3;
-/// An energy balance that is wrong by more than this fraction of the largest energy of the motion is an error.
-const LARGEST_ENERGY_ERROR: f64 = 1e-2;
-/// Number of histories side by side.
-const SIDE_BY_SIDE: usize = 8;
+/// How much longer the steps of studies of many cases are than those of a run.
+const MANY_CASES_STEP_RATIO: f64 = 1.6;
+/// Number of histories side by side: eight are slower, since they do not fit into the cache next to the processor.
+const SIDE_BY_SIDE: usize = 4;
 /// By what the stiffness is multiplied and divided to see what depends on it.
 const OTHER_STIFFNESS: f64 = 3.0;
 /// Gravity under which the equilibrium at rest is found first.
@@ -90,6 +92,7 @@ impl ElasticJoints {
             structure,
             rest: (gravity_m_s2, rest),
             barrier_j: Arc::default(),
+            many_cases: false,
             steps_times: 1.0,
         })
     }
@@ -118,6 +121,14 @@ impl ElasticJoints {
             within("longest_step_s", step_s, ElasticOptions::STEP_S)?;
         }
         Ok(Self { options, ..self })
+    }
+
+    /// The same for a study of many cases: where no step is given, steps are longer, as long as most answers stay the same. In what they
+    /// do not, repetitions disagree.
+    #[must_use]
+    pub const fn for_many_cases(mut self) -> Self {
+        self.many_cases = true;
+        self
     }
 
     /// The blocks.
@@ -160,13 +171,23 @@ impl ElasticJoints {
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         let default_s = || {
-            let frequency = self.structure.frequency_bound_rad_s();
-            let damped = 0.5 * self.structure.damping_time_s() * frequency / DAMPED;
-            let [undamped, enough] = STEP_RATIO;
-            let ratio = undamped + (enough - undamped) * damped.min(1.0);
-            ratio * self.structure.stable_step_s()
+            let longer = if self.many_cases {
+                MANY_CASES_STEP_RATIO
+            } else {
+                1.0
+            };
+            longer * Self::default_step_s(&self.structure)
         };
         self.steps_times * self.options.longest_step_s.unwrap_or_else(default_s)
+    }
+
+    /// The longest step where none is given, in seconds.
+    pub(crate) fn default_step_s(structure: &ElasticStructure) -> f64 {
+        let frequency = structure.frequency_bound_rad_s();
+        let damped = 0.5 * structure.damping_time_s() * frequency / DAMPED;
+        let [undamped, enough] = STEP_RATIO;
+        let ratio = undamped + (enough - undamped) * damped.min(1.0);
+        ratio * structure.stable_step_s()
     }
 
     /// The same structure with other properties that are equally likely: stiffer, softer, and with the stress summed in another
@@ -260,12 +281,93 @@ impl ElasticJoints {
         })
     }
 
-    fn start<'a>(&'a self, rest: &'a Rest) -> Start<'a> {
+    fn start<'a>(
+        &'a self,
+        rest: &'a Rest,
+        barrier_j: &'a dyn Fn() -> Option<f64>,
+        until: Until,
+    ) -> Start<'a> {
         Start {
             structure: &self.structure,
             rest,
-            longest_step_s: self.longest_step_s(),
+            may_halve: self.options.longest_step_s.is_none(),
+            barrier_j,
+            until,
         }
+    }
+
+    fn alone(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+        recorder: Option<&mut dyn Recorder>,
+        until: Until,
+    ) -> Result<Summary, SimulationError> {
+        let gravity_m_s2 = request.gravity_m_s2;
+        let task = self.task(ground, request)?;
+        let rest = self.rest(gravity_m_s2)?;
+        let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
+        // A recorder of any lifetime serves for as long as the task.
+        let recorder = recorder.map(|recorder| recorder as _);
+        let stepper = ElasticStepper::new(task, self.start(&rest, &barrier_j, until), recorder);
+        self.judged(course::run(stepper)?, &rest, gravity_m_s2)
+    }
+
+    fn together(&self, cases: &[Case], until: Until) -> Vec<Result<Summary, SimulationError>> {
+        let Some((_, first)) = cases.first() else {
+            return Vec::new();
+        };
+        let gravity_m_s2 = first.gravity_m_s2;
+        let alike = |(_, request): &Case| request.gravity_m_s2 == gravity_m_s2;
+        let rest = match self.rest(gravity_m_s2) {
+            Ok(rest) if cases.len() > 1 && cases.iter().all(alike) => rest,
+            _ => {
+                let alone = |(ground, request): &Case| self.alone(ground, request, None, until);
+                return cases.iter().map(alone).collect();
+            }
+        };
+        let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
+        let start = self.start(&rest, &barrier_j, until);
+        let mut group = Group::<SIDE_BY_SIDE>::new(self.row(), start, gravity_m_s2);
+        let mut answers: Vec<Option<Result<Summary, SimulationError>>> = vec![None; cases.len()];
+        let mut waiting = 0..cases.len();
+        let mut running = [None; SIDE_BY_SIDE];
+        loop {
+            let may_begin = group.is_at_mark();
+            for (lane, running) in running.iter_mut().enumerate() {
+                if let Some(case) = *running
+                    && let Some(ended) = group.go_on(lane)
+                {
+                    let ended = ended.map_err(SimulationError::from);
+                    answers[case] =
+                        Some(ended.and_then(|summary| self.judged(summary, &rest, gravity_m_s2)));
+                    *running = None;
+                }
+                while may_begin
+                    && running.is_none()
+                    && let Some(case) = waiting.next()
+                {
+                    let (ground, request) = &cases[case];
+                    match self.task(ground, request) {
+                        Ok(task) => {
+                            group.begin(lane, task, None);
+                            *running = Some(case);
+                            group.go_on(lane);
+                        }
+                        Err(error) => answers[case] = Some(Err(error)),
+                    }
+                }
+            }
+            if running.iter().any(Option::is_some) {
+                group.stride();
+            } else if waiting.is_empty() {
+                break;
+            }
+        }
+        let answers = answers.into_iter();
+        answers
+            .map(|answer| answer.expect("all cases have ended"))
+            .collect()
     }
 
     /// Refuses a motion whose energy does not balance.
@@ -303,7 +405,14 @@ impl ElasticJoints {
 
 impl Model for ElasticJoints {
     fn repetitions(&self) -> Vec<Repetition> {
-        let others = [("half steps", 0.5), ("steps of two thirds", 2.0 / 3.0)];
+        let others: [(&'static str, f64); 2] = if self.many_cases {
+            [
+                ("steps of nine tenths", 0.9),
+                ("steps of three quarters", 0.75),
+            ]
+        } else {
+            [("half steps", 0.5), ("steps of two thirds", 2.0 / 3.0)]
+        };
         let repetition = |(name, factor): (&'static str, f64)| {
             let model = Box::new(Self {
                 steps_times: factor * self.steps_times,
@@ -315,19 +424,12 @@ impl Model for ElasticJoints {
     }
 
     fn bodies(&self) -> Vec<String> {
-        (1..=self.row().blocks().len())
-            .map(|block| block.to_string())
-            .collect()
+        self.rigid.bodies()
     }
 
     fn shape(&self) -> Shape {
-        let joints = self.row().joints().len();
-        Shape {
-            bodies: self.row().blocks().len(),
-            joints,
-            slipping: self.properties.friction_coefficient.map_or(0, |_| joints),
-            pressing: joints,
-        }
+        let slips = self.properties.friction_coefficient.is_some();
+        self.rigid.shape(slips, true)
     }
 
     fn row(&self) -> Option<&Row> {
@@ -344,79 +446,31 @@ impl Model for ElasticJoints {
         request: &Request,
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
-        let task = self.task(ground, request)?;
-        let rest = self.rest(request.gravity_m_s2)?;
-        // A recorder of any lifetime serves for as long as the task.
-        let recorder = recorder.map(|recorder| recorder as _);
-        let stepper = ElasticStepper::new(task, self.start(&rest), recorder);
-        self.judged(course::run(stepper)?, &rest, request.gravity_m_s2)
+        self.alone(ground, request, recorder, Until::End)
     }
 
     fn elastic_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
-        let of = |rest: &Rest| {
-            let to = |sense| self.structure.barrier_j(rest, gravity_m_s2, sense);
-            Some(to(1.0)?.min(to(-1.0)?))
+        let find = || {
+            let rest = self.rest(gravity_m_s2).ok()?;
+            self.structure.barrier_j(&rest, gravity_m_s2)
         };
-        let (known_m_s2, rest) = &self.rest;
+        let (known_m_s2, barrier_j) = self.barrier_j.get_or_init(|| (gravity_m_s2, find()));
         if gravity_m_s2 == *known_m_s2 {
-            return *self.barrier_j.get_or_init(|| of(rest));
+            *barrier_j
+        } else {
+            find()
         }
-        of(&self.rest(gravity_m_s2).ok()?)
     }
 
     fn is_faster_together(&self) -> bool {
         true
     }
 
-    fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
-        let Some((_, first)) = cases.first() else {
-            return Vec::new();
-        };
-        let gravity_m_s2 = first.gravity_m_s2;
-        let alike = |(_, request): &Case| request.gravity_m_s2 == gravity_m_s2;
-        let rest = match self.rest(gravity_m_s2) {
-            Ok(rest) if cases.len() > 1 && cases.iter().all(alike) => rest,
-            _ => {
-                let alone = |(ground, request): &Case| self.simulate(ground, request, None);
-                return cases.iter().map(alone).collect();
-            }
-        };
-        let mut group = Group::<SIDE_BY_SIDE>::new(self.row(), self.start(&rest), gravity_m_s2);
-        let mut answers: Vec<Option<Result<Summary, SimulationError>>> = vec![None; cases.len()];
-        let mut waiting = 0..cases.len();
-        let mut running = [None; SIDE_BY_SIDE];
-        loop {
-            for (lane, running) in running.iter_mut().enumerate() {
-                if let Some(case) = *running
-                    && let Some(ended) = group.go_on(lane)
-                {
-                    let ended = ended.map_err(SimulationError::from);
-                    answers[case] =
-                        Some(ended.and_then(|summary| self.judged(summary, &rest, gravity_m_s2)));
-                    *running = None;
-                }
-                while running.is_none()
-                    && let Some(case) = waiting.next()
-                {
-                    let (ground, request) = &cases[case];
-                    match self.task(ground, request) {
-                        Ok(task) => {
-                            group.begin(lane, task, None);
-                            *running = Some(case);
-                            group.go_on(lane);
-                        }
-                        Err(error) => answers[case] = Some(Err(error)),
-                    }
-                }
-            }
-            if running.iter().all(Option::is_none) {
-                break;
-            }
-            group.stride();
-        }
-        let answers = answers.into_iter();
-        answers
-            .map(|answer| answer.expect("all cases have ended"))
-            .collect()
+    fn simulate_until(
+        &self,
+        until: Until,
+        cases: &[Case],
+    ) -> Vec<Result<Summary, SimulationError>> {
+        self.together(cases, until)
     }
 }

@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::mechanics::elastic_joint::{ElasticStructure, Fibre, Memory, Place, Rest};
+use crate::mechanics::elastic_joint::{Body, ElasticStructure, Fibre, Memory, Place, Rest};
 use crate::mechanics::lanes::{Lanes, Real, both};
 
 /// A body that moves.
@@ -49,6 +49,8 @@ pub(super) struct Motion<'a, const L: usize> {
     bodies: Vec<Moving<Lanes<L>>>,
     /// From what displacements and rotations of the bodies they are measured: of settled rows those at rest, else none.
     datum: Vec<[f64; 3]>,
+    /// One over the mass, and over the moment of inertia, of each body.
+    inverses: Vec<[f64; 2]>,
     memories: Vec<Memory<Lanes<L>>>,
     /// Of each place of each joint, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
@@ -140,12 +142,14 @@ impl<'a, const L: usize> Motion<'a, L> {
             moment_n_m: zero,
         };
         let joints = structure.joints().len();
+        let inverse = |body: &Body| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,
             gravity_m_s2,
             arch: Arch::new(),
             bodies: vec![body; structure.bodies().len() + 2],
             datum: vec![[0.0; 3]; structure.bodies().len()],
+            inverses: structure.bodies().iter().map(inverse).collect(),
             memories: vec![Memory::none(); joints],
             fibres: vec![Fibre::none(); joints * structure.fibres()],
             spent: Spent {
@@ -187,9 +191,6 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// One step of all lanes, with the widest vectors of the processor: these do not change a bit of the result.
     pub(super) fn step(&mut self, step: &Step<L>, shaken: bool) {
-        if L == 1 {
-            return self.leap(step, shaken);
-        }
         let arch = self.arch;
         arch.dispatch(Leap {
             motion: self,
@@ -216,8 +217,9 @@ impl<'a, const L: usize> Motion<'a, L> {
         let mut index = 0;
         while index < constants.len() {
             let (constants, body) = (&constants[index], &mut self.bodies[index]);
+            let [per_kg, per_kg_m2] = self.inverses[index];
             index += 1;
-            let per_mass = step.kick_s * (1.0 / constants.mass_kg);
+            let per_mass = step.kick_s * per_kg;
             let before = body.velocity_m_s;
             let after = both!(i: before[i] + (body.force_n[i] * per_mass - fall[i]));
             body.velocity_m_s = after;
@@ -225,7 +227,7 @@ impl<'a, const L: usize> Motion<'a, L> {
                 let by_axis = both!(i: (before[i] + after[i]) * step.shift_m_s[i]);
                 work += (by_axis[0] + by_axis[1]) * (0.5 * constants.mass_kg);
             }
-            body.rate_rad_s += body.moment_n_m * (step.kick_s * (1.0 / constants.inertia_kg_m2));
+            body.rate_rad_s += body.moment_n_m * (step.kick_s * per_kg_m2);
         }
         self.spent.ground_j -= work;
     }
@@ -343,14 +345,14 @@ impl<'a, const L: usize> Motion<'a, L> {
     /// Velocities and rate of rotation of a body after half a kick more.
     #[inline(always)]
     pub(super) fn velocity(&self, body: usize, half: &Step<L>) -> [Lanes<L>; 3] {
-        let constants = &self.structure.bodies()[body];
+        let [per_kg, per_kg_m2] = self.inverses[body];
         let moving = &self.bodies[body];
         let [sideways, upwards] = half.shift_m_s;
         let fall = [sideways, upwards + half.kick_s * self.gravity_m_s2];
-        let per_mass = half.kick_s * (1.0 / constants.mass_kg);
+        let per_mass = half.kick_s * per_kg;
         let [x, y] =
             both!(axis: moving.velocity_m_s[axis] + (moving.force_n[axis] * per_mass - fall[axis]));
-        let turning = moving.moment_n_m * (half.kick_s * (1.0 / constants.inertia_kg_m2));
+        let turning = moving.moment_n_m * (half.kick_s * per_kg_m2);
         [x, y, moving.rate_rad_s + turning]
     }
 

@@ -1,16 +1,19 @@
 //! Steps motions side by side, and reports and judges each of them.
 
+use std::cell::OnceCell;
+
 use nalgebra::Vector2;
 
 use super::error::ElasticJointError;
 use super::motion::{Motion, Observed, Slide, Step};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{ElasticSummary, JointPressure, Sample, Sliding, Stress, Summary};
-use crate::dynamics::model::Recorder;
+use crate::dynamics::model::{Recorder, Until};
 use crate::dynamics::row::course::{
-    Course, LEAST_RETURN, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO,
-    REST_TIME_RATIO, Stepper, Summit, Task, equal_step, open_hinge,
+    Course, LARGEST_ENERGY_ERROR, LEAST_RETURN, Marks, OVERTURNED_RAD, OVERTURNED_RATIO,
+    REST_ENERGY_RATIO, REST_TIME_RATIO, Stepper, Summit, Task, equal_step, open_hinge,
 };
+use crate::dynamics::spread::GONE;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::elastic_joint::{ElasticStructure, Place, Rest};
@@ -25,17 +28,31 @@ const STRIDE: usize = 8;
 const REST_STRAIN_RATIO: f64 = 0.1;
 /// ... or below this fraction of the barrier of its first mechanism.
 const REST_BARRIER_RATIO: f64 = 0.03;
+/// On quiet ground a row with less than this fraction of the barrier cannot overturn any more ...
+const SAFE: f64 = 0.5;
+/// ... and with less than this fraction of its largest energy so far it turns no block as far as it did.
+const DECAYED: f64 = 0.25;
+/// Energy is taken to decay this many times slower than it did so far.
+const SLOWER: f64 = 4.0;
 /// Sways within this fraction of the mean displacement under the weight of the structure do not change the side.
 const SIDE_RATIO: f64 = 0.1;
 /// A joint that presses on less than this fraction of its length is drawn as a hinge.
 const HINGE_RATIO: f64 = 0.5;
+
+/// At these fractions of the energy error that refuses a motion the steps are halved, if none were given: the error then grows four
+/// times slower.
+const HALVED_FROM: [f64; 4] = [0.6, 0.75, 0.85, 0.92];
 
 /// The common start of all motions of a group.
 #[derive(Clone, Copy)]
 pub(super) struct Start<'a> {
     pub structure: &'a ElasticStructure,
     pub rest: &'a Rest,
-    pub longest_step_s: f64,
+    /// Whether steps may be halved where the energy balance needs it.
+    pub may_halve: bool,
+    /// Energy above that at rest without which it does not overturn, where that is known; it takes time to find.
+    pub barrier_j: &'a dyn Fn() -> Option<f64>,
+    pub until: Until,
 }
 
 /// One motion of a group.
@@ -43,6 +60,9 @@ struct Lane<'a> {
     course: Course<'a>,
     velocity: GroundVelocity<'a>,
     quiet_s: f64,
+    longest_step_s: f64,
+    /// How often that was halved.
+    halved: usize,
     /// Time up to which it steps without pause.
     until_s: f64,
     /// Steps since it was last observed.
@@ -55,7 +75,13 @@ struct Lane<'a> {
     rest_sway_kg_m: f64,
     /// The largest energies that count as rest.
     still_j: f64,
-    barrier_j: f64,
+    /// Of rigid joints; where there is none, of these, once that was asked.
+    barrier_j: Option<f64>,
+    /// The largest energy so far.
+    largest_j: f64,
+    /// When the ground was seen quiet for good, and the energy then.
+    quiet: Option<(f64, f64)>,
+    end_s: f64,
     quiet_since_s: f64,
     /// How long it must be quiet to rest.
     rest_time_s: f64,
@@ -74,6 +100,8 @@ pub(super) struct Group<'a, const L: usize> {
     start: Start<'a>,
     motion: Motion<'a, L>,
     lanes: [Option<Lane<'a>>; L],
+    /// The barrier, once requested.
+    barrier_j: OnceCell<Option<f64>>,
     /// Supports along which the row may slide as a whole.
     slides: Vec<Slide>,
     mass_kg: f64,
@@ -87,13 +115,18 @@ impl<'a> Lane<'a> {
             ground_m_s: velocity.at(0.0),
             velocity,
             quiet_s: task.ground.end_s(),
+            longest_step_s: task.clock.longest_step_s,
+            halved: 0,
             until_s: 0.0,
             strides: 0,
             kicked_s: 0.0,
             rest_j: None,
             rest_sway_kg_m: 0.0,
             still_j: 0.0,
-            barrier_j: task.barrier_j.unwrap_or(0.0),
+            barrier_j: task.barrier_j,
+            largest_j: 0.0,
+            quiet: None,
+            end_s: task.clock.end_s,
             quiet_since_s: 0.0,
             rest_time_s: REST_TIME_RATIO * (task.row.size_m() / task.gravity_m_s2).sqrt(),
             marks: Marks::new(task.clock),
@@ -107,8 +140,8 @@ impl<'a> Lane<'a> {
     }
 
     /// Its next step.
-    fn next(&mut self, longest_step_s: f64, damping_time_s: f64) -> Step<1> {
-        let step_s = equal_step(self.course.time, self.until_s, longest_step_s);
+    fn next(&mut self, damping_time_s: f64) -> Step<1> {
+        let step_s = equal_step(self.course.time, self.until_s, self.longest_step_s);
         let to_s = self.course.time + 0.5 * step_s;
         let (mut step, ground_m_s) = self.kick(to_s);
         step.drift_s = Lanes([step_s]);
@@ -171,6 +204,7 @@ impl<'a, const L: usize> Group<'a, L> {
             start,
             motion: Motion::new(start.structure, gravity_m_s2),
             lanes: [const { None }; L],
+            barrier_j: OnceCell::new(),
             slides: slides.into_iter().map(slide).collect(),
             mass_kg: row.mass_kg(),
         }
@@ -196,9 +230,15 @@ impl<'a, const L: usize> Group<'a, L> {
         self.note(lane, &seen);
     }
 
+    /// Whether motions may begin: if others are at a mark, or there are none. From there on most are observed together.
+    pub(super) fn is_at_mark(&self) -> bool {
+        let mut lanes = self.lanes.iter().flatten().peekable();
+        let at_mark = |lane: &Lane<'_>| lane.strides == 0 && lane.course.time >= lane.until_s;
+        lanes.peek().is_none() || lanes.any(at_mark)
+    }
+
     /// Steps until a motion has been observed.
     pub(super) fn stride(&mut self) {
-        let longest_step_s = self.start.longest_step_s;
         let damping_time_s = self.start.structure.damping_time_s();
         loop {
             let mut step = Step::none();
@@ -208,7 +248,7 @@ impl<'a, const L: usize> Group<'a, L> {
                     continue;
                 };
                 shaken |= lane.is_shaken();
-                step.set(index, &lane.next(longest_step_s, damping_time_s));
+                step.set(index, &lane.next(damping_time_s));
                 due |= lane.is_due();
             }
             self.motion.step(&step, shaken);
@@ -254,7 +294,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let rest_j = *lane.rest_j.get_or_insert_with(|| {
             lane.still_j = (REST_ENERGY_RATIO * course.energy_unit)
                 .max(REST_STRAIN_RATIO * elastic)
-                .max(REST_BARRIER_RATIO * lane.barrier_j);
+                .max(REST_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
             lane.rest_sway_kg_m = of(seen.sway_kg_m);
             stored
         });
@@ -306,6 +346,14 @@ impl<'a, const L: usize> Group<'a, L> {
             lane.quiet_since_s = time;
             course.moved = true;
         }
+        let barrier_j = || *self.barrier_j.get_or_init(self.start.barrier_j);
+        if self.start.may_halve {
+            lane.mind_balance(barrier_j);
+        }
+        lane.largest_j = lane.largest_j.max(kinetic + potential);
+        if lane.is_decided(self.start.until, kinetic + potential, barrier_j) {
+            lane.course.stop();
+        }
     }
 
     /// Lets a lane step on, or returns its motion if that has ended. The lane steps without a pause up to the next mark of its clock,
@@ -343,6 +391,50 @@ impl<'a> Lane<'a> {
 
     fn overturned_s(&self) -> Option<f64> {
         self.overturned.then_some(self.summit.time)
+    }
+
+    /// Halves the steps where the energy balance needs it, a few times at most.
+    fn mind_balance(&mut self, barrier_j: impl FnOnce() -> Option<f64>) {
+        let Some(part) = HALVED_FROM.get(self.halved) else {
+            return;
+        };
+        let most = part * LARGEST_ENERGY_ERROR;
+        if self.course.energy_error(self.barrier_j.unwrap_or(0.0)) <= most {
+            return;
+        }
+        let barrier_j = *self
+            .barrier_j
+            .get_or_insert_with(|| barrier_j().unwrap_or(0.0));
+        if self.course.energy_error(barrier_j) > most {
+            self.halved += 1;
+            self.longest_step_s *= 0.5;
+            self.course.of_row.shortest_step_s = self.longest_step_s;
+        }
+    }
+
+    /// Whether all that it is followed for is known, with this energy: on ground that is quiet for good it gains none.
+    fn is_decided(
+        &mut self,
+        until: Until,
+        energy_j: f64,
+        barrier_j: impl FnOnce() -> Option<f64>,
+    ) -> bool {
+        if until == Until::End || self.course.time < self.quiet_s {
+            return false;
+        }
+        let (quiet_s, quiet_j) = *self.quiet.get_or_insert((self.course.time, energy_j));
+        if until == Until::Settled {
+            // It decays at most that much slower from now on.
+            let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
+            let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
+            let rests = self.course.time + rests_s + self.rest_time_s < self.end_s;
+            if !(rests && energy_j < DECAYED * self.largest_j) {
+                return false;
+            }
+        }
+        let gone_j = self.elastic.friction_j + self.elastic.crushed_j;
+        barrier_j()
+            .is_some_and(|barrier_j| energy_j < SAFE * barrier_j && gone_j < GONE * barrier_j)
     }
 
     fn into_course(self, slips: bool) -> Course<'a> {

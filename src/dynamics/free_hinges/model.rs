@@ -9,7 +9,7 @@ use crate::argument::{ArgumentError, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
 use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
-use crate::dynamics::row::course::Task;
+use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task};
 use crate::dynamics::row::standing::RigidRow;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::{Row, RowError};
@@ -92,8 +92,6 @@ impl RowOptions {
 
 /// An energy balance that is wrong by more than this fraction of the largest energy of the motion is mentioned.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
-/// One that is wrong by more than this is an error.
-const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 
 /// Why there is no such model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -237,19 +235,12 @@ impl Model for FreeHinges {
     }
 
     fn bodies(&self) -> Vec<String> {
-        (1..=self.row().blocks().len())
-            .map(|block| block.to_string())
-            .collect()
+        self.rigid.bodies()
     }
 
     fn shape(&self) -> Shape {
-        let joints = self.row().joints().len();
-        Shape {
-            bodies: self.row().blocks().len(),
-            joints,
-            slipping: self.options.friction_coefficient.map_or(0, |_| joints),
-            pressing: 0,
-        }
+        let slips = self.options.friction_coefficient.is_some();
+        self.rigid.shape(slips, false)
     }
 
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {

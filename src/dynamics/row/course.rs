@@ -29,6 +29,8 @@ pub(in crate::dynamics) const OVERTURNED_RAD: f64 = 0.8;
 pub(in crate::dynamics) const OVERTURNED_RATIO: f64 = 0.6;
 /// On the way down, a rise of less than this fraction of weight times size is no return.
 pub(in crate::dynamics) const LEAST_RETURN: f64 = 1e-3;
+/// An energy balance that is wrong by more than this fraction of the largest energy of the motion is an error.
+pub(in crate::dynamics) const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 /// Energies below this fraction of weight times size are no motion: their balance is rounding.
 const LEAST_ENERGY_RATIO: f64 = 1e-6;
 /// A row has slipped when friction took more than this fraction of the barrier of its first mechanism. It then stands lower than
@@ -118,7 +120,7 @@ pub(in crate::dynamics) struct Course<'a> {
     rising: bool,
     highest_s: f64,
     recorder: Option<&'a mut dyn Recorder>,
-    /// Whether the recorder broke.
+    /// Whether nobody follows it any further.
     stopped: bool,
     /// The sample, reused each time.
     sample: Sample,
@@ -573,6 +575,19 @@ impl<'a> Course<'a> {
         *worst = worst.max(energy / self.energy_unit);
     }
 
+    /// Largest error of the energy balance so far, over the largest energy of the motion, which is at least this barrier.
+    pub(in crate::dynamics) fn energy_error(&self, barrier_j: f64) -> f64 {
+        let kinetic_j = self.of_row.largest_kinetic_j;
+        let least_j = LEAST_ENERGY_RATIO * self.energy_unit;
+        let defect_j = self.summary.energy_defect_ratio * self.energy_unit;
+        defect_j / kinetic_j.max(barrier_j).max(least_j)
+    }
+
+    /// Ends the motion here.
+    pub(in crate::dynamics) const fn stop(&mut self) {
+        self.stopped = true;
+    }
+
     /// The sample to write to, complete except for blocks and joints, and whether it needs the line of thrust.
     fn blank_sample(&mut self) -> (Sample, bool) {
         let mut sample = mem::replace(&mut self.sample, Sample::at_rest(0.0));
@@ -630,12 +645,9 @@ impl<'a> Course<'a> {
     pub(in crate::dynamics) fn end(mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.end_cycle(None);
         let Task { barrier_j, .. } = self.task;
+        let energy_error = self.energy_error(barrier_j.unwrap_or(0.0));
         let (mut summary, mut of_row) = (self.summary, self.of_row);
-        let largest_j = of_row
-            .largest_kinetic_j
-            .max(barrier_j.unwrap_or(0.0))
-            .max(LEAST_ENERGY_RATIO * self.energy_unit);
-        of_row.energy_error = summary.energy_defect_ratio * self.energy_unit / largest_j;
+        of_row.energy_error = energy_error;
         let sliding = of_row.sliding.as_ref();
         let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
         of_row.largest_potential_j = self.peak_potential;

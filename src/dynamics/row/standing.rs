@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::argument::ArgumentError;
+use crate::dynamics::history::Shape;
 use crate::dynamics::model::Initial;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
@@ -80,6 +81,24 @@ impl RigidRow {
     /// Its blocks.
     pub(in crate::dynamics) const fn row(&self) -> &Row {
         &self.row
+    }
+
+    /// The names of its blocks.
+    pub(in crate::dynamics) fn bodies(&self) -> Vec<String> {
+        let blocks = 1..=self.row.blocks().len();
+        blocks.map(|block| block.to_string()).collect()
+    }
+
+    /// What its samples report, if joints slip or not, and if pressures are reported or not.
+    pub(in crate::dynamics) fn shape(&self, slips: bool, presses: bool) -> Shape {
+        let joints = self.row.joints().len();
+        let where_it_is = |told: bool| if told { joints } else { 0 };
+        Shape {
+            bodies: self.row.blocks().len(),
+            joints,
+            slipping: where_it_is(slips),
+            pressing: where_it_is(presses),
+        }
     }
 
     /// The push that starts it to that side, in units of gravity; `None` if no push starts it.

@@ -231,18 +231,53 @@ const SHORTEST_STRIDE: f64 = 1e-6;
 const SAME_ENERGY: f64 = 0.03;
 /// Steps of such a path, at most.
 const MOST_STRIDES: usize = 1000;
+/// How often joints are made softer to find a path.
+const SOFTER: usize = 6;
 /// Largest unbalanced force along the path, over the weight.
 const BALANCED_ON_WAY: f64 = 1e-7;
 
 impl ElasticStructure {
-    /// Energy in J that it gains from rest up to where it falls by itself, when it is pushed over slowly to the right (or the left). Its
+    /// Energy in J above that at rest that it needs at least to overturn; `None` if that is not found, or if something crushes on the
+    /// path.
+    ///
+    /// It is pushed over slowly. If that path is lost, because joints are too stiff or bear on points, the path of softer joints with
+    /// continuous contact gives a lower bound: in no shape do these have more energy (the sum over points is the trapezoidal rule, which
+    /// overestimates a convex function), so neither on the path.
+    #[must_use]
+    pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
+        let load_m_s2 = [0.0, -gravity_m_s2];
+        let rest_j = Search::new(self, load_m_s2).energy_j(rest);
+        if let Some(pass_j) = self.pass_j(rest, gravity_m_s2) {
+            return Some(pass_j - rest_j);
+        }
+        // Where it rests on supports that have moved depends on its way there, which softer joints go differently.
+        if self.law().crushes || self.has_settled() {
+            return None;
+        }
+        let mut softer = self.without_slip().continuous();
+        let tried = softer == self.without_slip();
+        (usize::from(tried)..SOFTER).find_map(|step| {
+            if step > 0 {
+                softer = softer.stiffness_times(1.0 / RAISED);
+            }
+            let pass_j = softer.pass_j(&softer.balanced(load_m_s2)?, gravity_m_s2)?;
+            Some(pass_j - rest_j).filter(|barrier_j| *barrier_j > 0.0)
+        })
+    }
+
+    /// Energy in J, above that of the undeformed structure, at the top of the lower of its paths to the right and to the left.
+    fn pass_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
+        let to = |sense| self.pass_towards_j(rest, gravity_m_s2, sense);
+        Some(to(1.0)?.min(to(-1.0)?))
+    }
+
+    /// Energy in J at which it falls by itself, when it is pushed over slowly from rest to the right (or the left). Its
     /// centre of gravity is led aside, everything else is in equilibrium without slip, and the push does the work. `None` if no such path
     /// is found, or if something crushes on it.
     ///
     /// A structure that moves to a side has to pass through all positions of its centre of gravity. Of all nearby shapes with the same
     /// position, those along the path have the least energy. So a structure with less than the energy at the top cannot pass it.
-    #[must_use]
-    pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
+    fn pass_towards_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
         let without_slip = self.without_slip();
         let search = Search::new(&without_slip, [0.0, -gravity_m_s2]);
         let mass_kg = self.mass_kg();
@@ -273,9 +308,10 @@ impl ElasticStructure {
             }
             if to <= 0.0 {
                 // If the search jumped from one path to another, the work is not what the structure gained.
-                let gained_j = search.energy_j(&shape) - search.energy_j(rest);
+                let rest_j = search.energy_j(rest);
+                let gained_j = search.energy_j(&shape) - rest_j;
                 let same = (work_j - gained_j).abs() < SAME_ENERGY * work_j;
-                return same.then_some(work_j.min(gained_j));
+                return same.then_some(rest_j + work_j.min(gained_j));
             }
             if steps <= 4 {
                 stride_m = (1.5 * stride_m).min(10.0 * first_m);

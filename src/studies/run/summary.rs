@@ -230,6 +230,8 @@ impl Object {
         }
         if row.elastic.is_some() {
             self.counts([("steps", history.cost.steps)]);
+            self.number("longest_step_s", row.longest_step_s)?;
+            self.number("shortest_step_s", row.shortest_step_s)?;
             return Ok(());
         }
         if let Some(sliding) = &row.sliding {

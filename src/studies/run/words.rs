@@ -161,6 +161,15 @@ fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String
     if row.elastic.is_none() {
         let _ = write!(text, ", {evaluations} iterations");
     }
+    if row.elastic.is_some() && row.shortest_step_s < row.longest_step_s {
+        let halvings = (row.longest_step_s / row.shortest_step_s).log2().round();
+        let times = if halvings > 1.0 {
+            format!("{halvings:.0} times")
+        } else {
+            "once".to_owned()
+        };
+        let _ = write!(text, ", halved {times} where the energy balance needed it");
+    }
     text.push('\n');
     if row.energy_error > DOUBTFUL_ENERGY_ERROR {
         let _ = writeln!(
