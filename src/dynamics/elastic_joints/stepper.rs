@@ -79,6 +79,8 @@ struct Lane<'a> {
     barrier_j: Option<f64>,
     /// The largest energy so far.
     largest_j: f64,
+    /// Whether the centre of gravity goes back to where it rests.
+    returns: bool,
     /// When the ground was seen quiet for good, and the energy then.
     quiet: Option<(f64, f64)>,
     end_s: f64,
@@ -125,6 +127,7 @@ impl<'a> Lane<'a> {
             still_j: 0.0,
             barrier_j: task.barrier_j,
             largest_j: 0.0,
+            returns: false,
             quiet: None,
             end_s: task.clock.end_s,
             quiet_since_s: 0.0,
@@ -334,6 +337,7 @@ impl<'a, const L: usize> Group<'a, L> {
         }
         let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.mass_kg * slid;
         let rotations = self.motion.turns(index).map(|(rotation, _)| rotation);
+        lane.returns = sway.abs() < course.sway.abs();
         course.observe(rotations, potential, kinetic, sway);
         let far = OVERTURNED_RATIO * self.row.size_m();
         lane.overturned |=
@@ -419,7 +423,8 @@ impl<'a> Lane<'a> {
         energy_j: f64,
         barrier_j: impl FnOnce() -> Option<f64>,
     ) -> bool {
-        if until == Until::End || self.course.time < self.quiet_s {
+        // What has passed its barrier goes on to that side, whatever damping takes.
+        if until == Until::End || self.course.time < self.quiet_s || !self.returns {
             return false;
         }
         let (quiet_s, quiet_j) = *self.quiet.get_or_insert((self.course.time, energy_j));
@@ -427,8 +432,8 @@ impl<'a> Lane<'a> {
             // It decays at most that much slower from now on.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
             let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
-            let rests = self.course.time + rests_s + self.rest_time_s < self.end_s;
-            if !(rests && energy_j < DECAYED * self.largest_j) {
+            let rests = rate > 0.0 && self.course.time + rests_s + self.rest_time_s < self.end_s;
+            if !(self.course.moved && rests && energy_j < DECAYED * self.largest_j) {
                 return false;
             }
         }
