@@ -21,9 +21,14 @@ use serde_json::Value;
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n";
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
                     [simulation]\nduration_s = 30.0\n";
-const FILES: [&str; 5] = [
+const FILES: [&str; 10] = [
     "suite.svg",
     "ida.svg",
+    "peaks.svg",
+    "ida.csv",
+    "peaks.csv",
+    "capacity.csv",
+    "intensity.csv",
     "fragility.csv",
     "fragility.json",
     "suite.csv",
@@ -509,6 +514,8 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         mirrored: false,
         scale: *scale,
         peak_g: 0.3 * scale,
+        edge: None,
+        strength: None,
         result: outcome.ok_or("it broke".to_owned()).map(|outcome| Ending {
             outcome,
             outcome_time_s: 1.0,
@@ -541,6 +548,8 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 mirrored,
                 scale: f64::from(level),
                 peak_g: 0.3 * f64::from(level),
+                edge: None,
+                strength: None,
                 result: Ok(Ending {
                     outcome,
                     outcome_time_s: 1.0,
@@ -1056,4 +1065,168 @@ fn suites_need_a_table_and_start_from_rest() {
     );
     let said = refused(folder, &["suite", "s.toml"], &[]);
     assert!(said.contains("leave [initial] out"), "{said}");
+}
+
+/// Sines of one period, sampled closely: their measures of intensity have closed forms, and the spectral acceleration follows from the
+/// equation of an oscillator by the method of Runge and Kutta. Capacities are where runs begin to overturn.
+#[test]
+fn capacities_are_told_in_several_measures() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let gravity = 9.81;
+    let durations_s = [0.4, 0.8, 1.6];
+    for duration_s in durations_s {
+        let line = |sample: u32| {
+            let time_s = duration_s * f64::from(sample) / 400.0;
+            format!(
+                "{time_s:.6},{:.9}\n",
+                (2.0 * PI * time_s / duration_s).sin()
+            )
+        };
+        let table: String = (0..=400).map(line).collect();
+        write(folder, &format!("sine-{duration_s}.csv"), &table);
+    }
+    let text = format!(
+        "{COLUMN}[suite]\nrecords = 'sine-*.csv'\nunit = 'g'\nspectral_period_s = 0.5\nspectral_damping_percent = 2\n\
+         peaks_g = {{ from = 0.1, to = 6.0, count = 14, spacing = 'logarithmic' }}\n"
+    );
+    write(folder, "s.toml", &text);
+    let said = done(folder, &["suite", "s.toml", "--out", "o"]);
+    assert!(
+        said.contains("most efficient measure of intensity: "),
+        "{said}"
+    );
+    assert!(
+        said.contains("spectral acceleration at 0.5 s and 2 % "),
+        "{said}"
+    );
+    let cases = rows(&folder.join("o"));
+    let capacities = Table::read(folder.join("o/capacity.csv")).rows;
+    // Mirrored records are mirror images, and no further evidence.
+    assert_eq!(capacities.len(), 3);
+    for (capacity, duration_s) in capacities.iter().zip(durations_s) {
+        assert_eq!(capacity["record"], format!("sine-{duration_s}.csv"));
+        let peak_g = capacity.number("peak_g");
+        let close = |name: &str, known: f64, part: f64| {
+            let found = capacity.number(name);
+            assert!((found / known - 1.0).abs() < part, "{name} {found} {known}");
+        };
+        // Straight lines between 400 samples take a part of (2 pi / 400)^2 / 12 off an integral.
+        close("scale", peak_g, 1e-4);
+        close(
+            "peak_velocity_m_s",
+            peak_g * gravity * duration_s / PI,
+            1e-4,
+        );
+        close(
+            "arias_m_s",
+            0.25 * PI * gravity * peak_g * peak_g * duration_s,
+            1e-4,
+        );
+        close(
+            "spectral_acceleration_g",
+            peak_g * spectral(duration_s, 0.5, 0.02),
+            3e-3,
+        );
+        // The first level that overturns, and the one before.
+        let own = cases
+            .iter()
+            .filter(|row| row["record"] == capacity["record"] && row["sign"] == "1");
+        let own: Vec<_> = own.collect();
+        let first = own.iter().position(|row| row["outcome"] == "overturned");
+        let first = first.unwrap();
+        assert!(own[first - 1].number("peak_g") < peak_g && peak_g <= own[first].number("peak_g"));
+        for (factor, overturns) in [(1.0, true), (0.996, false)] {
+            let text = format!(
+                "{COLUMN}[ground.record]\nfile = '{}'\nunit = 'g'\npeak_g = {:?}\n",
+                capacity["record"],
+                factor * peak_g
+            );
+            write(folder, "run.toml", &text);
+            done(
+                folder,
+                &["run", "run.toml", "--out", "r", "--quiet", "--no-report"],
+            );
+            let outcome = json(&folder.join("r/summary.json"))["outcome"].clone();
+            assert_eq!(outcome == "overturned", overturns, "{capacity:?} {factor}");
+        }
+    }
+    // The table has the dispersions of these, the smallest first.
+    let measures = Table::read(folder.join("o/intensity.csv")).rows;
+    assert_eq!(measures.len(), 4);
+    let mut before = 0.0;
+    for measure in &measures {
+        let logarithms = capacities
+            .iter()
+            .map(|capacity| capacity.number(measure["measure"].as_str()).ln());
+        let mean = logarithms.clone().sum::<f64>() / 3.0;
+        let squares: f64 = logarithms.map(|value| (value - mean).powi(2)).sum();
+        let dispersion = (squares / 2.0).sqrt();
+        assert!((measure.number("dispersion") - dispersion).abs() < 1e-9);
+        let power = if measure["measure"] == "arias_m_s" {
+            2.0
+        } else {
+            1.0
+        };
+        let of_factor = measure.number("dispersion_of_factor");
+        assert!((of_factor - dispersion / power).abs() < 1e-9 && of_factor >= before);
+        before = of_factor;
+    }
+    let fragility = json(&folder.join("o/fragility.json"));
+    assert_eq!(
+        fragility["intensity_measures"][0]["measure"],
+        measures[0]["measure"]
+    );
+    // Fractiles of three peaks are the least, the middle one and the largest; what overturned is beyond.
+    let ida = Table::read(folder.join("o/ida.csv")).rows;
+    for level in &ida {
+        let peak_g = level.number("peak_g");
+        let mut peaks: Vec<f64> = cases
+            .iter()
+            .filter(|row| row["sign"] == "1" && (row.number("peak_g") / peak_g - 1.0).abs() < 1e-9)
+            .map(|row| match row["outcome"].as_str() {
+                "overturned" => f64::INFINITY,
+                _ => row.number("peak_rotation_over_critical"),
+            })
+            .collect();
+        peaks.sort_by(f64::total_cmp);
+        assert_eq!(peaks.len(), 3);
+        for (name, peak) in ["peak_16", "peak_50", "peak_84"].into_iter().zip(peaks) {
+            let found = level[name].parse().unwrap_or(f64::INFINITY);
+            assert_eq!(found, peak, "{level:?}");
+        }
+    }
+    // The distribution of all peaks ends at the share that survives.
+    let peaks = Table::read(folder.join("o/peaks.csv"));
+    let survived = cases
+        .iter()
+        .filter(|row| row["sign"] == "1" && row["outcome"] != "overturned");
+    let share = survived.count() as f64 / 42.0;
+    assert!((peaks.numbers("share").last().unwrap() - share).abs() < 1e-12);
+    assert!(peaks.numbers("peak").is_sorted());
+}
+
+/// Largest `omega^2` times displacement of an oscillator under a sine of 1 g, in g, by Runge and Kutta's method, until the sine ends.
+fn spectral(duration_s: f64, period_s: f64, damping: f64) -> f64 {
+    let omega = 2.0 * PI / period_s;
+    let rate = |time_s: f64, [x, v]: [f64; 2]| {
+        let ground = (2.0 * PI * time_s / duration_s).sin();
+        [v, -ground - 2.0 * damping * omega * v - omega * omega * x]
+    };
+    let steps = 4000;
+    let step = duration_s / f64::from(steps);
+    let (mut state, mut peak) = ([0.0_f64; 2], 0.0_f64);
+    for index in 0..steps {
+        let time_s = step * f64::from(index);
+        let to = |[a, b]: [f64; 2], by: f64| [state[0] + by * a, state[1] + by * b];
+        let k1 = rate(time_s, state);
+        let k2 = rate(time_s + 0.5 * step, to(k1, 0.5 * step));
+        let k3 = rate(time_s + 0.5 * step, to(k2, 0.5 * step));
+        let k4 = rate(time_s + step, to(k3, step));
+        for (part, value) in state.iter_mut().enumerate() {
+            *value += step / 6.0 * (k1[part] + 2.0 * k2[part] + 2.0 * k3[part] + k4[part]);
+        }
+        peak = peak.max(state[0].abs());
+    }
+    omega * omega * peak
 }

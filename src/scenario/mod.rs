@@ -83,7 +83,7 @@ pub use source::Source;
 pub use spectrum::Spectrum;
 pub(crate) use spectrum::block;
 pub use structure::{ModelError, Structure};
-pub use suite::{Measure, Suite};
+pub use suite::{Measure, Spectral, Suite};
 use table::{Reading, Table, Text};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};

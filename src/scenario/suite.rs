@@ -76,6 +76,43 @@ pub struct Suite {
     pub levels: Sequence,
     /// Whether every record is also run mirrored, so that it acts to the other side.
     pub both_signs: bool,
+    /// The oscillator whose spectral acceleration is one of the measures of intensity.
+    pub spectral: Spectral,
+}
+
+/// An oscillator with one degree of freedom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spectral {
+    /// Its period, in s.
+    pub period_s: f64,
+    /// Its damping, in percent of the critical one.
+    pub damping_percent: f64,
+}
+
+const SPECTRAL_PERIOD_S: &str = "spectral_period_s";
+const SPECTRAL_DAMPING_PERCENT: &str = "spectral_damping_percent";
+
+impl Spectral {
+    /// Without keys: 1 s, and the 5 % of codes.
+    pub(crate) const DEFAULT: Self = Self {
+        period_s: 1.0,
+        damping_percent: 5.0,
+    };
+
+    fn read(table: &mut Table<'_>) -> Reading<Self> {
+        const PERIOD_S: Number = Number(Included(0.01), Included(100.0));
+        const DAMPING_PERCENT: Number = Number(Included(0.0), Included(99.0));
+        let period_s = table.or(SPECTRAL_PERIOD_S, &PERIOD_S, Self::DEFAULT.period_s);
+        let damping_percent = table.or(
+            SPECTRAL_DAMPING_PERCENT,
+            &DAMPING_PERCENT,
+            Self::DEFAULT.damping_percent,
+        );
+        Ok(Self {
+            period_s: period_s?,
+            damping_percent: damping_percent?,
+        })
+    }
 }
 
 /// Largest number of cases of a suite: their rows must fit into memory.
@@ -98,6 +135,7 @@ impl Suite {
         let levels = levels.collect();
         let levels = table.exactly_one("keys", levels);
         let both_signs = table.or("both_signs", &Switch, true);
+        let spectral = Spectral::read(table);
         let listing = Listing::read(table, folder, vec![(RECORDS, patterns)], format);
         let (listing, (measure, levels), both_signs) = (listing?, levels?, both_signs?);
         let values = levels.values();
@@ -117,6 +155,7 @@ impl Suite {
             measure,
             levels,
             both_signs,
+            spectral: spectral?,
         })
     }
 
@@ -135,6 +174,8 @@ impl Serialize for Suite {
         serialize_layout(&mut map, self.records.iter())?;
         map.serialize_entry(self.measure.name(), &self.levels)?;
         map.serialize_entry("both_signs", &self.both_signs)?;
+        map.serialize_entry(SPECTRAL_PERIOD_S, &self.spectral.period_s)?;
+        map.serialize_entry(SPECTRAL_DAMPING_PERCENT, &self.spectral.damping_percent)?;
         map.end()
     }
 }

@@ -3,6 +3,7 @@
 pub mod fragility;
 mod ida;
 mod picture;
+pub mod strength;
 mod told;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,10 +11,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
+use self::strength::Strength;
 pub use self::told::Heading;
 use super::ending::{Ending, Verdict, check_finite};
 use super::runner::Study;
 use super::survival::Survival;
+use crate::bisection::{Width, try_bisect};
 use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{Case, Model};
 use crate::scenario::{Measure, ModelError, Scenario, Suite};
@@ -31,6 +34,12 @@ pub struct CaseRow {
     pub peak_g: f64,
     /// How its history ended, or why it could not be computed.
     pub result: Result<Ending, String>,
+    /// Where it overturns and the level below does not: the lowest level between the two that overturns, by bisection.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edge: Option<f64>,
+    /// How strong the record is in its file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength: Option<Strength>,
 }
 
 impl CaseRow {
@@ -71,6 +80,8 @@ pub struct RecordSuite<'a> {
     suite: &'a Suite,
     model: Box<dyn Model>,
     levels: Vec<f64>,
+    /// How strong each record is in its file.
+    strengths: Vec<Strength>,
 }
 
 impl<'a> RecordSuite<'a> {
@@ -106,6 +117,11 @@ impl<'a> RecordSuite<'a> {
             suite,
             model: scenario.model()?,
             levels: suite.levels.values(),
+            strengths: suite
+                .records
+                .iter()
+                .map(|series| Strength::of(series, suite.spectral, scenario.gravity_m_s2()))
+                .collect(),
         })
     }
 
@@ -152,10 +168,20 @@ impl Study for RecordSuite<'_> {
         let cases: Vec<Case> = indices.iter().map(case).collect();
         let results = Ending::of_all(&*self.model, &cases);
         let rows = indices.iter().zip(results);
-        rows.map(|(index, result)| self.case_row(*index, result))
-            .collect()
+        rows.map(|(index, result)| {
+            let overturns = |ending: &Ending| ending.verdict() == Verdict::Overturns;
+            let edge = match &result {
+                Ok(ending) if overturns(ending) => self.edge(*index),
+                _ => None,
+            };
+            self.case_row(*index, result, edge)
+        })
+        .collect()
     }
 }
+
+/// How closely an edge is enclosed, as a part of it: far closer than records agree.
+const EDGE_WIDTH: f64 = 2e-3;
 
 impl RecordSuite<'_> {
     /// The level of a case, the index of its record, and whether the record is mirrored.
@@ -165,7 +191,25 @@ impl RecordSuite<'_> {
         (level, shake / self.signs(), shake % self.signs() == 1)
     }
 
-    fn case_row(&self, index: usize, result: Result<Ending, String>) -> CaseRow {
+    /// The lowest level that overturns above the one below that of a case that does, if that one does not.
+    fn edge(&self, index: usize) -> Option<f64> {
+        let below = (index % self.levels.len()).checked_sub(1)?;
+        let (level, record, mirrored) = self.place(index);
+        let request = self.scenario.request_from_rest();
+        let overturns = |level: f64| {
+            let shake = self.suite.shake(record, level, mirrored);
+            let ending = Ending::of(&*self.model, &shake.motion(request.gravity_m_s2), &request);
+            ending.map(|ending| ending.verdict() == Verdict::Overturns)
+        };
+        let below = self.levels[below];
+        if overturns(below).ok()? {
+            return None;
+        }
+        let ends = try_bisect(below, level, Width::Relative(EDGE_WIDTH), overturns);
+        ends.ok().map(|(_, overturns)| overturns)
+    }
+
+    fn case_row(&self, index: usize, result: Result<Ending, String>, edge: Option<f64>) -> CaseRow {
         let (level, record, mirrored) = self.place(index);
         let series = &self.suite.records[record];
         let own_g = series.peak_g(self.scenario.gravity_m_s2());
@@ -179,6 +223,8 @@ impl RecordSuite<'_> {
             scale,
             peak_g,
             result: check_finite(&[scale, peak_g]).and(result),
+            edge,
+            strength: Some(self.strengths[record]),
         }
     }
 }

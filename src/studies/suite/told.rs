@@ -3,11 +3,13 @@
 use serde_json::{Value, json};
 
 use super::fragility::{Errors, Fragility, NoFit};
+use super::ida::{Fractiles, PeakUpTo};
+use super::strength::{Capacity, Efficiency, MEASURES, efficiencies};
 use super::{CaseRow, CurvePoint, FragilityRow, SuiteFragility, ida, picture};
 use crate::argument::plain;
-use crate::output::table::{Column, column, csv};
+use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, finite, pretty};
-use crate::scenario::{Measure, Scenario, Spacing, Suite, shown};
+use crate::scenario::{Measure, Scenario, Spacing, Spectral, Suite, shown};
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, number};
 use crate::studies::remarks::{Remarks, counts, in_words};
@@ -78,11 +80,30 @@ impl Heading {
                         .fitted(|figure| ida::draw(figure, self, &results))
                         .into_bytes(),
                 ),
+                (
+                    "peaks.svg",
+                    figure
+                        .fitted(|figure| ida::draw_peaks(figure, self, &results))
+                        .into_bytes(),
+                ),
+                (
+                    "ida.csv",
+                    csv(self.ida_columns(), &ida::fractiles(&results))?,
+                ),
+                ("peaks.csv", csv(peak_columns(), &ida::peaks(&results))?),
+                (
+                    "capacity.csv",
+                    csv(self.capacity_columns(), &results.capacities())?,
+                ),
+                (
+                    "intensity.csv",
+                    csv(efficiency_columns(), &efficiencies(&results.capacities()))?,
+                ),
                 ("fragility.csv", csv(self.level_columns(), &results.levels)?),
                 (FRAGILITY, pretty(&to_json(self, &results)?).into_bytes()),
                 ("suite.csv", csv(self.case_columns(), &results.cases)?),
             ],
-            words: words(&results),
+            words: words(self, &results),
             ..Results::default()
         })
     }
@@ -147,6 +168,62 @@ impl Heading {
         all
     }
 
+    /// The columns for one row per level of the incremental dynamic analysis.
+    fn ida_columns(&self) -> Vec<Column<'static, Fractiles>> {
+        vec![
+            column(self.measure.column(), |level: &Fractiles| level.intensity),
+            column("cases", |level: &Fractiles| level.cases),
+            column("overturned", |level: &Fractiles| level.overturned),
+            column("peak_16", |level: &Fractiles| level.peaks[0]),
+            column("peak_50", |level: &Fractiles| level.peaks[1]),
+            column("peak_84", |level: &Fractiles| level.peaks[2]),
+        ]
+    }
+
+    /// The columns for one row per record. Missing values are empty.
+    fn capacity_columns<'r>(&self) -> Vec<Column<'r, Capacity<'r>>> {
+        let measures = MEASURES.map(|(name, _, _)| name.to_owned()).to_vec();
+        vec![
+            column("record", |capacity: &Capacity<'_>| shown(capacity.record)),
+            column(
+                "sign",
+                |capacity: &Capacity<'_>| if capacity.mirrored { "-1" } else { "1" },
+            ),
+            column("scale", |capacity: &Capacity<'_>| capacity.scale),
+            several(
+                measures,
+                |capacity: &Capacity<'_>, cells: &mut Vec<Cell<'_>>| {
+                    cells.extend(capacity.in_measures.map(Cell::from));
+                },
+            ),
+            column(
+                "at_most",
+                |capacity: &Capacity<'_>| if capacity.at_most { "yes" } else { "no" },
+            ),
+        ]
+    }
+
+    /// What a measure of intensity is called.
+    fn measure_in_words(&self, measure: usize) -> String {
+        let (name, words, _) = MEASURES[measure];
+        if name != "spectral_acceleration_g" {
+            return words.to_owned();
+        }
+        let of = |key: &str, default: f64| {
+            let own = self.scenario["suite"].get(key).and_then(Value::as_f64);
+            plain(own.unwrap_or(default))
+        };
+        let Spectral {
+            period_s,
+            damping_percent,
+        } = Spectral::DEFAULT;
+        format!(
+            "{words} at {} s and {} %",
+            of("spectral_period_s", period_s),
+            of("spectral_damping_percent", damping_percent)
+        )
+    }
+
     fn has_joints(&self) -> bool {
         let tables = ["free_hinges", "elastic_joints"];
         tables
@@ -158,6 +235,27 @@ impl Heading {
         let title = self.scenario.get("title").and_then(Value::as_str);
         title.unwrap_or("Fragility under a suite of records")
     }
+}
+
+/// A row per measure of intensity, the most efficient first.
+fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
+    vec![
+        column("measure", |of: &Efficiency| MEASURES[of.measure].0),
+        column("capacities", |of: &Efficiency| of.capacities),
+        column("median", |of: &Efficiency| of.median),
+        column("dispersion", |of: &Efficiency| of.dispersion),
+        column("dispersion_of_factor", |of: &Efficiency| {
+            of.dispersion_of_factor
+        }),
+    ]
+}
+
+/// The distribution of peaks: a row per case that did not overturn.
+fn peak_columns() -> Vec<Column<'static, PeakUpTo>> {
+    vec![
+        column("peak", |at: &PeakUpTo| at.peak),
+        column("share", |at: &PeakUpTo| at.share),
+    ]
 }
 
 /// The number of records, in words.
@@ -199,6 +297,17 @@ fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputE
     for (name, count) in counts {
         json[name] = json!(count);
     }
+    let capacities = results.capacities();
+    let measures = efficiencies(&capacities).into_iter().map(|of| {
+        json!({
+            "measure": MEASURES[of.measure].0,
+            "capacities": of.capacities,
+            "median": of.median,
+            "dispersion": of.dispersion,
+            "dispersion_of_factor": of.dispersion_of_factor,
+        })
+    });
+    json["intensity_measures"] = measures.collect();
     json["mirrored_cases_count"] = json!(results.mirrored_count);
     json["records_that_never_overturn"] = json!(results.always(Verdict::Survives));
     json["records_that_always_overturn"] = json!(results.always(Verdict::Overturns));
@@ -316,7 +425,7 @@ fn digits(error: f64) -> usize {
 }
 
 /// The results in words, line by line.
-fn words(results: &SuiteFragility) -> String {
+fn words(heading: &Heading, results: &SuiteFragility) -> String {
     let mut lines = vec![counted(results)];
     let column = results.measure.column();
     let curves = curves_in_words(results).into_iter();
@@ -324,6 +433,7 @@ fn words(results: &SuiteFragility) -> String {
         Ok(curve) => format!("fragility over {column}{taken}: {curve}"),
         Err(reason) => format!("no fragility curve{taken}: {reason}"),
     }));
+    lines.extend(measures_in_words(heading, results));
     for record in results.survivals() {
         let mirrored = if record.mirrored { " mirrored" } else { "" };
         let words = survival::in_words(&record.survival, unit(results.measure));
@@ -340,6 +450,33 @@ fn words(results: &SuiteFragility) -> String {
         lines.push(format!("{words}; what failed does not count"));
     }
     lines.join("\n  ")
+}
+
+/// Which measure of intensity tells best what overturns.
+fn measures_in_words(heading: &Heading, results: &SuiteFragility) -> Option<String> {
+    let capacities = results.capacities();
+    let all = efficiencies(&capacities);
+    let (best, others) = all.split_first()?;
+    let of = |one: &Efficiency| {
+        format!(
+            "{} {:.2}",
+            heading.measure_in_words(one.measure),
+            one.dispersion_of_factor
+        )
+    };
+    let others: Vec<String> = others.iter().map(of).collect();
+    let left_out = match capacities.len() - best.capacities {
+        0 => String::new(),
+        count => format!(
+            "; {count} of {} that do not overturn are left out",
+            capacities.len()
+        ),
+    };
+    Some(format!(
+        "most efficient measure of intensity: {}; {} (dispersion of the factor on a record that overturns){left_out}",
+        of(best),
+        others.join(", ")
+    ))
 }
 
 /// The number of cases with each outcome.

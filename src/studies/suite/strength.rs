@@ -1,0 +1,157 @@
+//! How strong a record is when it first overturns the structure, in several measures of intensity, and which of these tells that best.
+//!
+//! The capacity under a record is the lowest intensity that overturns. In a measure in which all records overturn at about the same
+//! intensity one number says nearly all of a ground motion: it is efficient (Luco and Cornell, Earthquake Spectra 23, 2007). The
+//! measure of its inefficiency is the dispersion of the capacities: the standard deviation of their logarithms.
+
+use serde::{Deserialize, Serialize};
+
+use super::{CaseRow, SuiteFragility};
+use crate::dynamics::demand::oscillator::peak_displacement;
+use crate::dynamics::ground::intensity::Intensity;
+use crate::scenario::{Series, Spectral};
+use crate::studies::ending::Verdict;
+
+/// How strong a record is as it is in its file, in the measures that its peak does not tell.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Strength {
+    /// Peak velocity, in m/s.
+    pub velocity_m_s: f64,
+    /// Spectral acceleration, in units of gravity.
+    pub spectral_g: f64,
+    /// Arias intensity, in m/s.
+    pub arias_m_s: f64,
+}
+
+impl Strength {
+    /// That of a record: the spectral acceleration is the pseudo-acceleration, `omega^2` times the largest displacement.
+    #[must_use]
+    pub fn of(series: &Series, spectral: Spectral, gravity_m_s2: f64) -> Self {
+        let samples = series.accelerations_m_s2(gravity_m_s2);
+        let intensity = Intensity::of(&samples, gravity_m_s2);
+        let Spectral {
+            period_s,
+            damping_percent,
+        } = spectral;
+        let displacement_m = peak_displacement(&samples, period_s, damping_percent);
+        let omega = 2.0 * std::f64::consts::PI / period_s;
+        Self {
+            velocity_m_s: intensity.velocity_m_s.value,
+            spectral_g: omega * omega * displacement_m / gravity_m_s2,
+            arias_m_s: intensity.arias_m_s,
+        }
+    }
+}
+
+/// The lowest intensity that overturns under a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Capacity<'a> {
+    /// The file.
+    pub record: &'a str,
+    /// Whether it is mirrored.
+    pub mirrored: bool,
+    /// The factor on the record; `None` if no level overturns.
+    pub scale: Option<f64>,
+    /// Whether the lowest level overturns already, so that the capacity may be less.
+    pub at_most: bool,
+    /// The intensity as the suite measures it, and in all [`MEASURES`], at that factor.
+    pub level: Option<f64>,
+    /// In the order of [`MEASURES`].
+    pub in_measures: [Option<f64>; 4],
+}
+
+/// The measures: their names in results, what they are called, and the power of the factor on a record with which they grow.
+pub const MEASURES: [(&str, &str, f64); 4] = [
+    ("peak_g", "peak acceleration", 1.0),
+    ("peak_velocity_m_s", "peak velocity", 1.0),
+    ("spectral_acceleration_g", "spectral acceleration", 1.0),
+    ("arias_m_s", "Arias intensity", 2.0),
+];
+
+/// How well a measure tells what overturns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Efficiency {
+    /// Which of the [`MEASURES`].
+    pub measure: usize,
+    /// Number of capacities.
+    pub capacities: usize,
+    /// Their geometric mean.
+    pub median: f64,
+    /// The standard deviation of their logarithms.
+    pub dispersion: f64,
+    /// The same of the factor on the record that it stands for: of measures that grow with its square half of that.
+    pub dispersion_of_factor: f64,
+}
+
+impl SuiteFragility {
+    /// The capacity under each record, mirrored where that counts.
+    #[must_use]
+    pub fn capacities(&self) -> Vec<Capacity<'_>> {
+        let counts = |case: &&CaseRow| self.mirrored_count || !case.mirrored;
+        let cases: Vec<&CaseRow> = self.cases.iter().filter(counts).collect();
+        cases
+            .chunk_by(|a, b| (&a.record, a.mirrored) == (&b.record, b.mirrored))
+            .map(|levels| self.capacity(levels))
+            .collect()
+    }
+
+    fn capacity<'a>(&self, levels: &[&'a CaseRow]) -> Capacity<'a> {
+        let first = levels
+            .iter()
+            .position(|case| case.verdict() == Some(Verdict::Overturns));
+        let own = levels[first.unwrap_or(0)];
+        let level = first.map(|_| own.edge.unwrap_or(own.level(self.measure)));
+        let scale = level.map(|level| own.scale * level / own.level(self.measure));
+        // What the peak is multiplied by, all others are too.
+        let peak_g = scale.map(|scale| own.peak_g / own.scale * scale);
+        let of = |strength: fn(&Strength) -> f64, power: i32| {
+            Some(strength(own.strength.as_ref()?) * scale?.powi(power))
+        };
+        Capacity {
+            record: &own.record,
+            mirrored: own.mirrored,
+            scale,
+            at_most: first == Some(0),
+            level,
+            in_measures: [
+                peak_g,
+                of(|strength| strength.velocity_m_s, 1),
+                of(|strength| strength.spectral_g, 1),
+                of(|strength| strength.arias_m_s, 2),
+            ],
+        }
+    }
+}
+
+/// Fewest capacities that tell a dispersion.
+const LEAST_CAPACITIES: usize = 3;
+
+/// How well each measure tells what overturns, the best first. What does not overturn is left out; empty if fewer than
+/// three records do.
+#[must_use]
+pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
+    let of = |measure: usize| {
+        let found = capacities
+            .iter()
+            .filter_map(|capacity| capacity.in_measures[measure]);
+        let logarithms: Vec<f64> = found.filter(|at| *at > 0.0).map(f64::ln).collect();
+        if logarithms.len() < LEAST_CAPACITIES {
+            return None;
+        }
+        let count = logarithms.len() as f64;
+        let mean = logarithms.iter().sum::<f64>() / count;
+        let squares: f64 = logarithms.iter().map(|value| (value - mean).powi(2)).sum();
+        let dispersion = (squares / (count - 1.0)).sqrt();
+        let (_, _, power) = MEASURES[measure];
+        Some(Efficiency {
+            measure,
+            capacities: logarithms.len(),
+            median: mean.exp(),
+            dispersion,
+            dispersion_of_factor: dispersion / power,
+        })
+    };
+    let mut all: Vec<Efficiency> = (0..MEASURES.len()).filter_map(of).collect();
+    all.sort_by(|a, b| a.dispersion_of_factor.total_cmp(&b.dispersion_of_factor));
+    all
+}
