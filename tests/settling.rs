@@ -15,7 +15,7 @@ use clarabel::solver::{
 };
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use crate::program::{done, printed, refused};
+use crate::program::{printed, refused};
 use crate::results::{Table, json};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
@@ -769,7 +769,7 @@ fn a_scenario_says_where_its_springings_have_gone() {
     let told: serde_json::Value = serde_json::from_str(&told).unwrap();
     assert!(told["incipient_acceleration_g"]["right"].as_f64().unwrap() < 0.08);
     // Its rigid twin would stand on other springings.
-    let said = done(folder.path(), &["run", "arch.toml"]);
+    let said = printed(folder.path(), &["run", "arch.toml"]);
     assert!(
         said.contains(
             "with rigid joints (free hinges): they start on the springings that were built"
