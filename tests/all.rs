@@ -69,6 +69,8 @@ mod spectrum;
 mod suite;
 mod threshold;
 mod thrust;
+mod ties;
+mod ties_in_motion;
 mod tour;
 mod uncertain;
 mod validation;

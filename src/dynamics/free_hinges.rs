@@ -19,6 +19,7 @@ use super::row::course::{self, Clock, Task};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::joints::Placement;
+use crate::mechanics::tie::square_frequency;
 
 /// The shortest step over the longest one, where it is not given.
 const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
@@ -29,6 +30,9 @@ const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
 const CROWDED_IMPACTS: usize = 50;
 /// The time after an impact in which a repetition merges landings, over the shortest step.
 const MERGED_RATIO: f64 = 4.0;
+/// Steps over the longest ones with which a block between ties would be stable. Joints make of blocks heavier bodies, whose steps might be
+/// longer.
+const TIE_STEP_RATIO: f64 = 0.2;
 /// The most steps that a motion may have: a month of computing. Much shorter ones are lost in the rounding of the time.
 const MOST_STEPS: f64 = 1e12;
 
@@ -74,6 +78,16 @@ impl Settings {
             shortest_step_s: step_s,
             ..Self::to_landings(row, gravity_m_s2, end_s)
         }
+    }
+
+    /// The same with steps that are short beside the vibration of blocks on the ties of the row.
+    fn for_ties(self, row: &Row) -> Self {
+        let square = square_frequency(row.ties(), row.blocks());
+        if square == 0.0 {
+            return self;
+        }
+        let longest_s = TIE_STEP_RATIO * 2.0 / square.sqrt();
+        self.times((longest_s / self.longest_step_s).min(1.0))
     }
 
     /// The same with all steps multiplied.

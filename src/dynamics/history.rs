@@ -10,7 +10,9 @@ use super::model::Recorder;
 use super::thrust::ThrustRecord;
 use crate::mechanics::chain::{Demand, Hinge};
 use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::lanes::Lanes;
 use crate::mechanics::sway::Sway;
+use crate::mechanics::tie::{Tie, TieMemory};
 
 /// How a history ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -124,6 +126,93 @@ pub struct Sample {
     pub offsets_m: Vec<f64>,
     /// Forces and stresses of the joints; only for a row with elastic joints.
     pub pressures: Vec<JointPressure>,
+    /// What each tie does; none where there are none.
+    pub ties: Vec<TieSample>,
+}
+
+/// What a tie does at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TieSample {
+    /// What it pulls with, in N.
+    pub force_n: f64,
+    /// By how much it is longer than in the undeformed structure, in m.
+    pub elongation_m: f64,
+}
+
+impl TieSample {
+    /// Of a tie that remembers this.
+    pub(in crate::dynamics) fn of(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
+        Self {
+            force_n: memory.force_n.0[0],
+            elongation_m: memory.stretch_m.0[0] - tie.prestress_n / tie.stiffness_n_m,
+        }
+    }
+}
+
+/// What a tie did in a history.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TieSummary {
+    /// What it pulled with most, in N.
+    pub peak_force_n: f64,
+    /// When, in s.
+    pub peak_force_time_s: f64,
+    /// When it yielded first, in s, if it did.
+    pub yielded_s: Option<f64>,
+    /// When it broke, in s, if it did.
+    pub broken_s: Option<f64>,
+    /// By how much it has yielded, in m.
+    pub yielded_m: f64,
+    /// What it pulls with at the end, in N.
+    pub force_n: f64,
+    /// Elastic energy in it at the end, in J.
+    pub elastic_j: f64,
+    /// What it took as it yielded and broke, in J.
+    pub taken_j: f64,
+}
+
+impl TieSummary {
+    /// Of a tie at rest.
+    pub(in crate::dynamics) fn at_rest(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
+        Self {
+            peak_force_n: memory.force_n.0[0],
+            peak_force_time_s: 0.0,
+            yielded_s: None,
+            broken_s: None,
+            yielded_m: memory.yielded_m.0[0],
+            force_n: memory.force_n.0[0],
+            elastic_j: memory.energy_j(tie).0[0],
+            taken_j: 0.0,
+        }
+    }
+
+    /// Notes what it does at a time; what happened to it since the last time.
+    pub(in crate::dynamics) fn note(
+        &mut self,
+        tie: &Tie,
+        memory: &TieMemory<Lanes<1>>,
+        time_s: f64,
+    ) -> [Option<EventKind>; 2] {
+        if memory.peak_n.0[0] > self.peak_force_n {
+            self.peak_force_n = memory.peak_n.0[0];
+            self.peak_force_time_s = time_s;
+        }
+        let yields = self.yielded_s.is_none() && memory.yielded_m.0[0] > self.yielded_m;
+        let breaks = self.broken_s.is_none() && memory.intact.0[0] == 0.0;
+        if yields {
+            self.yielded_s = Some(time_s);
+        }
+        if breaks {
+            self.broken_s = Some(time_s);
+        }
+        self.yielded_m = memory.yielded_m.0[0];
+        self.force_n = memory.force_n.0[0];
+        self.elastic_j = memory.energy_j(tie).0[0];
+        self.taken_j = memory.taken_j.0[0];
+        [
+            yields.then_some(EventKind::TieYields),
+            breaks.then_some(EventKind::TieBreaks),
+        ]
+    }
 }
 
 /// Forces and stresses of an elastic joint, by its elastic stress.
@@ -163,6 +252,7 @@ impl Sample {
             eccentricity_ratios: Vec::new(),
             offsets_m: Vec::new(),
             pressures: Vec::new(),
+            ties: Vec::new(),
         }
     }
 }
@@ -178,6 +268,10 @@ named! {
         Rest = "rest",
         /// The structure has overturned.
         Overturned = "overturned",
+        /// A tie yields for the first time.
+        TieYields = "tie_yields",
+        /// A tie breaks.
+        TieBreaks = "tie_breaks",
     }
 }
 
@@ -203,6 +297,8 @@ pub struct Event {
     pub hinges: Vec<Hinge>,
     /// The impact, if the event is one, also if it leads to rest.
     pub impact: Option<Impact>,
+    /// The tie, where the event is one of a tie, from 0 on.
+    pub tie: Option<usize>,
 }
 
 impl Event {
@@ -351,6 +447,8 @@ pub struct RowSummary {
     pub sliding: Option<Sliding>,
     /// Energies and stresses of elastic joints; `None` where joints are rigid.
     pub elastic: Option<ElasticSummary>,
+    /// What its ties did.
+    pub ties: Vec<TieSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
     /// Largest potential energy above rest, in J, with that of elastic joints.
@@ -437,6 +535,8 @@ pub struct ElasticSummary {
     pub friction_j: f64,
     /// Energy that crushing took, in J.
     pub crushed_j: f64,
+    /// What ties took as they yielded and broke, in J.
+    pub ties_j: f64,
     /// Work of the moving ground, in J.
     pub ground_j: f64,
     /// How far the thrust lies from the middle of the worst joint at rest, over its length, before the motion.
@@ -531,6 +631,8 @@ pub struct Samples {
     pub offsets_m: Vec<f64>,
     /// Forces and stresses of the joints, joint by joint; only for a row with elastic joints.
     pub pressures: Vec<JointPressure>,
+    /// Forces and elongations of the ties, tie by tie.
+    pub ties: Vec<TieSample>,
 }
 
 impl Samples {
@@ -569,6 +671,7 @@ impl Samples {
         self.gaps_m.extend(&sample.gaps_m);
         self.offsets_m.extend(&sample.offsets_m);
         self.pressures.extend(&sample.pressures);
+        self.ties.extend(&sample.ties);
         self.rotation_over_critical
             .push(sample.rotation_over_critical);
     }
@@ -585,6 +688,8 @@ impl Samples {
         let slipping = index * slipping..(index + 1) * slipping;
         let pressing = self.pressures.len() / self.len();
         let pressing = index * pressing..(index + 1) * pressing;
+        let ties = self.ties.len() / self.len();
+        let ties = index * ties..(index + 1) * ties;
         let hinges_end = self.first_hinge.get(index + 1).copied();
         let hinges = *self.first_hinge.get(index)?..hinges_end.unwrap_or(self.hinges.len());
         Some(Sample {
@@ -605,6 +710,7 @@ impl Samples {
             eccentricity_ratios: Vec::new(),
             offsets_m: self.offsets_m.get(slipping)?.to_vec(),
             pressures: self.pressures.get(pressing)?.to_vec(),
+            ties: self.ties.get(ties)?.to_vec(),
         })
     }
 
@@ -630,6 +736,8 @@ pub struct Shape {
     pub slipping: usize,
     /// Number of joints whose forces and stresses are sampled.
     pub pressing: usize,
+    /// Number of ties.
+    pub ties: usize,
 }
 
 impl Shape {
@@ -647,7 +755,8 @@ impl Shape {
         let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
         let by_joint = self.joints * size_of::<[f64; 2]>()
             + self.slipping * size_of::<f64>()
-            + self.pressing * size_of::<JointPressure>();
+            + self.pressing * size_of::<JointPressure>()
+            + self.ties * size_of::<TieSample>();
         let each = alone + self.bodies * by_body + hinges + by_joint;
         samples.saturating_mul(each as u64)
     }

@@ -90,6 +90,7 @@ pub trait Model: Debug + Send + Sync {
             joints: 0,
             slipping: 0,
             pressing: 0,
+            ties: 0,
         }
     }
 

@@ -12,12 +12,16 @@ use std::ops::Add;
 use nalgebra::Vector2;
 use thiserror::Error;
 
+use super::tie::{Tie, TieError};
 use crate::mechanics::geometry::curve::{Curve, polygon};
 use crate::mechanics::geometry::ring::{Edge, MassMoments, Ring};
 
 /// The most blocks that a row may have. The work of a step grows with their number and so does the number of
 /// impacts, while thresholds hardly change beyond a few dozen voussoirs.
 pub const MAX_BLOCKS: usize = 500;
+
+/// Gravity where none is given.
+const GRAVITY_M_S2: f64 = 9.81;
 
 /// The size of a row is at least this fraction of its extent.
 const LEAST_SIZE_RATIO: f64 = 1e-6;
@@ -259,6 +263,9 @@ pub struct Row {
     handedness: f64,
     /// Whether the left and the right support extend beyond their joints.
     supports_go_on: [bool; 2],
+    ties: Vec<Tie>,
+    /// What their forces are weighed with where loads are in units of gravity.
+    gravity_m_s2: f64,
 }
 
 impl Row {
@@ -373,7 +380,34 @@ impl Row {
             outlines_m,
             handedness,
             supports_go_on: [false; 2],
+            ties: Vec::new(),
+            gravity_m_s2: GRAVITY_M_S2,
         })
+    }
+
+    /// The same row with these ties and no others, under this gravity.
+    ///
+    /// # Errors
+    /// When a tie is none: with its index.
+    pub fn with_ties(
+        mut self,
+        ties: Vec<Tie>,
+        gravity_m_s2: f64,
+    ) -> Result<Self, (usize, TieError)> {
+        for (index, tie) in ties.iter().enumerate() {
+            tie.check(self.blocks.len(), self.size_m)
+                .map_err(|error| (index, error))?;
+        }
+        self.ties = ties;
+        self.gravity_m_s2 = gravity_m_s2;
+        Ok(self)
+    }
+
+    /// The same row without its ties.
+    #[must_use]
+    pub fn without_ties(mut self) -> Self {
+        self.ties.clear();
+        self
     }
 
     /// The same row, drawn with other outlines of its blocks: closed polygons, in metres.
@@ -431,6 +465,10 @@ impl Row {
                 .map(|outline| outline.iter().rev().copied().map(mirror).collect())
                 .collect(),
             supports_go_on: [self.supports_go_on[1], self.supports_go_on[0]],
+            ties: {
+                let ties = self.ties.iter();
+                ties.map(|tie| tie.mirrored(self.blocks.len())).collect()
+            },
             ..*self
         })
     }
@@ -638,6 +676,18 @@ impl Row {
     #[must_use]
     pub fn outlines_m(&self) -> &[Vec<Vector2<f64>>] {
         &self.outlines_m
+    }
+
+    /// Its ties.
+    #[must_use]
+    pub fn ties(&self) -> &[Tie] {
+        &self.ties
+    }
+
+    /// The gravity that its ties were given with, in m/s2.
+    #[must_use]
+    pub const fn gravity_m_s2(&self) -> f64 {
+        self.gravity_m_s2
     }
 
     /// `e x n` of its joints: -1 in an arch, 1 in a stack.

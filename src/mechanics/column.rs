@@ -23,6 +23,7 @@ use serde::Serialize;
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
 use super::blocks::{MAX_BLOCKS, Row, RowError};
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
+use super::tie::{Tie, TieError};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::resultant::SectionResultant;
@@ -126,6 +127,9 @@ pub struct Column {
     top_width_m: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pedestal: bool,
+    /// With the gravity that they were given with.
+    #[serde(skip)]
+    ties: Option<(Vec<Tie>, f64)>,
 }
 
 impl Column {
@@ -142,6 +146,7 @@ impl Column {
             drum_heights_m: None,
             top_width_m: None,
             pedestal: false,
+            ties: None,
         })
     }
 
@@ -204,6 +209,28 @@ impl Column {
         Self { pedestal, ..self }
     }
 
+    /// The same column with these ties, under this gravity: it is then a row of blocks, also where it is one prism.
+    ///
+    /// # Errors
+    /// When a tie is none: with its index.
+    pub fn with_ties(self, ties: Vec<Tie>, gravity_m_s2: f64) -> Result<Self, (usize, TieError)> {
+        let (blocks, size_m) = (
+            self.drum_heights_m().len(),
+            0.5 * self.height_m.hypot(self.width_m),
+        );
+        for (index, tie) in ties.iter().enumerate() {
+            tie.check(blocks, size_m).map_err(|error| (index, error))?;
+        }
+        let ties = (!ties.is_empty()).then_some((ties, gravity_m_s2));
+        Ok(Self { ties, ..self })
+    }
+
+    /// Its ties.
+    #[must_use]
+    pub fn ties(&self) -> &[Tie] {
+        self.ties.as_ref().map_or(&[], |(ties, _)| ties)
+    }
+
     /// Whether it stands on a pedestal as wide as its base.
     #[must_use]
     pub const fn is_on_pedestal(&self) -> bool {
@@ -223,7 +250,13 @@ impl Column {
             self.depth_m(),
             self.density_kg_m3(),
         )?;
-        Ok(row.with_supports_that_go_on([!self.is_on_pedestal(), false]))
+        let row = row.with_supports_that_go_on([!self.is_on_pedestal(), false]);
+        Ok(match &self.ties {
+            Some((ties, gravity_m_s2)) => row
+                .with_ties(ties.clone(), *gravity_m_s2)
+                .expect("they were checked with the same blocks"),
+            None => row,
+        })
     }
 
     /// Heights of its drums from the base up, in metres; its own height where it is one block.
@@ -234,10 +267,11 @@ impl Column {
             .unwrap_or_else(|| vec![self.height_m])
     }
 
-    /// Whether it is one block with upright sides, as in Housner's model.
+    /// Whether it is one block with upright sides, which nothing but the ground holds, as in Housner's model.
     #[must_use]
     pub fn is_one_prism(&self) -> bool {
-        self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m
+        let prism = self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m;
+        prism && self.ties.is_none()
     }
 
     /// Width at the top, in metres.

@@ -12,6 +12,7 @@ mod contact;
 mod kinematics;
 mod statics;
 mod structure;
+mod tie;
 
 pub use contact::{Contact, Fibre, Memory, Pressure, Work};
 pub use kinematics::{Gap, Link, Place};
@@ -19,3 +20,4 @@ pub use statics::{Rest, RestError};
 pub use structure::{
     Body, ElasticJoint, ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness,
 };
+pub use tie::BoundTie;

@@ -182,6 +182,19 @@ impl Program {
             }
             right.extend([0.0, weight, 0.0]);
         }
+        // What the ties pull with at rest.
+        for tie in row.ties() {
+            let pull = tie.prestress_n / (row.gravity_m_s2() * mass_kg);
+            for (anchor, towards) in tie.ends.iter().zip([tie.along(), -tie.along()]) {
+                if let Some(number) = anchor.block {
+                    let arm_m = anchor.at_m - row.blocks()[number].centre_m;
+                    let moment = arm_m.perp(&towards) / size_m;
+                    for (axis, value) in [towards.x, towards.y, moment].into_iter().enumerate() {
+                        right[3 * number + axis] -= pull * value;
+                    }
+                }
+            }
+        }
         for (index, joint) in row.joints().iter().enumerate() {
             let along = joint.along();
             let normal = turned(along) * row.handedness();

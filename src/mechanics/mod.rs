@@ -27,4 +27,5 @@ pub mod settling;
 pub mod slip;
 pub mod stability;
 pub mod sway;
+pub mod tie;
 pub mod virtual_work;

@@ -141,6 +141,34 @@ impl Parts for Row {
     }
 }
 
+impl Row {
+    /// The blocks that a point in metres is in, or on the edge of.
+    #[must_use]
+    pub fn blocks_at(&self, at_m: Vector2<f64>) -> Vec<usize> {
+        let outlines = self.outlines_m().iter().enumerate();
+        outlines
+            .filter(|(_, outline)| contains(outline, at_m))
+            .map(|(block, _)| block)
+            .collect()
+    }
+
+    /// How far a point is from a block, in metres; 0 in it.
+    #[must_use]
+    pub fn distance_m(&self, block: usize, at_m: Vector2<f64>) -> f64 {
+        let outline = &self.outlines_m()[block];
+        if contains(outline, at_m) {
+            return 0.0;
+        }
+        let next = outline.iter().cycle().skip(1);
+        let distances = outline.iter().zip(next).map(|(from, to)| {
+            let (along, arm) = (to - from, at_m - from);
+            let part = (arm.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            (arm - along * part).norm()
+        });
+        distances.fold(f64::INFINITY, f64::min)
+    }
+}
+
 #[expect(clippy::cast_precision_loss, reason = "blocks are few")]
 fn middle_of(block: usize) -> f64 {
     block as f64 + 0.5

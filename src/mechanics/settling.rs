@@ -176,6 +176,9 @@ pub enum SettlingError {
     /// A stack has one support.
     #[error("the row stands on one support alone, and nothing moves against it")]
     OneSupport,
+    /// Its ties would change as it moves.
+    #[error("springings that move are followed without ties: leave [[tie]] out")]
+    Ties,
     /// The undeformed row does not stand.
     #[error(transparent)]
     Stability(#[from] StabilityError),
@@ -207,8 +210,11 @@ impl<'a> Follower<'a> {
     /// The undeformed row.
     ///
     /// # Errors
-    /// When it is a stack, or does not stand.
+    /// When it is a stack, has ties, or does not stand.
     pub fn new(row: &'a Row) -> Result<Self, SettlingError> {
+        if !row.ties().is_empty() {
+            return Err(SettlingError::Ties);
+        }
         if row.supports() == Supports::Left {
             return Err(SettlingError::OneSupport);
         }

@@ -7,11 +7,12 @@
 //! bounds fall fast (Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967): it takes
 //! only a few programs.
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 use thiserror::Error;
 
 use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
+use super::tie::Anchor;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
@@ -40,6 +41,8 @@ pub struct RowOnset {
     pub openings: Vec<Opening>,
     /// Velocities of its blocks from left to right, in metres and up to a common factor; their pole is the origin.
     pub velocities: Vec<Twist>,
+    /// Rates at which its ties lengthen, likewise.
+    pub lengthening: Vec<f64>,
 }
 
 /// Why a row has no onset.
@@ -61,12 +64,12 @@ pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
     let undeformed = Placement::new(row);
     let mut trial = Trial::new(row, &undeformed);
     Ok(trial
-        .moves(Vector2::new(0.0, -1.0))?
+        .moves(Vector2::new(0.0, -1.0), true)?
         .map(|_| trial.openings()))
 }
 
-/// The least horizontal ground acceleration that starts the row swaying to a side; `None` when no push moves
-/// it without sliding.
+/// The least horizontal ground acceleration that starts the row swaying to a side, its ties pulling as they do at rest; `None` when no
+/// push moves it without sliding.
 ///
 /// # Errors
 /// When the row does not stand, or the velocities of a trial are not found.
@@ -75,7 +78,7 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
 }
 
 /// The same where some joints are open already, as where supports have moved: those press at their corners alone, and may go on
-/// opening or shut again.
+/// opening or shut again. Ties are taken as they are in the undeformed row.
 ///
 /// # Errors
 /// As [`onset`].
@@ -85,28 +88,225 @@ pub fn onset_at(
     sway: Sway,
 ) -> Result<Option<RowOnset>, StabilityError> {
     let mut trial = Trial::new(row, placement);
-    if trial.moves(Vector2::new(0.0, -1.0))?.is_some() {
-        return Err(StabilityError::CannotStand(trial.openings()));
+    match trial.pushed(sway)? {
+        Push::Moves(onset) => Ok(Some(onset)),
+        Push::MovesNothing => Ok(None),
+        Push::Falls => Err(StabilityError::CannotStand(trial.openings())),
     }
-    let mut load = Vector2::new(sway.sign(), 0.0);
-    let mut found: Option<RowOnset> = None;
-    while let Some(work) = trial.moves(load)? {
-        let acceleration_g = work.y / (sway.sign() * work.x);
-        // The bounds fall until rounding stops them.
-        if found
-            .as_ref()
-            .is_some_and(|found| acceleration_g >= found.acceleration_g * (1.0 - 1e-14))
-        {
+}
+
+/// What a row bears whose ties yield.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TiedLimit {
+    /// The push and the mechanism that it starts, under these forces.
+    pub onset: RowOnset,
+    /// What the ties pull with then, in N.
+    pub forces_n: Vec<f64>,
+}
+
+/// The largest horizontal ground acceleration that a row bears to a side whose ties pull with any force up to that at which they yield,
+/// whatever they pull with at rest, and the least of these forces; `None` when it bears any.
+///
+/// Every mechanism bounds push and forces by a plane. The planes met so far are a small linear programme for the push and the forces to
+/// try next, until nothing moves under these (Kelley, "The cutting-plane method for solving convex programs", J. SIAM 8, 1960).
+///
+/// # Errors
+/// When the row does not stand with the forces at rest, or the velocities of a trial are not found.
+pub fn limit_with_yielding_ties(
+    row: &Row,
+    sway: Sway,
+) -> Result<Option<TiedLimit>, StabilityError> {
+    let Some(at_rest) = onset(row, sway)? else {
+        return Ok(None);
+    };
+    let weight_n = row.mass_kg() * row.gravity_m_s2();
+    let ties = row.ties().iter();
+    let most: Vec<f64> = ties
+        .map(|tie| (tie.yield_force_n / weight_n).min(STRONGEST))
+        .collect();
+    let undeformed = Placement::new(row);
+    let mut trial = Trial::new(row, &undeformed);
+    let work_at_rest = work(row, undeformed.centres_m(), &at_rest.velocities);
+    let mut planes = vec![Plane::new(row, work_at_rest, &at_rest.lengthening, sway)];
+    let (mut push_g, mut forces) = (f64::INFINITY, Vec::new());
+    for _ in 0..MOST_TRIALS {
+        let Some((highest_g, next)) = highest(&planes, &most) else {
+            break;
+        };
+        if (highest_g, &next) == (push_g, &forces) {
             break;
         }
-        found = Some(RowOnset {
-            acceleration_g,
+        (push_g, forces) = (highest_g, next);
+        trial.ties_kg.clear();
+        trial
+            .ties_kg
+            .extend(forces.iter().map(|force| force * row.mass_kg()));
+        let mut lower_g = push_g;
+        let mut met = 0;
+        // With the same forces, down to the push that they bear.
+        while trial
+            .moves(Vector2::new(sway.sign() * lower_g, -1.0), true)?
+            .is_some()
+        {
+            let lengthening = trial.lengthening();
+            let plane = Plane::new(row, trial.work(), &lengthening, sway);
+            let bound_g = plane.bound_g(&forces);
+            planes.push(plane);
+            met += 1;
+            match bound_g {
+                Some(bound_g) if bound_g >= 0.0 && bound_g < lower_g * (1.0 - 1e-14) => {
+                    lower_g = bound_g;
+                }
+                _ => break,
+            }
+        }
+        if met == 0 {
+            break;
+        }
+    }
+    // What only the bounds of the programme hold is held by nothing.
+    let mut strongest = row.ties().iter().zip(&forces);
+    let unbounded = push_g >= 0.99 * LARGEST_PUSH
+        || strongest
+            .any(|(tie, force)| tie.yield_force_n > force * weight_n && *force >= 0.99 * STRONGEST);
+    if unbounded {
+        return Ok(None);
+    }
+    // The mechanism is that of a push a little larger.
+    let beyond = Vector2::new(sway.sign() * push_g * (1.0 + BEYOND), -1.0);
+    trial.moves(beyond, true)?;
+    Ok(Some(TiedLimit {
+        onset: RowOnset {
+            acceleration_g: push_g,
             openings: trial.openings(),
             velocities: trial.program.velocities().to_vec(),
-        });
-        load = Vector2::new(sway.sign() * acceleration_g, -1.0);
+            lengthening: trial.lengthening(),
+        },
+        forces_n: {
+            let ties = row.ties().iter().zip(&forces);
+            ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n))
+                .collect()
+        },
+    }))
+}
+
+/// By what part a push is larger than the one that is just borne, to see the mechanism.
+const BEYOND: f64 = 1e-6;
+/// Pulls in units of the weight beyond which a tie that does not yield makes a push as large as anybody wants.
+const STRONGEST: f64 = 1e3;
+/// A push, in units of gravity, that is as good as any.
+const LARGEST_PUSH: f64 = 1e6;
+/// A push that is worth a force of the weight.
+const LESS_FORCE: f64 = 1e-9;
+/// Exchanges of constraints, at most.
+const MOST_EXCHANGES: usize = 10_000;
+/// Part of its terms by which a constraint may be violated.
+const ROUNDING: f64 = 1e-14;
+/// Forces that are tried, at most.
+const MOST_TRIALS: usize = 200;
+
+/// A bound of what a mechanism leaves: `push * acceleration_g - sum pulls * forces <= weight`, in units of the weight.
+struct Plane {
+    push: f64,
+    pulls: Vec<f64>,
+    weight: f64,
+}
+
+impl Plane {
+    /// That of a mechanism, by the integral of its velocities over the masses.
+    fn new(row: &Row, work: Vector2<f64>, lengthening: &[f64], sway: Sway) -> Self {
+        let work = work / row.mass_kg();
+        let (push, weight) = (sway.sign() * work.x, work.y);
+        let all = lengthening.iter().copied().chain([push, weight]);
+        let largest = all.map(f64::abs).fold(0.0, f64::max);
+        Self {
+            push: push / largest,
+            pulls: lengthening.iter().map(|rate| rate / largest).collect(),
+            weight: weight / largest,
+        }
     }
-    Ok(found)
+}
+
+impl Plane {
+    /// The push that it leaves with these forces, if it bounds any.
+    fn bound_g(&self, forces: &[f64]) -> Option<f64> {
+        let pulled = self.pulls.iter().zip(forces);
+        let held: f64 = pulled.map(|(pull, force)| pull * force).sum();
+        (self.push > 0.0).then(|| (self.weight + held) / self.push)
+    }
+}
+
+/// The largest push below all planes, and the forces of the ties there; `None` if there is none.
+///
+/// The dual simplex method: from the corner of the bounds on it exchanges one of the constraints that meet there for the one that is
+/// violated most.
+fn highest(planes: &[Plane], most: &[f64]) -> Option<(f64, Vec<f64>)> {
+    let width = 1 + most.len();
+    let axis = |index: usize, value: f64| {
+        let mut row = DVector::zeros(width);
+        row[index] = value;
+        row
+    };
+    let mut constraints: Vec<(DVector<f64>, f64)> = vec![(axis(0, 1.0), LARGEST_PUSH)];
+    constraints.extend((1..).zip(most).map(|(tie, most)| (axis(tie, 1.0), *most)));
+    constraints.extend((0..width).map(|index| (axis(index, -1.0), 0.0)));
+    constraints.extend(planes.iter().map(|plane| {
+        let pulls = plane.pulls.iter().map(|pull| -pull);
+        let row = [plane.push].into_iter().chain(pulls);
+        (DVector::from_iterator(width, row), plane.weight)
+    }));
+    // Of forces that are as good, the least.
+    let mut goal = DVector::repeat(width, -LESS_FORCE);
+    goal[0] = 1.0;
+    let mut basis: Vec<usize> = [0].into_iter().chain(width + 1..2 * width).collect();
+    for _ in 0..MOST_EXCHANGES {
+        let matrix = DMatrix::from_fn(width, width, |row, column| {
+            constraints[basis[row]].0[column]
+        });
+        let bounds = DVector::from_fn(width, |row, _| constraints[basis[row]].1);
+        let at = matrix.clone().lu().solve(&bounds)?;
+        let excess = |(row, bound): &(DVector<f64>, f64)| {
+            let terms = row.component_mul(&at);
+            (terms.sum() - bound) - ROUNDING * (terms.abs().sum() + bound.abs())
+        };
+        let worst = constraints
+            .iter()
+            .enumerate()
+            .map(|(index, constraint)| (index, excess(constraint)))
+            .filter(|(index, excess)| *excess > 0.0 && !basis.contains(index))
+            .max_by(|one, other| one.1.total_cmp(&other.1));
+        let Some((entering, _)) = worst else {
+            let forces = (0..most.len()).map(|tie| at[1 + tie].clamp(0.0, most[tie]));
+            return Some((at[0], forces.collect()));
+        };
+        let across = matrix.transpose().lu();
+        let multipliers = across.solve(&goal)?;
+        let shares = across.solve(&constraints[entering].0)?;
+        let leaving = (0..width)
+            .filter(|index| shares[*index] > 1e-11)
+            .map(|index| (index, multipliers[index].max(0.0) / shares[index]))
+            .min_by(|one, other| one.1.total_cmp(&other.1));
+        basis[leaving?.0] = entering;
+    }
+    None
+}
+
+/// What a push does.
+enum Push {
+    /// So much of it starts the row.
+    Moves(RowOnset),
+    /// None starts it.
+    MovesNothing,
+    /// The row falls without it.
+    Falls,
+}
+
+/// Integral of the velocities over the masses.
+fn work(row: &Row, centres_m: &[Vector2<f64>], velocities: &[Twist]) -> Vector2<f64> {
+    let blocks = row.blocks().iter().zip(centres_m).zip(velocities);
+    blocks
+        .map(|((block, centre_m), twist)| twist.at(*centre_m) * block.mass_kg)
+        .sum()
 }
 
 /// A row under loads.
@@ -117,6 +317,8 @@ struct Trial<'a> {
     free: Vec<Twist>,
     jumps: Vec<Twist>,
     touching: Vec<[bool; 2]>,
+    /// What the ties pull with, over gravity.
+    ties_kg: Vec<f64>,
 }
 
 impl<'a> Trial<'a> {
@@ -124,6 +326,7 @@ impl<'a> Trial<'a> {
         let mut program = Program::new(row);
         program.place(placement);
         let gaps_m = placement.gaps_m().iter();
+        let ties = row.ties().iter();
         Self {
             row,
             centres_m: placement.centres_m(),
@@ -131,29 +334,91 @@ impl<'a> Trial<'a> {
             free: vec![Twist::ZERO; row.blocks().len()],
             jumps: vec![Twist::ZERO; row.joints().len()],
             touching: gaps_m.map(|gaps| gaps.map(|gap| gap == 0.0)).collect(),
+            ties_kg: ties
+                .map(|tie| tie.prestress_n / row.gravity_m_s2())
+                .collect(),
         }
     }
 
+    /// The least push to a side that starts the row.
+    fn pushed(&mut self, sway: Sway) -> Result<Push, ContactError> {
+        if self.moves(Vector2::new(0.0, -1.0), true)?.is_some() {
+            return Ok(Push::Falls);
+        }
+        let mut load = Vector2::new(sway.sign(), 0.0);
+        let mut found: Option<RowOnset> = None;
+        // A push beyond all bounds leaves no part to ties.
+        let mut with_ties = false;
+        while let Some(work) = self.moves(load, with_ties)? {
+            let lengthening = self.lengthening();
+            let ties = lengthening.iter().zip(&self.ties_kg);
+            let resists: f64 = ties.map(|(rate, kg)| rate * kg).sum();
+            let acceleration_g = (work.y + resists) / (sway.sign() * work.x);
+            // The bounds fall; below rounding they do not.
+            if found
+                .as_ref()
+                .is_some_and(|found| acceleration_g >= found.acceleration_g * (1.0 - 1e-14))
+            {
+                break;
+            }
+            found = Some(RowOnset {
+                acceleration_g,
+                openings: self.openings(),
+                velocities: self.program.velocities().to_vec(),
+                lengthening,
+            });
+            load = Vector2::new(sway.sign() * acceleration_g, -1.0);
+            with_ties = true;
+        }
+        Ok(found.map_or(Push::MovesNothing, Push::Moves))
+    }
+
     /// Integral of the velocities over the masses, if the row moves under a load per unit mass.
-    fn moves(&mut self, load: Vector2<f64>) -> Result<Option<Vector2<f64>>, ContactError> {
+    fn moves(
+        &mut self,
+        load: Vector2<f64>,
+        with_ties: bool,
+    ) -> Result<Option<Vector2<f64>>, ContactError> {
         self.free.fill(Twist::translation(load));
+        if with_ties {
+            for (tie, kg) in self.row.ties().iter().zip(&self.ties_kg) {
+                tie.pull(self.row.blocks(), *kg, |block, gained| {
+                    self.free[block] = self.free[block] + gained;
+                });
+            }
+        }
         let load_case = Load {
             free: &self.free,
             jumps: &self.jumps,
             touching: &self.touching,
         };
         self.program.solve(&load_case)?;
-        let blocks = self.row.blocks().iter().zip(self.centres_m);
-        let mut work = Vector2::zeros();
-        let mut fastest = 0.0_f64;
-        for ((block, centre_m), twist) in blocks.zip(self.program.velocities()) {
-            let velocity = twist.at(*centre_m);
-            work += velocity * block.mass_kg;
-            fastest = fastest
-                .max(velocity.norm())
-                .max(twist.rate.abs() * self.row.size_m());
-        }
-        Ok((fastest > STANDSTILL * load.norm()).then_some(work))
+        let blocks = self.centres_m.iter().zip(self.program.velocities());
+        let speed = |(centre_m, twist): (&Vector2<f64>, &Twist)| {
+            let centre = twist.at(*centre_m).norm();
+            centre.max(twist.rate.abs() * self.row.size_m())
+        };
+        let fastest = blocks.map(speed).fold(0.0_f64, f64::max);
+        Ok((fastest > STANDSTILL * load.norm()).then(|| self.work()))
+    }
+
+    /// Integral of the velocities of the last trial over the masses.
+    fn work(&self) -> Vector2<f64> {
+        work(self.row, self.centres_m, self.program.velocities())
+    }
+
+    /// Rates at which the ties lengthen in the last trial.
+    fn lengthening(&self) -> Vec<f64> {
+        let velocity = |anchor: &Anchor| {
+            let twist = anchor.block.map(|block| self.program.velocities()[block]);
+            twist.map_or(Vector2::zeros(), |twist| twist.at(anchor.at_m))
+        };
+        let ties = self.row.ties().iter();
+        ties.map(|tie| {
+            let [first, second] = [velocity(&tie.ends[0]), velocity(&tie.ends[1])];
+            tie.along().dot(&(second - first))
+        })
+        .collect()
     }
 
     fn openings(&self) -> Vec<Opening> {

@@ -18,15 +18,25 @@ pub struct MovingBody {
     pub rotation: f64,
 }
 
+/// A tie of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovingTie {
+    /// The force it pulls with over gravity, in kg.
+    pub force_kg: f64,
+    /// By how much it lengthens in the virtual displacement of the bodies.
+    pub lengthening: f64,
+}
+
 /// The load multiplier `alpha0`: the horizontal acceleration, in units of gravity, at which the work of the inertia of all
-/// bodies equals that of their weights, `sum P delta_y / sum P delta_x`.
+/// bodies equals that against their weights and against ties, `(sum P delta_y + sum F delta_l) / sum P delta_x`.
 #[must_use]
-pub fn load_multiplier(bodies: &[MovingBody]) -> f64 {
+pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie]) -> f64 {
     let work = |component: fn(&MovingBody) -> f64| -> f64 {
         let each = bodies.iter().map(|body| body.mass_kg * component(body));
         each.sum()
     };
-    work(|body| body.displacement.y) / work(|body| body.displacement.x)
+    let held = ties.iter().map(|tie| tie.force_kg * tie.lengthening);
+    (work(|body| body.displacement.y) + held.sum::<f64>()) / work(|body| body.displacement.x)
 }
 
 /// The masses that take part in a motion, given with their horizontal virtual displacements.
@@ -70,15 +80,10 @@ impl Participation {
     }
 }
 
-/// The bodies with their virtual displacements scaled so that the centre of all their masses moves by one.
+/// What virtual displacements are multiplied by so that the centre of all masses moves by one.
 #[must_use]
-pub fn per_displacement_of_centre(mut bodies: Vec<MovingBody>) -> Vec<MovingBody> {
+pub fn per_displacement_of_centre(bodies: &[MovingBody]) -> f64 {
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
     let first = bodies.iter().map(|body| body.mass_kg * body.displacement.x);
-    let scale = mass_kg / first.sum::<f64>();
-    for body in &mut bodies {
-        body.displacement *= scale;
-        body.rotation *= scale;
-    }
-    bodies
+    mass_kg / first.sum::<f64>()
 }

@@ -15,6 +15,7 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::{Edge, Ring};
 use crate::mechanics::masonry::FillColumn;
 use crate::mechanics::sway::Sway;
+use crate::mechanics::tie::{Anchor, Tie};
 use crate::scenario::Structure;
 
 /// A structure to be drawn, undeformed.
@@ -24,6 +25,7 @@ pub struct Scene {
     sections: Vec<Section>,
     /// Where the left and the right support of an arch are.
     supports: [Pose; 2],
+    ties: Vec<Tie>,
     /// What lies on blocks, outline by outline: with the block.
     fill_m: Vec<FillColumn>,
     loads: Vec<Load>,
@@ -167,7 +169,10 @@ impl Scene {
     pub fn new(structure: &Structure) -> Self {
         let scene = match structure {
             Structure::Arch(arch) => Self::of_arch(arch),
-            Structure::Column(column) => Self::of_column(column),
+            Structure::Column(column) => match column.row() {
+                Ok(row) if !row.ties().is_empty() => Self::of_row(&row),
+                _ => Self::of_column(column),
+            },
             Structure::Masonry(masonry) => Self::of_blocks(masonry.row(), true),
         };
         scene.of_structure(structure)
@@ -199,6 +204,7 @@ impl Scene {
             shape,
             sections,
             supports: [Pose::UNDEFORMED; 2],
+            ties: Vec::new(),
             fill_m: Vec::new(),
             loads: Vec::new(),
             dimensions: Vec::new(),
@@ -257,7 +263,10 @@ impl Scene {
             outlines_m: row.outlines_m().to_vec(),
             linked,
         };
-        Self::bare(shape, sections.collect())
+        Self {
+            ties: row.ties().to_vec(),
+            ..Self::bare(shape, sections.collect())
+        }
     }
 
     /// The same with its left and right support at these places.
@@ -265,6 +274,24 @@ impl Scene {
     pub const fn on_supports(mut self, poses: [Pose; 2]) -> Self {
         self.supports = poses;
         self
+    }
+
+    /// The ends of the ties when these hinges are open.
+    #[must_use]
+    pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[Mark; 2]> {
+        let linked = matches!(self.shape, Shape::Row { linked: true, .. });
+        let body = |block| {
+            if linked {
+                linked_body(hinges, block)
+            } else {
+                Some(block)
+            }
+        };
+        let end = |anchor: Anchor| Mark {
+            body: anchor.block.and_then(body),
+            at_m: anchor.at_m,
+        };
+        self.ties.iter().map(|tie| tie.ends.map(end)).collect()
     }
 
     /// The sections at which the position of the line of thrust is known.
@@ -297,7 +324,9 @@ impl Scene {
     #[must_use]
     pub fn bounds_m(&self) -> [Vector2<f64>; 2] {
         let pieces = self.pieces(&[]);
+        let ends = self.ties.iter().flat_map(|tie| &tie.ends);
         let corners = pieces.iter().flat_map(|piece| &piece.outline_m);
+        let corners = corners.chain(ends.map(|end| &end.at_m));
         let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
         corners.fold(empty, |[low, high], corner| {
             [low.inf(corner), high.sup(corner)]

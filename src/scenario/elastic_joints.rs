@@ -188,6 +188,10 @@ impl ElasticTable {
                 RestError::Points => "contact_points",
                 RestError::Stiffness if self.stone_modulus_gpa.is_some() => "stone_modulus_gpa",
                 RestError::Stiffness => "normal_stiffness_gpa_m",
+                RestError::Tie(index) => {
+                    let wrong = format!("does not fit: {error}");
+                    return Err(table.wrong_element("tie", index, wrong));
+                }
                 RestError::NotFound | RestError::Supports(_) => return Ok(()),
             };
             return wrong(table, key, format!("is not possible here: {error}"));

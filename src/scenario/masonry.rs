@@ -18,6 +18,7 @@ use super::LineFault;
 use super::record::{faulty, read_numbers};
 use super::structure::{MAGNITUDE, VOUSSOIRS};
 use super::table::{Count, Number, OneOf, OneOrMore, Reading, Reported, Switch, Table, Text};
+use super::tie::{self, TieTable};
 use crate::argument::ArgumentError;
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
 use crate::mechanics::blocks::{Joint, MAX_BLOCKS, RowError, Supports};
@@ -243,6 +244,7 @@ pub(super) struct Additions {
     piers: Piers,
     fill: Option<Fill>,
     loads: Vec<PlacedLoad>,
+    pub ties: Vec<TieTable>,
 }
 
 impl Additions {
@@ -250,14 +252,20 @@ impl Additions {
         let piers = table.table("piers", read_piers);
         let fill = table.table("fill", read_fill);
         let loads = table.tables("load", read_load);
+        let ties = table.tables("tie", TieTable::read);
         Ok(Self {
             piers: piers?.unwrap_or_default(),
             fill: fill?,
             loads: loads?,
+            ties: ties?,
         })
     }
 
     pub fn is_nothing(&self) -> bool {
+        self.is_ties_at_most() && self.ties.is_empty()
+    }
+
+    pub fn is_ties_at_most(&self) -> bool {
         self.piers.are_none() && self.fill.is_none() && self.loads.is_empty()
     }
 
@@ -271,13 +279,22 @@ impl Additions {
         table.wrong(key, wrong)
     }
 
-    /// The arch with its additions, if it can stand.
-    pub fn complete(self, table: &mut Table<'_>, shape: Shape) -> Reading<Masonry> {
+    /// The arch with its additions and ties, if it can stand.
+    pub fn complete(
+        self,
+        table: &mut Table<'_>,
+        shape: Shape,
+        gravity_m_s2: f64,
+    ) -> Reading<Masonry> {
         let key = shape.name();
         let masonry = Masonry::new(shape, self.piers, self.fill, self.loads.clone());
         let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
+        let masonry = tie::tied(table, &self.ties, masonry, gravity_m_s2)?;
         match falls(masonry.row()) {
             Ok(None) => Ok(masonry),
+            Ok(Some(_)) if stands_without_ties(&masonry) => {
+                Err(table.wrong("tie", tie::PULLS_OVER))
+            }
             Ok(Some(openings)) => {
                 let joints: Vec<_> = openings.iter().map(|o| o.joint.to_string()).collect();
                 Err(why_it_falls(table, &masonry, &joints.join(", ")))
@@ -314,6 +331,11 @@ impl Additions {
             ),
         }
     }
+}
+
+fn stands_without_ties(masonry: &Masonry) -> bool {
+    let row = masonry.row();
+    !row.ties().is_empty() && matches!(falls(&row.clone().without_ties()), Ok(None))
 }
 
 fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {

@@ -47,6 +47,7 @@ mod structure;
 mod suite;
 mod supports;
 mod table;
+mod tie;
 mod toml_text;
 mod uncertain;
 mod unlikely;
@@ -85,6 +86,7 @@ pub(crate) use spectrum::block;
 pub use structure::{ModelError, Structure};
 pub use suite::{Measure, Spectral, Suite};
 use table::{Reading, Table, Text};
+pub use tie::{Between, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
 pub use verify::{
@@ -112,6 +114,7 @@ pub struct Changes<'a> {
 pub struct Scenario {
     title: Option<String>,
     structure: Structure,
+    ties: Vec<TieTable>,
     motion: Motion,
     /// Whether the text has an `[impact]` that is ignored.
     ignores_impact: bool,
@@ -140,6 +143,12 @@ impl Scenario {
     #[must_use]
     pub const fn structure(&self) -> &Structure {
         &self.structure
+    }
+
+    /// Its ties, as they are given.
+    #[must_use]
+    pub fn ties(&self) -> &[TieTable] {
+        &self.ties
     }
 
     /// The model of motion.
@@ -268,11 +277,14 @@ impl Scenario {
         let title = table.optional("title", &Text);
         let motion = motion::Tables::read(table, hinges);
         let hinges = motion.hinges;
-        let structure = Structure::read(table, folder, hinges);
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let gravity_m_s2 = match &simulation {
             Ok(simulation) => Ok(simulation.gravity_m_s2),
             Err(reported) => Err(*reported),
+        };
+        let (structure, ties) = match Structure::read(table, folder, hinges, gravity_m_s2) {
+            Ok((structure, ties)) => (Ok(structure), ties),
+            Err(reported) => (Err(reported), Vec::new()),
         };
         let ground = table.table("ground", |table| Ground::read(table, folder, gravity_m_s2));
         let (ground, ground_motion) = match ground {
@@ -314,9 +326,14 @@ impl Scenario {
         }
         let ((motion, ignores_impact), structure) = (motion?, structure?);
         motion.check(table, &structure, simulation.as_ref().ok())?;
+        if !ties.is_empty() && table.gives("initial") {
+            let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
+            return Err(table.wrong("initial", wrong));
+        }
         let certain = Self {
             title: title?.map(|title| shown(&title)),
             structure,
+            ties,
             motion,
             ignores_impact,
             ground: ground?,
@@ -491,6 +508,14 @@ impl Scenario {
         };
         let supports = self.motion.supports();
         let tables = [
+            (
+                "tie",
+                if self.ties.is_empty() {
+                    Value::Null
+                } else {
+                    json(&self.ties)
+                },
+            ),
             motion(true),
             (
                 "supports",

@@ -11,6 +11,7 @@ use super::masonry::{self, Additions};
 use super::motion::Hinges;
 use super::span::Circular;
 use super::table::{Count, List, Number, Reading, Switch, Table};
+use super::tie::{self, TieTable};
 use super::unlikely::LIKELY_EMBRACE_DEG;
 use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::elastic_joints::ElasticJointsError;
@@ -26,6 +27,7 @@ use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::masonry::{CircularArch, Masonry, Shape};
 use crate::mechanics::parts::Parts;
 use crate::mechanics::sway::Sway;
+use crate::mechanics::tie::Tie;
 
 /// Range of lengths and densities.
 pub(super) const MAGNITUDE: Number = Number(
@@ -74,8 +76,13 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure for a model of motion. Files are relative to `folder`.
-    pub(super) fn read(table: &mut Table<'_>, folder: &Path, hinges: Hinges) -> Reading<Self> {
+    /// Reads the structure for a model of motion, with its ties. Files are relative to `folder`.
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        hinges: Hinges,
+        gravity_m_s2: Reading<f64>,
+    ) -> Reading<(Self, Vec<TieTable>)> {
         let free_hinges = hinges.has_joints();
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_nothing);
@@ -89,14 +96,31 @@ impl Structure {
         }
         let read = table.exactly_one("tables", candidates);
         let beside = beside?;
-        match read? {
-            Read::Arch(arch) => Ok(Self::Arch(arch)),
-            Read::Column(column) if alone => Ok(Self::Column(column)),
-            Read::Column(_) => Err(beside.refused(table, "applies to an arch, not to a column")),
-            Read::Shape(shape) => {
-                let masonry = beside.complete(table, shape)?;
-                Ok(Self::Masonry(Box::new(masonry)))
+        let (read, gravity_m_s2) = (read?, gravity_m_s2?);
+        let ties = beside.ties.clone();
+        let structure = match read {
+            Read::Arch(arch) => Self::Arch(arch),
+            Read::Column(column) if beside.is_ties_at_most() => {
+                tie::tied_column(table, &ties, column, gravity_m_s2)?
             }
+            Read::Column(_) => {
+                return Err(beside.refused(table, "applies to an arch, not to a column"));
+            }
+            Read::Shape(shape) => {
+                let masonry = beside.complete(table, shape, gravity_m_s2)?;
+                Self::Masonry(Box::new(masonry))
+            }
+        };
+        Ok((structure, ties))
+    }
+
+    /// Its ties.
+    #[must_use]
+    pub fn ties(&self) -> &[Tie] {
+        match self {
+            Self::Arch(_) => &[],
+            Self::Column(column) => column.ties(),
+            Self::Masonry(masonry) => masonry.row().ties(),
         }
     }
 
@@ -110,6 +134,7 @@ impl Structure {
     ) -> Result<Box<dyn MechanismModel>, FourLinkError> {
         Ok(match self {
             Self::Arch(arch) => Box::new(FourLinkArch::new(arch.clone(), impact)?),
+            Self::Column(column) if !column.ties().is_empty() => return Err(FourLinkError::Ties),
             Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
             Self::Masonry(masonry) => Box::new(four_link_row(masonry, impact)?),
         })
@@ -259,7 +284,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
         let why = if free_hinges {
             "joints open between blocks"
         } else {
-            "piers, fill and loads go with blocks"
+            "piers, fill, loads and ties go with blocks"
         };
         return Err(table.wrong_itself(format!(
             "lacks `voussoirs`: {why}; give the number of voussoirs"

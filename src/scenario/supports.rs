@@ -53,6 +53,12 @@ pub(super) fn check(
                 .to_owned(),
         );
     }
+    if !row.ties().is_empty() {
+        return wrong(
+            "cannot be combined with [[tie]]: springings that have moved are followed without ties; leave one out"
+                .to_owned(),
+        );
+    }
     let joints = row.joints();
     let apart_m = (joints[joints.len() - 1].intrados_m - joints[0].intrados_m).x;
     let closer_m = -(movements.left.spread_m + movements.right.spread_m);

@@ -4,6 +4,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::mechanics::elastic_joint::{Body, ElasticStructure, Fibre, Memory, Place, Rest};
 use crate::mechanics::lanes::{Lanes, Real, both};
+use crate::mechanics::tie::TieMemory;
 
 /// A body that moves.
 #[derive(Clone, Copy)]
@@ -54,6 +55,7 @@ pub(super) struct Motion<'a, const L: usize> {
     memories: Vec<Memory<Lanes<L>>>,
     /// Of each place of each joint, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
+    ties: Vec<TieMemory<Lanes<L>>>,
     spent: Spent<Lanes<L>>,
 }
 
@@ -63,6 +65,8 @@ pub(super) struct Spent<R> {
     pub friction_j: R,
     pub damped_j: R,
     pub crushed_j: R,
+    /// What ties took as they yielded and broke.
+    pub ties_j: R,
     /// Work of the moving ground.
     pub ground_j: R,
 }
@@ -152,10 +156,16 @@ impl<'a, const L: usize> Motion<'a, L> {
             inverses: structure.bodies().iter().map(inverse).collect(),
             memories: vec![Memory::none(); joints],
             fibres: vec![Fibre::none(); joints * structure.fibres()],
+            ties: structure
+                .ties()
+                .iter()
+                .map(|bound| TieMemory::undeformed(&bound.tie))
+                .collect(),
             spent: Spent {
                 friction_j: zero,
                 damped_j: zero,
                 crushed_j: zero,
+                ties_j: zero,
                 ground_j: zero,
             },
         }
@@ -178,13 +188,17 @@ impl<'a, const L: usize> Motion<'a, L> {
         for (fibre, alone) in self.fibres.iter_mut().zip(&alone.fibres) {
             fibre.set(lane, alone);
         }
+        for (tie, alone) in self.ties.iter_mut().zip(&alone.ties) {
+            tie.set(lane, alone);
+        }
         let Spent {
             friction_j,
             damped_j,
             crushed_j,
+            ties_j,
             ground_j,
         } = &mut self.spent;
-        for energy in [friction_j, damped_j, crushed_j, ground_j] {
+        for energy in [friction_j, damped_j, crushed_j, ties_j, ground_j] {
             energy.0[lane] = 0.0;
         }
     }
@@ -281,6 +295,29 @@ impl<'a, const L: usize> Motion<'a, L> {
             self.spent.damped_j += pressure.work.damped_j;
             self.spent.crushed_j += pressure.work.crushed_j;
         }
+        self.pull();
+    }
+
+    /// Adds the forces of the ties; they remember.
+    #[inline(always)]
+    fn pull(&mut self) {
+        let ground = self.structure.bodies().len();
+        let mut index = 0;
+        while index < self.ties.len() {
+            let (bound, memory) = (&self.structure.ties()[index], &mut self.ties[index]);
+            index += 1;
+            let [first, second] = both!(end: bound.bodies[end].min(ground));
+            let places = [&self.bodies[first].place, &self.bodies[second].place];
+            let span = bound.span(places);
+            memory.stretch(&bound.tie, span.stretch_m);
+            let action = bound.action(places, &span, memory.force_n);
+            let body = &mut self.bodies[first];
+            body.force_n = both!(i: body.force_n[i] - action.force_n[i]);
+            body.moment_n_m += action.moments_n_m[0];
+            let body = &mut self.bodies[second];
+            body.force_n = both!(i: body.force_n[i] + action.force_n[i]);
+            body.moment_n_m += action.moments_n_m[1];
+        }
     }
 
     /// Quantities at the places, with the velocities after half a kick more.
@@ -325,6 +362,10 @@ impl<'a, const L: usize> Motion<'a, L> {
             }
             seen.farthest_m2 = seen.farthest_m2.max(nearest);
             seen.turned_rad = seen.turned_rad.max((body.angle_rad - datum[2]).abs());
+        }
+        for (bound, memory) in structure.ties().iter().zip(&self.ties) {
+            seen.elastic_j += memory.energy_j(&bound.tie);
+            seen.spent.ties_j += memory.taken_j;
         }
         let each = structure.fibres();
         for (index, (joint, memory)) in structure.joints().iter().zip(&self.memories).enumerate() {
@@ -405,6 +446,11 @@ impl<'a, const L: usize> Motion<'a, L> {
         own.iter().map(move |fibre| fibre.lane(lane))
     }
 
+    /// What the ties remember in a lane.
+    pub(super) fn ties(&self, lane: usize) -> impl Iterator<Item = TieMemory<Lanes<1>>> {
+        self.ties.iter().map(move |tie| tie.lane(lane))
+    }
+
     /// The place of a body in a lane.
     pub(super) fn place(&self, body: usize, lane: usize) -> Place<Lanes<1>> {
         let Place { moved_m, turn } = self.bodies[body].place;
@@ -428,6 +474,7 @@ impl<'a> Motion<'a, 1> {
         }
         motion.memories.copy_from_slice(&rest.memories);
         motion.fibres.copy_from_slice(&rest.fibres);
+        motion.ties.copy_from_slice(&rest.ties);
         motion.press(Lanes([0.0]));
         motion
     }

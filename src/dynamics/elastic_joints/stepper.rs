@@ -7,7 +7,10 @@ use nalgebra::Vector2;
 use super::error::ElasticJointError;
 use super::motion::{Motion, Observed, Slide, Step};
 use crate::dynamics::ground::GroundVelocity;
-use crate::dynamics::history::{ElasticSummary, JointPressure, Sample, Sliding, Stress, Summary};
+use crate::dynamics::history::{
+    ElasticSummary, EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
+    TieSummary,
+};
 use crate::dynamics::model::{Recorder, Until};
 use crate::dynamics::row::course::{
     Course, LARGEST_ENERGY_ERROR, LEAST_RETURN, Marks, OVERTURNED_RAD, OVERTURNED_RATIO,
@@ -94,6 +97,9 @@ struct Lane<'a> {
     summit: Summit,
     elastic: ElasticSummary,
     sliding: Sliding,
+    ties: Vec<TieSummary>,
+    /// What happened to ties since the last look.
+    happened: Vec<(usize, EventKind)>,
 }
 
 /// Motions side by side.
@@ -138,6 +144,8 @@ impl<'a> Lane<'a> {
             summit: Summit::new(0.0),
             elastic: ElasticSummary::default(),
             sliding: Sliding::none(joints),
+            ties: Vec::new(),
+            happened: Vec::new(),
             course: Course::new(task, None, recorder),
         }
     }
@@ -307,7 +315,19 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.elastic.friction_j = of(spent.friction_j);
         lane.elastic.crushed_j = of(spent.crushed_j);
         lane.elastic.ground_j = of(spent.ground_j);
-        let taken = lane.elastic.damped_j + lane.elastic.friction_j + lane.elastic.crushed_j;
+        lane.elastic.ties_j = of(spent.ties_j);
+        let joints_j = lane.elastic.damped_j + lane.elastic.friction_j + lane.elastic.crushed_j;
+        let taken = joints_j + lane.elastic.ties_j;
+        lane.happened.clear();
+        let bound = self.start.structure.ties().iter();
+        for (tie, (bound, memory)) in bound.zip(self.motion.ties(index)).enumerate() {
+            let Some(known) = lane.ties.get_mut(tie) else {
+                lane.ties.push(TieSummary::at_rest(&bound.tie, &memory));
+                continue;
+            };
+            let happened = known.note(&bound.tie, &memory, time).into_iter().flatten();
+            lane.happened.extend(happened.map(|kind| (tie, kind)));
+        }
         course.of_row.energy_taken_j = taken;
         let potential = stored - rest_j;
         let due = lane.elastic.ground_j - taken;
@@ -449,6 +469,7 @@ impl<'a> Lane<'a> {
             ..self.sliding
         });
         course.of_row.elastic = Some(self.elastic);
+        course.of_row.ties = self.ties;
         course
     }
 }
@@ -547,6 +568,9 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
             let energy_j = self.course().potential;
             self.tell_uplift(time_s, energy_j, |stepper| stepper.turns().unzip());
         }
+        for (tie, kind) in std::mem::take(&mut self.lane_mut().happened) {
+            self.tell_tie(tie, kind);
+        }
         Ok(())
     }
 
@@ -573,6 +597,11 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
             sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
             sample.pressures.push(pressure);
         }
+        let bound = self.group.start.structure.ties().iter();
+        let ties = bound.zip(self.group.motion.ties(0));
+        sample
+            .ties
+            .extend(ties.map(|(bound, memory)| TieSample::of(&bound.tie, &memory)));
         if self.group.start.structure.slips() {
             sample.offsets_m.extend(&self.lane().sliding.offsets_m);
         }

@@ -15,11 +15,13 @@
 //! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
 
 mod observation;
+mod ties;
 
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
 pub(super) use self::observation::{rise, sway};
+use self::ties::Ties;
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::model::Recorder;
@@ -138,6 +140,7 @@ pub(super) struct LandingStepper<'a> {
     /// For solutions that must not change the active set.
     auxiliary: Program,
     closer: Closer,
+    ties: Ties<'a>,
     pieces: Vec<Piece>,
     next_pieces: Vec<Piece>,
     /// Corner about which each joint turned in the last drift.
@@ -192,6 +195,7 @@ impl<'a> LandingStepper<'a> {
             auxiliary: program.clone(),
             program,
             closer: Closer::new(row),
+            ties: Ties::new(row),
             pieces: Vec::with_capacity(blocks),
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
@@ -281,7 +285,8 @@ impl<'a> LandingStepper<'a> {
         }
         self.program.place(&self.placement);
         self.weigh_pieces();
-        self.start_energy = self.height_energy();
+        self.ties.stretch(self.placement.poses());
+        self.start_energy = self.energy();
         self.stands = open == 0;
         let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
         let sway = sway(self.row, self.placement.centres_m());
@@ -385,13 +390,15 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Motions of the blocks after a kick, before contact.
-    fn kick(&mut self, kick: Vector2<f64>) {
+    /// Motions of the blocks after a kick that lasts so long, before contact.
+    fn kick(&mut self, kick: Vector2<f64>, lasts_s: f64) {
         let blocks = self.free.len();
         for (index, piece) in self.pieces.iter().enumerate() {
             let end = self.pieces.get(index + 1).map_or(blocks, |next| next.first);
             self.free[piece.first..end].fill(piece.twist(kick));
         }
+        let centres_m = self.placement.centres_m();
+        self.ties.pull(centres_m, lasts_s, &mut self.free);
     }
 
     /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
@@ -408,7 +415,7 @@ impl<'a> LandingStepper<'a> {
     fn half_kick(&mut self) -> Vector2<f64> {
         let time = self.course.time;
         let (impulse, ground) = self.impulse(self.kicked_s, time);
-        self.kick(impulse);
+        self.kick(impulse, time - self.kicked_s);
         self.jumps.fill(Twist::ZERO);
         self.landing.fill([0.0; 2]);
         self.touch_shut();
@@ -422,7 +429,7 @@ impl<'a> LandingStepper<'a> {
 
     fn solve_step(&mut self, step: f64) -> Result<(), FreeHingeError> {
         let (from_s, to_s) = self.kicked(step);
-        self.kick(self.impulse(from_s, to_s).0);
+        self.kick(self.impulse(from_s, to_s).0, to_s - from_s);
         self.jump(step);
         self.solve()
     }
@@ -662,6 +669,7 @@ impl<'a> LandingStepper<'a> {
         self.take_pieces();
         self.course.time += step.length_s;
         self.closer.close(&mut self.placement);
+        self.ties.stretch(self.placement.poses());
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
         let of_row = &mut self.course.of_row;
@@ -724,7 +732,7 @@ impl<'a> LandingStepper<'a> {
         self.pressed.copy_from_slice(self.program.active());
         self.complete_kick()?;
         let kinetic_before = kinetic(&self.next_pieces);
-        self.course.potential = self.height_energy();
+        self.course.potential = self.energy();
         self.audit(kinetic_before);
         self.free.copy_from_slice(self.program.velocities());
         self.touch_shut();

@@ -108,6 +108,11 @@ pub enum FreeHingesError {
     /// It slides apart under its own weight.
     #[error(transparent)]
     Friction(#[from] FrictionError),
+    /// It has ties, and joints that slip.
+    #[error(
+        "free hinges that slip take no ties: leave friction_coefficient out, or give [elastic_joints], whose joints slip with ties"
+    )]
+    Ties,
 }
 
 impl FreeHinges {
@@ -144,9 +149,12 @@ impl FreeHinges {
     ///
     /// # Errors
     /// When a step or the coefficient is out of range, the longest step is shorter than the shortest, a
-    /// shortest step is given for joints that slip, or the row slides apart under its own weight.
+    /// shortest step or ties are given for joints that slip, or the row slides apart under its own weight.
     pub fn with_options(self, options: RowOptions) -> Result<Self, FreeHingesError> {
         let options = options.checked()?;
+        if options.friction_coefficient.is_some() && !self.row().ties().is_empty() {
+            return Err(FreeHingesError::Ties);
+        }
         let rigid = self.rigid.with_friction(options.friction_coefficient)?;
         Ok(Self {
             rigid,
@@ -204,6 +212,7 @@ impl FreeHinges {
             settings.shortest_step_s = shortest_s;
             settings.longest_step_s = settings.longest_step_s.max(shortest_s);
         }
+        settings = settings.for_ties(row);
         settings.output_step_s = Some(request.output_step_s);
         settings.friction_coefficient = self.options.friction_coefficient;
         self.repeated.map_or(settings, |other| other(&settings))

@@ -479,6 +479,7 @@ fn event<'a, C: MechanismChain>(
         }
     };
     Event {
+        tie: None,
         time_s: transition.time_s,
         kind,
         state: transition.to.state(),
@@ -642,6 +643,7 @@ impl<'r> Sampler<'r> {
             eccentricity_ratios,
             offsets_m: Vec::new(),
             pressures: Vec::new(),
+            ties: Vec::new(),
         }
     }
 

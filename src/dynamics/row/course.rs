@@ -97,6 +97,8 @@ pub(in crate::dynamics) struct Course<'a> {
     pub time: f64,
     /// Potential energy above the undeformed row.
     pub potential: f64,
+    /// Kinetic energy after the last step.
+    kinetic: f64,
     /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground.
     pub sway: f64,
     /// Whether a joint has opened or slipped.
@@ -166,8 +168,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
     fn rests_since(&self) -> Option<f64>;
     /// When the row passed its last point of return, once it has overturned.
     fn overturned_s(&self) -> Option<f64> {
-        let course = self.course();
-        (course.potential < course.fallen).then_some(course.highest_s)
+        self.course().fallen_s(self.course().potential)
     }
     /// The course of the motion, at the end.
     fn into_course(self) -> Course<'a>;
@@ -208,6 +209,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
             energy_j,
             hinges: self.course().opened.clone(),
             impact: None,
+            tie: None,
         };
         self.course_mut().tell(&event);
     }
@@ -260,8 +262,37 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
                 opened: course.opened.clone(),
                 impulses_n_s: Vec::new(),
             }),
+            tie: None,
             rotations_rad,
             rates_rad_s,
+        };
+        self.course_mut().tell(&event);
+    }
+
+    /// Tells of what happened to a tie in the last step.
+    fn tell_tie(&mut self, tie: usize, kind: EventKind) {
+        if !self.course().is_followed() {
+            return;
+        }
+        let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
+        let hinges =
+            (0..self.course().task.row.joints().len()).filter_map(|joint| self.hinge(joint));
+        let course = self.course();
+        let event = Event {
+            time_s: course.time,
+            kind,
+            state: if course.moved {
+                self.moving()
+            } else {
+                State::Rest
+            },
+            mechanism: None,
+            rotations_rad,
+            rates_rad_s,
+            energy_j: course.kinetic + course.potential,
+            hinges: hinges.collect(),
+            impact: None,
+            tie: Some(tie),
         };
         self.course_mut().tell(&event);
     }
@@ -405,6 +436,7 @@ impl<'a> Course<'a> {
         Self {
             time: 0.0,
             potential: 0.0,
+            kinetic: 0.0,
             sway: 0.0,
             moved: false,
             least_sway_kg_m: SWAY_RATIO * energy_unit / task.gravity_m_s2,
@@ -441,6 +473,7 @@ impl<'a> Course<'a> {
                 half_cycles: Vec::new(),
                 sliding: None,
                 elastic: None,
+                ties: Vec::new(),
                 largest_kinetic_j: 0.0,
                 largest_potential_j: 0.0,
                 energy_taken_j: 0.0,
@@ -484,6 +517,11 @@ impl<'a> Course<'a> {
         (time >= self.task.clock.end_s).then_some((Outcome::StillRocking, time))
     }
 
+    /// When it passed its last way back, if a potential energy of gravity says that it has overturned.
+    pub(in crate::dynamics) fn fallen_s(&self, potential: f64) -> Option<f64> {
+        (potential < self.fallen).then_some(self.highest_s)
+    }
+
     /// Whether a recorder receives samples and events.
     pub(in crate::dynamics) const fn is_followed(&self) -> bool {
         self.recorder.is_some()
@@ -523,6 +561,7 @@ impl<'a> Course<'a> {
             self.highest_s = self.time;
         }
         self.potential = potential;
+        self.kinetic = kinetic;
         self.sway = sway;
         self.peak_potential = self.peak_potential.max(potential);
         self.of_row.largest_kinetic_j = self.of_row.largest_kinetic_j.max(kinetic);
@@ -612,6 +651,7 @@ impl<'a> Course<'a> {
         sample.eccentricity_ratios.clear();
         sample.offsets_m.clear();
         sample.pressures.clear();
+        sample.ties.clear();
         let recorder = self.recorder.as_ref();
         (
             sample,
@@ -676,6 +716,7 @@ impl<'a> Course<'a> {
                 energy_j: self.sample.energy_j,
                 hinges: self.sample.hinges.iter().map(|open| open.hinge).collect(),
                 impact: None,
+                tie: None,
             });
         }
         summary

@@ -98,6 +98,7 @@ impl RigidRow {
             joints,
             slipping: where_it_is(slips),
             pressing: where_it_is(presses),
+            ties: self.row.ties().len(),
         }
     }
 
@@ -161,6 +162,9 @@ impl RigidRow {
     /// not known.
     #[must_use]
     pub(in crate::dynamics) fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+        if !self.row.ties().is_empty() {
+            return None;
+        }
         match &self.first {
             Some(FirstMechanism::FourLinks(row)) => {
                 let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));

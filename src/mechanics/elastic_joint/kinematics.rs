@@ -34,7 +34,7 @@ impl<R: Real> Place<R> {
 
     /// How far rotation moves the end of an arm that starts at the centre.
     #[inline(always)]
-    fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {
+    pub(super) fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {
         let [cos, sin] = self.turn;
         let [x, y] = arm_m;
         [cos * x - sin * y, sin * x + cos * y]
@@ -148,6 +148,6 @@ fn dot<R: Real>(one: [R; 2], other: [R; 2]) -> R {
 }
 
 #[inline(always)]
-fn cross<R: Real>(one: [R; 2], other: [R; 2]) -> R {
+pub(super) fn cross<R: Real>(one: [R; 2], other: [R; 2]) -> R {
     one[0] * other[1] - one[1] * other[0]
 }

@@ -4,9 +4,10 @@ use thiserror::Error;
 
 use super::banded::Banded;
 use super::contact::{Fibre, Memory};
-use super::kinematics::Place;
+use super::kinematics::{Action, Place};
 use super::structure::ElasticStructure;
 use crate::mechanics::lanes::{Dual, Lanes};
+use crate::mechanics::tie::TieMemory;
 
 /// The number type of a single motion.
 type Alone = Lanes<1>;
@@ -22,6 +23,8 @@ pub struct Rest {
     pub memories: Vec<Memory<Alone>>,
     /// What the places along the joints remember, joint by joint.
     pub fibres: Vec<Fibre<Alone>>,
+    /// What the ties remember.
+    pub ties: Vec<TieMemory<Alone>>,
     /// Unbalanced force over the weight.
     pub unbalanced: f64,
     /// Steps of Newton's method.
@@ -59,6 +62,9 @@ pub enum RestError {
         /// At this part of the movement.
         f64,
     ),
+    /// A tie breaks.
+    #[error("tie {number} breaks under the weight of the structure: it needs a larger breaks_at_strain, or less prestress_n", number = .0 + 1)]
+    Tie(usize),
     /// No equilibrium was found.
     #[error("no equilibrium was found under the weight of the structure")]
     NotFound,
@@ -112,7 +118,12 @@ impl ElasticStructure {
             return self.settled(load_m_s2, rest);
         }
         if let Some(rest) = self.balanced(load_m_s2) {
-            return Ok(rest);
+            let broken = |tie: &TieMemory<Alone>| tie.intact.0[0] == 0.0;
+            return rest
+                .ties
+                .iter()
+                .position(broken)
+                .map_or(Ok(rest), |tie| Err(RestError::Tie(tie)));
         }
         let would_rest = |other: Self| other.balanced(load_m_s2).is_some();
         let without_slip = self.without_slip();
@@ -245,6 +256,10 @@ impl ElasticStructure {
     /// overestimates a convex function), so neither on the path.
     #[must_use]
     pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
+        // What ties add to it is not known.
+        if !self.ties().is_empty() {
+            return None;
+        }
         let load_m_s2 = [0.0, -gravity_m_s2];
         let rest_j = Search::new(self, load_m_s2).energy_j(rest);
         if let Some(pass_j) = self.pass_j(rest, gravity_m_s2) {
@@ -345,7 +360,9 @@ impl<'a> Search<'a> {
     fn new(structure: &'a ElasticStructure, load_m_s2: [f64; 2]) -> Self {
         let joints = structure.joints();
         let bodies = structure.bodies().len();
-        let reach = joints.iter().map(|joint| match joint.link.bodies {
+        let ties = structure.ties().iter().map(|tie| tie.bodies);
+        let pairs = joints.iter().map(|joint| joint.link.bodies).chain(ties);
+        let reach = pairs.map(|pair| match pair {
             [one, other] if one < bodies && other < bodies => one.abs_diff(other),
             _ => 0,
         });
@@ -373,26 +390,10 @@ impl<'a> Search<'a> {
             forces[3 * index + 1] = body.mass_kg * self.load_m_s2[1];
             forces[3 * index + 2] = 0.0;
         }
-        let units = [1.0, 1.0, self.length_m];
         for joint in self.structure.joints() {
             let pair = joint.link.bodies;
-            let place = |end: usize| {
-                let Some(at) = moved.get(pair[end]) else {
-                    return Place::at(self.structure.support(pair[end]));
-                };
-                let variable = |axis: usize| Dual::<6>::variable(at[axis], 3 * end + axis);
-                let angle = variable(2);
-                let (sin, cos) = at[2].sin_cos();
-                let half = (0.5 * at[2]).sin();
-                Place {
-                    moved_m: [variable(0), variable(1)],
-                    turn: [
-                        angle.chained(-2.0 * half * half, -sin),
-                        angle.chained(sin, cos),
-                    ],
-                }
-            };
-            let gap = joint.link.gap(&place(0), &place(1));
+            let [first, second] = [0, 1].map(|end| self.variable(moved, pair[end], end));
+            let gap = joint.link.gap(&first, &second);
             let law = self.structure.law();
             let action = if bonded {
                 let edges = law.section.bonded(gap.penetrations_m);
@@ -406,27 +407,70 @@ impl<'a> Search<'a> {
                 let pressure = law.press(joint, None, &gap, &mut Memory::none(), fibres);
                 gap.action(pressure.edges_n, pressure.shear_n)
             };
-            let [x, y] = action.force_n;
-            let on = [
-                [-x, -y, action.moments_n_m[0]],
-                [x, y, action.moments_n_m[1]],
-            ];
-            for (end, &body) in pair.iter().enumerate() {
-                if body >= bodies.len() {
+            self.add(pair, &action, matrix.as_deref_mut(), forces);
+        }
+        for bound in self.structure.ties() {
+            let pair = bound.bodies;
+            let [first, second] = [0, 1].map(|end| self.variable(moved, pair[end], end));
+            let span = bound.span([&first, &second]);
+            let force_n = if bonded {
+                span.stretch_m * bound.tie.stiffness_n_m
+            } else {
+                TieMemory::stretched(&bound.tie, span.stretch_m).force_n
+            };
+            let action = bound.action([&first, &second], &span, force_n);
+            self.add(pair, &action, matrix.as_deref_mut(), forces);
+        }
+    }
+
+    /// Where the first or the second of two bodies is, with the derivatives by the coordinates of both.
+    fn variable(&self, moved: &[[f64; 3]], body: usize, end: usize) -> Place<Dual<6>> {
+        let Some(at) = moved.get(body) else {
+            return Place::at(self.structure.support(body));
+        };
+        let variable = |axis: usize| Dual::<6>::variable(at[axis], 3 * end + axis);
+        let angle = variable(2);
+        let (sin, cos) = at[2].sin_cos();
+        let half = (0.5 * at[2]).sin();
+        Place {
+            moved_m: [variable(0), variable(1)],
+            turn: [
+                angle.chained(-2.0 * half * half, -sin),
+                angle.chained(sin, cos),
+            ],
+        }
+    }
+
+    /// Adds what acts between two bodies to their forces; with a matrix, minus its derivatives.
+    fn add(
+        &self,
+        pair: [usize; 2],
+        action: &Action<Dual<6>>,
+        mut matrix: Option<&mut Banded>,
+        forces: &mut [f64],
+    ) {
+        let bodies = self.structure.bodies().len();
+        let units = [1.0, 1.0, self.length_m];
+        let [x, y] = action.force_n;
+        let on = [
+            [-x, -y, action.moments_n_m[0]],
+            [x, y, action.moments_n_m[1]],
+        ];
+        for (end, &body) in pair.iter().enumerate() {
+            if body >= bodies {
+                continue;
+            }
+            for axis in 0..3 {
+                let row = 3 * body + axis;
+                forces[row] += on[end][axis].value / units[axis];
+                let Some(matrix) = &mut matrix else {
                     continue;
-                }
-                for axis in 0..3 {
-                    let row = 3 * body + axis;
-                    forces[row] += on[end][axis].value / units[axis];
-                    let Some(matrix) = &mut matrix else {
-                        continue;
-                    };
-                    for (other, &of) in pair.iter().enumerate() {
-                        for by in 0..3 {
-                            if of < bodies.len() {
-                                let slope = on[end][axis].slope[3 * other + by];
-                                matrix.add(row, 3 * of + by, -slope / (units[axis] * units[by]));
-                            }
+                };
+                for (other, &of) in pair.iter().enumerate() {
+                    for by in 0..3 {
+                        if of < bodies {
+                            let slope = on[end][axis].slope[3 * other + by];
+                            matrix.add(row, 3 * of + by, -slope / (units[axis] * units[by]));
                         }
                     }
                 }
@@ -598,9 +642,14 @@ impl<'a> Search<'a> {
         let each = self.structure.fibres();
         let mut memories = vec![Memory::none(); joints.len()];
         let mut fibres = vec![Fibre::none(); joints.len() * each];
+        let place =
+            |body: usize| Place::at(moved.get(body).unwrap_or(self.structure.support(body)));
+        let ties = self.structure.ties().iter().map(|bound| {
+            let [first, second] = bound.bodies.map(place);
+            TieMemory::stretched(&bound.tie, bound.span([&first, &second]).stretch_m)
+        });
+        let ties = ties.collect();
         for (index, joint) in joints.iter().enumerate() {
-            let place =
-                |body: usize| Place::at(moved.get(body).unwrap_or(self.structure.support(body)));
             let [one, other] = joint.link.bodies.map(place);
             let gap = joint.link.gap(&one, &other);
             let fibres = &mut fibres[index * each..(index + 1) * each];
@@ -613,6 +662,7 @@ impl<'a> Search<'a> {
             moved,
             memories,
             fibres,
+            ties,
             unbalanced,
             steps,
         }

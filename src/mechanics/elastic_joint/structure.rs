@@ -6,9 +6,11 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::contact::{Contact, Fibre, Law, Memory, Pressure, Section};
 use super::kinematics::{Action, Link, Place};
+use super::tie::BoundTie;
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::lanes::{Lanes, Real};
+use crate::mechanics::tie::square_frequency;
 
 /// Stiffness of an interface per area, in Pa/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,6 +194,9 @@ pub struct ElasticStructure {
     /// Displacements (m) and rotations (rad) of the supports.
     supports: [[f64; 3]; 2],
     joints: Vec<ElasticJoint>,
+    ties: Vec<BoundTie>,
+    /// What they add to the square of the highest frequency, at most.
+    ties_square_frequency: f64,
     law: Law,
     damping_time_s: f64,
 }
@@ -246,10 +251,15 @@ impl ElasticStructure {
         };
         debug_assert!(row.supports() == Supports::Both || row.joints().len() == ground);
         let joints: Result<_, ArgumentError> = row.joints().iter().enumerate().map(joint).collect();
-        Ok(Self::new(bodies.collect(), joints?, properties))
+        let ties = row.ties().iter().map(|tie| BoundTie::new(*tie, blocks));
+        Ok(Self {
+            ties: ties.collect(),
+            ties_square_frequency: square_frequency(row.ties(), blocks),
+            ..Self::new(bodies.collect(), joints?, properties)
+        })
     }
 
-    /// A structure of any bodies and joints.
+    /// A structure of any bodies and joints, without ties.
     #[must_use]
     pub fn new(
         bodies: Vec<Body>,
@@ -265,6 +275,8 @@ impl ElasticStructure {
             bodies,
             supports: [[0.0; 3]; 2],
             joints,
+            ties: Vec::new(),
+            ties_square_frequency: 0.0,
             law: Law {
                 section: Section::new(properties.contact, crushes),
                 crushes,
@@ -316,6 +328,12 @@ impl ElasticStructure {
     pub(super) fn on_part_of_the_way(&self, part: f64) -> Self {
         let supports = self.supports.map(|moved| moved.map(|axis| part * axis));
         self.clone().on_supports(supports)
+    }
+
+    /// The ties.
+    #[must_use]
+    pub fn ties(&self) -> &[BoundTie] {
+        &self.ties
     }
 
     /// Whether joints slip for good.
@@ -370,6 +388,9 @@ impl ElasticStructure {
             joint.normal_n_m *= factor;
             joint.shear_n_m *= factor;
             joint.strength_m /= factor;
+        }
+        for tie in &mut other.ties {
+            tie.tie.stiffness_n_m *= factor;
         }
         other
     }
@@ -468,7 +489,8 @@ impl ElasticStructure {
             let scaled = flexibility.component_mul(&(roots * roots.transpose()));
             scaled.symmetric_eigenvalues().max()
         });
-        squares.fold(0.0, f64::max).sqrt()
+        // That of a sum is at most the sum of those of its parts.
+        (squares.fold(0.0, f64::max) + self.ties_square_frequency).sqrt()
     }
 
     /// The longest step, in s, for which central differences are stable, with damping that lags by half a step.

@@ -31,6 +31,12 @@ pub enum FourLinkError {
     /// It is a free-standing stack.
     #[error("a stack on one support has no four links: give [free_hinges] or [elastic_joints]")]
     Stack,
+    /// It has ties.
+    #[error(
+        "four links take no ties: what a tie pulls changes as the links move, and the mechanisms after impacts are found from \
+         weights alone; give [free_hinges] or [elastic_joints]"
+    )]
+    Ties,
     /// A row of blocks does not start as four links to this side.
     #[error(
         "to the {side} four links do not describe this row of blocks ({error}); give [free_hinges] or \

@@ -29,11 +29,14 @@ impl FourLinkRow {
     /// The row under an impact law.
     ///
     /// # Errors
-    /// When it is a stack, falls under its own weight, starts as another mechanism to either side, or the law has a
+    /// When it is a stack, has ties, falls under its own weight, starts as another mechanism to either side, or the law has a
     /// number that is not allowed.
     pub fn new(row: &Row, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
         let law = law.into();
         law.check()?;
+        if !row.ties().is_empty() {
+            return Err(FourLinkError::Ties);
+        }
         let (Some(own), Some(mirrored)) = (
             JointedProfile::new(row),
             row.mirrored().as_ref().and_then(JointedProfile::new),

@@ -20,6 +20,7 @@ use thiserror::Error;
 use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
 use super::blocks::{Joint, MAX_BLOCKS, Row, RowError, Supports};
 use super::stability::falls;
+use super::tie::{Tie, TieError};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::sway::Sway;
@@ -414,7 +415,31 @@ impl Masonry {
         Ok(falls(&self.row)?.is_none())
     }
 
-    /// The same masonry on rigid abutments.
+    /// The joints at the springings of the arch, left and right; `None` of blocks, of which nobody says where they spring.
+    #[must_use]
+    pub fn springing_joints(&self) -> Option<[usize; 2]> {
+        if matches!(self.shape, Shape::Blocks(_)) {
+            return None;
+        }
+        let courses =
+            [self.piers.left, self.piers.right].map(|pier| pier.map_or(0, |pier| pier.blocks));
+        Some([courses[0], self.row.joints().len() - 1 - courses[1]])
+    }
+
+    /// The same with these ties and no others, under this gravity.
+    ///
+    /// # Errors
+    /// When a tie is none: with its index.
+    pub fn with_ties(
+        mut self,
+        ties: Vec<Tie>,
+        gravity_m_s2: f64,
+    ) -> Result<Self, (usize, TieError)> {
+        self.row = self.row.with_ties(ties, gravity_m_s2)?;
+        Ok(self)
+    }
+
+    /// The same masonry on rigid abutments, without ties.
     ///
     /// # Errors
     /// Those of [`Masonry::new`].

@@ -1,5 +1,7 @@
 //! Reports limit analysis, for programs and for people.
 
+mod ties;
+
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
@@ -36,17 +38,13 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
             onset.acceleration_g,
             onset.acceleration_g * gravity_m_s2,
         );
-        for opening in &onset.openings {
-            let edge = opening.hinge.map_or("both edges", Edge::name);
-            let corner_m =
-                row.joints()[opening.joint].corner_m(opening.hinge.unwrap_or(Edge::Intrados));
-            let _ = writeln!(
-                text,
-                "  joint {:>3} at x {:>10.5} m, y {:>10.5} m, {edge}",
-                opening.joint, corner_m.x, corner_m.y
-            );
-        }
+        text += &openings_text(row, onset);
         text.push('\n');
+    }
+    if !row.ties().is_empty() {
+        let tied = ties::Tied::of(row)?;
+        json["ties"] = tied.json(row);
+        text += &tied.text(row);
     }
     if !scenario.structure().thrusts() {
         text += "joints are counted from the base, which is 0; their intrados is the left side\n";
@@ -76,6 +74,22 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
         }
     }
     Ok(Answer { json, text })
+}
+
+/// The joints that open in a mechanism, a line each.
+fn openings_text(row: &Row, onset: &RowOnset) -> String {
+    let mut text = String::new();
+    for opening in &onset.openings {
+        let edge = opening.hinge.map_or("both edges", Edge::name);
+        let corner_m =
+            row.joints()[opening.joint].corner_m(opening.hinge.unwrap_or(Edge::Intrados));
+        let _ = writeln!(
+            text,
+            "  joint {:>3} at x {:>10.5} m, y {:>10.5} m, {edge}",
+            opening.joint, corner_m.x, corner_m.y
+        );
+    }
+    text
 }
 
 /// The acceleration that starts the first mechanism of one degree of freedom.
@@ -264,21 +278,7 @@ fn friction_json(row: &Row, coefficient: f64) -> Result<Value, FrictionError> {
 #[must_use]
 pub fn row_json(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) -> Value {
     let [right, left] = onsets;
-    let mechanism = |onset: &Option<RowOnset>| -> Value {
-        let openings = onset.iter().flat_map(|onset| &onset.openings);
-        openings
-            .map(|opening| {
-                let joint = &row.joints()[opening.joint];
-                let corner_m = joint.corner_m(opening.hinge.unwrap_or(Edge::Intrados));
-                json!({
-                    "joint": opening.joint,
-                    "edge": opening.hinge.map(Edge::name),
-                    "x_m": corner_m.x,
-                    "y_m": corner_m.y,
-                })
-            })
-            .collect()
-    };
+    let mechanism = |onset: &Option<RowOnset>| openings_json(row, onset.as_ref());
     let acceleration_g =
         |onset: &Option<RowOnset>| onset.as_ref().map(|onset| onset.acceleration_g);
     json!({
@@ -289,6 +289,23 @@ pub fn row_json(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) ->
         },
         "mechanism": { "right": mechanism(right), "left": mechanism(left) },
     })
+}
+
+/// The joints that open in a mechanism; none where there is none.
+fn openings_json(row: &Row, onset: Option<&RowOnset>) -> Value {
+    let openings = onset.into_iter().flat_map(|onset| &onset.openings);
+    openings
+        .map(|opening| {
+            let joint = &row.joints()[opening.joint];
+            let corner_m = joint.corner_m(opening.hinge.unwrap_or(Edge::Intrados));
+            json!({
+                "joint": opening.joint,
+                "edge": opening.hinge.map(Edge::name),
+                "x_m": corner_m.x,
+                "y_m": corner_m.y,
+            })
+        })
+        .collect()
 }
 
 /// What is specific to four links, for each side: unstable equilibrium and equivalent blocks.

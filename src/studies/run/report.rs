@@ -215,6 +215,10 @@ impl Report {
             json!({ "ends_m": [from.x, from.y, to.x, to.y], "side": side, "text": dimension.text })
         });
         let opens_s = strongest_s(frames, history);
+        let ties = self.scene.ties(&[]).into_iter().map(|ends| {
+            let end = |mark: Mark| json!([body_number(mark.body), mark.at_m.x, mark.at_m.y]);
+            json!(ends.map(end))
+        });
         let energy_label = if self.in_barriers {
             match history.row {
                 None => "Energy (1: gravity alone overturns the mechanism that moves)",
@@ -236,6 +240,7 @@ impl Report {
             "dimensions": dimensions.collect::<Vec<_>>(),
             "opens_s": opens_s,
             "supports": supports.iter().map(|[a, b]| json!([a.x, a.y, b.x, b.y])).collect::<Vec<_>>(),
+            "ties": ties.collect::<Vec<_>>(),
             "sections": sections.collect::<Vec<_>>(),
             "joints": joints,
             "across": across.collect::<Vec<_>>(),

@@ -184,6 +184,10 @@ impl Snapshots {
             drawing.polygon(&name, outline.map(|corner| place.px(corner)), fill, black);
         }
         let moved = |mark: &Mark| place.px(mark.moved(poses, self.exaggeration));
+        for ends in self.scene.ties(&sample.hinges) {
+            let stroke = Stroke::new(color::ORANGE, 1.8, "");
+            drawing.curve("tie", ends.iter().map(moved), stroke);
+        }
         for pressed in self.scene.pressed(sample) {
             let high_m = WEDGE_RATIO * self.thickness_m() / self.largest_pa();
             let wedge = pressed.wedge(high_m);

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::Scales;
 use super::verdict::Evidence;
 use super::words::first_peak_rad;
-use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary};
+use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary, TieSummary};
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::spread::{PeakSpread, Spread, SpreadError};
 use crate::dynamics::variation::Varied;
@@ -171,6 +171,7 @@ impl Object {
             ("damped_j", elastic.damped_j),
             ("friction_j", elastic.friction_j),
             ("crushed_j", elastic.crushed_j),
+            ("ties_j", elastic.ties_j),
             ("ground_j", elastic.ground_j),
             ("rest_eccentricity_ratio", elastic.rest_eccentricity_ratio),
         ] {
@@ -178,6 +179,31 @@ impl Object {
         }
         let joint = elastic.rest_eccentricity_joint;
         self.put("rest_eccentricity_joint", json!(joint));
+        Ok(())
+    }
+
+    /// What is told of ties; nothing where there are none.
+    fn ties(&mut self, ties: &[TieSummary]) -> Result<(), OutputError> {
+        let mut told = Vec::new();
+        for tie in ties {
+            let mut object = Self::default();
+            for (name, value) in [
+                ("peak_force_n", Some(tie.peak_force_n)),
+                ("peak_force_time_s", Some(tie.peak_force_time_s)),
+                ("yielded_s", tie.yielded_s),
+                ("broken_s", tie.broken_s),
+                ("yielded_m", Some(tie.yielded_m)),
+                ("force_n", Some(tie.force_n)),
+                ("elastic_j", Some(tie.elastic_j)),
+                ("taken_j", Some(tie.taken_j)),
+            ] {
+                object.number(name, value)?;
+            }
+            told.push(Value::Object(object.0));
+        }
+        if !told.is_empty() {
+            self.put("ties", told.into());
+        }
         Ok(())
     }
 
@@ -210,6 +236,7 @@ impl Object {
         } else if history.cost.steps > 0 {
             self.number("least_normal_n", row.least_normal_n)?;
         }
+        self.ties(&row.ties)?;
         if let Some(thrust) = &history.thrust {
             let friction = thrust.largest_friction;
             self.number("largest_friction_demand", friction.value)?;

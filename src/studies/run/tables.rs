@@ -94,6 +94,7 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
 /// positive), `shear_0_n` (positive if it keeps the right face from slipping towards the extrados), `eccentricity_0_ratio` (distance of
 /// the normal force from the middle towards the extrados, relative to the thickness; empty without compression),
 /// `contact_0_ratio` (the compressed fraction) and the stresses `stress_0_intrados_pa` and `stress_0_extrados_pa`.
+/// For each tie, from 1 on, `tie_1_force_n` and `tie_1_elongation_m` since the undeformed structure.
 ///
 /// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
 /// joint is measured along the arc: thickness times relative rotation, plus the smaller gap.
@@ -109,6 +110,12 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
             format!("contact_{joint}_ratio"),
             format!("stress_{joint}_intrados_pa"),
             format!("stress_{joint}_extrados_pa"),
+        ]
+    });
+    let ties = (1..=shape.ties).flat_map(|tie| {
+        [
+            format!("tie_{tie}_force_n"),
+            format!("tie_{tie}_elongation_m"),
         ]
     });
     let slips = (0..shape.slipping).map(|joint| format!("slip_{joint}_m"));
@@ -129,6 +136,11 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
                 ]);
             }
         }),
+        several(ties, |sample: &Sample, cells| {
+            for tie in &sample.ties {
+                cells.extend([Cell::from(tie.force_n), Cell::from(tie.elongation_m)]);
+            }
+        }),
     ]
 }
 
@@ -138,12 +150,13 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
 /// |---|---|
 /// | `time_s` | instant |
 /// | `phase` | the phase that begins, as in `rotations.csv`; phase 0 begins with the run, without a row |
-/// | `kind` | `uplift`, `impact`, `rest` or `overturned` |
+/// | `kind` | `uplift`, `impact`, `rest` or `overturned`; of a tie, `tie_yields` (for the first time) or `tie_breaks` |
 /// | `sway` | `right` or `left`, from here on; empty at rest |
 /// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and of free hinges |
 /// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
 /// | `energy_j` | kinetic and potential, just after |
 /// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`impacts`]; empty at rest |
+/// | `tie` | where there are ties: which one, from 1 on; empty of other events |
 /// | `joints_open`, `edges_open` | of a row of blocks: joints that are open or open now, and the edge about which each turns (`both`: it parts), separated by spaces |
 ///
 /// For a column there are no columns of hinges. A structure that is released starts in the first mechanism
@@ -159,6 +172,9 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
         column("mechanism", |event: &Event| event.mechanism),
     ];
     let energy = column("energy_j", |event: &Event| event.energy_j);
+    if model.shape().ties > 0 {
+        all.push(column("tie", |event: &Event| event.tie.map(|tie| tie + 1)));
+    }
     match model.as_mechanisms() {
         Some(model) => {
             let (bodies, sections) = (model.bodies(), sections(model));

@@ -7,6 +7,7 @@ use super::verdict::Evidence;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
     ElasticSummary, Event, HalfCycle, Impact, Outcome, RowSummary, Sliding, Stress, Summary,
+    TieSummary,
 };
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, Verdict};
@@ -68,6 +69,7 @@ pub(super) fn words(
     if let Some(elastic) = row.and_then(|row| row.elastic.as_ref()) {
         text += &of_elastic_joints(scenario, elastic);
     }
+    text += &row.map_or(String::new(), |row| of_ties(&row.ties));
     match spread {
         Some(Ok(spread)) if history.outcome != Outcome::NeverMoved => text += &sure(spread),
         Some(Err(reason)) => {
@@ -345,6 +347,34 @@ fn of_elastic_joints(scenario: &Scenario, elastic: &ElasticSummary) -> String {
             text,
             "  at rest the thrust lies {ratio:.3} t from the middle of joint {joint}: everything depends on how stiff the joints are"
         );
+    }
+    text
+}
+
+/// What is said of ties.
+fn of_ties(ties: &[TieSummary]) -> String {
+    let mut text = String::new();
+    for (number, tie) in (1..).zip(ties) {
+        let _ = write!(
+            text,
+            "  tie {number} pulled with {:.3} kN at most (at {:.4} s)",
+            1e-3 * tie.peak_force_n,
+            tie.peak_force_time_s
+        );
+        if let Some(time_s) = tie.yielded_s {
+            let _ = write!(
+                text,
+                "; it yielded from {time_s:.4} s on, by {:.3} mm in all",
+                1e3 * tie.yielded_m
+            );
+        }
+        if let Some(time_s) = tie.broken_s {
+            let _ = write!(text, "; it broke at {time_s:.4} s");
+        }
+        if tie.taken_j > 0.0 {
+            let _ = write!(text, "; that took {:.3} J", tie.taken_j);
+        }
+        text.push('\n');
     }
     text
 }

@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 
 use super::NoCheck;
 use super::notes::FRICTION;
-use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::{Capacity, Carried, Control};
@@ -15,7 +14,7 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::{
-    MovingBody, Participation, load_multiplier, per_displacement_of_centre,
+    MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
 };
 use crate::scenario::Structure;
 use crate::studies::capacity;
@@ -38,6 +37,8 @@ pub struct Mechanism {
     pub hinges: Vec<PlacedHinge>,
     /// Its rigid bodies from left to right; the virtual displacement of their common centre is one.
     pub bodies: Vec<MovingBody>,
+    /// Its ties, with their lengthening for that displacement.
+    pub ties: Vec<MovingTie>,
     /// The body to which each block of a row belongs; used if there is no curve.
     pub body_of_block: Vec<Option<usize>>,
     /// Load multiplier [C8.7.1.1].
@@ -74,16 +75,27 @@ impl Mechanism {
     fn new(
         sway: Sway,
         hinges: Vec<PlacedHinge>,
-        bodies: Vec<MovingBody>,
+        (mut bodies, mut ties): (Vec<MovingBody>, Vec<MovingTie>),
         body_of_block: Vec<Option<usize>>,
         way: Result<Way, String>,
     ) -> Self {
+        let alpha0 = load_multiplier(&bodies, &ties);
+        let participation = Participation::of_bodies(&bodies);
+        let scale = per_displacement_of_centre(&bodies);
+        for body in &mut bodies {
+            body.displacement *= scale;
+            body.rotation *= scale;
+        }
+        for tie in &mut ties {
+            tie.lengthening *= scale;
+        }
         Self {
             sway,
             hinges,
-            alpha0: load_multiplier(&bodies),
-            participation: Participation::of_bodies(&bodies),
-            bodies: per_displacement_of_centre(bodies),
+            alpha0,
+            participation,
+            bodies,
+            ties,
             body_of_block,
             way,
         }
@@ -131,7 +143,13 @@ impl Mechanism {
                 crown: curve(Control::point(crown)).ok(),
             })
             .map_err(|error| error.to_string());
-        Some(Self::new(sway, hinges, bodies, Vec::new(), way))
+        Some(Self::new(
+            sway,
+            hinges,
+            (bodies, Vec::new()),
+            Vec::new(),
+            way,
+        ))
     }
 
     /// The mechanism of a row at rest, from limit analysis.
@@ -181,10 +199,15 @@ impl Mechanism {
             },
             at_m: row.joints()[open.joint].corner_m(open.hinge.unwrap_or(Edge::Intrados)),
         });
+        let ties = row.ties().iter().zip(&onset.lengthening);
+        let ties = ties.map(|(tie, lengthening)| MovingTie {
+            force_kg: tie.prestress_n / row.gravity_m_s2(),
+            lengthening: *lengthening,
+        });
         Self::new(
             sway,
             hinges.collect(),
-            bodies.collect(),
+            (bodies.collect(), ties.collect()),
             body_of_block,
             Err(why_no_way.to_owned()),
         )
@@ -212,7 +235,7 @@ pub(super) fn mechanisms(
 ) -> Result<Vec<Mechanism>, NoCheck> {
     let none =
         |sway: Sway| NoCheck::NoMechanism(format!("no push moves it to the {}", sway.name()));
-    let model = match structure.model(ImpactModel::MaxRestitution) {
+    let why = match structure.model(ImpactModel::MaxRestitution) {
         Ok(model) => {
             let of = |sway: &Sway| {
                 Mechanism::of_model(structure, &*model, *sway, gravity_m_s2)
@@ -222,13 +245,17 @@ pub(super) fn mechanisms(
         }
         Err(why) => why.to_string(),
     };
-    let rows = structure.free_hinges(RowOptions::default());
-    let rows = rows.map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
-    let row = rows.row();
+    let why = if structure.ties().is_empty() {
+        why
+    } else {
+        "what ties pull with changes along the way, and no curve is computed with them".to_owned()
+    };
+    let row = structure.row();
+    let row = &row.map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
     let of = |sway: &Sway| {
         let found = onset(row, *sway).map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
         let found = found.ok_or_else(|| none(*sway))?;
-        let mechanism = Mechanism::of_onset(row, *sway, &found, &model);
+        let mechanism = Mechanism::of_onset(row, *sway, &found, &why);
         match slides_at_g(row, *sway) {
             Some(at_g) => Err(NoCheck::Slides {
                 sway: *sway,

@@ -206,9 +206,15 @@ pub fn not_covered(scenario: &Scenario, check: &Check) -> Vec<String> {
              (\u{a7} 3.2.3.1); C8.7.1.2.1 has no vertical term."
         }
     };
+    let ties = if scenario.structure().ties().is_empty() {
+        "Thrust of fill (its weight counts where it is given), crushing, soil and foundations, torsional hinges."
+    } else {
+        "What ties pull with beyond their force at rest, and their anchorages; thrust of fill (its weight counts where it is \
+         given), crushing, soil and foundations, torsional hinges."
+    };
     [
         vertical,
-        "Ties, thrust of fill (its weight counts where it is given), crushing, soil and foundations, torsional hinges.",
+        ties,
         "The choice of the mechanism beyond the joints that are given, and the building as a whole.",
     ]
     .map(str::to_owned)

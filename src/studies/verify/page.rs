@@ -403,16 +403,40 @@ impl Writer<'_> {
         ];
         table(&head, &body)
             + "<p>Virtual displacements of the centres for one of their common centre; x to the side of the motion.</p>\n"
+            + &self.ties(mechanism)
+    }
+
+    fn ties(&self, mechanism: &Mechanism) -> String {
+        if mechanism.ties.is_empty() {
+            return String::new();
+        }
+        let mut body = String::new();
+        for (number, tie) in (1..).zip(&mechanism.ties) {
+            let force_kn = tie.force_kg * self.check.gravity_m_s2 / 1000.0;
+            body += &row(
+                "",
+                &[format!("{number}"), n(force_kn, 3), n(tie.lengthening, 5)],
+            );
+        }
+        table(&["tie", "F (kN)", "\u{3b4}<sub>l</sub>"], &body)
+            + "<p>What ties pull with at rest, and by how much they lengthen.</p>\n"
     }
 
     fn activation_formulas(&self, mechanism: &Mechanism) -> String {
         let sums = Sums::of(mechanism, self.check.gravity_m_s2);
         let part = &mechanism.participation;
         let settings = &self.check.settings;
+        let (name, work) = if mechanism.ties.is_empty() {
+            ("\u{2211}P\u{3b4}<sub>y</sub>", n(sums.rise_kn, 4))
+        } else {
+            (
+                "(\u{2211}P\u{3b4}<sub>y</sub> + \u{2211}F\u{3b4}<sub>l</sub>)",
+                format!("({} + {})", n(sums.rise_kn, 4), n(sums.held_kn, 4)),
+            )
+        };
         let mut text = formula(&format!(
-            "\u{3b1}<sub>0</sub> = \u{2211}P\u{3b4}<sub>y</sub> / \u{2211}P\u{3b4}<sub>x</sub> = {} / {} = <b>{}</b>; A<sub>L</sub> = \
+            "\u{3b1}<sub>0</sub> = {name} / \u{2211}P\u{3b4}<sub>x</sub> = {work} / {} = <b>{}</b>; A<sub>L</sub> = \
              \u{3b1}<sub>0</sub> g = {} g{}",
-            n(sums.rise_kn, 4),
             n(sums.sway_kn, 4),
             n(mechanism.alpha0, 5),
             n(mechanism.alpha0, 5),

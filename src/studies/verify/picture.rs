@@ -45,6 +45,10 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
         let outline = piece.outline_m.iter().map(|corner| px(*corner));
         drawing.polygon(&name, outline, fill, thin);
     }
+    for tie in structure.ties() {
+        let ends = tie.ends.map(|end| px(end.at_m));
+        drawing.curve("tie", ends, Stroke::new(color::ORANGE, 1.8, ""));
+    }
     let fastest = mechanism.bodies.iter().map(|body| body.displacement.norm());
     let fastest = fastest.fold(f64::MIN_POSITIVE, f64::max);
     let arrow = Stroke::new(color::BLUE, 1.6, "");

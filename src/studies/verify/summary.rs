@@ -91,6 +91,8 @@ pub(super) struct Sums {
     pub(super) sway_squared_kn: f64,
     /// The weights times the vertical virtual displacements.
     pub(super) rise_kn: f64,
+    /// Of what ties pull with at rest, times their lengthening.
+    pub(super) held_kn: f64,
 }
 
 impl Sums {
@@ -106,6 +108,11 @@ impl Sums {
             sway_kn: sum(|delta| delta.x),
             sway_squared_kn: sum(|delta| delta.x * delta.x),
             rise_kn: sum(|delta| delta.y),
+            held_kn: {
+                let ties = mechanism.ties.iter();
+                let each = ties.map(|tie| tie.force_kg * tie.lengthening);
+                each.sum::<f64>() * gravity_m_s2 / 1000.0
+            },
         }
     }
 }
@@ -135,6 +142,12 @@ fn mechanism(check: &Check, mechanism: &Mechanism) -> Value {
             "rotation_per_m": body.rotation,
         })
     });
+    let ties = mechanism.ties.iter().map(|tie| {
+        json!({
+            "force_kn": tie.force_kg * check.gravity_m_s2 / 1000.0,
+            "delta_l": tie.lengthening,
+        })
+    });
     let participation = &mechanism.participation;
     let way = mechanism.way.as_ref().ok();
     let end = way.map(|way| *way.centre.end());
@@ -153,6 +166,8 @@ fn mechanism(check: &Check, mechanism: &Mechanism) -> Value {
     json!({
         "hinges": hinges.collect::<Vec<_>>(),
         "bodies": bodies.collect::<Vec<_>>(),
+        "ties": ties.collect::<Vec<_>>(),
+        "sum_f_delta_l_kn": sums.held_kn,
         "sum_p_kn": sums.weight_kn,
         "sum_p_delta_x_kn": sums.sway_kn,
         "sum_p_delta_x2_kn": sums.sway_squared_kn,

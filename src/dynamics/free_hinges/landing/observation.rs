@@ -51,9 +51,24 @@ impl LandingStepper<'_> {
         self.gravity * rise(self.row, self.placement.centres_m())
     }
 
+    /// Potential energy of the blocks.
+    fn height(&self) -> f64 {
+        if self.ties.are_none() {
+            self.course.potential
+        } else {
+            self.height_energy()
+        }
+    }
+
+    /// Potential energy of the blocks, and what is in the ties beyond that at rest.
+    pub(super) fn energy(&self) -> f64 {
+        self.height_energy() + self.ties.energy_j()
+    }
+
     /// Compares the energy at an instant with its balance.
     pub(super) fn audit(&mut self, kinetic: f64) {
-        let due = self.start_energy + self.ground_work - self.course.of_row.energy_taken_j;
+        let taken = self.course.of_row.energy_taken_j + self.ties.taken_j();
+        let due = self.start_energy + self.ground_work - taken;
         let defect = kinetic + self.course.potential - due;
         self.course.note_defect(defect.abs());
     }
@@ -61,7 +76,7 @@ impl LandingStepper<'_> {
     /// Reports the state after a step to the course of the motion.
     fn observe(&mut self) {
         self.course.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
-        let potential = self.height_energy();
+        let potential = self.energy();
         let sway = sway(self.row, self.placement.centres_m());
         let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
         let kinetic = kinetic(&self.pieces);
@@ -125,7 +140,9 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn into_course(self) -> Course<'a> {
-        self.course
+        let mut course = self.course;
+        course.of_row.ties = self.ties.summaries();
+        course
     }
 
     /// It ends at its landing, if there is one.
@@ -152,6 +169,9 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
             self.report_impact(taken_before);
         } else if self.stands {
             self.report_uplift(from_s);
+        }
+        for (tie, kind) in self.ties.happened(self.course.time) {
+            self.tell_tie(tie, kind);
         }
         self.course.summary.cost.steps += 1;
         let of_row = &mut self.course.of_row;
@@ -183,6 +203,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         self.audit(kinetic_j);
         self.ground_work += work;
         sample.poses.extend(self.placement.poses());
+        sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
         Ok(kinetic_j)
     }
@@ -207,7 +228,14 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
 
     fn rests_since(&self) -> Option<f64> {
         let least = REST_ENERGY_RATIO * self.course.energy_unit;
-        let rests = kinetic(&self.pieces) < least && self.course.potential.abs() < least;
+        // Ties that have yielded or broken hold another energy where the row rests.
+        let height = self.height();
+        let rests = kinetic(&self.pieces) < least && height.abs() < least;
         rests.then_some(self.course.time)
+    }
+
+    /// By its height: what is in ties may be less than at rest.
+    fn overturned_s(&self) -> Option<f64> {
+        self.course.fallen_s(self.height())
     }
 }

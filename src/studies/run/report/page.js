@@ -221,6 +221,14 @@
       pen.fillText(text, px, py - 27);
     }
 
+    // The ties.
+    pen.strokeStyle = css("--tie");
+    pen.lineWidth = 3;
+    for (const ends of data.ties) {
+      path(ends.map(point));
+      pen.stroke();
+    }
+
     // Where elastic joints press, and the stress there as a wedge.
     if (frames.largest_stress_pa) {
       pen.fillStyle = pen.strokeStyle = css("--press");

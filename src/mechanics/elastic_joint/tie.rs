@@ -1,0 +1,62 @@
+//! Ties between bodies with elastic joints.
+
+use super::kinematics::{Action, Place, cross};
+use crate::mechanics::blocks::Block;
+use crate::mechanics::lanes::{Real, both};
+use crate::mechanics::tie::{Tie, TieSpan};
+
+/// A tie with the bodies that it holds on to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundTie {
+    /// The tie.
+    pub tie: Tie,
+    /// The bodies at its ends; beyond the last one is a support.
+    pub bodies: [usize; 2],
+    /// From their centres to its ends, in m; from the origin where that is a support.
+    pub arms_m: [[f64; 2]; 2],
+}
+
+impl BoundTie {
+    pub(super) fn new(tie: Tie, blocks: &[Block]) -> Self {
+        let arm = |end: usize| {
+            let anchor = tie.ends[end];
+            let block = anchor.block.and_then(|block| blocks.get(block));
+            let arm_m = anchor.at_m - block.map_or_else(Default::default, |block| block.centre_m);
+            [arm_m.x, arm_m.y]
+        };
+        Self {
+            bodies: tie.ends.map(|anchor| anchor.block.unwrap_or(blocks.len())),
+            arms_m: [arm(0), arm(1)],
+            tie,
+        }
+    }
+
+    /// How it lies with its bodies at these places.
+    #[inline(always)]
+    #[must_use]
+    pub fn span<R: Real>(&self, places: [&Place<R>; 2]) -> TieSpan<R> {
+        let swings = both!(end: places[end].swing(self.arms_m[end]));
+        let first = both!(i: places[0].moved_m[i] + swings[0][i]);
+        let second = both!(i: places[1].moved_m[i] + swings[1][i]);
+        self.tie.span([first, second])
+    }
+
+    /// What it does as it pulls so hard.
+    #[inline(always)]
+    #[must_use]
+    pub fn action<R: Real>(
+        &self,
+        places: [&Place<R>; 2],
+        span: &TieSpan<R>,
+        force_n: R,
+    ) -> Action<R> {
+        let pull = both!(i: span.along[i] * -force_n);
+        let swings = both!(end: places[end].swing(self.arms_m[end]));
+        let first = both!(i: swings[0][i] + R::of(self.arms_m[0][i]));
+        let second = both!(i: swings[1][i] + R::of(self.arms_m[1][i]));
+        Action {
+            force_n: pull,
+            moments_n_m: [-cross(first, pull), cross(second, pull)],
+        }
+    }
+}

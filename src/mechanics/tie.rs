@@ -1,0 +1,399 @@
+//! Ties: bars that pull between two points of blocks or supports, and never push.
+//!
+//! Beyond its unstressed length a tie pulls with its stiffness times what it has stretched, at most with the force at which it yields; what
+//! it has yielded is lost to it. Stretched too far it breaks for good.
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::blocks::Block;
+use super::geometry::field::Twist;
+use super::lanes::{Lanes, Real, both};
+
+/// Where a tie holds on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor {
+    /// Index of the block; `None`: a support, or the ground.
+    pub block: Option<usize>,
+    /// Where, in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+}
+
+/// A tie, as it is in the undeformed structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tie {
+    /// Where it holds on.
+    pub ends: [Anchor; 2],
+    /// Force in N for each metre that it is stretched.
+    pub stiffness_n_m: f64,
+    /// What it pulls with in the undeformed structure, in N.
+    pub prestress_n: f64,
+    /// What it pulls with at most, in N; infinite where it does not yield.
+    pub yield_force_n: f64,
+    /// What it has stretched when it breaks, over its unstressed length; infinite where it does not break.
+    pub breaks_at_strain: f64,
+}
+
+/// Why a tie is none. Blocks count from 1 in words.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum TieError {
+    /// A number is out of range.
+    #[error("`{key} = {value:?}` of a tie must be {allowed}")]
+    Value {
+        /// Which number.
+        key: &'static str,
+        /// The number.
+        value: f64,
+        /// What it may be.
+        allowed: &'static str,
+    },
+    /// It holds on to a block that is not there.
+    #[error("there is no block {number}", number = .0 + 1)]
+    NoBlock(usize),
+    /// Both ends are at one place.
+    #[error("both ends are at one point: a tie has a length")]
+    NoLength,
+    /// Both ends are on one block.
+    #[error("both ends are on block {number}, which is rigid: such a tie does nothing", number = .0 + 1)]
+    OneBlock(usize),
+    /// Both ends are on supports.
+    #[error("both ends are on supports, which do not part: such a tie does nothing")]
+    OnSupports,
+    /// It would be nothing without its prestress.
+    #[error(
+        "a prestress of {prestress_n:?} N stretches it by {stretched_m:?} m, and it is only {length_m:?} m long: give less, or a \
+         stiffer tie"
+    )]
+    Stretched {
+        /// Its prestress.
+        prestress_n: f64,
+        /// What that stretches it.
+        stretched_m: f64,
+        /// Its length under that.
+        length_m: f64,
+    },
+    /// It yields before anything moves.
+    #[error(
+        "a prestress of {prestress_n:?} N is above the force at which it yields, {yield_force_n:?} N"
+    )]
+    YieldsAtRest {
+        /// Its prestress.
+        prestress_n: f64,
+        /// The force at which it yields.
+        yield_force_n: f64,
+    },
+    /// It breaks before anything moves.
+    #[error(
+        "it breaks at a strain of {breaks_at_strain:?}, and its prestress alone strains it by {strain:?}"
+    )]
+    BreaksAtRest {
+        /// The strain at which it breaks.
+        breaks_at_strain: f64,
+        /// Its strain at rest.
+        strain: f64,
+    },
+}
+
+impl Tie {
+    /// Checks its numbers, and that it is between two of so many blocks, or one of them and a support. `size_m` is the length of the
+    /// structure.
+    ///
+    /// # Errors
+    /// With what is wrong.
+    pub fn check(&self, blocks: usize, size_m: f64) -> Result<(), TieError> {
+        let positive = "a positive number";
+        let not_negative = "a number that is not negative: a tie does not push";
+        for (key, value, allowed, holds) in [
+            (
+                "stiffness_n_m",
+                self.stiffness_n_m,
+                positive,
+                self.stiffness_n_m > 0.0 && self.stiffness_n_m.is_finite(),
+            ),
+            (
+                "prestress_n",
+                self.prestress_n,
+                not_negative,
+                self.prestress_n >= 0.0 && self.prestress_n.is_finite(),
+            ),
+            (
+                "yield_force_n",
+                self.yield_force_n,
+                positive,
+                self.yield_force_n > 0.0,
+            ),
+            (
+                "breaks_at_strain",
+                self.breaks_at_strain,
+                positive,
+                self.breaks_at_strain > 0.0,
+            ),
+        ] {
+            if !holds {
+                return Err(TieError::Value {
+                    key,
+                    value,
+                    allowed,
+                });
+            }
+        }
+        for anchor in &self.ends {
+            if let Some(block) = anchor.block.filter(|block| *block >= blocks) {
+                return Err(TieError::NoBlock(block));
+            }
+            if let Some(value) = anchor.at_m.iter().find(|part| !part.is_finite()) {
+                let (key, allowed) = ("point", "finite");
+                return Err(TieError::Value {
+                    key,
+                    value: *value,
+                    allowed,
+                });
+            }
+        }
+        match self.ends.map(|anchor| anchor.block) {
+            [Some(one), Some(other)] if one == other => return Err(TieError::OneBlock(one)),
+            [None, None] => return Err(TieError::OnSupports),
+            _ => {}
+        }
+        let (length_m, stretched_m) = (self.length_m(), self.prestress_n / self.stiffness_n_m);
+        let prestress_n = self.prestress_n;
+        if length_m <= LEAST_LENGTH_RATIO * size_m {
+            return Err(TieError::NoLength);
+        }
+        if stretched_m >= length_m {
+            return Err(TieError::Stretched {
+                prestress_n,
+                stretched_m,
+                length_m,
+            });
+        }
+        if prestress_n > self.yield_force_n {
+            let yield_force_n = self.yield_force_n;
+            return Err(TieError::YieldsAtRest {
+                prestress_n,
+                yield_force_n,
+            });
+        }
+        let (strain, breaks_at_strain) = (
+            stretched_m / (length_m - stretched_m),
+            self.breaks_at_strain,
+        );
+        if strain >= breaks_at_strain {
+            return Err(TieError::BreaksAtRest {
+                breaks_at_strain,
+                strain,
+            });
+        }
+        Ok(())
+    }
+
+    /// Length in the undeformed structure, in metres.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        (self.ends[1].at_m - self.ends[0].at_m).norm()
+    }
+
+    /// Length without stress, in metres.
+    #[must_use]
+    pub fn slack_length_m(&self) -> f64 {
+        self.length_m() - self.prestress_n / self.stiffness_n_m
+    }
+
+    /// Unit vector from its first end to its second one.
+    #[must_use]
+    pub fn along(&self) -> Vector2<f64> {
+        (self.ends[1].at_m - self.ends[0].at_m) / self.length_m()
+    }
+
+    /// What the blocks at its ends gain in motion under an impulse of it, which pulls them together in the undeformed structure: velocity
+    /// for so much momentum per velocity.
+    pub(super) fn pull(&self, blocks: &[Block], impulse: f64, mut gain: impl FnMut(usize, Twist)) {
+        let along = self.along();
+        for (anchor, towards) in self.ends.iter().zip([along, -along]) {
+            let Some(block) = anchor.block else {
+                continue;
+            };
+            let Block {
+                mass_kg,
+                centre_m,
+                inertia_kg_m2,
+            } = blocks[block];
+            let turning = (anchor.at_m - centre_m).perp(&towards) * impulse / inertia_kg_m2;
+            let gained = Twist::translation(towards * (impulse / mass_kg));
+            gain(block, gained + Twist::rotation(centre_m, turning));
+        }
+    }
+
+    /// The same with its ends mirrored about the y axis, in a row of so many blocks that is mirrored too.
+    pub(super) fn mirrored(&self, blocks: usize) -> Self {
+        let mirror = |anchor: Anchor| Anchor {
+            block: anchor.block.map(|block| blocks - 1 - block),
+            at_m: Vector2::new(-anchor.at_m.x, anchor.at_m.y),
+        };
+        Self {
+            ends: self.ends.map(mirror),
+            ..*self
+        }
+    }
+}
+
+/// Square of the highest angular frequency, in (rad/s)2, that ties make of blocks that nothing else holds, at most.
+#[must_use]
+pub fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
+    let flexibility = |anchor: &Anchor| {
+        let block = anchor.block.and_then(|block| blocks.get(block));
+        block.map_or(0.0, |block| {
+            let arm_m = anchor.at_m - block.centre_m;
+            1.0 / block.mass_kg + arm_m.norm_squared() / block.inertia_kg_m2
+        })
+    };
+    // The largest eigenvalue of a sum is at most the sum of the largest.
+    let each = ties.iter().map(|tie| {
+        let ends = tie.ends.iter().map(flexibility);
+        tie.stiffness_n_m * ends.sum::<f64>()
+    });
+    each.sum()
+}
+
+/// Ties shorter than this part of the size have no direction.
+const LEAST_LENGTH_RATIO: f64 = 1e-9;
+
+/// What a tie does to the bodies at its ends, now.
+#[derive(Clone, Copy, Debug)]
+pub struct TieSpan<R> {
+    /// By how much it is longer than without stress, in m.
+    pub stretch_m: R,
+    /// Unit vector from its first end to its second one.
+    pub along: [R; 2],
+}
+
+impl Tie {
+    /// How it lies when its ends have moved by this much, in m.
+    ///
+    /// The square of the length is taken less that at rest, so that small changes keep their digits.
+    #[inline(always)]
+    #[must_use]
+    pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
+        let apart = self.ends[1].at_m - self.ends[0].at_m;
+        let length_m = self.length_m();
+        let by = both!(i: moved_m[1][i] - moved_m[0][i]);
+        let now = both!(i: by[i] + R::of(apart[i]));
+        let length = (now[0] * now[0] + now[1] * now[1]).sqrt();
+        let more =
+            by[0] * (by[0] + R::of(2.0 * apart[0])) + by[1] * (by[1] + R::of(2.0 * apart[1]));
+        let lengthened = more / (length + R::of(length_m));
+        let per_length = R::of(1.0) / length;
+        TieSpan {
+            stretch_m: lengthened + R::of(self.prestress_n / self.stiffness_n_m),
+            along: both!(i: now[i] * per_length),
+        }
+    }
+}
+
+/// What a tie remembers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TieMemory<R> {
+    /// By how much it is longer than without stress, in m.
+    pub stretch_m: R,
+    /// What it pulls with, in N.
+    pub force_n: R,
+    /// The most that it has pulled with, in N.
+    pub peak_n: R,
+    /// By how much it has yielded, in m.
+    pub yielded_m: R,
+    /// 1 until it breaks, then 0.
+    pub intact: R,
+    /// What it has taken for good so far, by yielding and by what was in it as it broke, in J.
+    pub taken_j: R,
+}
+
+impl<R: Real> TieMemory<R> {
+    /// Of a tie that has stretched so far beyond its unstressed length, slowly and for the first time.
+    #[must_use]
+    pub fn stretched(tie: &Tie, stretch_m: R) -> Self {
+        let mut memory = Self {
+            stretch_m,
+            force_n: R::of(0.0),
+            peak_n: R::of(0.0),
+            yielded_m: R::of(0.0),
+            intact: R::of(1.0),
+            taken_j: R::of(0.0),
+        };
+        memory.stretch(tie, stretch_m);
+        memory.taken_j = R::of(0.0);
+        memory
+    }
+
+    /// The tie is stretched so far beyond its unstressed length, or shortened.
+    ///
+    /// The mean of the forces before and after, times what it yields, is what it takes: with the elastic energy that is, up to the steps in
+    /// which it yields, goes slack or breaks, the trapezoid of its work.
+    #[inline(always)]
+    pub fn stretch(&mut self, tie: &Tie, stretch_m: R) {
+        let zero = R::of(0.0);
+        let trial_n = (stretch_m - self.yielded_m) * tie.stiffness_n_m;
+        let pulls_n = trial_n.max(zero);
+        let bound_n = R::of(tie.yield_force_n);
+        let force_n = pulls_n.min(bound_n);
+        let more_m = (pulls_n - force_n) * (1.0 / tie.stiffness_n_m);
+        self.yielded_m += more_m * self.intact;
+        let yielded_j = (self.force_n + force_n) * more_m * 0.5 * self.intact;
+        let left_m = R::of(tie.breaks_at_strain * tie.slack_length_m()) - stretch_m;
+        let intact = left_m.positive(self.intact, zero);
+        // What was in it as it broke.
+        let lost_j = self.energy_j(tie) * (self.intact - intact);
+        self.taken_j += yielded_j * intact + lost_j;
+        self.stretch_m = stretch_m;
+        self.force_n = force_n * intact;
+        self.peak_n = self.peak_n.max(self.force_n);
+        self.intact = intact;
+    }
+
+    /// What it holds when its ends are where they are in the undeformed structure.
+    #[must_use]
+    pub fn undeformed(tie: &Tie) -> Self {
+        Self::stretched(tie, R::of(tie.prestress_n / tie.stiffness_n_m))
+    }
+
+    /// Elastic energy, in J.
+    #[inline(always)]
+    #[must_use]
+    pub fn energy_j(&self, tie: &Tie) -> R {
+        self.force_n * self.force_n * (0.5 / tie.stiffness_n_m)
+    }
+}
+
+impl<const L: usize> TieMemory<Lanes<L>> {
+    fn parts_mut(&mut self) -> [&mut Lanes<L>; 6] {
+        [
+            &mut self.stretch_m,
+            &mut self.force_n,
+            &mut self.peak_n,
+            &mut self.yielded_m,
+            &mut self.intact,
+            &mut self.taken_j,
+        ]
+    }
+
+    /// Takes over what a tie alone remembers.
+    pub fn set(&mut self, lane: usize, alone: &TieMemory<Lanes<1>>) {
+        let mut alone = *alone;
+        for (part, from) in self.parts_mut().into_iter().zip(alone.parts_mut()) {
+            part.0[lane] = from.0[0];
+        }
+    }
+
+    /// What it remembers in a lane.
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> TieMemory<Lanes<1>> {
+        let of = |part: Lanes<L>| Lanes([part.0[lane]]);
+        TieMemory {
+            stretch_m: of(self.stretch_m),
+            force_n: of(self.force_n),
+            peak_n: of(self.peak_n),
+            yielded_m: of(self.yielded_m),
+            intact: of(self.intact),
+            taken_j: of(self.taken_j),
+        }
+    }
+}

@@ -1,0 +1,413 @@
+//! Ties between points of blocks or supports: `[[tie]]`.
+//!
+//! ```toml
+//! [[tie]]
+//! height_m = 2.0                 # level, between the intrados on both sides; or between = "springings"; or from_m and to_m
+//! area_mm2 = 491.0
+//! modulus_gpa = 210.0            # or, instead of both, stiffness_n_m
+//! prestress_n = 10e3             # optional
+//! yield_stress_mpa = 235.0       # optional; or yield_force_n
+//! breaks_at_strain = 0.05        # optional
+//! ```
+
+use nalgebra::Vector2;
+use serde::Serialize;
+
+use super::structure::Structure;
+use super::table::{Count, List, Number, OneOf, Reading, Table};
+use crate::mechanics::blocks::{MAX_BLOCKS, Row};
+use crate::mechanics::column::Column;
+use crate::mechanics::masonry::Masonry;
+use crate::mechanics::stability::falls;
+use crate::mechanics::tie::{Anchor, Tie, TieError};
+
+const COORDINATE_M: Number = Number::within(&(-1e6..=1e6));
+const AREA_MM2: Number = Number::within(&(1e-3..=1e9));
+const MODULUS_GPA: Number = Number::within(&(1e-4..=1e4));
+const STIFFNESS_N_M: Number = Number::within(&(1e-3..=1e15));
+const PRESTRESS_N: Number = Number::within(&(0.0..=1e12));
+const YIELD_FORCE_N: Number = Number::within(&(1e-6..=1e12));
+const YIELD_STRESS_MPA: Number = Number::within(&(1e-3..=1e5));
+const STRAIN: Number = Number::within(&(1e-6..=10.0));
+const BLOCK: Count = Count {
+    range: 0..=MAX_BLOCKS,
+    why: "blocks are counted from 1, and 0 is the ground",
+};
+
+/// A point this far from a block, in sizes of the structure, still holds on to it where the block is named: curved sides are drawn
+/// with straight lines.
+const NEAR_RATIO: f64 = 0.01;
+
+named! {
+    /// Between what a tie is, by name.
+    pub enum Between {
+        /// The intrados corners of the springings.
+        Springings = "springings",
+    }
+}
+
+/// What `[[tie]]` says, in the units of its keys.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TieTable {
+    /// Between what it is, where that has a name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub between: Option<Between>,
+    /// At which height, if it is level between the intrados on both sides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height_m: Option<f64>,
+    /// Its first end, where both are given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_m: Option<[f64; 2]>,
+    /// The block of that end, from 1 on; 0 is the ground.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_block: Option<usize>,
+    /// Its second end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_m: Option<[f64; 2]>,
+    /// The block of that end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_block: Option<usize>,
+    /// Area of its section.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area_mm2: Option<f64>,
+    /// Young's modulus.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub modulus_gpa: Option<f64>,
+    /// Force for each metre that it is stretched, instead of both.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness_n_m: Option<f64>,
+    /// What it pulls with in the undeformed structure.
+    pub prestress_n: f64,
+    /// What it pulls with at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yield_force_n: Option<f64>,
+    /// The same by its section.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yield_stress_mpa: Option<f64>,
+    /// Strain at which it breaks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub breaks_at_strain: Option<f64>,
+}
+
+impl TieTable {
+    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+        let names = OneOf {
+            all: Between::ALL,
+            name: |between: Between| between.name(),
+        };
+        let between = table.optional("between", &names);
+        let height_m = table.optional("height_m", &COORDINATE_M);
+        let from_m = read_point(table, "from_m");
+        let to_m = read_point(table, "to_m");
+        let from_block = table.optional("from_block", &BLOCK);
+        let to_block = table.optional("to_block", &BLOCK);
+        let area_mm2 = table.optional("area_mm2", &AREA_MM2);
+        let modulus_gpa = table.optional("modulus_gpa", &MODULUS_GPA);
+        let stiffness_n_m = table.optional("stiffness_n_m", &STIFFNESS_N_M);
+        let prestress_n = table.or("prestress_n", &PRESTRESS_N, 0.0);
+        let yield_force_n = table.optional("yield_force_n", &YIELD_FORCE_N);
+        let yield_stress_mpa = table.optional("yield_stress_mpa", &YIELD_STRESS_MPA);
+        let breaks_at_strain = table.optional("breaks_at_strain", &STRAIN);
+        table.exactly_one(
+            "keys",
+            vec![
+                ("between", mark(&between)),
+                ("height_m", mark(&height_m)),
+                ("from_m", mark(&from_m)),
+            ],
+        )?;
+        table.exactly_one(
+            "keys",
+            vec![
+                ("area_mm2", mark(&area_mm2)),
+                ("stiffness_n_m", mark(&stiffness_n_m)),
+            ],
+        )?;
+        let read = Self {
+            between: between?,
+            height_m: height_m?,
+            from_m: from_m?,
+            from_block: from_block?,
+            to_m: to_m?,
+            to_block: to_block?,
+            area_mm2: area_mm2?,
+            modulus_gpa: modulus_gpa?,
+            stiffness_n_m: stiffness_n_m?,
+            prestress_n: prestress_n?,
+            yield_force_n: yield_force_n?,
+            yield_stress_mpa: yield_stress_mpa?,
+            breaks_at_strain: breaks_at_strain?,
+        };
+        let needs = |key: &'static str, other: &'static str, given: bool, with: bool| {
+            (given && !with).then_some((key, other))
+        };
+        let points = read.from_m.is_some();
+        let lacking = [
+            needs("from_m", "to_m", points, read.to_m.is_some()),
+            needs("to_m", "from_m", read.to_m.is_some(), points),
+            needs("from_block", "from_m", read.from_block.is_some(), points),
+            needs("to_block", "to_m", read.to_block.is_some(), points),
+            needs(
+                "area_mm2",
+                "modulus_gpa",
+                read.area_mm2.is_some(),
+                read.modulus_gpa.is_some(),
+            ),
+            needs(
+                "modulus_gpa",
+                "area_mm2",
+                read.modulus_gpa.is_some(),
+                read.area_mm2.is_some(),
+            ),
+            needs(
+                "yield_stress_mpa",
+                "area_mm2",
+                read.yield_stress_mpa.is_some(),
+                read.area_mm2.is_some(),
+            ),
+        ];
+        if let Some((key, other)) = lacking.into_iter().flatten().next() {
+            return Err(table.wrong(key, format!("needs `{other}` beside it")));
+        }
+        if read.yield_force_n.is_some() && read.yield_stress_mpa.is_some() {
+            let wrong = "cannot be combined with `yield_force_n`; give one of them";
+            return Err(table.wrong("yield_stress_mpa", wrong));
+        }
+        Ok(read)
+    }
+
+    /// The tie in a row of blocks, where its springings are these joints.
+    ///
+    /// # Errors
+    /// In words, what to change.
+    fn placed(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<Tie, String> {
+        let ends = self.ends(row, springings)?;
+        let [first, second] = ends.map(|end| end.at_m);
+        let length_m = (second - first).norm();
+        let stiffness_n_m = match (self.area_mm2, self.modulus_gpa, self.stiffness_n_m) {
+            // A square millimetre and a GPa make a thousand newtons.
+            (Some(area_mm2), Some(modulus_gpa), _) => 1e3 * area_mm2 * modulus_gpa / length_m,
+            (_, _, stiffness_n_m) => stiffness_n_m.unwrap_or(0.0),
+        };
+        let by_section = self.yield_stress_mpa.zip(self.area_mm2);
+        let by_section = by_section.map(|(mpa, mm2)| mpa * mm2);
+        let tie = Tie {
+            ends,
+            stiffness_n_m,
+            prestress_n: self.prestress_n,
+            yield_force_n: self.yield_force_n.or(by_section).unwrap_or(f64::INFINITY),
+            breaks_at_strain: self.breaks_at_strain.unwrap_or(f64::INFINITY),
+        };
+        match tie.check(row.blocks().len(), row.size_m()) {
+            Ok(()) => Ok(tie),
+            Err(TieError::OnSupports) if self.between.is_some() => Err(
+                "is between springings that both stand on rigid ground, which does not part: give [piers], or tie voussoirs with \
+                 `height_m`"
+                    .to_owned(),
+            ),
+            Err(TieError::OneBlock(block)) => Err(format!(
+                "has both ends on block {}, which is rigid: tie two blocks, or a block and the ground (block 0)",
+                block + 1
+            )),
+            Err(TieError::OnSupports) => Err(
+                "has both ends on the ground, which does not part: give one of them on a block".to_owned(),
+            ),
+            Err(TieError::NoLength) => {
+                Err("has both ends at one point: give two points that are apart".to_owned())
+            }
+            Err(error) => Err(format!("is none: {error}")),
+        }
+    }
+
+    fn ends(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<[Anchor; 2], String> {
+        if let (Some(from_m), Some(to_m)) = (self.from_m, self.to_m) {
+            return Ok([
+                anchor(row, from_m, self.from_block, "from")?,
+                anchor(row, to_m, self.to_block, "to")?,
+            ]);
+        }
+        if let Some(height_m) = self.height_m {
+            return at_height(row, height_m);
+        }
+        let Some([left, right]) = springings else {
+            return Err(
+                "is between springings, which only arches given by their dimensions have: give `from_m` and `to_m`"
+                    .to_owned(),
+            );
+        };
+        // What carries the arch: the block before the left springing, and the one behind the right.
+        let at_m = |joint: usize| row.joints()[joint].intrados_m;
+        let blocks = row.blocks().len();
+        Ok([
+            Anchor {
+                block: left.checked_sub(1),
+                at_m: at_m(left),
+            },
+            Anchor {
+                block: (right < blocks).then_some(right),
+                at_m: at_m(right),
+            },
+        ])
+    }
+}
+
+/// Whether a key is given, for what excludes others.
+fn mark<T>(read: &Reading<Option<T>>) -> Reading<Option<()>> {
+    match read {
+        Ok(value) => Ok(value.as_ref().map(|_| ())),
+        Err(reported) => Err(*reported),
+    }
+}
+
+fn read_point(table: &mut Table<'_>, key: &str) -> Reading<Option<[f64; 2]>> {
+    match table.optional(key, &List(&COORDINATE_M))? {
+        None => Ok(None),
+        Some(numbers) => match numbers[..] {
+            [x_m, y_m] => Ok(Some([x_m, y_m])),
+            _ => Err(table.wrong(key, "has not two elements; must be a point [x, y] in m")),
+        },
+    }
+}
+
+/// A point of a block, or of the ground where that is said.
+fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Result<Anchor, String> {
+    let at_m = Vector2::from(point_m);
+    let point = format!("({:?}, {:?}) m", at_m.x, at_m.y);
+    let blocks = row.blocks().len();
+    let ground = || format!("for a point of the ground give `{end}_block = 0`");
+    let on = |block: Option<usize>| Ok(Anchor { block, at_m });
+    if let Some(number) = block {
+        let Some(index) = number.checked_sub(1) else {
+            return on(None);
+        };
+        if index >= blocks {
+            return Err(format!(
+                "has `{end}_block = {number}`: there are {blocks} blocks, counted from 1; 0 is the ground"
+            ));
+        }
+        let away_m = row.distance_m(index, at_m);
+        if away_m > NEAR_RATIO * row.size_m() {
+            return Err(format!(
+                "holds on at {point}, which is {away_m:.4} m away from block {number}: give a point of that block; {}",
+                ground()
+            ));
+        }
+        return on(Some(index));
+    }
+    match row.blocks_at(at_m)[..] {
+        [index] => on(Some(index)),
+        [] => {
+            let nearest = (0..blocks)
+                .map(|index| (row.distance_m(index, at_m), index + 1))
+                .min_by(|one, other| one.0.total_cmp(&other.0));
+            let nearest = nearest.map_or(String::new(), |(away_m, number)| {
+                format!("; the nearest, {number}, is {away_m:.4} m away")
+            });
+            Err(format!(
+                "holds on at {point}, which is in no block{nearest}: give a point of a block; {}",
+                ground()
+            ))
+        }
+        ref these => {
+            let numbers: Vec<String> = these.iter().map(|index| (index + 1).to_string()).collect();
+            Err(format!(
+                "holds on at {point}, which is on the edge of blocks {}: say of which with `{end}_block`",
+                numbers.join(" and ")
+            ))
+        }
+    }
+}
+
+/// The two points of the intrados, taken as straight from joint to joint, at a height.
+fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
+    let pairs = row.joints().windows(2).enumerate();
+    let crossings: Vec<Anchor> = pairs
+        .filter_map(|(block, pair)| {
+            let (from, to) = (pair[0].intrados_m, pair[1].intrados_m);
+            let crosses = (from.y <= height_m) != (to.y <= height_m);
+            crosses.then(|| Anchor {
+                block: Some(block),
+                at_m: from + (to - from) * ((height_m - from.y) / (to.y - from.y)),
+            })
+        })
+        .collect();
+    match crossings[..] {
+        [left, right] => Ok([left, right]),
+        _ => {
+            let corners = row.joints().iter().map(|joint| joint.intrados_m.y);
+            let lowest = corners.clone().fold(f64::INFINITY, f64::min);
+            let highest = corners.fold(f64::NEG_INFINITY, f64::max);
+            Err(format!(
+                "is at a height of {height_m:?} m, where the intrados is not crossed on both sides: give a height between {lowest:.4} \
+                 and {highest:.4} m, or `from_m` and `to_m`"
+            ))
+        }
+    }
+}
+
+/// The ties of a structure, in it.
+///
+/// # Errors
+/// With the index of the tie, in words, what to change.
+fn placed(
+    ties: &[TieTable],
+    row: &Row,
+    springings: Option<[usize; 2]>,
+) -> Result<Vec<Tie>, (usize, String)> {
+    let each = ties.iter().enumerate();
+    each.map(|(index, tie)| tie.placed(row, springings).map_err(|wrong| (index, wrong)))
+        .collect()
+}
+
+/// Masonry with its ties.
+pub(super) fn tied(
+    table: &mut Table<'_>,
+    ties: &[TieTable],
+    masonry: Masonry,
+    gravity_m_s2: f64,
+) -> Reading<Masonry> {
+    let placed = placed(ties, masonry.row(), masonry.springing_joints());
+    let tied = placed.and_then(|ties| {
+        let tied = masonry.with_ties(ties, gravity_m_s2);
+        tied.map_err(|(index, error)| (index, error.to_string()))
+    });
+    tied.map_err(|(index, wrong)| table.wrong_element("tie", index, wrong))
+}
+
+/// A structure with its ties: a column of any number of drums.
+pub(super) fn tied_column(
+    table: &mut Table<'_>,
+    ties: &[TieTable],
+    column: Column,
+    gravity_m_s2: f64,
+) -> Reading<Structure> {
+    if ties.is_empty() {
+        return Ok(Structure::Column(column));
+    }
+    let row = match column.row() {
+        Ok(row) => row,
+        Err(error) => return Err(table.wrong("column", format!("makes no row of blocks: {error}"))),
+    };
+    let tied = placed(ties, &row, None).and_then(|ties| {
+        let tied = column.with_ties(ties, gravity_m_s2);
+        tied.map_err(|(index, error)| (index, error.to_string()))
+    });
+    let column = tied.map_err(|(index, wrong)| table.wrong_element("tie", index, wrong))?;
+    let wrong = |wrong: String| Err(format!("cannot be checked to stand: {wrong}"));
+    let stands = match column.row() {
+        Ok(row) => falls(&row).map_or_else(
+            |error| wrong(error.to_string()),
+            |falls| Ok(falls.is_none()),
+        ),
+        Err(error) => wrong(error.to_string()),
+    };
+    match stands {
+        Ok(true) => Ok(Structure::Column(column)),
+        Ok(false) => Err(table.wrong("tie", PULLS_OVER)),
+        Err(wrong) => Err(table.wrong("column", wrong)),
+    }
+}
+
+/// What is said of ties that pull over what stands without them.
+pub(super) const PULLS_OVER: &str =
+    "pulls over what stands without it: give less `prestress_n`, or tie other points";
