@@ -153,7 +153,6 @@ fn results_of_another_scenario_of_the_same_name_are_not_replaced() {
     for (command, file) in [
         ("run", "summary.json"),
         ("threshold", "threshold.json"),
-        ("chart", "chart.csv"),
         ("map", "map.csv"),
     ] {
         fs::write(path.join("s.toml"), format!("{TEXT}{map}")).unwrap();
