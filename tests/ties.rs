@@ -48,6 +48,16 @@ fn tied(row: &Row, ties: Vec<Tie>) -> Row {
 /// The static theorem: the largest push under which the thrust at every joint lies between its corners, over the reaction at the
 /// first joint and the forces of the ties, each within its bounds. In units of the weight and the size; `None` where nothing does.
 fn statically(row: &Row, sway: Sway, bounds: &[[f64; 2]]) -> Option<f64> {
+    extreme_push(row, sway, bounds, 1.0)
+}
+
+/// The least such push, from zero on: zero where the row stands without one.
+fn least_statically(row: &Row, sway: Sway, bounds: &[[f64; 2]]) -> Option<f64> {
+    extreme_push(row, sway, bounds, -1.0)
+}
+
+/// The largest push times a sign.
+fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option<f64> {
     let (size_m, mass_kg) = (row.size_m(), row.mass_kg());
     let origin = row.joints()[0].middle_m();
     // Wrench about the origin on what is before each joint, by unknown: push, reaction, ties; and known.
@@ -119,7 +129,7 @@ fn statically(row: &Row, sway: Sway, bounds: &[[f64; 2]]) -> Option<f64> {
         bound(coefficients, -least);
     }
     let mut objective = vec![0.0; width];
-    objective[0] = -1.0;
+    objective[0] = -sign;
     // Pushes against the sway are none.
     let mut coefficients = vec![0.0; width];
     coefficients[0] = -1.0;
@@ -181,7 +191,7 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
                         },
                     ],
                 };
-                let prestress_n = number(0.0, 0.12) * weight_n;
+                let prestress_n = number(0.0, 0.3) * weight_n;
                 tie(ends, prestress_n, prestress_n + number(0.0, 0.2) * weight_n)
             })
             .collect();
@@ -219,7 +229,12 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
                     limits += usize::from(limit_g > found_g + 1e-3);
                 }
                 Err(StabilityError::CannotStand(_)) => {
-                    assert!(due_g.is_none_or(|due_g| due_g < 1e-7), "{due_g:?}");
+                    // It may stand under a push, and falls without one.
+                    let least_g = least_statically(&row, *sway, &at_rest);
+                    assert!(
+                        least_g.is_none_or(|least_g| least_g > 1e-9),
+                        "{least_g:?} {due_g:?}"
+                    );
                     fall += 1;
                 }
                 Err(error) => panic!("{error}"),
@@ -236,7 +251,7 @@ fn worked_arches_have_their_pushes() {
     let cases = [
         (
             (0.15, 180.0, 36, 5.0, 9),
-            231_142.6795,
+            231_142.679_5,
             [
                 0.144_799_62,
                 0.179_237_98,
@@ -248,7 +263,7 @@ fn worked_arches_have_their_pushes() {
         ),
         (
             (0.15, 157.5, 28, 10.0, 6),
-            808_999.3782,
+            808_999.378_2,
             [
                 0.354_685_79,
                 0.373_518_99,
@@ -280,7 +295,8 @@ fn worked_arches_have_their_pushes() {
                 .unwrap();
             assert!((limit.onset.acceleration_g - most_g).abs() < 1e-8);
             let force = limit.forces_n[0] / weight_n;
-            assert!((force - best).abs() < 1e-8, "{force} {best}");
+            // Of many forces with the same push the least; where that plateau begins the push is flat to 1e-8.
+            assert!((force - best).abs() < 1e-6, "{force} {best}");
             let weak = limit_with_yielding_ties(&pulled(0.0, 0.05), *sway)
                 .unwrap()
                 .unwrap();
