@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use archrock::output::{Figure, Folder};
-use archrock::studies::capacity::{capacities, tell as tell_capacity};
+use archrock::studies::capacity::{capacity as capacities, tell as tell_capacity};
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
