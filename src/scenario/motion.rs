@@ -123,7 +123,7 @@ impl Motion {
     }
 
     /// The same model for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases)
-    /// and [`ElasticJoints::for_many_cases`].
+    /// and [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
     ///
     /// # Errors
     /// As [`Motion::model`].
