@@ -11,7 +11,7 @@ fn document(name: &str) -> String {
     fs::read_to_string(docs.join(name)).unwrap()
 }
 
-/// The keys that the reader allows in a table, taken from the error about an unknown one.
+/// The keys that the reader allows in a table, or in `[name]` for one of a list, taken from the error about an unknown one.
 fn known(table: &str) -> BTreeSet<String> {
     const UNKNOWN: &str = "no_such_key";
     let lines = format!("[{table}]\n{UNKNOWN} = 1\n");
@@ -21,7 +21,8 @@ fn known(table: &str) -> BTreeSet<String> {
         ARCH
     };
     let errors = Scenario::parse(&format!("{arch}{lines}"), "s.toml").unwrap_err();
-    let said = format!("unknown key `{UNKNOWN}` in [{table}]; known keys: ");
+    let name = table.trim_matches(['[', ']']);
+    let said = format!("unknown key `{UNKNOWN}` in [{name}]; known keys: ");
     let keys = errors
         .as_slice()
         .iter()
@@ -62,6 +63,7 @@ fn the_reference_has_the_keys_that_are_read() {
         ("elastic_joints", vec!["elastic_joints"]),
         ("supports", vec!["supports"]),
         ("supports.right", vec!["supports.right", "supports.left"]),
+        ("[tie]", vec!["[tie]"]),
         (
             "ground.<kind>",
             vec!["ground.rectangular", "ground.gabor", "ground.windowed_sine"],
