@@ -10,7 +10,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
 
@@ -510,7 +510,8 @@ class Check(Files):
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 60em; border: 0"></iframe>'
 
 
-_KINDS: dict[str, type[Results]] = {
+_StudyResults = Union[OverturningMap, ProbabilityMap, Spectrum, Suite, Ensemble]
+_KINDS: dict[str, Callable[[Iterable[tuple[str, bytes]]], _StudyResults]] = {
     "map": OverturningMap,
     "spectrum": Spectrum,
     "suite": Suite,
@@ -934,7 +935,7 @@ def compute_part(
 
 def merge(
     parts: Iterable[str | os.PathLike[str]], scenario: Scenario | None = None
-) -> OverturningMap | Spectrum | Suite | Ensemble:
+) -> _StudyResults:
     """Joins all parts of one study.
 
     Args:
@@ -949,6 +950,4 @@ def merge(
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
     native = None if scenario is None else scenario._native
     study, files = _native.merge(list(parts), native)
-    results = _KINDS[study](files)
-    assert isinstance(results, (OverturningMap, Spectrum, Suite, Ensemble))
-    return results
+    return _KINDS[study](files)
