@@ -93,7 +93,7 @@ impl Recorder for Filming {
 }
 
 /// Names of the columns of samples.
-const COLUMNS: [&str; 17] = [
+const COLUMNS: [&str; 18] = [
     "time_s",
     "ground_acceleration_m_s2",
     "vertical_acceleration_m_s2",
@@ -105,6 +105,7 @@ const COLUMNS: [&str; 17] = [
     "gaps_m",
     "offsets_m",
     "pressures",
+    "ties",
     "point_m",
     "open_hinges",
     "thrust_excess_ratio",
@@ -122,8 +123,8 @@ pub struct History {
     model: Arc<dyn Model>,
     summary: Summary,
     events: Vec<Event>,
-    /// Number of samples, of bodies, of joints with gaps, of joints that slip, and of joints with contact forces.
-    counts: [usize; 5],
+    /// Number of samples, of bodies, of joints with gaps, of joints that slip, of joints with contact forces, and of ties.
+    counts: [usize; 6],
     /// Displacements of the observed point, to the right and upwards, for each sample.
     point_m: Mutex<Option<Vec<f64>>>,
     /// The columns that were not taken yet.
@@ -209,6 +210,7 @@ impl History {
                 each(samples.gaps_m.len()),
                 each(samples.offsets_m.len()),
                 each(samples.pressures.len()),
+                each(samples.ties.len()),
             ],
             point_m: Mutex::new(point_m),
             samples: Mutex::new(samples),
@@ -218,7 +220,7 @@ impl History {
 
     /// Takes a column out of the samples, as an array of its shape.
     fn take<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let [count, bodies, joints, slipping, pressing] = self.counts;
+        let [count, bodies, joints, slipping, pressing, ties] = self.counts;
         let taken = |take: &mut dyn FnMut(&mut Samples) -> Vec<f64>, shape: &[usize]| {
             let values = take(&mut self.samples.lock().unwrap_or_else(PoisonError::into_inner));
             array(py, values, shape)
@@ -270,6 +272,14 @@ impl History {
                         .collect()
                 },
                 &[count, pressing, 6],
+            ),
+            "ties" => taken(
+                &mut |all| {
+                    let ties = mem::take(&mut all.ties).into_iter();
+                    ties.flat_map(|tie| [tie.force_n, tie.elongation_m])
+                        .collect()
+                },
+                &[count, ties, 2],
             ),
             "point_m" => {
                 let point_m = self

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from archrock import Arch, Column, Pulse, simulate
+from archrock import Arch, Column, Pulse, Scenario, simulate
 
 PULSE = Pulse("rectangular", amplitude_g=-0.3, duration_s=0.2)
 STACK = Column(height_m=4.0, width_m=0.8, drums=4, density_kg_m3=2000.0)
@@ -46,3 +46,21 @@ def test_what_does_not_go_together_is_refused() -> None:
         simulate(arch, PULSE, model="free_hinges", contact_points=3)
     with pytest.raises(ValueError, match="of free hinges only"):
         simulate(arch, PULSE, model="elastic_joints", normal_stiffness_gpa_m=10.0, shortest_step_s=1e-5)
+
+
+def test_ties_pull_as_in_the_table_of_joints() -> None:
+    text = """
+        column = { height_m = 4.0, width_m = 0.8 }
+        tie = [{ from_m = [-0.4, 3.5], to_m = [-3.4, 3.5], to_block = 0, stiffness_n_m = 1e7, prestress_n = 5000.0, yield_force_n = 12000.0 }]
+        elastic_joints = { normal_stiffness_gpa_m = 1.0 }
+        ground.half_sine = { amplitude_g = -0.6, duration_s = 0.4 }
+        simulation.duration_s = 1.0
+    """
+    history = Scenario.parse(text).run()
+    forces_n, elongations_m = history.tie_forces[:, 0], history.tie_elongations[:, 0]
+    assert history.tie_forces.shape == (len(history), 1)
+    assert forces_n.max() == 12000.0
+    # What does not yet yield is elastic.
+    early = forces_n.argmax()
+    np.testing.assert_allclose(forces_n[:early], 5000.0 + 1e7 * elongations_m[:early], rtol=1e-9)
+    assert simulate(STACK, PULSE, model="free_hinges", duration_s=0.1).tie_forces.shape[1] == 0

@@ -137,6 +137,8 @@ pub struct TieSample {
     pub force_n: f64,
     /// By how much it is longer than in the undeformed structure, in m.
     pub elongation_m: f64,
+    /// Whether it has broken.
+    pub is_broken: bool,
 }
 
 impl TieSample {
@@ -145,6 +147,7 @@ impl TieSample {
         Self {
             force_n: memory.force_n.0[0],
             elongation_m: memory.stretch_m.0[0] - tie.prestress_n / tie.stiffness_n_m,
+            is_broken: memory.intact.0[0] == 0.0,
         }
     }
 }

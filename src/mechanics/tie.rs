@@ -327,7 +327,7 @@ impl<R: Real> TieMemory<R> {
     /// The tie is stretched so far beyond its unstressed length, or shortened.
     ///
     /// The mean of the forces before and after, times what it yields, is what it takes: with the elastic energy that is, up to the steps in
-    /// which it yields, goes slack or breaks, the trapezoid of its work.
+    /// which it begins to yield or goes slack, the trapezoid of its work.
     #[inline(always)]
     pub fn stretch(&mut self, tie: &Tie, stretch_m: R) {
         let zero = R::of(0.0);
@@ -340,8 +340,9 @@ impl<R: Real> TieMemory<R> {
         let yielded_j = (self.force_n + force_n) * more_m * 0.5 * self.intact;
         let left_m = R::of(tie.breaks_at_strain * tie.slack_length_m()) - stretch_m;
         let intact = left_m.positive(self.intact, zero);
-        // What was in it as it broke.
-        let lost_j = self.energy_j(tie) * (self.intact - intact);
+        // What was in it as it broke, and the trapezoid of its work in that step, at whose end it pulls no more.
+        let last_j = self.force_n * (stretch_m - self.stretch_m) * 0.5;
+        let lost_j = (self.energy_j(tie) + last_j) * (self.intact - intact);
         self.taken_j += yielded_j * intact + lost_j;
         self.stretch_m = stretch_m;
         self.force_n = force_n * intact;

@@ -105,12 +105,19 @@ impl Motion {
             return Ok(Vec::new());
         };
         let mut variations = joints.model(structure)?.variations();
+        // Free hinges that slip take no ties.
+        let slips = joints.friction_coefficient.is_some() && structure.ties().is_empty();
         let rigid = structure.free_hinges(RowOptions {
-            friction_coefficient: joints.friction_coefficient,
+            friction_coefficient: joints.friction_coefficient.filter(|_| slips),
             ..RowOptions::default()
         });
+        let name = if slips || joints.friction_coefficient.is_none() {
+            "rigid joints (free hinges)"
+        } else {
+            "rigid joints that do not slip (free hinges)"
+        };
         variations.push(Variation {
-            name: "rigid joints (free hinges)".to_owned(),
+            name: name.to_owned(),
             model: match rigid {
                 _ if !joints.supports.is_none() => {
                     Err("they start on the springings that were built".to_owned())

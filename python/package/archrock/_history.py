@@ -251,6 +251,16 @@ class History:
         return self._column("pressures")[:, :, 4:6]
 
     @property
+    def tie_forces(self) -> Floats:
+        """What each tie pulls with in N, shape ``(samples, ties)``; ``tie_1_force_n`` of ``joints.csv`` is the first."""
+        return self._column("ties")[:, :, 0]
+
+    @property
+    def tie_elongations(self) -> Floats:
+        """By how much each tie is longer than in the undeformed structure in m, shape ``(samples, ties)``."""
+        return self._column("ties")[:, :, 1]
+
+    @property
     def point(self) -> Floats:
         """Displacement in m, to the right and upwards, of the ``point`` given to :func:`simulate`.
 

@@ -11,6 +11,7 @@ use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::{Block, Equivalent};
+use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stability::{RowOnset, onset};
@@ -52,6 +53,12 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
     }
     text += "joints are counted from the left, 0 at the left base or springing\n\n";
     match scenario.mechanisms() {
+        // Nothing is wrong then: limit analysis is done.
+        Err(FourLinkError::Ties) => {
+            let reason = "four links take no ties, so there are no unstable equilibrium and no equivalent block of theirs";
+            json["four_links"] = json!({ "none_because": reason });
+            let _ = writeln!(text, "{reason}");
+        }
         Err(error) => {
             json["four_links"] = json!({ "none_because": error.to_string() });
             let _ = writeln!(text, "{error}");

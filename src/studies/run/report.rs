@@ -219,6 +219,8 @@ impl Report {
             let end = |mark: Mark| json!([body_number(mark.body), mark.at_m.x, mark.at_m.y]);
             json!(ends.map(end))
         });
+        let of_row = history.row.iter();
+        let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
         let energy_label = if self.in_barriers {
             match history.row {
                 None => "Energy (1: gravity alone overturns the mechanism that moves)",
@@ -241,6 +243,7 @@ impl Report {
             "opens_s": opens_s,
             "supports": supports.iter().map(|[a, b]| json!([a.x, a.y, b.x, b.y])).collect::<Vec<_>>(),
             "ties": ties.collect::<Vec<_>>(),
+            "ties_broken_s": broken_s.collect::<Vec<_>>(),
             "sections": sections.collect::<Vec<_>>(),
             "joints": joints,
             "across": across.collect::<Vec<_>>(),

@@ -184,9 +184,19 @@ impl Snapshots {
             drawing.polygon(&name, outline.map(|corner| place.px(corner)), fill, black);
         }
         let moved = |mark: &Mark| place.px(mark.moved(poses, self.exaggeration));
-        for ends in self.scene.ties(&sample.hinges) {
-            let stroke = Stroke::new(color::ORANGE, 1.8, "");
-            drawing.curve("tie", ends.iter().map(moved), stroke);
+        let broken = |tie: usize| sample.ties.get(tie).is_some_and(|tie| tie.is_broken);
+        for (tie, ends) in self.scene.ties(&sample.hinges).iter().enumerate() {
+            let [from, to] = ends.each_ref().map(moved);
+            if broken(tie) {
+                let stroke = Stroke::new(color::ORANGE, 1.2, "4 3");
+                for [end, other] in [[from, to], [to, from]] {
+                    let stub = end + (other - end) * STUB_RATIO;
+                    drawing.curve("broken tie", [end, stub], stroke);
+                }
+            } else {
+                let stroke = Stroke::new(color::ORANGE, 1.8, "");
+                drawing.curve("tie", [from, to], stroke);
+            }
         }
         for pressed in self.scene.pressed(sample) {
             let high_m = WEDGE_RATIO * self.thickness_m() / self.largest_pa();
@@ -215,6 +225,8 @@ impl Snapshots {
     }
 }
 
+/// How much of a broken tie is drawn at either end.
+const STUB_RATIO: f64 = 0.4;
 /// Height of the highest stress wedge, relative to the thickness of the thinnest joint.
 const WEDGE_RATIO: f64 = 0.6;
 /// The colour of stress wedges.

@@ -223,11 +223,18 @@
 
     // The ties.
     pen.strokeStyle = css("--tie");
-    pen.lineWidth = 3;
-    for (const ends of data.ties) {
-      path(ends.map(point));
-      pen.stroke();
-    }
+    data.ties.forEach((ends, tie) => {
+      const broken = data.ties_broken_s[tie] !== null && times[at.frame] >= data.ties_broken_s[tie];
+      const [from, to] = ends.map(point);
+      const stub = ([x, y], [otherX, otherY]) => [x + 0.4 * (otherX - x), y + 0.4 * (otherY - y)];
+      pen.lineWidth = broken ? 2 : 3;
+      pen.setLineDash(broken ? [5, 4] : []);
+      for (const line of broken ? [[from, stub(from, to)], [to, stub(to, from)]] : [[from, to]]) {
+        path(line);
+        pen.stroke();
+      }
+    });
+    pen.setLineDash([]);
 
     // Where elastic joints press, and the stress there as a wedge.
     if (frames.largest_stress_pa) {
