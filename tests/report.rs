@@ -231,3 +231,89 @@ fn a_report_is_left_out_and_an_old_one_goes() {
     }
     assert!(folder.path().join("rotations.csv").exists());
 }
+
+/// The page has the first 20 samples of `[uncertain]`: one that overturns ends early, and no other goes beyond its largest rotation in
+/// the table of samples, which it reaches as far as a thinned curve may. The structure of a sample is drawn where a run with its
+/// values says.
+#[test]
+fn samples_are_behind_the_history() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let path = program::scenarios().join("uncertain/arch.toml");
+    let run = ["run", path.to_str().unwrap(), "--out"];
+    program::printed(
+        at,
+        &[&run[..], &[".", "--set", "uncertain.samples=24"]].concat(),
+    );
+    let page = fs::read_to_string(at.join("report.html")).unwrap();
+    // Half a megabyte is the history itself.
+    assert!(page.len() < 1_000_000, "{} bytes", page.len());
+    let data = data_of(&page);
+    let curves = data["samples"].as_array().unwrap();
+    assert_eq!(curves.len(), 20);
+    let table = Table::read(at.join("uncertain/samples.csv"));
+    let facts: Vec<Value> = table.rows[1..=20]
+        .iter()
+        .map(|row| json!([&row["outcome"], row.number("peak_rotation_rad")]))
+        .collect();
+    let stands = facts.iter().position(|fact| fact[0] == "rest").unwrap();
+    assert!(facts.iter().any(|fact| fact[0] == "overturned"));
+    let row = &table.rows[1 + stands];
+    let values = [
+        "arch.thickness_ratio",
+        "arch.mean_radius_m",
+        "ground.one_sine.amplitude_g",
+        "ground.one_sine.duration_s",
+    ];
+    let set = values.map(|key| format!("{key}={}", &row[key]));
+    let set = set.iter().flat_map(|value| ["--set", value.as_str()]);
+    let alone = ["one", "--no-uncertain", "--no-report", "--poses"];
+    program::printed(at, &[&run[..], &alone, &set.collect::<Vec<_>>()].concat());
+    let poses = Table::read(at.join("one/poses.csv"));
+    let of = |row: usize| {
+        let row = &poses.rows[row];
+        let bodies = ["left", "middle", "right"].map(|body| {
+            ["rotation", "x", "y"].map(|what| {
+                let unit = if what == "rotation" { "rad" } else { "m" };
+                row.number(&format!("{what}_{body}_{unit}"))
+            })
+        });
+        json!([row.number("time_s"), bodies])
+    };
+    // At frames of the sample, which are every first, second, fourth or eighth row.
+    let rows: Vec<Value> = (0..poses.rows.len()).step_by(16).map(of).collect();
+    let check = "
+        const { samples } = window.archrock;
+        verify(samples.length === 20, 'samples');
+        samples.forEach(({ turning }, i) => {
+          const most = turning.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
+          const [outcome, peak] = data.facts[i];
+          // Frames are a hundredth of a second apart: they may miss the instant of the peak by 2 %.
+          verify(outcome === 'overturned' || (most <= peak * (1 + 1e-6) && most > 0.98 * peak), `${i}: ${most}, ${peak}`);
+          // What overturned is not drawn any more; what rests is, to the end.
+          const last = samples[i].poses(window.archrock.times[window.archrock.times.length - 1]);
+          verify((last === null) === (outcome === 'overturned'), `${i} is drawn to the end: ${last !== null}`);
+        });
+        // Poses are in 16 bits: to 1/32767 of the largest.
+        for (const [time, bodies] of data.rows) {
+          samples[data.stands].poses(time).forEach(({ rotation, x, y }, body) => {
+            const [wantedRotation, wantedX, wantedY] = bodies[body];
+            const off = Math.max(Math.abs(rotation - wantedRotation), Math.abs(x - wantedX), Math.abs(y - wantedY));
+            verify(off < 1e-4, `${time} s: ${[rotation, x, y]}, ${bodies[body]}`);
+          });
+        }
+        const pixels = () => {
+          const stage = document.getElementById('stage');
+          return stage.toDataURL();
+        };
+        const all = pixels();
+        document.getElementById('samples').click();
+        verify(pixels() !== all, 'samples are drawn');";
+    browser::assert_checked(
+        &at.join("report.html"),
+        check,
+        &json!({ "facts": facts, "rows": rows, "stands": stands }).to_string(),
+        &[],
+        60,
+    );
+}

@@ -3,10 +3,17 @@
 //! It is one file that needs no network. The numbers of frames are multiples of a unit, in 16 bits. Everything drawn is
 //! thinned, so that the page stays below half a megabyte for rows of a few dozen blocks.
 
+mod packed;
+
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
+use self::packed::{
+    MOST, body_number, curve, eighth, encoded, faint_piece, floats, layouts, motion,
+    piece as drawn_piece,
+};
+use super::beside::Beside;
 use super::film::{Film, Frame};
 use super::picture::LARGEST_EXCESS;
 use super::points::Points;
@@ -14,7 +21,6 @@ use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State, Summary};
 use crate::dynamics::model::Model;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
@@ -35,8 +41,6 @@ const FEWEST_FRAMES: usize = 101;
 const CURVE_COLUMNS: usize = 700;
 /// Coordinates are rounded to this fraction of the size of the structure.
 const COORDINATE_RATIO: f64 = 5e-5;
-/// The largest integer that stands for a rotation or displacement.
-const MOST: f64 = 32767.0;
 /// The code for a section without compression.
 const NO_THRUST: i16 = i16::MIN;
 
@@ -52,6 +56,7 @@ pub struct Report {
     excess_ratio: Envelope,
     leaves: bool,
     points: Option<Points>,
+    samples: Vec<Beside>,
 }
 
 impl Report {
@@ -73,6 +78,7 @@ impl Report {
             excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
             leaves: false,
             points: None,
+            samples: Vec::new(),
         }
     }
 
@@ -82,6 +88,11 @@ impl Report {
             points: Some(points),
             ..self
         }
+    }
+
+    /// Draws these samples of `[uncertain]` behind the history.
+    pub(super) fn beside(&mut self, samples: Vec<Beside>) {
+        self.samples = samples;
     }
 
     /// Takes a sample. Samples come in the order of time.
@@ -164,26 +175,11 @@ impl Report {
     fn data(&self, ground: &GroundMotion, frames: &[&Frame], history: &Summary) -> Value {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
-        // Frames with the same hinges share a layout; the joints of a row are written for each frame.
-        let is_row = self.scene.joint(0).is_some();
-        let mut layouts: Vec<Vec<Hinge>> = Vec::new();
-        let mut written = Vec::new();
-        let mut layout_of = Vec::new();
-        for frame in frames {
-            let hinges: Vec<Hinge> = if is_row {
-                Vec::new()
-            } else {
-                frame.hinges.iter().map(|open| open.hinge).collect()
-            };
-            let known = layouts.iter().position(|layout| *layout == hinges);
-            let layout = known.unwrap_or_else(|| {
-                let open = if is_row { &[][..] } else { &frame.hinges };
-                written.push(self.layout(open, unit_m));
-                layouts.push(hinges);
-                layouts.len() - 1
-            });
-            layout_of.push(u16::try_from(layout).expect("there are fewer layouts than frames"));
-        }
+        let (hinges, layout_of) = layouts(&self.scene, frames);
+        let written: Vec<Value> = hinges
+            .iter()
+            .map(|open| self.layout(open, unit_m))
+            .collect();
         let joint = |joint: usize| {
             let [intrados, extrados] = self.scene.joint(joint)?;
             let Mark { body, at_m } = intrados;
@@ -251,6 +247,7 @@ impl Report {
             "frames": self.frames(ground, frames, layout_of, joints.len()),
             "points": self.points.as_ref().map(|points| points.on_page(curve)),
             "energy_label": energy_label,
+            "samples": self.samples.iter().map(|sample| of_sample(sample, unit_m)).collect::<Vec<_>>(),
             "curves": {
                 "ground_g": curve(&curve_g(ground, self.gravity_m_s2, end_s)),
                 "energy": curve(&self.energy.points().collect::<Vec<_>>()),
@@ -261,13 +258,7 @@ impl Report {
 
     /// The outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], unit_m: f64) -> Value {
-        let drawn = |piece: Piece| {
-            let corners = piece.outline_m.iter();
-            let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
-            #[expect(clippy::cast_possible_truncation, reason = "a few ten thousand units")]
-            let outline: Vec<i64> = coordinates.map(|x| (x / unit_m).round() as i64).collect();
-            json!({ "body": body_number(piece.body), "outline": outline })
-        };
+        let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
         let pieces = self.scene.pieces(hinges).into_iter().map(drawn);
         let fill = self.scene.fill(hinges).into_iter().map(drawn);
         let loads = self.scene.loads(hinges).into_iter().map(|(mark, load)| {
@@ -320,10 +311,6 @@ impl Report {
         let ground_g = frames
             .iter()
             .map(|frame| frame.ground_m_s2 / self.gravity_m_s2);
-        let poses = || frames.iter().flat_map(|frame| &frame.poses);
-        let (rotations, rotation_unit_rad) = whole(poses().map(Pose::rotation_rad));
-        let shifts_m = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
-        let (shifts, shift_unit_m) = whole(shifts_m);
         let thrust_unit = FARTHEST / MOST;
         let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
         #[expect(clippy::cast_possible_truncation, reason = "the ratio is clamped")]
@@ -360,23 +347,60 @@ impl Report {
             State::Rocking(Sway::Left) => 2,
             State::Overturned(_) => 3,
         });
-        json!({
-            "times_s": encoded(times_s.iter().map(|time_s| time_s.to_le_bytes())),
-            "ground_m": floats(displacements_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
-            "ground_g": floats(ground_g),
-            "rotations": encoded(rotations.into_iter().map(i16::to_le_bytes)),
-            "rotation_unit_rad": rotation_unit_rad,
-            "shifts": encoded(shifts.into_iter().map(i16::to_le_bytes)),
-            "shift_unit_m": shift_unit_m,
-            "thrust_unit": (!thrust.is_empty()).then_some(thrust_unit),
-            "thrust": encoded(thrust.into_iter().map(i16::to_le_bytes)),
-            "largest_stress_pa": (largest_pa > 0.0).then_some(largest_pa),
-            "pressed": BASE64_STANDARD.encode(pressed.collect::<Vec<u8>>()),
-            "joints": BASE64_STANDARD.encode(codes.collect::<Vec<u8>>()),
-            "states": BASE64_STANDARD.encode(states.collect::<Vec<u8>>()),
-            "layouts": encoded(layout_of.into_iter().map(u16::to_le_bytes)),
-        })
+        let mut all = motion(frames, layout_of);
+        let others = [
+            (
+                "ground_m",
+                json!(floats(
+                    displacements_m.iter().flat_map(|at_m| [at_m.x, at_m.y])
+                )),
+            ),
+            ("ground_g", json!(floats(ground_g))),
+            (
+                "thrust_unit",
+                json!((!thrust.is_empty()).then_some(thrust_unit)),
+            ),
+            (
+                "thrust",
+                json!(encoded(thrust.into_iter().map(i16::to_le_bytes))),
+            ),
+            (
+                "largest_stress_pa",
+                json!((largest_pa > 0.0).then_some(largest_pa)),
+            ),
+            (
+                "pressed",
+                json!(BASE64_STANDARD.encode(pressed.collect::<Vec<u8>>())),
+            ),
+            (
+                "joints",
+                json!(BASE64_STANDARD.encode(codes.collect::<Vec<u8>>())),
+            ),
+            (
+                "states",
+                json!(BASE64_STANDARD.encode(states.collect::<Vec<u8>>())),
+            ),
+        ];
+        all.extend(others.map(|(name, value)| (name.to_owned(), value)));
+        Value::Object(all)
     }
+}
+
+/// A sample that is drawn behind the history.
+fn of_sample(sample: &Beside, unit_m: f64) -> Value {
+    let frames = sample.film.frames();
+    let (hinges, layout_of) = layouts(&sample.scene, &frames);
+    let layouts = hinges.iter().map(|open| {
+        let pieces = sample.scene.pieces(open);
+        let pieces = pieces.iter().map(|piece| faint_piece(piece, unit_m));
+        json!({ "pieces": pieces.collect::<Vec<_>>() })
+    });
+    json!({
+        "layouts": layouts.collect::<Vec<_>>(),
+        "frames": motion(&frames, layout_of),
+        "turning": curve(&sample.turning.points().collect::<Vec<_>>()),
+        "falls": sample.falls,
+    })
 }
 
 /// When the page opens: where the structure is farthest from rest, or, if it falls, where it can no longer come back.
@@ -395,17 +419,6 @@ fn strongest_s(frames: &[&Frame], history: &Summary) -> f64 {
     farthest.map_or(0.0, |frame| frame.time_s)
 }
 
-/// A fraction in eight bits; only zero becomes zero.
-fn eighth(part: f64) -> u8 {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "it is clamped"
-    )]
-    let bits = (255.0 * part).ceil().clamp(0.0, 255.0) as u8;
-    bits
-}
-
 /// The code of an open joint; 0 means shut.
 const fn edge_code(edge: Option<Edge>) -> u8 {
     match edge {
@@ -413,41 +426,4 @@ const fn edge_code(edge: Option<Edge>) -> u8 {
         Some(Edge::Extrados) => 2,
         None => 3,
     }
-}
-
-/// The number of a body; -1 for parts that stand still.
-fn body_number(body: Option<usize>) -> i64 {
-    body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
-}
-
-/// Values as integer multiples of a unit, which is chosen so that the largest fits.
-fn whole(values: impl Iterator<Item = f64> + Clone) -> (Vec<i16>, f64) {
-    let most = values
-        .clone()
-        .fold(0.0, |most: f64, value| most.max(value.abs()));
-    let unit = if most > 0.0 { most / MOST } else { 1.0 };
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "the unit is such that they fit"
-    )]
-    let whole = values.map(|value| (value / unit).round() as i16).collect();
-    (whole, unit)
-}
-
-fn encoded<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> String {
-    BASE64_STANDARD.encode(values.flatten().collect::<Vec<u8>>())
-}
-
-fn floats(values: impl Iterator<Item = f64>) -> String {
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "a picture needs no more digits"
-    )]
-    encoded(values.map(|value| (value as f32).to_le_bytes()))
-}
-
-/// The times of a curve, followed by its values.
-fn curve(points: &[(f64, f64)]) -> String {
-    let times_s = points.iter().map(|point| point.0);
-    floats(times_s.chain(points.iter().map(|point| point.1)))
 }

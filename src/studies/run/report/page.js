@@ -4,18 +4,27 @@
   const find = (id) => document.getElementById(id);
   const data = JSON.parse(find("data").textContent);
   const buffer = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
-  const { frames, layouts, sections, unit_m: unitM } = data;
+  const { frames, sections, unit_m: unitM } = data;
   const bodies = data.bodies.length;
-  const times = new Float64Array(buffer(frames.times_s));
-  const rotations = new Int16Array(buffer(frames.rotations));
-  const shifts = new Int16Array(buffer(frames.shifts));
+
+  /** A motion: the poses of its bodies, and the layout of each frame. */
+  const unpacked = ({ frames, layouts }) => ({
+    times: new Float64Array(buffer(frames.times_s)),
+    rotations: new Int16Array(buffer(frames.rotations)),
+    rotationUnit: frames.rotation_unit_rad,
+    shifts: new Int16Array(buffer(frames.shifts)),
+    shiftUnit: frames.shift_unit_m,
+    layoutOf: new Uint16Array(buffer(frames.layouts)),
+    layouts,
+  });
+  const own = unpacked(data);
+  const { times, rotations, layoutOf, layouts } = own;
   const groundM = new Float32Array(buffer(frames.ground_m));
   const groundG = new Float32Array(buffer(frames.ground_g));
   const thrust = new Int16Array(buffer(frames.thrust));
   const joints = new Uint8Array(buffer(frames.joints));
   const pressed = new Uint8Array(buffer(frames.pressed));
   const states = new Uint8Array(buffer(frames.states));
-  const layoutOf = new Uint16Array(buffer(frames.layouts));
   const count = times.length;
   const end = times[count - 1];
   const STATES = ["at rest", "sways right", "sways left", "overturned"];
@@ -27,7 +36,8 @@
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   /** The frame before a time, and how far the time is on the way to the next: frames of other hinges do not blend. */
-  function moment(t) {
+  function moment(t, { times, layoutOf } = own) {
+    const count = times.length;
     let low = 0;
     let high = count - 1;
     while (low < high) {
@@ -45,11 +55,11 @@
     values[frame * width + index] * (1 - part) + values[next * width + index] * part;
 
   /** Rotation and displacement of the origin of a body. */
-  function pose(body, at) {
+  function pose(body, at, { rotations, rotationUnit, shifts, shiftUnit }) {
     return {
-      rotation: blend(rotations, bodies, body, at) * frames.rotation_unit_rad,
-      x: blend(shifts, 2 * bodies, 2 * body, at) * frames.shift_unit_m,
-      y: blend(shifts, 2 * bodies, 2 * body + 1, at) * frames.shift_unit_m,
+      rotation: blend(rotations, bodies, body, at) * rotationUnit,
+      x: blend(shifts, 2 * bodies, 2 * body, at) * shiftUnit,
+      y: blend(shifts, 2 * bodies, 2 * body + 1, at) * shiftUnit,
     };
   }
 
@@ -70,7 +80,11 @@
     return Number(text) === 0 ? text.replace("-", "") : text;
   }
 
-  const posesAt = (at) => Array.from({ length: bodies }, (_, body) => pose(body, at));
+  const posesAt = (at, motion = own) => Array.from({ length: bodies }, (_, body) => pose(body, at, motion));
+
+  // Samples of [uncertain] are drawn behind the history itself, until they have overturned.
+  const samples = data.samples.map((sample) => ({ ...sample, ...unpacked(sample) }));
+  const lasts = ({ falls, times }, t) => !falls || t <= times[times.length - 1];
 
   // ---- the stage ----
   const stage = find("stage");
@@ -170,7 +184,8 @@
     // The blocks: where they were, and where they are.
     const layout = layouts[layoutOf[at.frame]];
     const poses = posesAt(at);
-    const point = ([body, x, y]) => moved(body, x, y, poses, exaggeration);
+    const placed = (poses) => ([body, x, y]) => moved(body, x, y, poses, exaggeration);
+    const point = placed(poses);
     const outline = (piece) => {
       const corners = [];
       for (let i = 0; i < piece.outline.length; i += 2) {
@@ -178,6 +193,19 @@
       }
       return corners;
     };
+    if (find("samples").checked) {
+      pen.strokeStyle = css("--sample");
+      pen.lineWidth = 0.7;
+      for (const sample of samples) {
+        if (!lasts(sample, time)) continue;
+        const at = moment(time, sample);
+        const corner = placed(posesAt(at, sample));
+        for (const piece of sample.layouts[sample.layoutOf[at.frame]].pieces) {
+          path(outline(piece).map(corner), true);
+          pen.stroke();
+        }
+      }
+    }
     const fills = bodies === 3 ? ["--left", "--middle", "--right"] : ["--stone", "--stone"];
     pen.lineWidth = 1;
     pen.setLineDash([4, 4]);
@@ -449,12 +477,14 @@
           { ...look, size: 64 },
         ],
         series: [{ label: "time", value: (_, v) => (v == null ? "" : `${v.toFixed(3)} s`) }].concat(
-          curves.map(({ name, color, dash, width: thick }) => ({
+          curves.map(({ name, color, dash, width: thick, beyond }) => ({
             label: name,
             stroke: () => css(color),
             dash,
             width: thick ?? 1.6,
             points: { show: false },
+            // What overturns leaves the plot, rather than making all else small.
+            auto: !beyond,
             value: (_, v) => (v == null ? "" : Number(v.toPrecision(5)).toString()),
           })),
         ),
@@ -551,12 +581,19 @@
   // The one that turns most is drawn above the others.
   const order = data.bodies.map((_, body) => body);
   if (!few) order.push(...order.splice(most, 1));
+  const turning = order.map((body) => ({ ...look(body), values: turns[body] }));
+  const named = few ? turning : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }];
+  const faint = { name: `${few ? look(most).name : `block ${data.bodies[most]}`} in samples`, color: "--sample", width: 0.8 };
+  const beside = samples.map((sample) => {
+    const [ts, ys] = curve(sample.turning);
+    return { ...faint, beyond: sample.falls, values: Array.from(times, (t) => (lasts(sample, t) ? valueAt(ts, ys, t) : null)) };
+  });
   addPlot(
     "Rotation (rad, anticlockwise)",
     230,
     Array.from(times),
-    order.map((body) => ({ ...look(body), values: turns[body] })),
-    few ? undefined : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }],
+    beside.concat(turning),
+    beside.length > 0 ? named.concat(faint) : named,
   );
   for (const { curves } of data.points ?? []) {
     // Each is thinned by itself, so that their times differ.
@@ -633,6 +670,8 @@
   find("thrust").addEventListener("change", draw);
   find("ride").addEventListener("change", draw);
   find("sizes").addEventListener("change", draw);
+  find("samples").addEventListener("change", draw);
+  find("samples-choice").hidden = find("beside").hidden = samples.length === 0;
   find("sizes-choice").hidden = data.dimensions.length === 0;
   find("thrust-choice").hidden = !frames.thrust_unit;
   find("stress").hidden = !frames.largest_stress_pa;
@@ -729,6 +768,10 @@
     hingesAt,
     pressure,
     zoom,
+    samples: samples.map((sample, i) => ({
+      turning: beside[i].values,
+      poses: (t) => (lasts(sample, t) ? posesAt(moment(t, sample), sample) : null),
+    })),
     range: () => plots.map(({ scales }) => [scales.x.min, scales.x.max]),
     shown: () => ({ time, playing, poses: posesAt(moment(time)), state: STATES[states[moment(time).frame]] }),
   };

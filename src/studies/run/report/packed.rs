@@ -1,0 +1,158 @@
+//! The numbers of a page: in base 64, with as many digits as a picture needs.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use nalgebra::Vector2;
+use serde_json::{Map, Value, json};
+
+use super::super::film::Frame;
+use crate::dynamics::history::OpenHinge;
+use crate::mechanics::geometry::pose::Pose;
+use crate::output::scene::{Piece, Scene};
+
+/// The largest integer that stands for a rotation or displacement.
+pub(super) const MOST: f64 = 32767.0;
+
+/// How far the outline of what is drawn faintly may be off, in units of the page: a seven hundredth of the structure.
+const FAINT_UNITS: f64 = 30.0;
+
+/// The distinct layouts of frames by their hinges, and which of them each frame has. The joints of a row are written for each frame
+/// instead.
+pub(super) fn layouts<'a>(scene: &Scene, frames: &[&'a Frame]) -> (Vec<&'a [OpenHinge]>, Vec<u16>) {
+    let is_row = scene.joint(0).is_some();
+    let same = |one: &[OpenHinge], other: &[OpenHinge]| {
+        let hinges = |open: &OpenHinge| open.hinge;
+        Iterator::eq(one.iter().map(hinges), other.iter().map(hinges))
+    };
+    let mut layouts: Vec<&[OpenHinge]> = Vec::new();
+    let layout_of = frames.iter().map(|frame| {
+        let open = if is_row { &[][..] } else { &frame.hinges };
+        let known = layouts.iter().position(|layout| same(layout, open));
+        let layout = known.unwrap_or_else(|| {
+            layouts.push(open);
+            layouts.len() - 1
+        });
+        u16::try_from(layout).expect("there are fewer layouts than frames")
+    });
+    let layout_of = layout_of.collect();
+    (layouts, layout_of)
+}
+
+/// The poses of all bodies in each frame, and its layout.
+pub(super) fn motion(frames: &[&Frame], layout_of: Vec<u16>) -> Map<String, Value> {
+    let times_s = frames.iter().map(|frame| frame.time_s.to_le_bytes());
+    let poses = || frames.iter().flat_map(|frame| &frame.poses);
+    let (rotations, rotation_unit_rad) = whole(poses().map(Pose::rotation_rad));
+    let shifts_m = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
+    let (shifts, shift_unit_m) = whole(shifts_m);
+    let motion = [
+        ("times_s", json!(encoded(times_s))),
+        (
+            "rotations",
+            json!(encoded(rotations.into_iter().map(i16::to_le_bytes))),
+        ),
+        ("rotation_unit_rad", json!(rotation_unit_rad)),
+        (
+            "shifts",
+            json!(encoded(shifts.into_iter().map(i16::to_le_bytes))),
+        ),
+        ("shift_unit_m", json!(shift_unit_m)),
+        (
+            "layouts",
+            json!(encoded(layout_of.into_iter().map(u16::to_le_bytes))),
+        ),
+    ];
+    let named = motion.map(|(name, value)| (name.to_owned(), value));
+    named.into_iter().collect()
+}
+
+/// The body and the outline of a piece, in units of the page.
+pub(super) fn piece(piece: &Piece, unit_m: f64) -> Value {
+    outlined(piece.body, &piece.outline_m, unit_m)
+}
+
+/// The same for what is drawn faintly: corners that turn the outline by less than can be seen there are left out.
+pub(super) fn faint_piece(piece: &Piece, unit_m: f64) -> Value {
+    let farthest_m = FAINT_UNITS * unit_m;
+    let corners_m = &piece.outline_m;
+    let mut kept_m: Vec<Vector2<f64>> = Vec::new();
+    let mut last = 0;
+    for (index, corner_m) in corners_m.iter().enumerate() {
+        let straight = index > 0
+            && corners_m.get(index + 1).is_some_and(|next_m| {
+                let passed_m = &corners_m[last + 1..=index];
+                let off_m = |corner_m| off_line_m(corner_m, corners_m[last], *next_m);
+                passed_m
+                    .iter()
+                    .all(|corner_m| off_m(*corner_m) < farthest_m)
+            });
+        if !straight {
+            kept_m.push(*corner_m);
+            last = index;
+        }
+    }
+    outlined(piece.body, &kept_m, unit_m)
+}
+
+/// How far a point is from the line through two others.
+fn off_line_m(point_m: Vector2<f64>, from_m: Vector2<f64>, to_m: Vector2<f64>) -> f64 {
+    let along_m = to_m - from_m;
+    let across_m2 = along_m.perp(&(point_m - from_m));
+    across_m2.abs() / along_m.norm().max(f64::MIN_POSITIVE)
+}
+
+fn outlined(body: Option<usize>, corners_m: &[Vector2<f64>], unit_m: f64) -> Value {
+    let corners = corners_m.iter();
+    let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
+    #[expect(clippy::cast_possible_truncation, reason = "a few ten thousand units")]
+    let outline: Vec<i64> = coordinates.map(|x| (x / unit_m).round() as i64).collect();
+    json!({ "body": body_number(body), "outline": outline })
+}
+
+/// The number of a body; -1 for parts that stand still.
+pub(super) fn body_number(body: Option<usize>) -> i64 {
+    body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
+}
+
+/// A fraction in eight bits; only zero becomes zero.
+pub(super) fn eighth(part: f64) -> u8 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "it is clamped"
+    )]
+    let bits = (255.0 * part).ceil().clamp(0.0, 255.0) as u8;
+    bits
+}
+
+/// Values as integer multiples of a unit, which is chosen so that the largest fits.
+fn whole(values: impl Iterator<Item = f64> + Clone) -> (Vec<i16>, f64) {
+    let most = values
+        .clone()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let unit = if most > 0.0 { most / MOST } else { 1.0 };
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the unit is such that they fit"
+    )]
+    let whole = values.map(|value| (value / unit).round() as i16).collect();
+    (whole, unit)
+}
+
+pub(super) fn encoded<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> String {
+    BASE64_STANDARD.encode(values.flatten().collect::<Vec<u8>>())
+}
+
+pub(super) fn floats(values: impl Iterator<Item = f64>) -> String {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a picture needs no more digits"
+    )]
+    encoded(values.map(|value| (value as f32).to_le_bytes()))
+}
+
+/// The times of a curve, followed by its values.
+pub(super) fn curve(points: &[(f64, f64)]) -> String {
+    let times_s = points.iter().map(|point| point.0);
+    floats(times_s.chain(points.iter().map(|point| point.1)))
+}
