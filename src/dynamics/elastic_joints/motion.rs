@@ -21,8 +21,8 @@ struct Moving<R> {
 
 impl<R> Moving<R> {
     fn parts_mut(&mut self) -> [&mut R; 11] {
-        let Place { moved_m, turn } = &mut self.place;
-        let ([x, y], [cos, sin]) = (moved_m, turn);
+        let Place { moved_m, half_turn } = &mut self.place;
+        let ([x, y], [cos, sin]) = (moved_m, half_turn);
         let ([u, v], [fx, fy]) = (&mut self.velocity_m_s, &mut self.force_n);
         let (angle, rate) = (&mut self.angle_rad, &mut self.rate_rad_s);
         [
@@ -256,7 +256,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             body.place.moved_m = both!(i: moved[i] + body.velocity_m_s[i] * drift_s);
             let angle = body.rate_rad_s * drift_s;
             body.angle_rad += angle;
-            body.place.turn = turned(body.place.turn, angle);
+            body.place.half_turn = turned(body.place.half_turn, angle * 0.5);
         }
     }
 
@@ -453,10 +453,11 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// The place of a body in a lane.
     pub(super) fn place(&self, body: usize, lane: usize) -> Place<Lanes<1>> {
-        let Place { moved_m, turn } = self.bodies[body].place;
+        let Place { moved_m, half_turn } = self.bodies[body].place;
+        let alone = |part: Lanes<L>| Lanes([part.0[lane]]);
         Place {
-            moved_m: moved_m.map(|part| Lanes([part.0[lane]])),
-            turn: turn.map(|part| Lanes([part.0[lane]])),
+            moved_m: moved_m.map(alone),
+            half_turn: half_turn.map(alone),
         }
     }
 }
@@ -496,7 +497,7 @@ impl<const L: usize> WithSimd for Leap<'_, '_, L> {
     }
 }
 
-/// Cosine less one, and sine, after turning further. The error of the series is less than rounding for steps below 0.01 rad; larger
+/// Cosine less one, and sine, of an angle that grows. The error of the series is less than rounding for steps below 0.01 rad; larger
 /// ones do not happen to a structure that stands.
 #[inline(always)]
 fn turned<const L: usize>([cos, sin]: [Lanes<L>; 2], by: Lanes<L>) -> [Lanes<L>; 2] {

@@ -7,8 +7,8 @@ use crate::mechanics::lanes::{Real, both};
 pub struct Place<R> {
     /// Displacement of the centre, in m.
     pub moved_m: [R; 2],
-    /// Cosine less one, and sine, of the rotation: small rotations keep all their digits.
-    pub turn: [R; 2],
+    /// Cosine less one, and sine, of half the rotation: small rotations keep all their digits.
+    pub half_turn: [R; 2],
 }
 
 impl<R: Real> Place<R> {
@@ -18,24 +18,27 @@ impl<R: Real> Place<R> {
         let zero = R::of(0.0);
         Self {
             moved_m: [zero; 2],
-            turn: [zero; 2],
+            half_turn: [zero; 2],
         }
     }
 
     /// Moved and turned by this much, in m and rad.
     #[must_use]
     pub fn at(moved: &[f64; 3]) -> Self {
-        let half = (0.5 * moved[2]).sin();
+        let quarter = (0.25 * moved[2]).sin();
+        let half_turn = [-2.0 * quarter * quarter, (0.5 * moved[2]).sin()];
         Self {
-            moved_m: [R::of(moved[0]), R::of(moved[1])],
-            turn: [R::of(-2.0 * half * half), R::of(moved[2].sin())],
+            moved_m: [moved[0], moved[1]].map(R::of),
+            half_turn: half_turn.map(R::of),
         }
     }
 
     /// How far rotation moves the end of an arm that starts at the centre.
     #[inline(always)]
     pub(super) fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {
-        let [cos, sin] = self.turn;
+        let [half_cos, half_sin] = self.half_turn;
+        let twice = half_sin + half_sin;
+        let (cos, sin) = (-(half_sin * twice), twice + half_cos * twice);
         let [x, y] = arm_m;
         [cos * x - sin * y, sin * x + cos * y]
     }
@@ -91,28 +94,30 @@ impl Link {
     pub fn gap<R: Real>(&self, first: &Place<R>, second: &Place<R>) -> Gap<R> {
         let swings = [first.swing(self.arms_m[0]), second.swing(self.arms_m[1])];
         let apart = both!(i: second.moved_m[i] - first.moved_m[i] + (swings[1][i] - swings[0][i]));
-        // The sum of the directions of the faces, and their cross product, in the frame of the undeformed joint.
-        let ([cos_a, sin_a], [cos_b, sin_b]) = (first.turn, second.turn);
-        let (sum_x, sum_y) = (cos_a + cos_b + R::of(2.0), sin_a + sin_b);
-        let cross = (sin_b - sin_a) + (cos_a * sin_b - sin_a * cos_b);
-        let length = (sum_x * sum_x + sum_y * sum_y).sqrt();
-        let per_length = R::of(1.0) / length;
-        let (x, y) = (sum_x * per_length, sum_y * per_length);
+        // In the frame of the undeformed joint: the mean direction of the faces, turned by the mean of both rotations, and half the
+        // angle between them. With the halves of the rotations both are products, without a root.
+        let ([cos_a, sin_a], [cos_b, sin_b]) = (first.half_turn, second.half_turn);
+        let (cosines, sines) = (cos_a * cos_b, sin_a * sin_b);
+        let (forth, back) = (cos_a * sin_b, sin_a * cos_b);
+        let both_cos = cos_a + cos_b;
+        let x = R::of(1.0) + (both_cos + (cosines - sines));
+        let y = (sin_a + sin_b) + (forth + back);
+        let half_cos = R::of(1.0) + (both_cos + (cosines + sines));
+        let half_sin = (sin_b - sin_a) + (forth - back);
         let [ex, ey] = self.along;
         let along = [x * ex - y * ey, y * ex + x * ey];
         let q = self.handedness;
         let normal = [along[1] * -q, along[0] * q];
         let half_t = 0.5 * self.length_m;
         let gap = dot(apart, normal);
-        // Twice the sine of half the angle between the faces, times half the length.
-        let tilt = cross * per_length * (2.0 * q * half_t);
+        let tilt = half_sin * (2.0 * q * half_t);
         let half = both!(i: apart[i] * 0.5);
         Gap {
             penetrations_m: [tilt - gap, -gap - tilt],
             slip_m: dot(apart, along),
             along,
             normal,
-            half_cos: length * (0.5 * q * half_t),
+            half_cos: half_cos * (q * half_t),
             levers_m: [
                 both!(i: swings[0][i] + R::of(self.arms_m[0][i]) + half[i]),
                 both!(i: swings[1][i] + R::of(self.arms_m[1][i]) - half[i]),

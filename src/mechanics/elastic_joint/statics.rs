@@ -430,14 +430,15 @@ impl<'a> Search<'a> {
         };
         let variable = |axis: usize| Dual::<6>::variable(at[axis], 3 * end + axis);
         let angle = variable(2);
-        let (sin, cos) = at[2].sin_cos();
-        let half = (0.5 * at[2]).sin();
+        let (sin, cos) = (0.5 * at[2]).sin_cos();
+        let quarter = (0.25 * at[2]).sin();
+        let half_turn = [
+            angle.chained(-2.0 * quarter * quarter, -0.5 * sin),
+            angle.chained(sin, 0.5 * cos),
+        ];
         Place {
             moved_m: [variable(0), variable(1)],
-            turn: [
-                angle.chained(-2.0 * half * half, -sin),
-                angle.chained(sin, cos),
-            ],
+            half_turn,
         }
     }
 
