@@ -5,6 +5,7 @@
 use std::f64::consts::PI;
 
 use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::tie::{Anchor, Tie};
 use archrock::{ElasticJoints, ElasticProperties, GroundMotion, Model, Pulse, Request, Row};
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -32,6 +33,46 @@ fn case(amplitude_g: f64) -> (GroundMotion, Request) {
 #[divan::bench(args = [1e10, 1e11])]
 fn alone(bencher: Bencher, stiffness_pa_m: f64) {
     let (model, (ground, request)) = (model(stiffness_pa_m), case(0.2));
+    let simulate = || model.simulate(&ground, &request, None).expect("a history");
+    let steps = simulate().cost.steps * 37;
+    bencher.counter(ItemsCount::new(steps)).bench(simulate);
+}
+
+/// The same with so many ties across it, slack until it moves: what each costs is what one joint costs, or less.
+#[divan::bench(args = [0, 1, 4, 16])]
+fn tied(bencher: Bencher, count: usize) {
+    let untied = model(1e10);
+    let row = untied.row().clone();
+    let tie = |index: usize| {
+        // Between voussoirs across, from the haunches up.
+        let joint = 6 + index % 8;
+        let end = |joint: usize, block: usize| Anchor {
+            block: Some(block),
+            at_m: row.joints()[joint].intrados_m,
+        };
+        Tie {
+            ends: [end(joint, joint), end(36 - joint, 35 - joint)],
+            stiffness_n_m: 1e7,
+            prestress_n: 0.0,
+            yield_force_n: 1e4,
+            breaks_at_strain: f64::INFINITY,
+        }
+    };
+    let row = row.clone().with_ties((0..count).map(tie).collect(), 9.81);
+    let row = row.expect("it stands with its ties");
+    let model = ElasticJoints::new(row, ElasticProperties::of_stiffness(1e10)).expect("it stands");
+    let (ground, request) = case(0.2);
+    let simulate = || model.simulate(&ground, &request, None).expect("a history");
+    let steps = simulate().cost.steps * 37;
+    bencher.counter(ItemsCount::new(steps)).bench(simulate);
+}
+
+/// The same on feet of which the right one is late by 0.05 s.
+#[divan::bench]
+fn on_two_feet(bencher: Bencher) {
+    let (model, (ground, request)) = (model(1e10), case(0.2));
+    let late = ground.late_by(0.05).expect("a delay");
+    let ground = ground.with_right_foot(late);
     let simulate = || model.simulate(&ground, &request, None).expect("a history");
     let steps = simulate().cost.steps * 37;
     bencher.counter(ItemsCount::new(steps)).bench(simulate);

@@ -72,6 +72,7 @@ mod thrust;
 mod ties;
 mod ties_in_motion;
 mod tour;
+mod two_feet;
 mod uncertain;
 mod validation;
 mod verify;

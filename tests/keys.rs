@@ -68,6 +68,7 @@ fn the_reference_has_the_keys_that_are_read() {
             "ground.<kind>",
             vec!["ground.rectangular", "ground.gabor", "ground.windowed_sine"],
         ),
+        ("ground.right", vec!["ground.right"]),
         ("impact", vec!["impact"]),
         ("initial", vec!["initial"]),
         ("simulation", vec!["simulation"]),

@@ -93,10 +93,11 @@ impl Recorder for Filming {
 }
 
 /// Names of the columns of samples.
-const COLUMNS: [&str; 18] = [
+const COLUMNS: [&str; 19] = [
     "time_s",
     "ground_acceleration_m_s2",
     "vertical_acceleration_m_s2",
+    "feet_apart_m",
     "phase",
     "state",
     "rotations_rad",
@@ -238,6 +239,10 @@ impl History {
             "vertical_acceleration_m_s2" => taken(
                 &mut |all| mem::take(&mut all.vertical_acceleration_m_s2),
                 &[count],
+            ),
+            "feet_apart_m" => taken(
+                &mut |all| mem::take(&mut all.feet_apart_m).into_flattened(),
+                &[count, 2],
             ),
             "rotations_rad" => taken(
                 &mut |all| mem::take(&mut all.rotations_rad),

@@ -147,6 +147,7 @@ impl From<SimulationError> for Failure {
         match error {
             SimulationError::Argument(_)
             | SimulationError::FreeFall { .. }
+            | SimulationError::Feet
             | SimulationError::Memory(_) => Self::Input(error.to_string()),
             SimulationError::Computation(_) => Self::Work(error.to_string()),
         }

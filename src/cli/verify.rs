@@ -22,6 +22,10 @@ pub struct Arguments {
 pub fn verify(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.read_as_built()?;
+    if scenario.right_foot().is_some() {
+        let message = "the histories of a check shake both feet alike: leave [ground.right] out";
+        return Err(input.about(Failure::Input(message.to_owned())));
+    }
     if !quiet {
         warn(&scenario.unlikely());
     }

@@ -91,6 +91,9 @@ pub struct Sample {
     pub ground_acceleration_m_s2: f64,
     /// Vertical ground acceleration, positive upwards.
     pub vertical_acceleration_m_s2: f64,
+    /// How far the right foot has gone away from where it was beside the left one, to the right and upwards in m; only where the feet move
+    /// differently.
+    pub feet_apart_m: Vector2<f64>,
     /// Events so far.
     pub phase: usize,
     /// What the structure is doing.
@@ -241,6 +244,7 @@ impl Sample {
             time_s,
             ground_acceleration_m_s2: 0.0,
             vertical_acceleration_m_s2: 0.0,
+            feet_apart_m: Vector2::new(0.0, 0.0),
             phase: 0,
             state: State::Rest,
             rotations_rad: Vec::new(),
@@ -540,8 +544,10 @@ pub struct ElasticSummary {
     pub crushed_j: f64,
     /// What ties took as they yielded and broke, in J.
     pub ties_j: f64,
-    /// Work of the moving ground, in J.
+    /// Work of the moving ground, in J; of feet that move differently, of the ground under the left one, on all that rides on it.
     pub ground_j: f64,
+    /// Work of the right foot as it goes away from the left one, in J.
+    pub feet_j: f64,
     /// How far the thrust lies from the middle of the worst joint at rest, over its length, before the motion.
     pub rest_eccentricity_ratio: f64,
     /// Which joint that is.
@@ -606,6 +612,8 @@ pub struct Samples {
     pub ground_acceleration_m_s2: Vec<f64>,
     /// Vertical ground accelerations, positive upwards.
     pub vertical_acceleration_m_s2: Vec<f64>,
+    /// How far the right foot has gone from the left one, to the right and upwards, in m.
+    pub feet_apart_m: Vec<[f64; 2]>,
     /// Events so far.
     pub phase: Vec<usize>,
     /// What the structure is doing.
@@ -658,6 +666,7 @@ impl Samples {
             .push(sample.ground_acceleration_m_s2);
         self.vertical_acceleration_m_s2
             .push(sample.vertical_acceleration_m_s2);
+        self.feet_apart_m.push(sample.feet_apart_m.into());
         self.phase.push(sample.phase);
         self.state.push(sample.state);
         self.rotations_rad.extend(&sample.rotations_rad);
@@ -699,6 +708,7 @@ impl Samples {
             time_s,
             ground_acceleration_m_s2: *self.ground_acceleration_m_s2.get(index)?,
             vertical_acceleration_m_s2: *self.vertical_acceleration_m_s2.get(index)?,
+            feet_apart_m: (*self.feet_apart_m.get(index)?).into(),
             phase: *self.phase.get(index)?,
             state: *self.state.get(index)?,
             rotations_rad: self.rotations_rad.get(by_body.clone())?.to_vec(),
@@ -747,8 +757,8 @@ impl Shape {
     /// Bytes of this many samples, at most: as if all hinges were open all the time.
     #[must_use]
     pub fn bytes(self, samples: u64) -> u64 {
-        // Times, two accelerations, energies; events so far and where the hinges begin; two ratios that may be unknown.
-        let alone = 4 * size_of::<f64>()
+        // Times, two accelerations, two displacements of feet, energies; events so far and where the hinges begin; two ratios that may be unknown.
+        let alone = 6 * size_of::<f64>()
             + 2 * size_of::<usize>()
             + 2 * size_of::<Option<f64>>()
             + size_of::<State>()

@@ -330,6 +330,10 @@ impl Request {
     }
 }
 
+/// Why only elastic joints take feet that move differently.
+pub(crate) const FEET_NEED_JOINTS: &str =
+    "rigid joints would have to be open at every instant between feet that move differently";
+
 /// Why a motion could not be computed.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum SimulationError {
@@ -345,6 +349,9 @@ pub enum SimulationError {
         /// When, in seconds.
         time_s: f64,
     },
+    /// The feet move differently, and the joints cannot follow.
+    #[error("{FEET_NEED_JOINTS}: choose [elastic_joints] (`--hinges elastic`)")]
+    Feet,
     /// The history takes too much memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),

@@ -1,7 +1,7 @@
 //! One line that tells what a picture was computed from: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::scenario::{Axis, Ground, Quantity, Scaling, Scenario, Series, Structure};
+use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, Structure};
 
 /// The caption. It leaves out what varies along the axes.
 #[must_use]
@@ -16,7 +16,7 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
     parts.join("; ")
 }
 
-/// How the ground moves: the pulse, or the record with its scale.
+/// How the ground moves: the pulse, or the record with its scale; and how the right foot moves.
 #[must_use]
 pub fn ground_in_words(scenario: &Scenario) -> String {
     let words = ground(scenario, &|_, _| false);
@@ -24,6 +24,26 @@ pub fn ground_in_words(scenario: &Scenario) -> String {
 }
 
 fn ground(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Option<String> {
+    let left = of_left_foot(scenario, varies)?;
+    let varies = |key: &str| varies(&[], &format!("ground.right.{key}"));
+    let right = match scenario.right_foot() {
+        None => return Some(left),
+        Some(RightFoot::Late(delay_s)) if !varies("delay_s") => {
+            format!("right foot {} s later", short(*delay_s))
+        }
+        Some(RightFoot::Wave(velocity_m_s)) if !varies("apparent_velocity_m_s") => {
+            format!("right foot by a wave of {} m/s", short(*velocity_m_s))
+        }
+        Some(RightFoot::Late(_) | RightFoot::Wave(_)) => "right foot later".to_owned(),
+        Some(RightFoot::Record(record)) => {
+            let files: Vec<_> = record.series().map(Series::name).collect();
+            format!("right foot by {}", files.join(" and "))
+        }
+    };
+    Some(format!("{left}, {right}"))
+}
+
+fn of_left_foot(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Option<String> {
     match scenario.ground()? {
         Ground::Pulse(pulse) => {
             let kind = pulse.kind.name();

@@ -37,6 +37,7 @@ mod map;
 mod masonry;
 mod motion;
 mod record;
+mod right_foot;
 mod sequence;
 mod shown;
 mod simulation;
@@ -62,7 +63,7 @@ use serde_json::Value;
 
 use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
+use crate::dynamics::model::{FEET_NEED_JOINTS, Initial, MechanismModel, Model, Request};
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_link::arch::FourLinkError;
@@ -77,6 +78,7 @@ pub use record::{
     Component, Contents, Decimal, Form, Format, Layout, LineFault, Record, Recorded, Sampling,
     Scaling, Series, TableColumn, TableLayout, Times, Unit,
 };
+pub use right_foot::RightFoot;
 pub use sequence::{Sequence, Spacing};
 pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
@@ -119,6 +121,7 @@ pub struct Scenario {
     /// Whether the text has an `[impact]` that is ignored.
     ignores_impact: bool,
     ground: Option<Ground>,
+    right_foot: Option<RightFoot>,
     initial: Option<Initial>,
     simulation: Simulation,
     map: Option<Map>,
@@ -127,7 +130,7 @@ pub struct Scenario {
     demand: Option<Demand>,
     verify: Option<Verify>,
     uncertain: Option<Uncertain>,
-    /// The motion of `ground`, built when `ground` was read.
+    /// The motion of `ground`, and of the right foot, built when they were read.
     ground_motion: Arc<GroundMotion>,
 }
 
@@ -161,6 +164,25 @@ impl Scenario {
     #[must_use]
     pub const fn ground(&self) -> Option<&Ground> {
         self.ground.as_ref()
+    }
+
+    /// How the right foot moves, if not with the ground.
+    #[must_use]
+    pub const fn right_foot(&self) -> Option<&RightFoot> {
+        self.right_foot.as_ref()
+    }
+
+    /// The records of its ground, under both feet.
+    pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
+        let record = match &self.ground {
+            Some(Ground::Record(record)) => Some(record),
+            Some(Ground::Pulse(_)) | None => None,
+        };
+        let right = self.right_foot.iter().flat_map(RightFoot::series);
+        record
+            .into_iter()
+            .flat_map(|record| record.series())
+            .chain(right)
     }
 
     /// The initial state of the motion; `None`: rest.
@@ -286,13 +308,22 @@ impl Scenario {
             Ok((structure, ties)) => (Ok(structure), ties),
             Err(reported) => (Err(reported), Vec::new()),
         };
-        let ground = table.table("ground", |table| Ground::read(table, folder, gravity_m_s2));
+        let mut right_foot = Ok(None);
+        let ground = table.table("ground", |table| {
+            right_foot = table.table("right", |table| {
+                RightFoot::read(table, folder, gravity_m_s2)
+            });
+            Ground::read(table, folder, gravity_m_s2)
+        });
         let (ground, ground_motion) = match ground {
             Ok(Some((ground, motion))) => (Ok(Some(ground)), motion),
             Ok(None) => (Ok(None), GroundMotion::still()),
             Err(reported) => (Err(reported), GroundMotion::still()),
         };
         let motion = motion.complete(table);
+        if let Ok(Some(right_foot)) = &right_foot {
+            right_foot.suits(table, structure.as_ref().ok(), hinges)?;
+        }
         let initial = table.table("initial", |table| {
             Initial::read(table, structure.as_ref().ok(), hinges)
         });
@@ -337,6 +368,7 @@ impl Scenario {
             motion,
             ignores_impact,
             ground: ground?,
+            right_foot: right_foot?,
             initial: initial?,
             simulation: simulation?,
             map: map?,
@@ -345,7 +377,12 @@ impl Scenario {
             demand,
             verify,
             uncertain: None,
-            ground_motion: Arc::new(ground_motion),
+            ground_motion: Arc::new(GroundMotion::still()),
+        };
+        let ground_motion = Arc::new(certain.under_both_feet(ground_motion));
+        let certain = Self {
+            ground_motion,
+            ..certain
         };
         let uncertain = uncertain?.map(|uncertain| uncertain.check(table, &certain));
         Ok(Self {
@@ -361,8 +398,17 @@ impl Scenario {
         let motion = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
             ground.motion_under(self.simulation.gravity_m_s2)
         });
+        // A record of the right foot goes with the ground that was given beside it.
+        let follows = |right: &&RightFoot| ground.is_some() && right.record().is_none();
+        let right_foot = self.right_foot.as_ref().filter(follows).cloned();
+        let motion = Self {
+            right_foot: right_foot.clone(),
+            ..self.clone()
+        }
+        .under_both_feet(motion);
         Self {
             ground,
+            right_foot,
             map: None,
             spectrum: None,
             suite: None,
@@ -372,7 +418,21 @@ impl Scenario {
         }
     }
 
-    /// The ground motion of a record multiplied by a factor, for this scenario's gravity.
+    /// This motion of the ground under its left foot, and what that makes of the right one.
+    pub(crate) fn under_both_feet(&self, left: GroundMotion) -> GroundMotion {
+        let Some(right) = &self.right_foot else {
+            return left;
+        };
+        let row = self.structure.row();
+        let apart_m = row.map_or(0.0, |row| {
+            let ends = [row.joints().first(), row.joints().last()];
+            let [from_m, to_m] = ends.map(|joint| joint.map_or(0.0, |joint| joint.middle_m().x));
+            to_m - from_m
+        });
+        right.beside(left, apart_m, self.simulation.gravity_m_s2)
+    }
+
+    /// The ground motion of a record multiplied by a factor, both feet moving alike, for this scenario's gravity.
     #[must_use]
     pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
         suite::shaking(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
@@ -391,7 +451,13 @@ impl Scenario {
     /// # Errors
     /// As [`Motion::model`].
     pub fn variations(&self) -> Result<Vec<Variation>, ModelError> {
-        self.motion.variations(&self.structure)
+        let mut variations = self.motion.variations(&self.structure)?;
+        if self.right_foot.is_some()
+            && let Some(rigid) = variations.last_mut()
+        {
+            rigid.model = Err(FEET_NEED_JOINTS.to_owned());
+        }
+        Ok(variations)
     }
 
     /// The name of the model of motion in results.
@@ -507,6 +573,10 @@ impl Scenario {
             unreachable!("a structure is some tables");
         };
         let supports = self.motion.supports();
+        let mut ground = json(&self.ground);
+        if let (Value::Object(ground), Some(right)) = (&mut ground, &self.right_foot) {
+            ground.insert("right".to_owned(), json(right));
+        }
         let tables = [
             (
                 "tie",
@@ -523,7 +593,7 @@ impl Scenario {
                     .filter(|movements| !movements.is_none())
                     .map_or(Value::Null, |movements| json(&movements)),
             ),
-            ("ground", json(&self.ground)),
+            ("ground", ground),
             motion(false),
             ("initial", json(&self.initial)),
             ("simulation", json(&self.simulation)),

@@ -12,6 +12,8 @@ const STUDIES: [&str; 4] = ["map", "spectrum", "suite", "uncertain"];
 const CHECK: [&str; 2] = ["demand", "verify"];
 /// What precedes the keys of a record.
 const RECORD: &str = "ground.record.";
+/// What precedes the keys of the right foot.
+const RIGHT: &str = "ground.right.";
 
 impl Scenario {
     /// The scenario with other numbers for some keys, each named `table.key`. Studies and the check are left out. The samples
@@ -27,6 +29,10 @@ impl Scenario {
         let (of_record, others): (Vec<_>, Vec<_>) = values
             .iter()
             .partition(|(key, _)| record.is_some() && key.starts_with(RECORD));
+        let right = self.right_foot.as_ref();
+        let (of_right, others): (Vec<_>, Vec<_>) = others
+            .into_iter()
+            .partition(|(key, _)| right.is_some() && key.starts_with(RIGHT));
         let set = others
             .into_iter()
             .map(|(key, value)| assignment(key, value))
@@ -38,6 +44,8 @@ impl Scenario {
             }
             if record.is_some() {
                 table.shift_remove("ground");
+            } else if let Some(Value::Object(ground)) = table.get_mut("ground") {
+                ground.shift_remove("right");
             }
         }
         make_room(&mut table, values);
@@ -48,15 +56,32 @@ impl Scenario {
         };
         let mut changed = Self::of(&Source::of_text(&text, ""), &changes)
             .map_err(|errors| errors.as_slice()[0].message.clone())?;
+        let gravity_m_s2 = changed.simulation.gravity_m_s2;
+        let inner = |values: &[(&str, f64)], outer: &str| -> Vec<(String, f64)> {
+            let inner = values.iter();
+            inner
+                .map(|(key, value)| (key[outer.len()..].to_owned(), *value))
+                .collect()
+        };
         if let Some(record) = record {
-            let gravity_m_s2 = changed.simulation.gravity_m_s2;
+            let of_record = inner(&of_record, RECORD);
             let of_record: Vec<_> = of_record
                 .iter()
-                .map(|(key, value)| (&key[RECORD.len()..], *value))
+                .map(|(key, value)| (&**key, *value))
                 .collect();
             let record = record.with_values(&of_record, gravity_m_s2)?;
             changed.ground_motion = Arc::new(record.motion(gravity_m_s2));
             changed.ground = Some(Ground::Record(Box::new(record)));
+        }
+        if let Some(right) = right {
+            let of_right = inner(&of_right, RIGHT);
+            let of_right: Vec<_> = of_right
+                .iter()
+                .map(|(key, value)| (&**key, *value))
+                .collect();
+            changed.right_foot = Some(right.with_values(&of_right, gravity_m_s2)?);
+            let left = (*changed.ground_motion).clone();
+            changed.ground_motion = Arc::new(changed.under_both_feet(left));
         }
         Ok(changed)
     }

@@ -261,6 +261,14 @@ class History:
         return self._column("ties")[:, :, 1]
 
     @property
+    def feet_apart(self) -> Floats:
+        """How far the right foot has gone from where it was beside the left one, to the right and upwards in m, shape ``(samples, 2)``.
+
+        Zero where both feet move alike.
+        """
+        return self._column("feet_apart_m")
+
+    @property
     def point(self) -> Floats:
         """Displacement in m, to the right and upwards, of the ``point`` given to :func:`simulate`.
 
@@ -409,6 +417,8 @@ class History:
             columns["thrust_excess_ratio"] = self.thrust_excess_ratio
         columns["friction_demand"] = self.friction_demand
         columns["vertical_acceleration_m_s2"] = self.vertical_acceleration_m_s2
+        if self.feet_apart.any():
+            columns["right_foot_x_m"], columns["right_foot_y_m"] = self.feet_apart.T
         columns["energy_j"] = self.energy_j
         table: pandas.DataFrame = pandas.DataFrame(columns)
         return table

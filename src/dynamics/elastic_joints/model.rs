@@ -277,7 +277,11 @@ impl ElasticJoints {
             ground,
             gravity_m_s2: request.gravity_m_s2,
             clock: self.clock(request)?,
-            barrier_j: self.barrier_j(request.gravity_m_s2),
+            // Where its feet part the row overturns at another energy, if at any.
+            barrier_j: match ground.right_foot() {
+                Some(_) => None,
+                None => self.barrier_j(request.gravity_m_s2),
+            },
         })
     }
 

@@ -69,6 +69,8 @@ pub(super) struct Spent<R> {
     pub ties_j: R,
     /// Work of the moving ground.
     pub ground_j: R,
+    /// Work of the right support as it goes away from the left one.
+    pub feet_j: R,
 }
 
 /// A step, by lane. A lane in which all is zero stays as it is.
@@ -82,6 +84,17 @@ pub(super) struct Step<const L: usize> {
     pub damping: Lanes<L>,
     /// Velocity that the ground gains in the time of the kick, in m/s.
     pub shift_m_s: [Lanes<L>; 2],
+    /// How far the right support goes away from the left one, from place to place, in m.
+    pub apart_m: [Lanes<L>; 2],
+}
+
+/// What happens to the ground in a step of any lane: what does not is not computed.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Happens {
+    /// It shakes.
+    pub shakes: bool,
+    /// The feet move differently.
+    pub parts: bool,
 }
 
 impl<const L: usize> Step<L> {
@@ -92,6 +105,7 @@ impl<const L: usize> Step<L> {
             kick_s: zero,
             damping: zero,
             shift_m_s: [zero; 2],
+            apart_m: [zero; 2],
         }
     }
 
@@ -101,6 +115,7 @@ impl<const L: usize> Step<L> {
         self.damping.0[lane] = alone.damping.0[0];
         for axis in [0, 1] {
             self.shift_m_s[axis].0[lane] = alone.shift_m_s[axis].0[0];
+            self.apart_m[axis].0[lane] = alone.apart_m[axis].0[0];
         }
     }
 }
@@ -108,6 +123,8 @@ impl<const L: usize> Step<L> {
 /// A support along whose joint the whole structure may slide.
 pub(super) struct Slide {
     pub joint: usize,
+    /// 0 of the left support, 1 of the right one.
+    pub support: usize,
     /// 1 where the structure is after the joint, -1 where it is before.
     pub sense: f64,
     /// Whether the support extends beyond the joint.
@@ -167,6 +184,7 @@ impl<'a, const L: usize> Motion<'a, L> {
                 crushed_j: zero,
                 ties_j: zero,
                 ground_j: zero,
+                feet_j: zero,
             },
         }
     }
@@ -197,27 +215,46 @@ impl<'a, const L: usize> Motion<'a, L> {
             crushed_j,
             ties_j,
             ground_j,
+            feet_j,
         } = &mut self.spent;
-        for energy in [friction_j, damped_j, crushed_j, ties_j, ground_j] {
+        for energy in [friction_j, damped_j, crushed_j, ties_j, ground_j, feet_j] {
             energy.0[lane] = 0.0;
         }
     }
 
     /// One step of all lanes, with the widest vectors of the processor: these do not change a bit of the result.
-    pub(super) fn step(&mut self, step: &Step<L>, shaken: bool) {
+    pub(super) fn step(&mut self, step: &Step<L>, happens: Happens) {
         let arch = self.arch;
         arch.dispatch(Leap {
             motion: self,
             step,
-            shaken,
+            happens,
         });
     }
 
     #[inline(always)]
-    fn leap(&mut self, step: &Step<L>, shaken: bool) {
-        self.kick(step, shaken);
+    fn leap(&mut self, step: &Step<L>, happens: Happens) {
+        self.kick(step, happens.shakes);
         self.drift(step.drift_s);
+        if happens.parts {
+            self.part(step);
+        } else {
+            self.press(step.damping);
+        }
+    }
+
+    /// Moves the right support, and finds the forces; its work is the mean of the forces on it before and after, times its way.
+    #[inline(always)]
+    fn part(&mut self, step: &Step<L>) {
+        let right = self.structure.bodies().len() + 1;
+        let by_m = step.apart_m;
+        let support = &mut self.bodies[right];
+        let (before, moved) = (support.force_n, support.place.moved_m);
+        support.place.moved_m = both!(i: moved[i] + by_m[i]);
         self.press(step.damping);
+        let after = self.bodies[right].force_n;
+        let work = both!(i: (before[i] + after[i]) * by_m[i]);
+        self.spent.feet_j -= (work[0] + work[1]) * 0.5;
     }
 
     /// Takes the velocities to half a step after the places.
@@ -306,7 +343,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         while index < self.ties.len() {
             let (bound, memory) = (&self.structure.ties()[index], &mut self.ties[index]);
             index += 1;
-            let [first, second] = both!(end: bound.bodies[end].min(ground));
+            let [first, second] = both!(end: bound.bodies[end].min(ground + 1));
             let places = [&self.bodies[first].place, &self.bodies[second].place];
             let span = bound.span(places);
             memory.stretch(&bound.tie, span.stretch_m);
@@ -354,9 +391,10 @@ impl<'a, const L: usize> Motion<'a, L> {
             for slide in slides {
                 let along = structure.joints()[slide.joint].link.along;
                 let slid = self.memories[slide.joint].slipped_m * slide.sense;
+                let gone = self.gone(slide.support);
                 let beside = [
-                    x - datum[0] - slid * along[0],
-                    y - datum[1] - slid * along[1],
+                    x - datum[0] - gone[0] - slid * along[0],
+                    y - datum[1] - gone[1] - slid * along[1],
                 ];
                 nearest = nearest.min(beside[0] * beside[0] + beside[1] * beside[1]);
             }
@@ -381,6 +419,14 @@ impl<'a, const L: usize> Motion<'a, L> {
             ];
         }
         seen
+    }
+
+    /// How far a support has gone since the beginning, the left one being 0, in m.
+    #[inline(always)]
+    fn gone(&self, support: usize) -> [Lanes<L>; 2] {
+        let body = &self.bodies[self.structure.bodies().len() + support];
+        let rest = &self.structure.supports()[support];
+        both!(i: body.place.moved_m[i] - Lanes([rest[i]; L]))
     }
 
     /// Velocities and rate of rotation of a body after half a kick more.
@@ -485,7 +531,7 @@ impl<'a> Motion<'a, 1> {
 struct Leap<'m, 'a, const L: usize> {
     motion: &'m mut Motion<'a, L>,
     step: &'m Step<L>,
-    shaken: bool,
+    happens: Happens,
 }
 
 impl<const L: usize> WithSimd for Leap<'_, '_, L> {
@@ -493,7 +539,7 @@ impl<const L: usize> WithSimd for Leap<'_, '_, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.motion.leap(self.step, self.shaken);
+        self.motion.leap(self.step, self.happens);
     }
 }
 

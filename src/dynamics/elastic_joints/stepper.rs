@@ -5,8 +5,8 @@ use std::cell::OnceCell;
 use nalgebra::Vector2;
 
 use super::error::ElasticJointError;
-use super::motion::{Motion, Observed, Slide, Step};
-use crate::dynamics::ground::GroundVelocity;
+use super::motion::{Happens, Motion, Observed, Slide, Step};
+use crate::dynamics::ground::{FeetApart, GroundVelocity};
 use crate::dynamics::history::{
     ElasticSummary, EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
     TieSummary,
@@ -62,6 +62,9 @@ pub(super) struct Start<'a> {
 struct Lane<'a> {
     course: Course<'a>,
     velocity: GroundVelocity<'a>,
+    /// Where the feet move differently: how far apart they go, and are.
+    feet: Option<FeetApart<'a>>,
+    apart_m: Vector2<f64>,
     quiet_s: f64,
     longest_step_s: f64,
     /// How often that was halved.
@@ -122,6 +125,8 @@ impl<'a> Lane<'a> {
         Self {
             ground_m_s: velocity.at(0.0),
             velocity,
+            feet: FeetApart::new(task.ground),
+            apart_m: Vector2::zeros(),
             quiet_s: task.ground.end_s(),
             longest_step_s: task.clock.longest_step_s,
             halved: 0,
@@ -165,6 +170,12 @@ impl<'a> Lane<'a> {
         } else {
             self.course.time + step_s
         };
+        if let Some(feet) = &mut self.feet {
+            let apart_m = feet.at(self.course.time);
+            let by_m = apart_m - self.apart_m;
+            step.apart_m = [Lanes([by_m.x]), Lanes([by_m.y])];
+            self.apart_m = apart_m;
+        }
         self.course.summary.cost.steps += 1;
         self.strides += 1;
         step
@@ -206,6 +217,7 @@ impl<'a, const L: usize> Group<'a, L> {
         };
         let slide = |(joint, sense, goes_on, part): (usize, f64, bool, f64)| Slide {
             joint,
+            support: usize::from(joint > 0),
             sense,
             goes_on,
             along_x: part * sense * row.joints()[joint].along().x,
@@ -253,16 +265,17 @@ impl<'a, const L: usize> Group<'a, L> {
         let damping_time_s = self.start.structure.damping_time_s();
         loop {
             let mut step = Step::none();
-            let (mut shaken, mut due) = (false, false);
+            let (mut happens, mut due) = (Happens::default(), false);
             for (index, lane) in self.lanes.iter_mut().enumerate() {
                 let Some(lane) = lane else {
                     continue;
                 };
-                shaken |= lane.is_shaken();
+                happens.shakes |= lane.is_shaken();
+                happens.parts |= lane.feet.is_some() && lane.course.time < lane.quiet_s;
                 step.set(index, &lane.next(damping_time_s));
                 due |= lane.is_due();
             }
-            self.motion.step(&step, shaken);
+            self.motion.step(&step, happens);
             if due {
                 break;
             }
@@ -315,6 +328,7 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.elastic.friction_j = of(spent.friction_j);
         lane.elastic.crushed_j = of(spent.crushed_j);
         lane.elastic.ground_j = of(spent.ground_j);
+        lane.elastic.feet_j = of(spent.feet_j);
         lane.elastic.ties_j = of(spent.ties_j);
         let joints_j = lane.elastic.damped_j + lane.elastic.friction_j + lane.elastic.crushed_j;
         let taken = joints_j + lane.elastic.ties_j;
@@ -330,7 +344,7 @@ impl<'a, const L: usize> Group<'a, L> {
         }
         course.of_row.energy_taken_j = taken;
         let potential = stored - rest_j;
-        let due = lane.elastic.ground_j - taken;
+        let due = lane.elastic.ground_j + lane.elastic.feet_j - taken;
         course.note_defect((kinetic + potential - due).abs());
         if of(seen.deepest[0]) > lane.elastic.largest_stress.stress_pa {
             lane.elastic.largest_stress = Stress {
@@ -355,6 +369,8 @@ impl<'a, const L: usize> Group<'a, L> {
                 None => lane.overturned |= slipped_m.abs() >= joints[joint].link.length_m,
             }
         }
+        // Between feet that part the middle goes half the way.
+        slid += 0.5 * lane.apart_m.x;
         let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.mass_kg * slid;
         let rotations = self.motion.turns(index).map(|(rotation, _)| rotation);
         lane.returns = sway.abs() < course.sway.abs();
@@ -443,6 +459,10 @@ impl<'a> Lane<'a> {
         energy_j: f64,
         barrier_j: impl FnOnce() -> Option<f64>,
     ) -> bool {
+        // Nothing is known of the barrier where the feet have gone apart.
+        if self.feet.is_some() {
+            return false;
+        }
         // What has passed its barrier goes on to that side, whatever damping takes.
         if until == Until::End || self.course.time < self.quiet_s || !self.returns {
             return false;
@@ -586,6 +606,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
             let pose = Pose::about(block.centre_m, block.centre_m + moved_m, rotation_rad);
             sample.poses.push(pose);
         }
+        sample.feet_apart_m = self.lane().apart_m;
         let seen = motion.observe(&half, &self.group.slides);
         let joints = self.group.start.structure.joints().len();
         for joint in 0..joints {

@@ -263,6 +263,9 @@ impl Model for FreeHinges {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
         request.check()?;
+        if ground.right_foot().is_some() {
+            return Err(SimulationError::Feet);
+        }
         let settings = self.settings(request);
         let initial_rad = request
             .initial

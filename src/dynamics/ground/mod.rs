@@ -16,6 +16,8 @@ mod record;
 mod shape;
 mod velocity;
 
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 
 use crate::argument::{ArgumentError, within};
@@ -24,12 +26,19 @@ pub use error::GroundError;
 use piece::Formula;
 pub use piece::Piece;
 pub use pulse::{Pulse, PulseShape, WaveTrain};
+pub(in crate::dynamics) use velocity::FeetApart;
 pub use velocity::GroundVelocity;
 
 /// Ground acceleration from time zero on, zero after the last corner.
+///
+/// It is that of the whole ground, or of that under the left foot of a structure whose right foot moves in another way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMotion {
     pieces: Vec<Piece>,
+    /// Whether the ground stops dead after the last corner, where it otherwise keeps its velocity.
+    stops: bool,
+    /// The ground under the right foot, where that moves in another way.
+    right: Option<Arc<Self>>,
 }
 
 impl GroundMotion {
@@ -69,7 +78,65 @@ impl GroundMotion {
                 piece_start_s = end_s;
             }
         }
-        Self { pieces }
+        Self {
+            pieces,
+            stops: false,
+            right: None,
+        }
+    }
+
+    /// The same under the left foot, and another motion under the right one. Both start from the same rest. From the later of their ends
+    /// on the feet stay as far apart as they then are.
+    #[must_use]
+    pub fn with_right_foot(self, right: Self) -> Self {
+        Self {
+            right: Some(Arc::new(right)),
+            ..self
+        }
+    }
+
+    /// The motion under the right foot, where it is another one.
+    #[must_use]
+    pub fn right_foot(&self) -> Option<&Self> {
+        self.right.as_deref()
+    }
+
+    /// The same for a structure whose feet are to move differently: at its end the ground stops where it is, whatever velocity it has.
+    #[must_use]
+    pub fn stopping(self) -> Self {
+        Self {
+            stops: true,
+            ..self
+        }
+    }
+
+    /// The same motion, that of the right foot included, later by a time in seconds, in 0 to 1e9.
+    ///
+    /// # Errors
+    /// When the delay is out of range.
+    pub fn late_by(&self, delay_s: f64) -> Result<Self, GroundError> {
+        error::time_s("delay_s", delay_s)?;
+        let moving = self.pieces.iter().filter(|piece| !piece.stays_still());
+        let later = moving.map(|piece| {
+            let (end_s, origin_s) = (piece.end_s + delay_s, piece.origin_s + delay_s);
+            (end_s, origin_s, piece.formula)
+        });
+        let right = self.right_foot().map(|right| right.late_by(delay_s));
+        Ok(Self {
+            stops: self.stops,
+            right: right.transpose()?.map(Arc::new),
+            ..Self::join(delay_s, later)
+        })
+    }
+
+    /// How far the right foot has gone away from where it was beside the left one, to the right and upwards in m, at these times, which
+    /// ascend from zero on; zero where both move alike.
+    #[must_use]
+    pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
+        match FeetApart::new(self) {
+            None => vec![Vector2::zeros(); times_s.len()],
+            Some(mut feet) => times_s.iter().map(|time_s| feet.at(*time_s)).collect(),
+        }
     }
 
     /// The pieces in order, without gaps, from zero to infinity.
@@ -91,23 +158,38 @@ impl GroundMotion {
             .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at))
     }
 
-    /// End of the ground motion, in seconds: the acceleration is zero from here on.
+    /// End of the ground motion, in seconds: the acceleration is zero from here on, under both feet.
     #[must_use]
     pub fn end_s(&self) -> f64 {
-        self.pieces.last().map_or(0.0, |piece| piece.start_s)
+        let [left_s, right_s] = self.ends_s();
+        left_s.max(right_s)
     }
 
-    /// Whether the ground ever moves vertically.
+    /// The same of the left and of the right foot.
+    #[must_use]
+    pub fn ends_s(&self) -> [f64; 2] {
+        let own_s = self.pieces.last().map_or(0.0, |piece| piece.start_s);
+        [own_s, self.right_foot().map_or(own_s, Self::end_s)]
+    }
+
+    /// Whether the ground ever moves vertically, under either foot.
     #[must_use]
     pub fn has_vertical(&self) -> bool {
         let mut ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
-        ends.any(|end| end.y != 0.0)
+        ends.any(|end| end.y != 0.0) || self.right_foot().is_some_and(Self::has_vertical)
     }
 
     /// The first time at which the ground falls as fast as a free body or faster, `g + a_v <= 0`, so that
-    /// it no longer carries a structure; `None` if that never happens.
+    /// it no longer carries a structure; `None` if that never happens. Of two feet, the first that it leaves.
     #[must_use]
     pub fn free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
+        let right = self.right_foot();
+        let right_s = right.and_then(|right| right.free_fall_s(gravity_m_s2));
+        let own_s = self.own_free_fall_s(gravity_m_s2);
+        own_s.into_iter().chain(right_s).reduce(f64::min)
+    }
+
+    fn own_free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
         let falls = |acceleration: Vector2<f64>| gravity_m_s2 + acceleration.y <= 0.0;
         let piece = self
             .pieces
@@ -122,7 +204,7 @@ impl GroundMotion {
         Some(middle(before_s, after_s))
     }
 
-    /// The same motion with both components of the acceleration times a factor, from -1e9 to 1e9.
+    /// The same motion with both components of the acceleration times a factor, from -1e9 to 1e9, under both feet.
     ///
     /// # Errors
     /// When the factor is outside that range.
@@ -132,8 +214,11 @@ impl GroundMotion {
             formula: piece.formula.scaled(factor),
             ..*piece
         });
+        let right = self.right_foot().map(|right| right.scaled(factor));
         Ok(Self {
             pieces: pieces.collect(),
+            stops: self.stops,
+            right: right.transpose()?.map(Arc::new),
         })
     }
 
@@ -155,7 +240,10 @@ impl GroundMotion {
                 pieces.insert(index + 1, rest);
             }
         }
-        Ok(Self { pieces })
+        Ok(Self {
+            pieces,
+            ..self.clone()
+        })
     }
 }
 

@@ -16,7 +16,7 @@ impl<'a> GroundVelocity<'a> {
     /// The velocity of a ground motion.
     #[must_use]
     pub fn new(ground: &'a GroundMotion) -> Self {
-        let at_starts_m_s = ground
+        let mut at_starts_m_s = ground
             .pieces()
             .iter()
             .scan(Vector2::zeros(), |velocity_m_s, piece| {
@@ -26,14 +26,17 @@ impl<'a> GroundVelocity<'a> {
                 }
                 Some(at_start)
             })
-            .collect();
+            .collect::<Vec<_>>();
+        if let Some(last) = at_starts_m_s.last_mut().filter(|_| ground.stops) {
+            *last = Vector2::zeros();
+        }
         Self {
             ground,
             at_starts_m_s,
         }
     }
 
-    /// The velocity in m/s, horizontal and vertical (positive to the right and upwards), at a time that is not
+    /// The velocity in m/s, of the left of two feet that move differently, horizontal and vertical (positive to the right and upwards), at a time that is not
     /// negative.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Vector2<f64> {
@@ -48,24 +51,73 @@ impl<'a> GroundVelocity<'a> {
     /// constant accelerations.
     #[must_use]
     pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
-        let (mut at_m, mut from_s) = (Vector2::zeros(), 0.0);
-        let mut corners_s = self.ground.pieces().iter().map(|piece| piece.end_s);
-        let mut corner_s = corners_s.next().unwrap_or(f64::INFINITY);
-        let mut displacements_m = Vec::with_capacity(times_s.len());
-        for time_s in times_s {
-            while from_s < *time_s {
-                let to_s = corner_s.min(*time_s);
-                let middle_s = 0.5 * (from_s + to_s);
-                let sum = self.at(from_s) + self.at(middle_s) * 4.0 + self.at(to_s);
-                at_m += sum * ((to_s - from_s) / 6.0);
-                if to_s == corner_s {
-                    corner_s = corners_s.next().unwrap_or(f64::INFINITY);
-                }
-                from_s = to_s;
-            }
-            displacements_m.push(at_m);
+        let mut way = Way::new(self.clone());
+        times_s.iter().map(|time_s| way.to(*time_s)).collect()
+    }
+}
+
+/// The way of the ground from time zero on.
+#[derive(Clone, Debug)]
+struct Way<'a> {
+    velocity: GroundVelocity<'a>,
+    /// The piece in which it has arrived, when, and where.
+    piece: usize,
+    time_s: f64,
+    at_m: Vector2<f64>,
+}
+
+impl<'a> Way<'a> {
+    fn new(velocity: GroundVelocity<'a>) -> Self {
+        Self {
+            velocity,
+            piece: 0,
+            time_s: 0.0,
+            at_m: Vector2::zeros(),
         }
-        displacements_m
+    }
+
+    /// Where the ground is at a time that is not before the last one.
+    fn to(&mut self, time_s: f64) -> Vector2<f64> {
+        let pieces = self.velocity.ground.pieces();
+        while self.time_s < time_s {
+            let piece = &pieces[self.piece];
+            let (from_s, to_s) = (self.time_s, piece.end_s.min(time_s));
+            let start_m_s = self.velocity.at_starts_m_s[self.piece];
+            let at = |time_s: f64| start_m_s + piece.velocity_gained_m_s(time_s);
+            let sum = at(from_s) + at(0.5 * (from_s + to_s)) * 4.0 + at(to_s);
+            self.at_m += sum * ((to_s - from_s) / 6.0);
+            self.time_s = to_s;
+            if to_s == piece.end_s {
+                self.piece += 1;
+            }
+        }
+        self.at_m
+    }
+}
+
+/// How far the right foot of a structure goes away from its left one.
+#[derive(Clone, Debug)]
+pub(in crate::dynamics) struct FeetApart<'a> {
+    ways: [Way<'a>; 2],
+    /// From when on the feet stay as far apart as they are.
+    end_s: f64,
+}
+
+impl<'a> FeetApart<'a> {
+    /// `None` where both feet move alike.
+    pub(in crate::dynamics) fn new(ground: &'a GroundMotion) -> Option<Self> {
+        let right = ground.right_foot()?;
+        Some(Self {
+            ways: [ground, right].map(|ground| Way::new(GroundVelocity::new(ground))),
+            end_s: ground.end_s(),
+        })
+    }
+
+    /// At a time that is not before the last one, to the right and upwards, in m.
+    pub(in crate::dynamics) fn at(&mut self, time_s: f64) -> Vector2<f64> {
+        let [left, right] = &mut self.ways;
+        let time_s = time_s.min(self.end_s);
+        right.to(time_s) - left.to(time_s)
     }
 }
 

@@ -201,6 +201,9 @@ fn checked<'a, C: MechanismChain>(
             }));
         }
     }
+    if ground.right_foot().is_some() {
+        return Err(SimulationError::Feet);
+    }
     if let Some(time_s) = ground.free_fall_s(request.gravity_m_s2) {
         return Err(SimulationError::FreeFall { time_s });
     }
@@ -629,6 +632,7 @@ impl<'r> Sampler<'r> {
             time_s,
             ground_acceleration_m_s2: ground.x + 0.0,
             vertical_acceleration_m_s2: ground.y + 0.0,
+            feet_apart_m: Vector2::zeros(),
             phase: self.phase,
             state: mode.state(),
             rotations_rad,

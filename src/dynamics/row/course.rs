@@ -640,6 +640,7 @@ impl<'a> Course<'a> {
         // Adding zero makes a negative zero positive.
         sample.ground_acceleration_m_s2 = ground_m_s2.x + 0.0;
         sample.vertical_acceleration_m_s2 = ground_m_s2.y + 0.0;
+        sample.feet_apart_m = Vector2::zeros();
         sample.phase = self.phase;
         sample.state = State::Rest;
         sample.rotations_rad.clear();

@@ -251,7 +251,15 @@ impl ElasticStructure {
         };
         debug_assert!(row.supports() == Supports::Both || row.joints().len() == ground);
         let joints: Result<_, ArgumentError> = row.joints().iter().enumerate().map(joint).collect();
-        let ties = row.ties().iter().map(|tie| BoundTie::new(*tie, blocks));
+        let ends = [row.joints().first(), row.joints().last()];
+        let feet_m = ends.map(|joint| joint.map_or(0.0, |joint| joint.middle_m().x));
+        // A stack has one foot.
+        let feet_m = match row.supports() {
+            Supports::Both => feet_m,
+            Supports::Left => [feet_m[0]; 2],
+        };
+        let ties = row.ties().iter();
+        let ties = ties.map(|tie| BoundTie::new(*tie, blocks, feet_m));
         Ok(Self {
             ties: ties.collect(),
             ties_square_frequency: square_frequency(row.ties(), blocks),

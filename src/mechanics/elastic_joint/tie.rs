@@ -1,5 +1,7 @@
 //! Ties between bodies with elastic joints.
 
+use nalgebra::Vector2;
+
 use super::kinematics::{Action, Place, cross};
 use crate::mechanics::blocks::Block;
 use crate::mechanics::lanes::{Real, both};
@@ -10,14 +12,19 @@ use crate::mechanics::tie::{Tie, TieSpan};
 pub struct BoundTie {
     /// The tie.
     pub tie: Tie,
-    /// The bodies at its ends; beyond the last one is a support.
+    /// The bodies at its ends; beyond the last one are the left support and the right one.
     pub bodies: [usize; 2],
     /// From their centres to its ends, in m; from the origin where that is a support.
     pub arms_m: [[f64; 2]; 2],
 }
 
 impl BoundTie {
-    pub(super) fn new(tie: Tie, blocks: &[Block]) -> Self {
+    /// Of a row between feet at these places across: the ground moves an end as it does the nearer one.
+    pub(super) fn new(tie: Tie, blocks: &[Block], feet_m: [f64; 2]) -> Self {
+        let ground = |at_m: Vector2<f64>| {
+            let [left, right] = feet_m.map(|foot_m| (at_m.x - foot_m).abs());
+            blocks.len() + usize::from(right < left)
+        };
         let arm = |end: usize| {
             let anchor = tie.ends[end];
             let block = anchor.block.and_then(|block| blocks.get(block));
@@ -25,7 +32,9 @@ impl BoundTie {
             [arm_m.x, arm_m.y]
         };
         Self {
-            bodies: tie.ends.map(|anchor| anchor.block.unwrap_or(blocks.len())),
+            bodies: tie
+                .ends
+                .map(|anchor| anchor.block.unwrap_or_else(|| ground(anchor.at_m))),
             arms_m: [arm(0), arm(1)],
             tie,
         }

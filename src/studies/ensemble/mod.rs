@@ -122,13 +122,10 @@ fn uncertain(scenario: &Scenario) -> Result<&Uncertain, String> {
 
 /// The files that a scenario names, with their checksums, as in [`Study::inputs`].
 fn files(scenario: &Scenario) -> Vec<String> {
-    let record = match scenario.ground() {
-        Some(crate::scenario::Ground::Record(record)) => Some(record),
-        _ => None,
-    };
-    let series = record.into_iter().flat_map(|record| record.series());
     let suite = scenario.suite().into_iter();
-    let series = series.chain(suite.flat_map(|suite| &suite.records));
+    let series = scenario
+        .series()
+        .chain(suite.flat_map(|suite| &suite.records));
     series
         .map(|series| format!("{} {:08x}", series.file, series.checksum()))
         .collect()

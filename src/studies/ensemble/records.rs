@@ -81,7 +81,7 @@ impl Question for Capacities {
             let (record, mirrored) = (shake / self.signs(), shake % self.signs() == 1);
             let verdict = |level: f64| {
                 let shake = self.suite.shake(record, level, mirrored);
-                let ground = shake.motion(request.gravity_m_s2);
+                let ground = scenario.under_both_feet(shake.motion(request.gravity_m_s2));
                 let ending = Ending::of(&*model, &ground, &request);
                 ending.map(|ending| ending.verdict())
             };

@@ -385,13 +385,15 @@ impl<'a> OverturningMap<'a> {
         if let (Some(Ground::Pulse(pulse)), Some(scalable)) = (scenario.ground(), self.pulse(index))
         {
             let amplitude_g = self.value(index, Quantity::Amplitude);
-            return Ok(scalable.motion(amplitude_g.unwrap_or(pulse.amplitude_g)));
+            let motion = scalable.motion(amplitude_g.unwrap_or(pulse.amplitude_g));
+            return Ok(scenario.under_both_feet(motion));
         }
         let factor = self.value(index, Quantity::Scale).map(Scaling::Factor);
         let scaling = factor.or(self.value(index, Quantity::PeakG).map(Scaling::PeakG));
         match (scenario.ground(), scaling) {
             (Some(Ground::Record(record)), Some(scaling)) => {
-                record.rescaled(scaling, scenario.gravity_m_s2())
+                let motion = record.rescaled(scaling, scenario.gravity_m_s2())?;
+                Ok(scenario.under_both_feet(motion))
             }
             _ => Ok(scenario.ground_motion().clone()),
         }
@@ -475,15 +477,10 @@ impl Study for OverturningMap<'_> {
     }
 
     fn inputs(&self) -> Vec<String> {
-        match self.scenario.ground() {
-            Some(Ground::Record(record)) => {
-                let series = record.series();
-                series
-                    .map(|series| format!("{} {:08x}", series.file, series.checksum()))
-                    .collect()
-            }
-            _ => Vec::new(),
-        }
+        let series = self.scenario.series();
+        series
+            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
+            .collect()
     }
 
     fn count(&self) -> usize {

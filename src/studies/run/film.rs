@@ -1,5 +1,7 @@
 //! The frames of an animation: a history thinned to what the eye can see.
 
+use nalgebra::Vector2;
+
 use crate::dynamics::history::{JointPressure, OpenHinge, Sample, State};
 use crate::mechanics::geometry::pose::Pose;
 
@@ -8,6 +10,7 @@ use crate::mechanics::geometry::pose::Pose;
 pub(super) struct Frame {
     pub(super) time_s: f64,
     pub(super) ground_m_s2: f64,
+    pub(super) feet_apart_m: Vector2<f64>,
     pub(super) state: State,
     pub(super) poses: Vec<Pose>,
     pub(super) hinges: Vec<OpenHinge>,
@@ -20,6 +23,7 @@ impl Frame {
         Self {
             time_s: sample.time_s,
             ground_m_s2: sample.ground_acceleration_m_s2,
+            feet_apart_m: sample.feet_apart_m,
             state: sample.state,
             poses: sample.poses.clone(),
             hinges: sample.hinges.clone(),

@@ -2,6 +2,7 @@
 
 mod beside;
 mod comparison;
+mod feet;
 mod film;
 pub mod overlay;
 mod picture;
@@ -482,8 +483,8 @@ impl<'f> Tables<'f> {
     ) -> Result<Self, OutputError> {
         let model = &*run.model;
         let columns = || {
-            let vertical = run.scenario.ground_motion().has_vertical();
-            let mut columns = tables::rotations(model, vertical, run.scales);
+            let ground = run.scenario.ground_motion();
+            let mut columns = tables::rotations(model, ground, run.scales);
             columns.extend(run.points.columns());
             columns
         };

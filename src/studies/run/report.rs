@@ -311,6 +311,9 @@ impl Report {
         let ground_g = frames
             .iter()
             .map(|frame| frame.ground_m_s2 / self.gravity_m_s2);
+        let parts = ground.right_foot().is_some();
+        let apart_m = frames.iter();
+        let apart_m = apart_m.flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
         let thrust_unit = FARTHEST / MOST;
         let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
         #[expect(clippy::cast_possible_truncation, reason = "the ratio is clamped")]
@@ -356,6 +359,7 @@ impl Report {
                 )),
             ),
             ("ground_g", json!(floats(ground_g))),
+            ("right_foot_m", json!(parts.then(|| floats(apart_m)))),
             (
                 "thrust_unit",
                 json!((!thrust.is_empty()).then_some(thrust_unit)),

@@ -29,6 +29,8 @@ const JOINT_COLUMNS: usize = 800;
 pub(super) struct RowTimeline {
     rotations_rad: Vec<Envelope>,
     energy: Envelope,
+    /// How far the right foot has gone, to the right and upwards, in millimetres.
+    feet_mm: [Envelope; 2],
     /// Slips in millimetres, if joints slip.
     slips_mm: Vec<Envelope>,
     /// Whether energies are relative to a barrier; otherwise they are in J.
@@ -47,6 +49,7 @@ impl RowTimeline {
         Self {
             rotations_rad: vec![Envelope::of_columns(columns); blocks],
             energy: Envelope::new(),
+            feet_mm: [Envelope::new(), Envelope::new()],
             slips_mm: Vec::new(),
             in_barriers: false,
             joints: OpenJoints::new(row.joints().len()),
@@ -70,6 +73,9 @@ impl Picture for RowTimeline {
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
+        for (envelope, apart_m) in self.feet_mm.iter_mut().zip(sample.feet_apart_m.iter()) {
+            envelope.push(time_s, 1e3 * apart_m);
+        }
         let joints = sample.offsets_m.len();
         if self.slips_mm.is_empty() && joints > 0 {
             let columns = (COLUMNS_OF_ALL / joints).clamp(LEAST_COLUMNS, COLUMNS);
@@ -97,6 +103,17 @@ impl Picture for RowTimeline {
             panels.ground(110.0, subject, doing);
         }
 
+        let feet = ["right foot to the right", "right foot upwards"];
+        let feet = feet.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
+        let feet: Vec<((&str, Stroke), Curve)> = feet
+            .map(|((name, feet), stroke)| ((name, stroke), Curve::new(name, feet.points(), stroke)))
+            .filter(|(_, feet)| !feet.is_flat())
+            .collect();
+        let (feet_keys, feet): (Vec<_>, Vec<_>) = feet.into_iter().unzip();
+        if shows(Panel::Ground) && !feet.is_empty() {
+            panels.curves("Right foot (mm)", 110.0, &feet, doing);
+        }
+
         // The block that rotates most is drawn on top of the others.
         let largest = summary.largest_body();
         let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
@@ -122,6 +139,13 @@ impl Picture for RowTimeline {
         }
 
         let mut keys = Vec::new();
+        if feet_keys.len() > 1 {
+            keys.extend(
+                feet_keys
+                    .iter()
+                    .map(|(name, stroke)| (*name, Sign::Line(*stroke))),
+            );
+        }
         let name = format!("block {}, which turns most", largest + 1);
         if turns && self.rotations_rad.len() > 1 {
             keys.extend([
@@ -207,6 +231,7 @@ fn doing(summary: &Summary) -> States {
     }
 }
 
+const UPWARDS: Stroke = Stroke::new(color::GREEN, 1.6, "7 3");
 const BARRIER: Stroke = Stroke::new(color::VERMILION, 1.0, "1 3");
 const LARGEST: Stroke = Stroke::new(color::BLUE, 1.8, "");
 const BLOCK: Stroke = Stroke::new(color::BLACK, 0.5, "");

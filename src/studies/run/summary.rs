@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::Scales;
+use super::feet::FeetApart;
 use super::verdict::Evidence;
 use super::words::first_peak_rad;
 use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary, TieSummary};
@@ -173,6 +174,7 @@ impl Object {
             ("crushed_j", elastic.crushed_j),
             ("ties_j", elastic.ties_j),
             ("ground_j", elastic.ground_j),
+            ("right_foot_j", elastic.feet_j),
             ("rest_eccentricity_ratio", elastic.rest_eccentricity_ratio),
         ] {
             self.number(name, value)?;
@@ -237,6 +239,11 @@ impl Object {
             self.number("least_normal_n", row.least_normal_n)?;
         }
         self.ties(&row.ties)?;
+        if let Some(apart) = FeetApart::of(scenario, history) {
+            self.numbers("feet_farthest_apart_m", apart.farthest_m.as_slice())?;
+            self.number("feet_farthest_apart_time_s", apart.farthest_s)?;
+            self.numbers("feet_apart_at_end_m", apart.last_m.as_slice())?;
+        }
         if let Some(thrust) = &history.thrust {
             let friction = thrust.largest_friction;
             self.number("largest_friction_demand", friction.value)?;

@@ -1,5 +1,6 @@
 //! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
 
+use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Event, Impact, Sample};
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::mechanics::chain::Hinge;
@@ -13,13 +14,14 @@ use super::words::taken_j;
 
 /// Columns of `rotations.csv`, one row per sample: time, ground, `phase` (events so far), `state`, rotations and rates of all
 /// bodies; for mechanisms `thrust_excess_ratio`, for rows `open_joints`, because their line of thrust stays inside;
-/// `friction_demand`; the vertical acceleration if the ground has one.
+/// `friction_demand`; the vertical acceleration if the ground has one; where the feet move differently, `right_foot_x_m` and `right_foot_y_m`,
+/// how far the right one has gone from where it was beside the left one, to the right and upwards.
 ///
 /// With scales, three columns follow the others: `p_t` (time times `p`), `acceleration_over_incipient`
 /// (ground acceleration over `g A_L`) and `rotation_over_critical` (see [`Sample::rotation_over_critical`]).
 pub(super) fn rotations(
     model: &dyn Model,
-    vertical: bool,
+    ground: &GroundMotion,
     scales: Option<Scales>,
 ) -> Vec<Column<'static, Sample>> {
     let bodies = model.bodies();
@@ -44,10 +46,16 @@ pub(super) fn rotations(
         },
         column("friction_demand", |sample: &Sample| sample.demand.friction),
     ];
-    if vertical {
+    if ground.has_vertical() {
         all.push(column("vertical_acceleration_m_s2", |sample: &Sample| {
             sample.vertical_acceleration_m_s2
         }));
+    }
+    if ground.right_foot().is_some() {
+        all.extend([
+            column("right_foot_x_m", |sample: &Sample| sample.feet_apart_m.x),
+            column("right_foot_y_m", |sample: &Sample| sample.feet_apart_m.y),
+        ]);
     }
     if let Some(scales) = scales {
         all.extend([

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::Shown;
+use super::feet::FeetApart;
 use super::verdict::Evidence;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
@@ -17,20 +18,18 @@ use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::by_body;
-use crate::scenario::{Ground, Hinges, Scenario, Series, Structure};
+use crate::scenario::{Hinges, Scenario, Series, Structure};
 
 /// The heading of the words for the runs of a scenario: its title, and the records that shake it, one line each.
 #[must_use]
 pub fn heading(scenario: &Scenario) -> String {
     let title = scenario.title();
     let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
-    if let Some(Ground::Record(record)) = scenario.ground() {
-        text.extend(record.series().map(|series: &Series| {
-            let (file, sampling) = (series.name(), series.sampling());
-            let peak_g = series.peak_g(scenario.gravity_m_s2());
-            format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
-        }));
-    }
+    text.extend(scenario.series().map(|series: &Series| {
+        let (file, sampling) = (series.name(), series.sampling());
+        let peak_g = series.peak_g(scenario.gravity_m_s2());
+        format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
+    }));
     text
 }
 
@@ -62,6 +61,7 @@ pub(super) fn words(
         text += &slips(row, sliding, history.outcome);
     }
     text += &incipient(scenario, model, history);
+    text += &feet(scenario, history);
     text += &cut_short(scenario, history);
     if sliding.is_none() {
         text += &trusted(scenario, model, history, beside);
@@ -488,6 +488,53 @@ fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
         );
     }
     reaches
+}
+
+/// How far the right foot goes from the left one.
+fn feet(scenario: &Scenario, history: &Summary) -> String {
+    let Some(apart) = FeetApart::of(scenario, history) else {
+        return String::new();
+    };
+    let FeetApart {
+        farthest_m,
+        farthest_s,
+        last_m,
+    } = apart;
+    // What is rounded to nothing has no sign.
+    let [right_m, up_m] = [last_m.x, last_m.y].map(|m| (1e5 * m).round() * 1e-5 + 0.0);
+    let mut text = format!(
+        "  the right foot goes {:.5} m away from where it was beside the left one (at {farthest_s:.4} s), and ends {:.5} m to the right and {:.5} m \
+         above it",
+        farthest_m.norm(),
+        right_m,
+        up_m
+    );
+    let ground = scenario.ground_motion();
+    if scenario
+        .right_foot()
+        .is_some_and(|right| right.record().is_some())
+    {
+        text += ":\n    that is what the records say, with no baseline corrected";
+        for (foot, at_s) in ["left", "right"].into_iter().zip(ground.ends_s()) {
+            if at_s < ground.end_s() {
+                let _ = write!(
+                    text,
+                    ";\n    the record of the {foot} foot ends at {at_s:.4} s, the other at {:.4} s: from there on that foot stays where it is",
+                    ground.end_s()
+                );
+            }
+        }
+    }
+    let elastic = history.row.as_ref().and_then(|row| row.elastic.as_ref());
+    if let Some(elastic) = elastic {
+        let _ = write!(
+            text,
+            "\n  beside the left foot, the shaken ground worked {:.3} J, and the right foot {:.3} J",
+            elastic.ground_j, elastic.feet_j
+        );
+    }
+    text.push('\n');
+    text
 }
 
 /// Warns if the run ends before the ground motion does.

@@ -163,7 +163,8 @@ impl Study for RecordSuite<'_> {
         let case = |index: &usize| {
             let (level, record, mirrored) = self.place(*index);
             let shake = self.suite.shake(record, level, mirrored);
-            (shake.motion(request.gravity_m_s2), request)
+            let ground = shake.motion(request.gravity_m_s2);
+            (self.scenario.under_both_feet(ground), request)
         };
         let cases: Vec<Case> = indices.iter().map(case).collect();
         let results = Ending::of_all(&*self.model, &cases);
@@ -198,7 +199,9 @@ impl RecordSuite<'_> {
         let request = self.scenario.request_from_rest();
         let overturns = |level: f64| {
             let shake = self.suite.shake(record, level, mirrored);
-            let ending = Ending::of(&*self.model, &shake.motion(request.gravity_m_s2), &request);
+            let ground = shake.motion(request.gravity_m_s2);
+            let ground = self.scenario.under_both_feet(ground);
+            let ending = Ending::of(&*self.model, &ground, &request);
             ending.map(|ending| ending.verdict() == Verdict::Overturns)
         };
         let below = self.levels[below];

@@ -21,6 +21,8 @@
   const { times, rotations, layoutOf, layouts } = own;
   const groundM = new Float32Array(buffer(frames.ground_m));
   const groundG = new Float32Array(buffer(frames.ground_g));
+  // Where the feet move differently: how far the right one has gone from the left one.
+  const rightFootM = frames.right_foot_m && new Float32Array(buffer(frames.right_foot_m));
   const thrust = new Int16Array(buffer(frames.thrust));
   const joints = new Uint8Array(buffer(frames.joints));
   const pressed = new Uint8Array(buffer(frames.pressed));
@@ -175,11 +177,13 @@
     pen.stroke();
     if (sizes) drawSizes(pen, onScreen, floor);
     pen.strokeStyle = ink;
-    for (const [ax, ay, bx, by] of data.supports) {
+    const foot = [0, 1].map((axis) => (rightFootM ? exaggeration * blend(rightFootM, 2, axis, at) : 0));
+    data.supports.forEach(([ax, ay, bx, by], right) => {
       pen.lineWidth = 4;
-      path([[ax - 0.3 * (bx - ax), ay - 0.3 * (by - ay)], [bx + 0.3 * (bx - ax), by + 0.3 * (by - ay)]]);
+      const [x, y] = foot.map((gone) => right * gone);
+      path([[x + ax - 0.3 * (bx - ax), y + ay - 0.3 * (by - ay)], [x + bx + 0.3 * (bx - ax), y + by + 0.3 * (by - ay)]]);
       pen.stroke();
-    }
+    });
 
     // The blocks: where they were, and where they are.
     const layout = layouts[layoutOf[at.frame]];

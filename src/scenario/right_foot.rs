@@ -1,0 +1,214 @@
+//! Another motion of the right foot: `[ground.right]`.
+//!
+//! ```toml
+//! [ground.right]
+//! delay_s = 0.05                  # the same motion, so much later; or
+//! apparent_velocity_m_s = 300.0   # later by the distance between the feet over this; or
+//!
+//! [ground.right.record]           # a record of its own, with the keys of [ground.record]
+//! file = "right.at2"
+//! ```
+
+use std::ops::Bound::Included;
+use std::path::Path;
+
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
+
+use super::structure::Structure;
+use super::table::{Number, Reading, Rule as _, Table};
+use super::{Hinges, Record, Series};
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::model::FEET_NEED_JOINTS;
+use crate::mechanics::blocks::Supports;
+
+const DELAY_S: Number = Number(Included(-1e3), Included(1e3));
+const APPARENT_VELOCITY_M_S: Number = Number(Included(-1e6), Included(1e6));
+/// Slower waves than this, in m/s, are a mistake of units.
+const SLOWEST_M_S: f64 = 1.0;
+const RECORD: &str = "record";
+
+/// How the ground under the right foot moves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RightFoot {
+    /// As that under the left one, later by so many seconds; earlier if that is negative.
+    Late(f64),
+    /// The same, by the distance between the feet over this velocity in m/s; the wave goes to the left if that is negative.
+    Wave(f64),
+    /// By a record of its own.
+    Record(Box<Record>),
+}
+
+impl RightFoot {
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        folder: &Path,
+        gravity_m_s2: Reading<f64>,
+    ) -> Reading<Self> {
+        let delay_s = table.optional("delay_s", &DELAY_S);
+        let velocity_m_s = table.optional("apparent_velocity_m_s", &APPARENT_VELOCITY_M_S);
+        let record = table.table(RECORD, |table| Record::read(table, folder, gravity_m_s2));
+        let right = table.exactly_one(
+            "keys",
+            vec![
+                ("delay_s", delay_s.map(|read| read.map(Self::Late))),
+                (
+                    "apparent_velocity_m_s",
+                    velocity_m_s.map(|read| read.map(Self::Wave)),
+                ),
+                (
+                    RECORD,
+                    record.map(|read| read.map(|(record, _)| Self::Record(Box::new(record)))),
+                ),
+            ],
+        )?;
+        right
+            .check()
+            .map_err(|(key, wrong)| table.wrong(key, wrong))?;
+        Ok(right)
+    }
+
+    fn check(&self) -> Result<(), (&'static str, String)> {
+        match self {
+            Self::Wave(velocity_m_s) if velocity_m_s.abs() < SLOWEST_M_S => Err((
+                "apparent_velocity_m_s",
+                "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that goes to the left".to_owned(),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses it where feet cannot move differently, or where a study shakes them in its own way; `outer` is the whole scenario.
+    pub(super) fn suits(
+        &self,
+        outer: &mut Table<'_>,
+        structure: Option<&Structure>,
+        hinges: Hinges,
+    ) -> Reading<()> {
+        if hinges != Hinges::Elastic {
+            let wrong = format!(
+                "cannot be followed: {FEET_NEED_JOINTS}; choose [elastic_joints] (`--hinges elastic`), or leave it out"
+            );
+            return Err(outer.wrong_in("ground", "right", wrong));
+        }
+        let row = structure.and_then(|structure| structure.row().ok());
+        if row.is_some_and(|row| row.supports() == Supports::Left) {
+            let wrong = "needs two feet, and this stands on one: leave it out";
+            return Err(outer.wrong_in("ground", "right", wrong));
+        }
+        if let Self::Record(_) = self {
+            for study in ["map", "suite"] {
+                if outer.gives(study) {
+                    let wrong = "changes the motion of the ground, and [ground.right] has a record of its own: give `delay_s` or \
+                                 `apparent_velocity_m_s` there, with which both feet change";
+                    return Err(outer.wrong(study, wrong));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Its own record, if it has one.
+    #[must_use]
+    pub fn record(&self) -> Option<&Record> {
+        match self {
+            Self::Record(record) => Some(record),
+            Self::Late(_) | Self::Wave(_) => None,
+        }
+    }
+
+    /// Its files.
+    pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
+        self.record().into_iter().flat_map(Record::series)
+    }
+
+    /// By how much it is late in s, between feet that are so far apart in m; `None` if it moves by a record of its own.
+    #[must_use]
+    pub fn delay_s(&self, apart_m: f64) -> Option<f64> {
+        match self {
+            Self::Late(delay_s) => Some(*delay_s),
+            Self::Wave(velocity_m_s) => Some(apart_m / velocity_m_s),
+            Self::Record(_) => None,
+        }
+    }
+
+    /// The motion of both feet, of which this is that of the left one; by waves, of feet that are so far apart in m.
+    ///
+    /// Of two records, the foot whose record is shorter stays where it is at its end.
+    pub(super) fn beside(
+        &self,
+        left: GroundMotion,
+        apart_m: f64,
+        gravity_m_s2: f64,
+    ) -> GroundMotion {
+        const IN_RANGE: &str = "the ranges of the keys are those of a delay";
+        let Some(delay_s) = self.delay_s(apart_m) else {
+            let right = self.record().map(|record| record.motion(gravity_m_s2));
+            let right = right.unwrap_or_else(GroundMotion::still);
+            return match (left.end_s(), right.end_s()) {
+                (left_s, right_s) if left_s < right_s => left.stopping().with_right_foot(right),
+                (left_s, right_s) if right_s < left_s => left.with_right_foot(right.stopping()),
+                _ => left.with_right_foot(right),
+            };
+        };
+        let late = left.late_by(delay_s.abs()).expect(IN_RANGE);
+        if delay_s >= 0.0 {
+            left.with_right_foot(late)
+        } else {
+            late.with_right_foot(left)
+        }
+    }
+
+    /// The same with other numbers for some of its keys.
+    pub(super) fn with_values(
+        &self,
+        values: &[(&str, f64)],
+        gravity_m_s2: f64,
+    ) -> Result<Self, String> {
+        let mut right = self.clone();
+        let mut of_record = Vec::new();
+        for (key, value) in values {
+            let rule = match (&mut right, *key) {
+                (Self::Late(delay_s), "delay_s") => {
+                    *delay_s = *value;
+                    DELAY_S
+                }
+                (Self::Wave(velocity_m_s), "apparent_velocity_m_s") => {
+                    *velocity_m_s = *value;
+                    APPARENT_VELOCITY_M_S
+                }
+                (Self::Record(_), key) if key.starts_with("record.") => {
+                    of_record.push((&key["record.".len()..], *value));
+                    continue;
+                }
+                _ => return Err(format!("`{key}` is no number of [ground.right]")),
+            };
+            if !rule.contains(*value) {
+                let allowed = rule.allowed();
+                return Err(format!(
+                    "`{key} = {value}` is out of range; must be {allowed}"
+                ));
+            }
+            right
+                .check()
+                .map_err(|(key, wrong)| format!("`{key} = {value}` {wrong}"))?;
+        }
+        if let Self::Record(record) = &right {
+            right = Self::Record(Box::new(record.with_values(&of_record, gravity_m_s2)?));
+        }
+        Ok(right)
+    }
+}
+
+impl Serialize for RightFoot {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(1))?;
+        match self {
+            Self::Late(delay_s) => map.serialize_entry("delay_s", delay_s)?,
+            Self::Wave(velocity_m_s) => {
+                map.serialize_entry("apparent_velocity_m_s", velocity_m_s)?
+            }
+            Self::Record(record) => map.serialize_entry(RECORD, record)?,
+        }
+        map.end()
+    }
+}

@@ -1,0 +1,39 @@
+//! How far feet that move differently go apart in a run.
+
+use nalgebra::Vector2;
+
+use crate::dynamics::history::Summary;
+use crate::scenario::Scenario;
+
+/// How far the right foot goes from where it was beside the left one, to the right and upwards.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FeetApart {
+    /// Where it is when it is farthest away, at output steps, in m.
+    pub farthest_m: Vector2<f64>,
+    /// When, in s.
+    pub farthest_s: f64,
+    /// Where it is at the end of the run, in m.
+    pub last_m: Vector2<f64>,
+}
+
+impl FeetApart {
+    /// Of a run; `None` where both feet move alike.
+    pub(super) fn of(scenario: &Scenario, history: &Summary) -> Option<Self> {
+        let ground = scenario.ground_motion();
+        ground.right_foot()?;
+        let step_s = scenario.simulation().output_step_s;
+        let steps = (history.end_s / step_s) as u32;
+        let mut times_s: Vec<f64> = (0..=steps).map(|step| step_s * f64::from(step)).collect();
+        times_s.push(history.end_s);
+        let apart_m = ground.feet_apart_m(&times_s);
+        let all = || times_s.iter().copied().zip(apart_m.iter().copied());
+        let (farthest_s, farthest_m) =
+            all().max_by(|one, other| one.1.norm().total_cmp(&other.1.norm()))?;
+        let (_, last_m) = all().next_back()?;
+        Some(Self {
+            farthest_m,
+            farthest_s,
+            last_m,
+        })
+    }
+}

@@ -1,0 +1,571 @@
+//! Feet that move differently: the ground under both, motions of arches on them, and what the program tells of it.
+
+use std::f64::consts::PI;
+use std::fmt::Write as _;
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+
+use crate::common::{parsed, pulse, run_sampled, sampled};
+use crate::program::{done, printed, refused, says_what_it_shows, scenarios};
+use crate::results::{Table, named};
+use archrock::dynamics::model::SimulationError;
+use archrock::mechanics::blocks::Row;
+use archrock::mechanics::settling::{Movement, Movements};
+use archrock::{
+    ElasticJoints, ElasticOptions, ElasticProperties, FreeHinges, GroundMotion, Model, Pulse,
+};
+use nalgebra::Vector2;
+use roxmltree::Document;
+
+/// An arch of 12 voussoirs on joints of 1 GPa/m.
+fn arch() -> ElasticJoints {
+    let ring = crate::common::ring(0.15, 157.5);
+    let row = Row::arch(&ring, 12, 5.0, 1.0, 2000.0).unwrap();
+    ElasticJoints::new(row, ElasticProperties::of_stiffness(1e9)).unwrap()
+}
+
+/// A record of smooth horizontal and vertical acceleration, in m/s2, that begins and ends with zero.
+fn shaking(strong: [f64; 2], hz: [f64; 2]) -> GroundMotion {
+    let of = |strong: f64, hz: f64| -> Vec<(f64, f64)> {
+        let at = |step: i32| {
+            let time_s = 0.01 * f64::from(step);
+            let envelope = (PI * time_s / 0.8).sin().powi(2);
+            (time_s, strong * envelope * (2.0 * PI * hz * time_s).sin())
+        };
+        (0..=80).map(at).collect()
+    };
+    GroundMotion::record(&of(strong[0], hz[0]), &of(strong[1], hz[1]), 0.0).unwrap()
+}
+
+#[test]
+fn feet_go_apart_as_their_motions_do() {
+    // A rectangular pulse leaves the ground with a velocity: late by a delay, the foot stays behind by that times the delay.
+    let ground = pulse(Pulse::Rectangular, 0.3, 0.4);
+    let late = ground.late_by(0.25).unwrap();
+    let apart_m = ground
+        .clone()
+        .with_right_foot(late)
+        .feet_apart_m(&[0.0, 0.25, 0.4, 0.65, 3.0]);
+    let a = 0.3 * 9.81;
+    let left_behind = -a * 0.4 * 0.25;
+    let half = |time_s: f64| 0.5 * a * time_s * time_s;
+    let due = [
+        0.0,
+        -half(0.25),
+        half(0.15) - half(0.4),
+        left_behind,
+        left_behind,
+    ];
+    for (apart_m, due_m) in apart_m.iter().zip(due) {
+        assert!(
+            (apart_m.x - due_m).abs() < 1e-13 && apart_m.y == 0.0,
+            "{apart_m} {due_m}"
+        );
+    }
+    // The motion late by nothing is the motion.
+    assert_eq!(ground.late_by(0.0).unwrap(), ground);
+    let same = ground.clone().with_right_foot(ground.clone());
+    assert!(
+        same.feet_apart_m(&[0.3, 7.0])
+            .iter()
+            .all(|apart| *apart == Vector2::zeros())
+    );
+    // Both feet are scaled, and only there where they move differently.
+    let other = shaking([1.0, 0.4], [2.0, 5.0]);
+    let both = ground.clone().with_right_foot(other.clone());
+    let [once, twice] =
+        [both.clone(), both.scaled(2.0).unwrap()].map(|ground| ground.feet_apart_m(&[0.37])[0]);
+    assert!(once.norm() > 0.01 && once.y != 0.0 && (twice - once * 2.0).norm() < 1e-15);
+    // A foot whose motion stops stays where it is: from 0.4 s on the left one moves alone, until both have ended.
+    let stopped = ground
+        .clone()
+        .with_right_foot(pulse(Pulse::Rectangular, 0.3, 0.2).stopping());
+    let apart_m = stopped.feet_apart_m(&[0.2, 0.4, 9.0]);
+    assert!(apart_m[0].norm() < 1e-15 && apart_m[1] == apart_m[2]);
+    assert!((apart_m[1].x - (half(0.2) - half(0.4))).abs() < 1e-13);
+    assert_eq!(both.end_s(), 0.8);
+    assert_eq!(both.ends_s(), [0.4, 0.8]);
+    assert!(both.has_vertical() && !ground.has_vertical());
+    assert!(ground.late_by(f64::NAN).is_err() && ground.late_by(-1.0).is_err());
+}
+
+/// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
+/// pieces.
+#[test]
+fn feet_that_move_alike_are_the_ground() {
+    let model = arch();
+    let ground = shaking([6.0, 2.0], [1.5, 4.0]);
+    let (whole, alone) = run_sampled(&model, &ground, &sampled(1.5, 0.01));
+    assert!(whole.summary.largest_rotation_rad() > 1e-3);
+    for (right, tolerance) in [
+        (ground.clone(), 0.0),
+        (ground.cut_at(&[0.1234, 0.333, 0.7]).unwrap(), 1e-9),
+    ] {
+        let both = ground.clone().with_right_foot(right);
+        let (_, samples) = run_sampled(&model, &both, &sampled(1.5, 0.01));
+        let first_half_cycle_s =
+            whole.summary.half_cycles()[0].start_s + whole.summary.half_cycles()[0].duration_s;
+        for (sample, alone) in samples.iter().zip(&alone) {
+            if tolerance > 0.0 && sample.time_s > first_half_cycle_s {
+                break;
+            }
+            for (one, other) in sample.rotations_rad.iter().zip(&alone.rotations_rad) {
+                assert!(
+                    (one - other).abs() <= tolerance,
+                    "{} {one} {other}",
+                    sample.time_s
+                );
+            }
+        }
+    }
+}
+
+/// The mirror image of an arch whose feet are exchanged moves as its mirror image; since positions count from the left foot, the two are
+/// computed on ground that moves differently: the same, but for the square of the step.
+#[test]
+fn mirrored_feet_move_a_mirrored_arch() {
+    let model = arch();
+    let (one, other) = (([4.0, 2.0], [1.5, 4.0]), ([2.5, -1.0], [2.5, 3.0]));
+    let shaken =
+        |(strong, hz): ([f64; 2], [f64; 2]), side: f64| shaking([side * strong[0], strong[1]], hz);
+    let request = sampled(0.6, 0.01);
+    let (history, right) = run_sampled(
+        &model,
+        &shaken(one, 1.0).with_right_foot(shaken(other, 1.0)),
+        &request,
+    );
+    let (_, left) = run_sampled(
+        &model,
+        &shaken(other, -1.0).with_right_foot(shaken(one, -1.0)),
+        &request,
+    );
+    let largest = history.summary.largest_rotation_rad();
+    assert!(largest > 1e-3, "{largest}");
+    for (right, left) in right.iter().zip(&left) {
+        assert!((right.feet_apart_m.x - left.feet_apart_m.x).abs() < 1e-14);
+        for (right, left) in right
+            .rotations_rad
+            .iter()
+            .zip(left.rotations_rad.iter().rev())
+        {
+            assert!((right + left).abs() < 1e-3 * largest, "{right} {left}");
+        }
+    }
+}
+
+/// A structure whose supports are both moved alike rests as it did, elsewhere.
+#[test]
+fn a_translation_of_both_supports_changes_nothing() {
+    let model = arch();
+    let load_m_s2 = [0.0, -9.81];
+    let rest = model.structure().rest(load_m_s2).unwrap();
+    let by_m = [0.4, -0.2, 0.0];
+    let elsewhere = model.structure().clone().on_supports([by_m; 2]);
+    let moved = elsewhere.rest(load_m_s2).unwrap();
+    for (rest, moved) in rest.moved.iter().zip(&moved.moved) {
+        for axis in 0..3 {
+            // Forces balance to 1e-11 of the weight, which bends joints by some 1e-3 m.
+            assert!(
+                (moved[axis] - rest[axis] - by_m[axis]).abs() < 1e-9,
+                "{moved:?} {rest:?}"
+            );
+        }
+    }
+}
+
+/// The energy of an arch whose feet move differently is balanced, by the square of the step; both feet work.
+#[test]
+fn the_work_of_both_feet_balances_the_energy() {
+    let properties = ElasticProperties {
+        friction_coefficient: None,
+        ..ElasticProperties::of_stiffness(1e9)
+    };
+    let model = ElasticJoints::new(arch().row().clone(), properties).unwrap();
+    let both = shaking([2.0, 1.0], [1.5, 4.0]).with_right_foot(shaking([-2.0, 1.5], [1.0, 3.0]));
+    let longest_s = 0.5 * model.longest_step_s();
+    let defects = [1.0, 0.5, 0.25].map(|part| {
+        let options = ElasticOptions {
+            longest_step_s: Some(part * longest_s),
+        };
+        let model = model.clone().with_options(options).unwrap();
+        let summary = model.simulate(&both, &sampled(1.0, 0.01), None).unwrap();
+        let elastic = summary.row.as_ref().unwrap().elastic.unwrap();
+        assert!(
+            elastic.feet_j.abs() > 10.0 && elastic.ground_j.abs() > 10.0,
+            "{elastic:?}"
+        );
+        summary.energy_defect_ratio
+    });
+    assert!(defects[0] < 1e-5, "{defects:?}");
+    // Of a quarter of the step: 16, where contacts that open between steps would let it.
+    let ratio = defects[0] / defects[2];
+    assert!((9.0..36.0).contains(&ratio), "{defects:?}");
+}
+
+/// A foot that moves for 10 s ends where springings that have moved so far let the arch rest.
+#[test]
+fn a_slow_foot_ends_where_the_supports_settle() {
+    let (spread_m, settlement_m) = (0.08, 0.03);
+    // An acceleration of a sine over 10 s moves by its amplitude times 10^2/2 pi.
+    let samples = |way_m: f64| -> Vec<(f64, f64)> {
+        let strong = way_m * 2.0 * PI / 100.0;
+        let at = |step: i32| {
+            let part = f64::from(step) / 1000.0;
+            (10.0 * part, strong * (2.0 * PI * part).sin())
+        };
+        (0..=1000).map(at).collect()
+    };
+    let ramp = GroundMotion::record(&samples(spread_m), &samples(-settlement_m), 0.0).unwrap();
+    let both = GroundMotion::still().with_right_foot(ramp);
+    let end_m = both.feet_apart_m(&[10.0])[0];
+    // Straight lines between samples miss the sine by 3e-6 of it.
+    assert!(
+        (end_m - Vector2::new(spread_m, -settlement_m)).norm() < 1e-6,
+        "{end_m}"
+    );
+    let model = arch();
+    let (_, way) = run_sampled(&model, &both, &sampled(11.0, 0.05));
+    let settled = arch().on_supports(Movements {
+        left: Movement::default(),
+        right: Movement {
+            spread_m,
+            settlement_m,
+            rotation_rad: 0.0,
+        },
+    });
+    let (_, rest) = run_sampled(
+        &settled.unwrap(),
+        &GroundMotion::still(),
+        &sampled(0.1, 0.05),
+    );
+    let (end, rest) = (way.last().unwrap(), &rest[0]);
+    let turned = |pose: &archrock::mechanics::geometry::pose::Pose| pose.rotation_rad();
+    let largest = rest
+        .poses
+        .iter()
+        .map(|pose| turned(pose).abs())
+        .fold(0.0, f64::max);
+    assert!(largest > 5e-3, "{largest}");
+    // What is left of the vibration, and of friction that both reach on other ways, is a thousandth of the rotation.
+    for (end, rest) in end.poses.iter().zip(&rest.poses) {
+        assert!(
+            (turned(end) - turned(rest)).abs() < 1e-3 * largest,
+            "{} {}",
+            turned(end),
+            turned(rest)
+        );
+        assert!(
+            (end.translation - rest.translation).norm() < 1e-3 * spread_m,
+            "{end:?} {rest:?}"
+        );
+    }
+}
+
+/// Histories side by side have the bits of histories alone, whether the feet of the others move alike or not.
+#[test]
+fn feet_side_by_side_are_as_feet_alone() {
+    let model = arch();
+    let cases: Vec<_> = (0..7)
+        .map(|case| {
+            let ground = shaking([2.0 + 0.5 * f64::from(case), 1.0], [1.5, 4.0]);
+            let late = ground.late_by(0.02 * f64::from(case)).unwrap();
+            let ground = if case % 3 == 0 {
+                ground
+            } else {
+                ground.with_right_foot(late)
+            };
+            (ground, sampled(0.8, 0.05))
+        })
+        .collect();
+    for ((ground, request), together) in cases.iter().zip(model.simulate_all(&cases)) {
+        let alone = model.simulate(ground, request, None).unwrap();
+        let together = together.unwrap();
+        assert_eq!(alone.peak_rotations_rad, together.peak_rotations_rad);
+        let [alone, together] = [alone, together].map(|summary| summary.row.unwrap().elastic);
+        assert_eq!(alone, together);
+    }
+}
+
+#[test]
+fn rigid_joints_refuse_feet_that_move_differently() {
+    let ground = pulse(Pulse::OneSine, 0.3, 0.4);
+    let both = ground.clone().with_right_foot(ground);
+    let free = FreeHinges::new(arch().row().clone()).unwrap();
+    let four = crate::common::semicircle();
+    let models: [&dyn Model; 2] = [&free, &four];
+    for model in models {
+        let error = model
+            .simulate(&both, &sampled(1.0, 0.01), None)
+            .unwrap_err();
+        assert!(matches!(error, SimulationError::Feet), "{error}");
+    }
+}
+
+const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 12\n\
+                    [elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n[simulation]\nduration_s = 1.5\n";
+const PULSE: &str = "[ground.one_sine]\namplitude_g = 0.4\nduration_s = 0.4\n";
+
+fn write(folder: &Path, name: &str, text: &str) {
+    fs::write(folder.join(name), text).unwrap();
+}
+
+/// A record in a table, in g, one sample every hundredth of a second.
+fn record(seconds: f64, strong_g: f64) -> String {
+    let mut text = "time_s,a\n".to_owned();
+    for step in 0..=(seconds * 100.0).round() as i32 {
+        let time_s = 0.01 * f64::from(step);
+        let _ = writeln!(
+            text,
+            "{time_s:.2},{:e}",
+            strong_g * (2.0 * PI * time_s / 0.4).sin()
+        );
+    }
+    text
+}
+
+#[test]
+fn scenarios_have_a_right_foot_in_three_ways() {
+    let foot = |keys: &str| parsed(&format!("{ARCH}{PULSE}[ground.right]\n{keys}\n"));
+    let reads_back = |scenario: &archrock::scenario::Scenario| {
+        assert_eq!(parsed(&scenario.to_toml()), *scenario);
+    };
+    let late = foot("delay_s = 0.05");
+    reads_back(&late);
+    let times_s = [0.1, 0.3, 0.7];
+    let own = parsed(&format!("{ARCH}{PULSE}"));
+    let ground = own.ground_motion().clone();
+    let due = ground
+        .clone()
+        .with_right_foot(ground.late_by(0.05).unwrap());
+    assert_eq!(late.ground_motion(), &due);
+    // The feet are the middles of the springings.
+    let wave = foot("apparent_velocity_m_s = 200.0");
+    reads_back(&wave);
+    let apart_m = 2.0 * 5.0 * (0.5 * 157.5_f64).to_radians().sin();
+    let by_delay = foot(&format!("delay_s = {:?}", apart_m / 200.0));
+    for (one, other) in wave
+        .ground_motion()
+        .feet_apart_m(&times_s)
+        .iter()
+        .zip(by_delay.ground_motion().feet_apart_m(&times_s))
+    {
+        assert!((one - other).norm() < 1e-14 && one.norm() > 1e-3);
+    }
+    // A wave that goes to the left reaches the right foot first.
+    let back = foot("apparent_velocity_m_s = -200.0");
+    let [left_s, right_s] = back.ground_motion().ends_s();
+    assert!((left_s - right_s - apart_m / 200.0).abs() < 1e-12);
+    // What varies in a study varies here.
+    let varied = late.with_values(&[
+        ("ground.right.delay_s", 0.1),
+        ("ground.one_sine.amplitude_g", 0.2),
+    ]);
+    let varied = varied.unwrap();
+    assert_eq!(
+        varied,
+        parsed(&format!(
+            "{ARCH}{}[ground.right]\ndelay_s = 0.1\n",
+            PULSE.replace("0.4\nd", "0.2\nd")
+        ))
+    );
+    assert!(
+        late.with_values(&[("ground.right.delay_s", 1e9)])
+            .unwrap_err()
+            .contains("out of range")
+    );
+    assert_eq!(own.with_ground(late.ground().cloned()).right_foot(), None);
+}
+
+#[test]
+fn a_run_tells_of_its_feet() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "left.csv", &record(0.8, 0.3));
+    write(folder.path(), "right.csv", &record(0.5, 0.2));
+    let table = |file: &str| format!("file = \"{file}\"\nunit = \"g\"\n");
+    let text = format!(
+        "{ARCH}[ground.record]\n{}[ground.right.record]\n{}",
+        table("left.csv"),
+        table("right.csv")
+    );
+    write(folder.path(), "s.toml", &text);
+    let said = done(
+        folder.path(),
+        &[
+            "run",
+            "s.toml",
+            "--out",
+            "r",
+            "--no-spread",
+            "--snapshots",
+            "0.2",
+        ],
+    );
+    let said = said + &fs::read_to_string(folder.path().join("r/report.html")).unwrap();
+    for words in [
+        "with no baseline corrected",
+        "the record of the right foot ends at 0.5000 s, the other at 0.8000 s: from there on that foot stays where it is",
+        "the right foot goes",
+    ] {
+        assert!(said.contains(words), "{words}: {said:.3000}");
+    }
+    let rotations = Table::read(folder.path().join("r/rotations.csv"));
+    let [apart_m, upwards_m] =
+        ["right_foot_x_m", "right_foot_y_m"].map(|column| rotations.numbers(column));
+    assert!(apart_m[0] == 0.0 && upwards_m.iter().all(|up_m| *up_m == 0.0));
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("r/summary.json")).unwrap())
+            .unwrap();
+    let farthest = apart_m
+        .iter()
+        .map(|apart_m| apart_m.abs())
+        .fold(0.0, f64::max);
+    let told = summary["feet_farthest_apart_m"][0].as_f64().unwrap();
+    assert!((told.abs() - farthest).abs() < 1e-12 && farthest > 1e-3);
+    let last = summary["feet_apart_at_end_m"][0].as_f64().unwrap();
+    assert!((last - apart_m.last().unwrap()).abs() < 1e-12);
+    assert!(summary["right_foot_j"].as_f64().unwrap().abs() > 1.0);
+    assert!(summary["peak_potential_over_barrier"].is_null());
+    let picture = fs::read_to_string(folder.path().join("r/history.svg")).unwrap();
+    let picture = Document::parse(&picture).unwrap();
+    assert_eq!(named(&picture, "right foot to the right").len(), 1);
+    let page = fs::read_to_string(folder.path().join("r/report.html")).unwrap();
+    assert!(page.contains("\"right_foot_m\":\""));
+}
+
+/// The commands of the page of feet print the numbers shown.
+#[test]
+fn commands_say_what_the_page_of_feet_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    symlink(scenarios(), folder.path().join("scenarios")).unwrap();
+    assert_eq!(says_what_it_shows("docs/two-feet.md", folder.path()), 2);
+}
+
+#[test]
+fn studies_shake_both_feet() {
+    let folder = tempfile::tempdir().unwrap();
+    let feet = format!("{ARCH}{PULSE}[ground.right]\ndelay_s = 0.1\n");
+    write(folder.path(), "s.toml", &feet);
+    let alike = format!("{ARCH}{PULSE}");
+    write(folder.path(), "alike.toml", &alike);
+    // A factor of two on both feet is a pulse of twice the amplitude under both.
+    let peak_rad = |file: &str| {
+        let arguments = [
+            "threshold",
+            file,
+            "--out",
+            "t",
+            "--from",
+            "2",
+            "--to",
+            "3",
+            "--stride",
+            "0.3",
+        ];
+        printed(folder.path(), &arguments);
+        Table::read(folder.path().join("t/threshold.csv")).numbers("peak_rotation_rad")[0]
+    };
+    let late = peak_rad("s.toml");
+    assert_ne!(late, peak_rad("alike.toml"));
+    let run = [
+        "run",
+        "s.toml",
+        "--out",
+        "r",
+        "--no-spread",
+        "--no-report",
+        "--set",
+        "ground.one_sine.amplitude_g=0.8",
+    ];
+    done(folder.path(), &run);
+    let summary = fs::read_to_string(folder.path().join("r/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let due = summary["largest_peak_rotation_rad"].as_f64().unwrap();
+    assert!((late / due - 1.0).abs() < 1e-9, "{late} {due}");
+    let map =
+        format!("{feet}[map]\n\"ground.right.delay_s\" = [0.0, 0.1]\namplitude_g = [0.4, 1.2]\n");
+    write(folder.path(), "map.toml", &map);
+    done(folder.path(), &["map", "map.toml", "--out", "map"]);
+    let cells = Table::read(folder.path().join("map/map.csv"));
+    assert_eq!(cells.rows.len(), 4);
+    write(folder.path(), "a.csv", &record(0.4, 0.4));
+    let suite = format!(
+        "{ARCH}[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.2\n[ground.right]\ndelay_s = 0.1\n[suite]\nrecords = [\"a.csv\"]\nunit = \"g\"\nscales = [1.0, 3.0]\n"
+    );
+    write(folder.path(), "suite.toml", &suite);
+    done(folder.path(), &["suite", "suite.toml", "--out", "suite"]);
+}
+
+#[test]
+fn feet_that_cannot_be_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "a.csv", &record(0.4, 0.4));
+    let refuses = |text: &str, more: &[&str], words: &str| {
+        write(folder.path(), "s.toml", text);
+        let arguments: Vec<&str> = ["run", "s.toml", "--out", "none"]
+            .into_iter()
+            .chain(more.iter().copied())
+            .collect();
+        refused(folder.path(), &arguments, &[words]);
+    };
+    let foot = |keys: &str| format!("{ARCH}{PULSE}[ground.right]\n{keys}\n");
+    let late = foot("delay_s = 0.1");
+    for hinges in ["free", "four", "four,elastic"] {
+        refuses(
+            &late,
+            &["--hinges", hinges],
+            "s.toml:13:1: table `right` cannot be followed: rigid joints would have to be open",
+        );
+    }
+    refuses(
+        &foot("delay_s = 0.1\napparent_velocity_m_s = 100.0"),
+        &[],
+        "s.toml:15:25: `apparent_velocity_m_s` cannot be combined with `delay_s`",
+    );
+    refuses(
+        &foot(""),
+        &[],
+        "needs exactly one of the keys delay_s, apparent_velocity_m_s, record",
+    );
+    refuses(
+        &foot("apparent_velocity_m_s = 0.1"),
+        &[],
+        "s.toml:14:25: `apparent_velocity_m_s = 0.1` is slower than any wave",
+    );
+    refuses(&foot("delay_s = nan"), &[], "s.toml:14:11:");
+    refuses(
+        &foot("delay_s = 0.1\nvelocity = 3"),
+        &[],
+        "unknown key `velocity` in [ground.right]",
+    );
+    refuses(
+        &foot("[ground.right.record]\nfile = \"none.csv\"\nunit = \"g\""),
+        &[],
+        "none.csv",
+    );
+    let alone = format!("{ARCH}[ground.right]\ndelay_s = 0.1\n");
+    refuses(&alone, &[], "needs exactly one of the tables");
+    let column =
+        "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n";
+    refuses(
+        &format!("{column}{PULSE}[ground.right]\ndelay_s = 0.1\n"),
+        &[],
+        "needs two feet",
+    );
+    let record = foot("[ground.right.record]\nfile = \"a.csv\"\nunit = \"g\"");
+    refuses(
+        &format!("{record}[map]\namplitude_g = [0.1, 0.2]\nduration_s = [0.1, 0.2]\n"),
+        &[],
+        "table `map` changes the motion of the ground",
+    );
+    write(folder.path(), "late.toml", &late);
+    refused(
+        folder.path(),
+        &["verify", "late.toml"],
+        &["leave [ground.right] out"],
+    );
+    // Limit analysis asks for no ground.
+    let alike = printed(folder.path(), &["limit", "late.toml"]);
+    write(folder.path(), "late.toml", &format!("{ARCH}{PULSE}"));
+    assert_eq!(alike, printed(folder.path(), &["limit", "late.toml"]));
+}
