@@ -3,9 +3,12 @@
 use crate::browser;
 use crate::program;
 use crate::results::{Table, data_of, summary};
+use std::f64::consts::FRAC_PI_4;
 use std::fs;
 use std::path::Path;
 
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
 /// A run with its page and poses, in a folder.
@@ -87,6 +90,12 @@ fn four_links_in_a_browser() {
 }
 
 #[test]
+fn a_fall_in_a_browser() {
+    let bodies = ["left", "middle", "right"];
+    check("overturning-at-once.toml", &bodies, 4, &[]);
+}
+
+#[test]
 fn a_column_in_a_browser_with_reduced_motion() {
     let settings = ["--force-prefers-reduced-motion"];
     check("column-pulse.toml", &[""], 1, &settings);
@@ -97,6 +106,61 @@ fn free_hinges_in_a_dark_browser() {
     let blocks: Vec<String> = (1..=36).map(|block| block.to_string()).collect();
     let names: Vec<&str> = blocks.iter().map(String::as_str).collect();
     check("free-hinges.toml", &names, 4, &["--force-dark-mode"]);
+}
+
+/// What overturns falls on the page until a block has turned by 45 degrees, whatever moves it; no table has the fall.
+#[test]
+fn a_fall_is_on_the_page_and_in_no_table() {
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 17\n\
+                [ground.rectangular]\namplitude_g = -0.9\nduration_s = 0.45\n";
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 0.9\nduration_s = 0.6\n";
+    let elastic = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\n";
+    let mut fallen = 0;
+    for (structure, model) in [
+        (arch, ""),
+        (column, ""),
+        (arch, "[free_hinges]\n"),
+        (arch, "[free_hinges]\nfriction_coefficient = 0.6\n"),
+        (arch, elastic),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("s.toml"), format!("{structure}{model}")).unwrap();
+        let run = |out: &str, more: &[&str]| {
+            let mut arguments = vec!["run", "s.toml", "--out", out];
+            arguments.extend(more);
+            if !model.is_empty() {
+                arguments.push("--no-spread");
+            }
+            let said = program::printed(folder.path(), &arguments);
+            assert!(said.contains("overturns"), "{said}");
+            program::files(&folder.path().join(out))
+        };
+        let (with, without) = (run("with", &[]), run("without", &["--no-report"]));
+        for (name, bytes) in without.iter().filter(|(name, _)| name.ends_with(".csv")) {
+            assert_eq!(&with[name], bytes, "{name}");
+        }
+        let data = data_of(&String::from_utf8(with["report.html"].clone()).unwrap());
+        let decoded = |name: &str| BASE64_STANDARD.decode(data["frames"][name].as_str().unwrap());
+        let times = decoded("times_s").unwrap();
+        let last_s = times.rchunks(8).next().unwrap();
+        let last_s = f64::from_le_bytes(last_s.try_into().unwrap());
+        let bodies = data["bodies"].as_array().unwrap().len();
+        let rotations = decoded("rotations").unwrap();
+        let last = rotations.rchunks(2).take(bodies);
+        let last = last.map(|pair| f64::from(i16::from_le_bytes(pair.try_into().unwrap())).abs());
+        let unit_rad = data["frames"]["rotation_unit_rad"].as_f64().unwrap();
+        let turned_rad = last.fold(0.0, f64::max) * unit_rad;
+        assert!(
+            turned_rad >= FRAC_PI_4 - unit_rad,
+            "{model}: {turned_rad} {}",
+            data["fall_end"]
+        );
+        fallen += usize::from(last_s > data["end_s"].as_f64().unwrap());
+    }
+    assert!(
+        fallen >= 3,
+        "those that overturn before they have turned so far: {fallen}"
+    );
 }
 
 /// An arch with all that it can have beside it under a scaled record, as wide as a phone, and on paper.

@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use archrock::dynamics::fall::FallEnd;
 use archrock::dynamics::history::{Recording, Samples, Summary};
 use archrock::dynamics::spread::Repetitions;
 use archrock::mechanics::chain::Demand;
@@ -89,6 +90,19 @@ impl Recorder for Filming {
 
     fn wants_thrust_line(&self) -> bool {
         true
+    }
+
+    fn wants_fall(&self) -> bool {
+        true
+    }
+
+    fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.report.push_fall(sample);
+        self.signals.go_on()
+    }
+
+    fn fell(&mut self, end: FallEnd) {
+        self.report.end_fall(end);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Motion in time: ground motion, models of motion and their histories.
 pub mod demand;
 pub mod elastic_joints;
+pub mod fall;
 pub mod free_hinges;
 pub mod ground;
 pub mod history;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::fall::FallEnd;
 use super::ground::GroundMotion;
 use super::history::{
     Event, History, MEMORY_BYTES, MemoryError, Recording, Sample, Shape, Summary,
@@ -385,6 +386,19 @@ pub trait Recorder {
     fn wants_thrust_line(&self) -> bool {
         false
     }
+
+    /// Whether it follows the fall of a structure that has overturned.
+    fn wants_fall(&self) -> bool {
+        false
+    }
+
+    /// A sample of the fall. They come after all samples and events of the history, of which they are no part. Breaking ends the fall.
+    fn fall(&mut self, _sample: &Sample) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// Why the fall is followed no further.
+    fn fell(&mut self, _end: FallEnd) {}
 }
 
 /// A function records samples.

@@ -9,7 +9,7 @@ for (const [index, told] of data.entries()) {
   verify(text("outcome") === told.verdict, `${where}: ${text("outcome")}`);
   const words = frames[index].contentDocument.querySelector("ul").textContent;
   verify(words.includes(told.happens), `${where}: ${words}`);
-  const end = page.times[page.times.length - 1];
+  const end = page.data.end_s;
   verify(end === told.end_s, `${where} ends at ${end}`);
   // At the largest rotation of the table: how far, which block, to which side. Frames may be thinned.
   const unit = page.data.frames.rotation_unit_rad;

@@ -34,7 +34,16 @@ for (const { time_s, state, bodies } of data.rows) {
   verify(find("now").textContent.startsWith(`${time_s.toFixed(3)} s: ${shown.state}`), find("now").textContent);
 }
 verify(data.rows.length > 10, "rows");
-verify(near(report.times[report.times.length - 1], data.end_s, 0), "the last frame is the end");
+verify(report.data.end_s === data.end_s && report.times.includes(data.end_s), "a frame is the end of the history");
+const last = report.times[report.times.length - 1];
+if (data.overturned_s) {
+  // The fall goes on until a block has turned by 45 degrees.
+  report.seek(last);
+  const turned = Math.max(...report.shown().poses.map(({ rotation }) => Math.abs(rotation)));
+  verify(last > data.end_s && turned >= Math.PI / 4 - units.rotation_unit_rad, `falls to ${turned}`);
+  verify(find("now").textContent.includes("overturned and falls"), find("now").textContent);
+  verify(!find("fall").hidden && find("fall-end").textContent.includes("45 degrees"), find("fall-end").textContent);
+} else verify(last === data.end_s && find("fall").hidden, "no fall");
 
 // The picture depends on the time only, and shows the open hinges.
 const picture = () => find("stage").toDataURL();
@@ -53,7 +62,7 @@ slider.dispatchEvent(new Event("input"));
 verify(near(report.shown().time, data.end_s / 2, 1e-3), "the slider moves the time");
 const press = (key, more) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, ...more }));
 press("End");
-verify(report.shown().time === data.end_s, "End");
+verify(report.shown().time === last, "End");
 press("Home");
 verify(report.shown().time === 0, "Home");
 press("ArrowRight");

@@ -412,8 +412,8 @@ impl<'a, const L: usize> Group<'a, L> {
             .ending(lane.overturned_s(), || lane.rests_since());
         if let Some((outcome, time_s)) = ending {
             let slips = self.start.structure.slips();
-            let ended = self.lanes[index].take()?.into_course(slips);
-            return Some(Ok(ended.end(outcome, time_s)));
+            let mut ended = self.lanes[index].take()?;
+            return Some(Ok(ended.completed(slips).end(outcome, time_s)));
         }
         while lane.marks.is_due(lane.course.time) {
             lane.marks.pass();
@@ -482,15 +482,15 @@ impl<'a> Lane<'a> {
             .is_some_and(|barrier_j| energy_j < SAFE * barrier_j && gone_j < GONE * barrier_j)
     }
 
-    fn into_course(self, slips: bool) -> Course<'a> {
-        let mut course = self.course;
-        course.of_row.sliding = slips.then_some(Sliding {
+    fn completed(&mut self, slips: bool) -> &mut Course<'a> {
+        let of_row = &mut self.course.of_row;
+        of_row.sliding = slips.then(|| Sliding {
             friction_j: self.elastic.friction_j,
-            ..self.sliding
+            ..self.sliding.clone()
         });
-        course.of_row.elastic = Some(self.elastic);
-        course.of_row.ties = self.ties;
-        course
+        of_row.elastic = Some(self.elastic);
+        of_row.ties.clone_from(&self.ties);
+        &mut self.course
     }
 }
 
@@ -567,10 +567,9 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         &mut self.lane_mut().course
     }
 
-    fn into_course(mut self) -> Course<'a> {
+    fn completed(&mut self) -> &mut Course<'a> {
         let slips = self.group.start.structure.slips();
-        let lane = self.group.lanes[0].take().expect("it was begun");
-        lane.into_course(slips)
+        self.lane_mut().completed(slips)
     }
 
     /// Some steps, up to the next observation of the motion.

@@ -408,10 +408,10 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         &mut self.course
     }
 
-    fn into_course(mut self) -> Course<'a> {
+    fn completed(&mut self) -> &mut Course<'a> {
         self.sliding.offsets_m.copy_from_slice(&self.stuck);
-        self.course.of_row.sliding = Some(self.sliding);
-        self.course
+        self.course.of_row.sliding = Some(self.sliding.clone());
+        &mut self.course
     }
 
     fn step(&mut self, until: f64) -> Result<(), FreeHingeError> {

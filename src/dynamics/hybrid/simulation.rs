@@ -7,12 +7,13 @@ use nalgebra::Vector2;
 use super::engine::{
     GuardValue, HybridSystem, Observer, Settings, Transition, falling_root, simulate,
 };
-use super::integrator::Step;
+use super::integrator::{Step, Task, integrate};
 use super::rocking::{Guard, Mode, Rocking, RockingState};
 use crate::argument::ArgumentError;
+use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{
-    Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
+    Cost, Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
 };
 use crate::dynamics::model::{
     FourLinkModel, MechanismModel, Model, Recorder, Request, SimulationError,
@@ -30,6 +31,8 @@ use crate::mechanics::virtual_work::MovingBody;
 
 /// Most transitions of a history: more would mean chatter, which the model should not produce.
 const MAX_TRANSITIONS: usize = 1_000_000;
+/// Error of a step of a fall, which is only drawn, relative to the state.
+const FALL_TOLERANCE: f64 = 1e-6;
 
 impl<C: MechanismChain> Model for C {
     fn bodies(&self) -> Vec<String> {
@@ -81,6 +84,9 @@ impl<C: MechanismChain> Model for C {
         }
         tally.note_peak(finish.mode, &finish.state);
         tally.check_energy(&rocking, finish.mode, &finish.state);
+        if let Some(sampler) = sampler.as_mut().filter(|_| !finish.stopped) {
+            sampler.follow_fall(&rocking, finish.mode, finish.time_s, &finish.state);
+        }
         let (outcome, outcome_time_s) = match finish.mode {
             Mode::Overturned { sway, .. } => (
                 Outcome::Overturned(sway),
@@ -669,6 +675,83 @@ impl<'r> Sampler<'r> {
             self.emit(&held)?;
         }
         self.emit(&last)
+    }
+
+    /// Follows a mechanism that has overturned, if its recorder follows falls: it goes on by the same hinges, also beyond the limit
+    /// position, where the first of them begins to close.
+    fn follow_fall<C: MechanismChain>(
+        &mut self,
+        rocking: &Rocking<'_, C>,
+        overturned: Mode<'_, C::Mechanism>,
+        from_s: f64,
+        state: &RockingState,
+    ) {
+        let Mode::Overturned {
+            sway,
+            impacts,
+            link,
+        } = overturned
+        else {
+            return;
+        };
+        if !self.recorder.wants_fall() {
+            return;
+        }
+        let falling = Mode::Rocking {
+            sway,
+            impacts,
+            link,
+        };
+        let every_s = self.output_step_s.min(fall::SAMPLED_S);
+        self.output_step_s = every_s;
+        self.next = (from_s / every_s) as u64 + 1;
+        let until_s = from_s + fall::LONGEST_S;
+        let (mut time_s, mut state) = (from_s, *state);
+        let mut ended = ControlFlow::Continue(());
+        let mut end = FallEnd::Slow;
+        for (piece, motion) in rocking.ground().pieces().iter().enumerate() {
+            if motion.end_s <= time_s || time_s >= until_s || ended.is_break() {
+                continue;
+            }
+            let slope =
+                |time_s: f64, state: &RockingState| rocking.slope(falling, piece, time_s, state);
+            let (first_step_s, longest_step_s) =
+                rocking.step_sizes_s(falling, piece, time_s, &state, FALL_TOLERANCE);
+            let task = Task {
+                start_s: time_s,
+                end_s: motion.end_s.min(until_s),
+                start: state,
+                start_slope: slope(time_s, &state),
+                scale: rocking.scale(falling, &state),
+                relative_tolerance: FALL_TOLERANCE,
+                first_step_s,
+                longest_step_s,
+            };
+            let watch = |step: &Step<3>| {
+                while self.next_s() <= step.end_s {
+                    let time_s = self.next_s();
+                    let state = rocking.between(step, time_s);
+                    let sample = self.sample(rocking, overturned, piece, time_s, &state);
+                    self.next += 1;
+                    ended = self.recorder.fall(&sample);
+                    if let Some(at) = fall::end_at(&sample) {
+                        end = at;
+                        ended = ControlFlow::Break(());
+                    }
+                    self.spare = Some(sample);
+                    ended?;
+                }
+                ControlFlow::Continue(())
+            };
+            match integrate(&task, slope, watch, &mut Cost::default()) {
+                Ok(last) => (time_s, state) = (task.end_s, last),
+                Err(_) => {
+                    end = FallEnd::Model("its links reach no farther".to_owned());
+                    break;
+                }
+            }
+        }
+        self.recorder.fell(end);
     }
 }
 

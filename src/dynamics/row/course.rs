@@ -1,10 +1,12 @@
 //! The course of a motion, whichever stepper moves the row: its clock, reports, peaks, half cycles, energy and outcome.
 
+use std::fmt::Display;
 use std::mem;
 use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
+use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::dynamics::history::{
     Cost, Elapsed, Event, EventKind, HalfCycle, Impact, OpenHinge, Outcome, RowSummary, Sample,
@@ -59,6 +61,21 @@ pub(in crate::dynamics) struct Marks {
 impl Marks {
     pub(in crate::dynamics) const fn new(clock: Clock) -> Self {
         Self { clock, passed: 0.0 }
+    }
+
+    /// The marks of a fall from this time on.
+    fn of_fall(clock: Clock, from_s: f64) -> Self {
+        let given_s = clock.output_step_s.unwrap_or(f64::INFINITY);
+        let step_s = given_s.min(fall::SAMPLED_S);
+        let clock = Clock {
+            end_s: from_s + fall::LONGEST_S,
+            output_step_s: Some(step_s),
+            ..clock
+        };
+        Self {
+            clock,
+            passed: (from_s / step_s).floor() + 1.0,
+        }
     }
 
     fn mark_s(&self) -> f64 {
@@ -124,6 +141,8 @@ pub(in crate::dynamics) struct Course<'a> {
     recorder: Option<&'a mut dyn Recorder>,
     /// Whether nobody follows it any further.
     stopped: bool,
+    /// Whether its history is complete, and its fall is followed.
+    falls: bool,
     /// The sample, reused each time.
     sample: Sample,
     /// The motion of the ground from the last sample on.
@@ -170,8 +189,8 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
     fn overturned_s(&self) -> Option<f64> {
         self.course().fallen_s(self.course().potential)
     }
-    /// The course of the motion, at the end.
-    fn into_course(self) -> Course<'a>;
+    /// The course of the motion, with all results of the stepper in its summaries.
+    fn completed(&mut self) -> &mut Course<'a>;
 
     /// The side to which the centre of gravity sways; if that is at its undeformed place, the side to which it moves.
     fn heading(&self) -> Sway {
@@ -321,7 +340,10 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
 }
 
 /// Steps a row until it rests, has overturned, or the time is over.
-pub(in crate::dynamics) fn run<'a, S: Stepper<'a>>(mut stepper: S) -> Result<Summary, S::Error> {
+pub(in crate::dynamics) fn run<'a, S>(mut stepper: S) -> Result<Summary, S::Error>
+where
+    S: Stepper<'a, Error: Display>,
+{
     let clock = stepper.course().task.clock;
     let mut marks = Marks::new(clock);
     let mut sampled_s = None;
@@ -349,9 +371,47 @@ pub(in crate::dynamics) fn run<'a, S: Stepper<'a>>(mut stepper: S) -> Result<Sum
     if samples_are_made && sampled_s != Some(course.time) && !course.stopped {
         stepper.sample()?;
     }
-    let mut course = stepper.into_course();
+    let course = stepper.completed();
     course.of_row.longest_step = Elapsed(longest_step);
-    Ok(course.end(outcome, outcome_time_s))
+    let summary = course.end(outcome, outcome_time_s);
+    if let Outcome::Overturned(_) = outcome {
+        follow_fall(&mut stepper);
+    }
+    Ok(summary)
+}
+
+/// Steps a row on that has overturned, if its recorder follows falls.
+fn follow_fall<'a, S: Stepper<'a, Error: Display>>(stepper: &mut S) {
+    let course = stepper.course_mut();
+    let wanted = |recorder: &&mut dyn Recorder| recorder.wants_fall();
+    if !course.recorder.as_ref().is_some_and(wanted) {
+        return;
+    }
+    course.falls = true;
+    let mut marks = Marks::of_fall(course.task.clock, course.time);
+    let end = fall(stepper, &mut marks).unwrap_or_else(|error| FallEnd::Model(error.to_string()));
+    if let Some(recorder) = &mut stepper.course_mut().recorder {
+        recorder.fell(end);
+    }
+}
+
+/// Steps a row that falls, and says why its fall is followed no further.
+fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEnd, S::Error> {
+    for _ in 0..fall::MOST_STEPS {
+        let course = stepper.course();
+        if let Some(end) = fall::end_at(&course.sample) {
+            return Ok(end);
+        }
+        if course.stopped || course.time >= marks.clock.end_s {
+            break;
+        }
+        stepper.step(marks.next_s())?;
+        if marks.is_due(stepper.course().time) {
+            marks.pass();
+            stepper.sample()?;
+        }
+    }
+    Ok(FallEnd::Slow)
 }
 
 /// When something was highest before it came down for good.
@@ -384,7 +444,7 @@ impl Summit {
     }
 }
 
-/// The side of a quantity that is positive to the right.
+/// Right for a positive value, left for any other.
 fn towards(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
 }
@@ -452,6 +512,7 @@ impl<'a> Course<'a> {
             highest_s: 0.0,
             recorder,
             stopped: false,
+            falls: false,
             sample: Sample::at_rest(0.0),
             pieces: task.ground.pieces(),
             phase: 0,
@@ -667,6 +728,12 @@ impl<'a> Course<'a> {
         sample.energy_j = kinetic + self.potential;
         let ratio = |barrier_j| sample.energy_j / barrier_j;
         sample.energy_ratio = self.task.barrier_j.map(ratio);
+        if self.falls {
+            if let Some(recorder) = &mut self.recorder {
+                self.stopped = recorder.fall(sample).is_break();
+            }
+            return;
+        }
         let moves = sample.state != State::Rest;
         self.thrust.note(sample.time_s, moves, &sample.demand);
         if let Some(recorder) = &mut self.recorder {
@@ -676,6 +743,9 @@ impl<'a> Course<'a> {
 
     /// Passes on an event that begins a phase.
     fn tell(&mut self, event: &Event) {
+        if self.falls {
+            return;
+        }
         self.phase += 1;
         if let Some(recorder) = &mut self.recorder {
             self.stopped |= recorder.event(event).is_break();
@@ -683,11 +753,11 @@ impl<'a> Course<'a> {
     }
 
     /// Makes the summary, and reports the end if the row rests or has overturned.
-    pub(in crate::dynamics) fn end(mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
+    pub(in crate::dynamics) fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.end_cycle(None);
         let Task { barrier_j, .. } = self.task;
         let energy_error = self.energy_error(barrier_j.unwrap_or(0.0));
-        let (mut summary, mut of_row) = (self.summary, self.of_row);
+        let (mut summary, mut of_row) = (self.summary.clone(), self.of_row.clone());
         of_row.energy_error = energy_error;
         let sliding = of_row.sliding.as_ref();
         let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
@@ -705,15 +775,15 @@ impl<'a> Course<'a> {
             Outcome::Overturned(sway) => Some((EventKind::Overturned, State::Overturned(sway))),
             Outcome::NeverMoved | Outcome::StillRocking => None,
         };
-        if let (Some((kind, state)), Some(recorder)) = (ending, self.recorder) {
+        if let (Some((kind, state)), Some(recorder)) = (ending, &mut self.recorder) {
             // The history ends here anyway.
             let _ = recorder.event(&Event {
                 time_s: self.time,
                 kind,
                 state,
                 mechanism: None,
-                rotations_rad: self.sample.rotations_rad,
-                rates_rad_s: self.sample.rates_rad_s,
+                rotations_rad: self.sample.rotations_rad.clone(),
+                rates_rad_s: self.sample.rates_rad_s.clone(),
                 energy_j: self.sample.energy_j,
                 hinges: self.sample.hinges.iter().map(|open| open.hinge).collect(),
                 impact: None,

@@ -39,6 +39,7 @@ pub use self::summary::summary;
 use self::verdict::Evidence;
 pub use self::words::heading;
 use self::words::{Notable, words};
+use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, Sample, Summary};
 use crate::dynamics::model::{Model, Recorder, SimulationError};
 use crate::dynamics::spread::Repetitions;
@@ -415,6 +416,15 @@ impl Shown {
         self.curves.push(sample);
     }
 
+    fn fall(&mut self, sample: &Sample) {
+        if let Some(report) = &mut self.report {
+            report.push_fall(sample);
+        }
+        if let Some(film) = &mut self.film {
+            film.push(sample);
+        }
+    }
+
     fn event(&mut self, event: &Event) {
         self.notable.note(event);
         self.picture.event(event);
@@ -609,5 +619,20 @@ impl Recorder for Recording<'_, '_> {
             ..
         } = &self.shown;
         report.is_some() || snapshots.is_some() || film.is_some()
+    }
+
+    fn wants_fall(&self) -> bool {
+        self.shown.report.is_some() || self.shown.film.is_some()
+    }
+
+    fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.shown.fall(sample);
+        ControlFlow::Continue(())
+    }
+
+    fn fell(&mut self, end: FallEnd) {
+        if let Some(report) = &mut self.shown.report {
+            report.end_fall(end);
+        }
     }
 }

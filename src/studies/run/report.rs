@@ -17,6 +17,7 @@ use super::beside::Beside;
 use super::film::{Film, Frame};
 use super::picture::LARGEST_EXCESS;
 use super::points::Points;
+use crate::dynamics::fall::FallEnd;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State, Summary};
 use crate::dynamics::model::Model;
@@ -37,6 +38,8 @@ const FRAME_BYTES: usize = 280_000;
 const MOST_FRAMES: usize = 1001;
 /// Smallest limit on the number of frames, whatever the number of blocks.
 const FEWEST_FRAMES: usize = 101;
+/// A fall has at most one frame for so many of its history.
+const FALL_SHARE: usize = 6;
 /// Number of columns to which a curve is thinned.
 const CURVE_COLUMNS: usize = 700;
 /// Coordinates are rounded to this fraction of the size of the structure.
@@ -51,6 +54,9 @@ pub struct Report {
     bodies: Vec<String>,
     gravity_m_s2: f64,
     film: Film,
+    /// The fall after a structure has overturned, and where it ends.
+    fall: Film,
+    fall_end: Option<FallEnd>,
     energy: Envelope,
     in_barriers: bool,
     excess_ratio: Envelope,
@@ -73,6 +79,8 @@ impl Report {
             bodies,
             gravity_m_s2: scenario.gravity_m_s2(),
             film: Film::new(most),
+            fall: Film::new(most / FALL_SHARE),
+            fall_end: None,
             energy: Envelope::of_columns(CURVE_COLUMNS),
             in_barriers: false,
             excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
@@ -111,6 +119,16 @@ impl Report {
             .push(time_s, excess_ratio.min(LARGEST_EXCESS));
     }
 
+    /// Takes a sample of the fall after the structure has overturned.
+    pub fn push_fall(&mut self, sample: &Sample) {
+        self.fall.push(sample);
+    }
+
+    /// Takes the end of that fall.
+    pub fn end_fall(&mut self, end: FallEnd) {
+        self.fall_end = Some(end);
+    }
+
     /// The page for a scenario and the words of `run`: first a line with the outcome, then the other lines. A line that continues
     /// the one before begins with four spaces.
     #[must_use]
@@ -135,7 +153,9 @@ impl Report {
         let items = others
             .iter()
             .map(|line| format!("<li>{}</li>\n", escaped(line)));
-        let frames = self.film.frames();
+        let mut frames = self.film.frames();
+        let ends_at = frames.len();
+        frames.extend(self.fall.frames());
         let what = format!(
             "{}; {}",
             described(scenario.structure()),
@@ -166,13 +186,22 @@ impl Report {
                     "PLOT_LICENCE",
                     include_str!("../../../vendor/uplot/LICENSE"),
                 ),
-                ("DATA", &script_safe(&self.data(ground, &frames, history))),
+                (
+                    "DATA",
+                    &script_safe(&self.data(ground, &frames, ends_at, history)),
+                ),
             ],
         )
     }
 
-    /// All data that the page draws.
-    fn data(&self, ground: &GroundMotion, frames: &[&Frame], history: &Summary) -> Value {
+    /// All data that the page draws; the fall begins with this frame.
+    fn data(
+        &self,
+        ground: &GroundMotion,
+        frames: &[&Frame],
+        fall_from: usize,
+        history: &Summary,
+    ) -> Value {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
         let (hinges, layout_of) = layouts(&self.scene, frames);
@@ -199,7 +228,12 @@ impl Report {
         });
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
         let across = across.map(|across| json!([across.x, across.y]));
-        let supports = self.scene.supports_m();
+        // As built, and where they have moved.
+        let supports = [0.0, 1.0].map(|exaggeration| {
+            let faces = self.scene.supports_m(exaggeration).into_iter();
+            let faces = faces.map(|[a, b]| [a.x, a.y, b.x, b.y]);
+            faces.collect::<Vec<_>>()
+        });
         let [frame_low_m, frame_high_m] = self.scene.frame_m();
         let dimensions = self.scene.dimensions().iter().map(|dimension| {
             let [from, to] = dimension.ends_m;
@@ -210,7 +244,7 @@ impl Report {
             };
             json!({ "ends_m": [from.x, from.y, to.x, to.y], "side": side, "text": dimension.text })
         });
-        let opens_s = strongest_s(frames, history);
+        let opens_s = strongest_s(&frames[..fall_from], history);
         let ties = self.scene.ties(&[]).into_iter().map(|ends| {
             let end = |mark: Mark| json!([body_number(mark.body), mark.at_m.x, mark.at_m.y]);
             json!(ends.map(end))
@@ -228,7 +262,7 @@ impl Report {
         let excess = self
             .leaves
             .then(|| curve(&self.excess_ratio.points().collect::<Vec<_>>()));
-        let end_s = frames.last().map_or(0.0, |frame| frame.time_s);
+        let end_s = frames[..fall_from].last().map_or(0.0, |frame| frame.time_s);
         json!({
             "bodies": self.bodies,
             "largest_body": history.largest_body(),
@@ -237,7 +271,9 @@ impl Report {
             "frame_m": [[frame_low_m.x, frame_low_m.y], [frame_high_m.x, frame_high_m.y]],
             "dimensions": dimensions.collect::<Vec<_>>(),
             "opens_s": opens_s,
-            "supports": supports.iter().map(|[a, b]| json!([a.x, a.y, b.x, b.y])).collect::<Vec<_>>(),
+            "end_s": end_s,
+            "fall_end": self.fall_end.as_ref().map(FallEnd::to_string),
+            "supports": supports,
             "ties": ties.collect::<Vec<_>>(),
             "ties_broken_s": broken_s.collect::<Vec<_>>(),
             "sections": sections.collect::<Vec<_>>(),

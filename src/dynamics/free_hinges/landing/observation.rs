@@ -139,10 +139,9 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         &mut self.course
     }
 
-    fn into_course(self) -> Course<'a> {
-        let mut course = self.course;
-        course.of_row.ties = self.ties.summaries();
-        course
+    fn completed(&mut self) -> &mut Course<'a> {
+        self.course.of_row.ties = self.ties.summaries();
+        &mut self.course
     }
 
     /// It ends at its landing, if there is one.

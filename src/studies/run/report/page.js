@@ -29,6 +29,9 @@
   const states = new Uint8Array(buffer(frames.states));
   const count = times.length;
   const end = times[count - 1];
+  // The history ends before the fall that the page goes on to show.
+  const historyEnd = data.end_s;
+  const historyCount = times.filter((t) => t <= historyEnd).length;
   const STATES = ["at rest", "sways right", "sways left", "overturned"];
   const NO_THRUST = -32768;
 
@@ -104,7 +107,7 @@
   const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
   const groundX = Array.from({ length: count }, (_, i) => groundM[2 * i]);
   // A pulse may leave the ground with a velocity: where it goes far, the eye goes with it.
-  find("ride").checked = farthest(groundX) > 0.3 * Math.max(width, height);
+  find("ride").checked = farthest(groundX) > 0.1 * Math.max(width, height);
 
   function draw() {
     const ratio = window.devicePixelRatio || 1;
@@ -178,7 +181,9 @@
     if (sizes) drawSizes(pen, onScreen, floor);
     pen.strokeStyle = ink;
     const foot = [0, 1].map((axis) => (rightFootM ? exaggeration * blend(rightFootM, 2, axis, at) : 0));
-    data.supports.forEach(([ax, ay, bx, by], right) => {
+    const [built, movedTo] = data.supports;
+    const faces = built.map((face, i) => face.map((at, k) => at + (movedTo[i][k] - at) * exaggeration));
+    faces.forEach(([ax, ay, bx, by], right) => {
       pen.lineWidth = 4;
       const [x, y] = foot.map((gone) => right * gone);
       path([[x + ax - 0.3 * (bx - ax), y + ay - 0.3 * (by - ay)], [x + bx + 0.3 * (bx - ax), y + by + 0.3 * (by - ay)]]);
@@ -444,8 +449,9 @@
     const open = data.joints.length
       ? data.joints.filter((_, joint) => joints[at.frame * data.joints.length + joint]).length
       : layouts[layoutOf[at.frame]].hinges.length;
+    const falls = time > historyEnd ? " and falls" : "";
     const turned = `largest rotation ${fixed(poses[most].rotation, 5)} rad${of}`;
-    return `${time.toFixed(3)} s: ${STATES[states[at.frame]]}, ${turned}, ${open} open ${open === 1 ? "hinge" : "hinges"}`;
+    return `${time.toFixed(3)} s: ${STATES[states[at.frame]]}${falls}, ${turned}, ${open} open ${open === 1 ? "hinge" : "hinges"}`;
   }
 
   // ---- the plots ----
@@ -556,11 +562,11 @@
     if (plots.length === 0) return;
     const { min, max } = plots[0].scales.x;
     const half = (0.5 * (max - min)) / factor;
-    const from = Math.max(0, Math.min(time - half, end - 2 * half));
-    plots[0].setScale("x", { min: from, max: Math.min(end, from + 2 * half) });
+    const from = Math.max(0, Math.min(time - half, historyEnd - 2 * half));
+    plots[0].setScale("x", { min: from, max: Math.min(historyEnd, from + 2 * half) });
   }
 
-  const showAll = () => plots[0]?.setScale("x", { min: 0, max: end });
+  const showAll = () => plots[0]?.setScale("x", { min: 0, max: historyEnd });
 
   function curve(encoded) {
     const values = new Float32Array(buffer(encoded));
@@ -571,7 +577,7 @@
   const [groundT, groundY] = curve(data.curves.ground_g);
   addPlot("Ground acceleration (g)", 150, groundT, [{ name: "ground", color: "--ink", values: groundY }]);
   const turns = data.bodies.map((_, body) =>
-    Array.from(times, (_t, i) => rotations[i * bodies + body] * frames.rotation_unit_rad),
+    Array.from({ length: historyCount }, (_, i) => rotations[i * bodies + body] * frames.rotation_unit_rad),
   );
   const most = data.largest_body;
   const few = bodies <= 3;
@@ -590,12 +596,12 @@
   const faint = { name: `${few ? look(most).name : `block ${data.bodies[most]}`} in samples`, color: "--sample", width: 0.8 };
   const beside = samples.map((sample) => {
     const [ts, ys] = curve(sample.turning);
-    return { ...faint, beyond: sample.falls, values: Array.from(times, (t) => (lasts(sample, t) ? valueAt(ts, ys, t) : null)) };
+    return { ...faint, beyond: sample.falls, values: Array.from(times.subarray(0, historyCount), (t) => (lasts(sample, t) ? valueAt(ts, ys, t) : null)) };
   });
   addPlot(
     "Rotation (rad, anticlockwise)",
     230,
-    Array.from(times),
+    Array.from(times.subarray(0, historyCount)),
     beside.concat(turning),
     beside.length > 0 ? named.concat(faint) : named,
   );
@@ -676,6 +682,10 @@
   find("sizes").addEventListener("change", draw);
   find("samples").addEventListener("change", draw);
   find("samples-choice").hidden = find("beside").hidden = samples.length === 0;
+  // What had turned far enough as it overturned has no fall to follow.
+  find("fall").hidden = !data.fall_end || (end === historyEnd && data.fall_end.includes("45"));
+  find("fall-from").textContent = Number(historyEnd.toFixed(3));
+  find("fall-end").textContent = data.fall_end ?? "";
   find("sizes-choice").hidden = data.dimensions.length === 0;
   find("thrust-choice").hidden = !frames.thrust_unit;
   find("stress").hidden = !frames.largest_stress_pa;
