@@ -109,10 +109,13 @@ mod converted {
 
 #[cfg(feature = "print")]
 mod converted {
+    use krilla::Document;
+    use krilla::geom::Size;
+    use krilla::page::PageSettings;
+    use krilla_svg::{SurfaceExt as _, SvgSettings};
     use resvg::tiny_skia::{Pixmap, Transform};
     use resvg::usvg::fontdb::{Family, Query};
     use resvg::usvg::{self, Options, Tree};
-    use svg2pdf::{ConversionOptions, PageOptions};
 
     use super::PrintError;
     use crate::output::svg::FONTS;
@@ -120,13 +123,27 @@ mod converted {
     /// Dots to an inch of print, and to one of the screen.
     const PRINT_DPI: f32 = 600.0;
     const SCREEN_DPI: f32 = 192.0;
-    /// Pixels of CSS to an inch.
+    /// Pixels of CSS and points of print to an inch.
     const CSS_DPI: f32 = 96.0;
+    const POINTS_PER_INCH: f32 = 72.0;
 
     pub fn pdf(picture: &str) -> Result<Vec<u8>, PrintError> {
-        let page = PageOptions { dpi: CSS_DPI };
-        svg2pdf::to_pdf(&tree(picture)?, ConversionOptions::default(), page)
-            .map_err(|error| PrintError::Failed(error.to_string()))
+        let failed = |what: &str| PrintError::Failed(what.to_owned());
+        let tree = tree(picture)?;
+        let size = tree.size();
+        let points = |px: f32| px * POINTS_PER_INCH / CSS_DPI;
+        let size = Size::from_wh(points(size.width()), points(size.height()));
+        let size = size.ok_or_else(|| failed("it has no size"))?;
+        let mut document = Document::new();
+        let mut page = document.start_page_with(PageSettings::new(size));
+        let mut surface = page.surface();
+        let drawn = surface.draw_svg(&tree, size, SvgSettings::default());
+        surface.finish();
+        page.finish();
+        drawn.ok_or_else(|| failed("it cannot be drawn"))?;
+        document
+            .finish()
+            .map_err(|error| PrintError::Failed(format!("{error:?}")))
     }
 
     pub fn png(picture: &str) -> Result<Vec<u8>, PrintError> {
@@ -138,12 +155,17 @@ mod converted {
         } else {
             SCREEN_DPI
         };
-        let scale = dpi / CSS_DPI;
-        let size = tree.size().to_int_size().scale_by(scale);
-        let size = size.ok_or_else(|| failed("it has no size"))?;
-        let pixels = Pixmap::new(size.width(), size.height());
+        let size = tree.size();
+        let scaled = size.scale_by(dpi / CSS_DPI);
+        let whole = scaled
+            .ok_or_else(|| failed("it has no size"))?
+            .to_int_size();
+        let pixels = Pixmap::new(whole.width(), whole.height());
         let mut pixels = pixels.ok_or_else(|| failed("it is too large"))?;
-        let scaled = Transform::from_scale(scale, scale);
+        // Stretched by the part of a pixel that rounding adds, so that the last row and column are as opaque as the others.
+        let whole = whole.to_size();
+        let scaled =
+            Transform::from_scale(whole.width() / size.width(), whole.height() / size.height());
         resvg::render(&tree, scaled, &mut pixels.as_mut());
         pixels
             .encode_png()
@@ -215,7 +237,13 @@ mod tests {
         let png = PictureFormat::Png.of_picture(&picture).unwrap();
         assert!(png.starts_with(b"\x89PNG"));
         let width = u32::from_be_bytes(png[16..20].try_into().unwrap());
-        assert!((f64::from(width) - 84.0 / 25.4 * 600.0).abs() <= 7.0);
+        assert!((f64::from(width) - 84.0 / 25.4 * 600.0).abs() <= 1.0);
+        let pixels = resvg::tiny_skia::Pixmap::decode_png(&png).unwrap();
+        let mut pixels = pixels.pixels().iter();
+        assert!(
+            pixels.all(|pixel| pixel.alpha() == 255),
+            "no edge shows through"
+        );
         // Black on white: the text is there.
         let empty = Drawing::new(figure).finish(0.5 * figure.width_px());
         assert!(png.len() > 1000 + PictureFormat::Png.of_picture(&empty).unwrap().len());
