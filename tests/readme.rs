@@ -52,8 +52,24 @@ fn what_it_quotes_is_what_run_says() {
     let readme = fs::read_to_string(repository().join("README.md")).unwrap();
     let scenario = scenarios().join("semicircle-pulse.toml");
     let said = run(&["run", scenario.to_str().unwrap()]);
-    let quoted: String = said.lines().map(|line| format!("    {line}\n")).collect();
-    assert!(readme.contains(&quoted), "{quoted}");
+    let title = said.lines().next().unwrap();
+    let (_, quoted) = readme.split_once(&format!("    {title}\n")).unwrap();
+    let quoted = quoted.lines().map_while(|line| line.strip_prefix("    "));
+    let mut lines = said.lines();
+    for line in quoted.clone().filter(|line| *line != "...") {
+        assert!(lines.any(|own| own == line), "{line}\n{said}");
+    }
+    assert!(quoted.count() > 5);
+}
+
+#[test]
+fn it_is_short() {
+    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
+    let words = readme.split_whitespace();
+    let words = words
+        .filter(|word| word.contains(char::is_alphanumeric))
+        .count();
+    assert!(words <= 700, "{words} words");
 }
 
 #[test]

@@ -182,7 +182,7 @@
     pen.strokeStyle = ink;
     const foot = [0, 1].map((axis) => (rightFootM ? exaggeration * blend(rightFootM, 2, axis, at) : 0));
     const [built, movedTo] = data.supports;
-    const faces = built.map((face, i) => face.map((at, k) => at + (movedTo[i][k] - at) * exaggeration));
+    const faces = built.map((face, i) => face.map((x, k) => x + (movedTo[i][k] - x) * exaggeration));
     faces.forEach(([ax, ay, bx, by], right) => {
       pen.lineWidth = 4;
       const [x, y] = foot.map((gone) => right * gone);
