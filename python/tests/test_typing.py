@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import doctest
 import importlib
 import inspect
@@ -30,12 +31,33 @@ def test_docstrings_say_what_is_true() -> None:
     assert attempted >= 9
 
 
-def test_everything_public_is_documented() -> None:
+def assert_typed(name: str, function: object) -> None:
+    """Every argument and what is returned has a type."""
+    assert callable(function), name
+    signature = inspect.signature(function)
+    assert signature.return_annotation is not inspect.Signature.empty, name
+    for argument in list(signature.parameters.values()):
+        if argument.name not in ("self", "cls"):
+            assert argument.annotation is not inspect.Parameter.empty, f"{name}({argument.name})"
+
+
+def test_everything_public_is_documented_and_typed() -> None:
     for name in archrock.__all__:
         one = getattr(archrock, name)
-        assert inspect.getdoc(one), name
-        if inspect.isclass(one):
-            for attribute, value in vars(one).items():
-                public = not attribute.startswith("_")
-                if public and (callable(value) or isinstance(value, (property, classmethod))):
-                    assert inspect.getdoc(getattr(one, attribute)), f"{name}.{attribute}"
+        text = inspect.getdoc(one)
+        assert text, name
+        if not inspect.isclass(one):
+            assert_typed(name, one)
+            continue
+        if dataclasses.is_dataclass(one):
+            for field in dataclasses.fields(one):
+                assert f"{field.name}:" in text, f"{name}.{field.name}"
+        for attribute, value in vars(one).items():
+            if attribute.startswith("_"):
+                continue
+            if isinstance(value, property):
+                assert inspect.getdoc(value), f"{name}.{attribute}"
+                assert_typed(f"{name}.{attribute}", value.fget)
+            elif callable(value) or isinstance(value, (classmethod, staticmethod)):
+                assert inspect.getdoc(getattr(one, attribute)), f"{name}.{attribute}"
+                assert_typed(f"{name}.{attribute}", getattr(one, attribute))

@@ -33,7 +33,12 @@ class Hinge:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A mechanism of a structure: the side to which it sways, and its hinges from left to right."""
+    """A mechanism of a structure.
+
+    Attributes:
+        sway: the side to which it sways, ``"right"`` or ``"left"``.
+        hinges: its hinges, from left to right.
+    """
 
     sway: str
     hinges: tuple[Hinge, ...]

@@ -30,17 +30,17 @@ class Impact:
     """An impact.
 
     Attributes:
-        time_s: its time.
+        time_s: its time, in s.
         sway_before: sway of the mechanism that closed, ``"right"`` or ``"left"``.
         sway_after: sway of the mechanism that opened.
         restitution: kinetic energy after over that before.
-        energy_before_j: kinetic energy before.
-        energy_after_j: kinetic energy after.
-        rates_before_rad_s: rotation rates of the bodies just before.
-        rates_after_rad_s: rotation rates of the bodies just after.
+        energy_before_j: kinetic energy before, in J.
+        energy_after_j: kinetic energy after, in J.
+        rates_before_rad_s: rotation rates of the bodies just before, in rad/s, anticlockwise.
+        rates_after_rad_s: rotation rates of the bodies just after, in rad/s.
         closed: the hinges that closed, from left to right.
         opened: the hinges that opened, from left to right.
-        impulses_n_s: impulses ``(x, y)`` at the hinges that opened, if they are known.
+        impulses_n_s: impulses ``(x, y)`` at the hinges that opened, in N s, if they are known.
     """
 
     time_s: float
@@ -74,13 +74,13 @@ class Event:
     """An event of a history, and the state just after it.
 
     Attributes:
-        time_s: its time.
+        time_s: its time, in s.
         kind: ``"uplift"``, ``"impact"``, ``"rest"`` or ``"overturned"``.
         state: the state of the structure from here on: ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``.
         mechanism: number of impacts since uplift, which is the index of the mechanism; ``None`` at rest.
-        rotations_rad: rotations of the bodies.
-        rates_rad_s: rotation rates of the bodies just after.
-        energy_j: kinetic and potential energy just after.
+        rotations_rad: rotations of the bodies, in rad, anticlockwise.
+        rates_rad_s: rotation rates of the bodies just after, in rad/s.
+        energy_j: kinetic and potential energy just after, in J.
         hinges: hinges of the mechanism from left to right, none at rest; for a row of blocks the joints that are open
             from then on.
         impact: the impact, if the event is one.
@@ -170,12 +170,12 @@ class History:
 
     @property
     def ground_acceleration_m_s2(self) -> Floats:
-        """Ground accelerations, positive to the right, shape ``(samples,)``."""
+        """Ground accelerations in m/s2, positive to the right, shape ``(samples,)``."""
         return self._column("ground_acceleration_m_s2")
 
     @property
     def vertical_acceleration_m_s2(self) -> Floats:
-        """Vertical ground accelerations, positive upwards, shape ``(samples,)``."""
+        """Vertical ground accelerations in m/s2, positive upwards, shape ``(samples,)``."""
         return self._column("vertical_acceleration_m_s2")
 
     @property
@@ -293,7 +293,7 @@ class History:
 
     @property
     def energy_j(self) -> Floats:
-        """Kinetic and potential energy, shape ``(samples,)``."""
+        """Kinetic and potential energy in J, shape ``(samples,)``."""
         return self._column("energy_j")
 
     @property
@@ -333,7 +333,7 @@ class History:
 
     @property
     def outcome_time_s(self) -> float:
-        """The time of the outcome: the last outward passage of the unstable equilibrium, the last coming to rest, or the end."""
+        """The time of the outcome in s: the last outward passage of the unstable equilibrium, the last coming to rest, or the end."""
         time_s: float = self._once("outcome_time_s", lambda native: native.outcome_time_s())
         return time_s
 
