@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::program::{done, printed};
+use crate::program::{done, printed, scenarios};
 use crate::results::{Table, named, number, points, strokes, texts};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -136,7 +136,7 @@ fn joints_are_drawn_where_there_are_voussoirs() {
     let chain = arch.chain();
     for picture in [
         pictures::limit(Figure::SCREEN, chain, Sway::Right, None),
-        pictures::impact(Figure::SCREEN, &impact(&arch, 1)).unwrap(),
+        pictures::impact(Figure::SCREEN, &impact(&arch, 1), None).unwrap(),
     ] {
         let document = Document::parse(&picture).unwrap();
         assert_eq!(named(&document, "joint").len(), 8);
@@ -205,7 +205,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 fn the_second_impact_has_a_picture_of_its_own() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2)).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2), None).unwrap();
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 2, Sway::Right);
     let title = &texts(&document)[0];
@@ -222,7 +222,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
             .fold(f64::INFINITY, f64::min)
     };
     assert!(left("body 1") < left("body 2") && left("body 2") < left("body 3"));
-    assert!(pictures::impact(Figure::SCREEN, &impact(&arch, 0)).is_none());
+    assert!(pictures::impact(Figure::SCREEN, &impact(&arch, 0), None).is_none());
 
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
@@ -243,7 +243,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
 fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1)).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1), None).unwrap();
     let document = Document::parse(&picture).unwrap();
     let sheet = check_hinges(&document, chain, 1, Sway::Left);
     assert!(
@@ -718,4 +718,60 @@ fn the_map_shows_every_cell_and_the_boundaries() {
         assert!((point.x - (left + width * (row.x - 0.15) / 0.6)).abs() < PIXEL);
     }
     assert_eq!(free.len(), 3);
+}
+
+/// Whatever draws an arch draws what it carries, and its dimensions; small pictures have these in words.
+#[test]
+fn pictures_of_an_arch_have_fill_loads_and_dimensions() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("pointed-arch-on-piers.toml");
+    let scenario = scenario.to_str().unwrap();
+    let draw = |arguments: &[&str], picture: &str| {
+        let mut all = vec![arguments[0], scenario];
+        all.extend(&arguments[1..]);
+        printed(folder.path(), &all);
+        fs::read_to_string(folder.path().join(picture)).unwrap()
+    };
+    let narrow = ["impact", "--plot", "n.svg", "--figure-width", "84mm"];
+    for (arguments, picture, draws_sizes) in [
+        (&["check", "--plot", "c.svg"][..], "c.svg", true),
+        (&["limit", "--plot", "l.svg"][..], "l.svg", true),
+        (&["impact", "--plot", "i.svg"][..], "i.svg", true),
+        (&narrow[..], "n.svg", false),
+        (
+            &["spread", "--angle", "0", "--out", "."],
+            "spread.svg",
+            false,
+        ),
+        (
+            &[
+                "run",
+                "--no-spread",
+                "--no-report",
+                "--snapshots",
+                "0.3",
+                "--out",
+                ".",
+            ],
+            "snapshots.svg",
+            false,
+        ),
+    ] {
+        let picture = draw(arguments, picture);
+        let document = Document::parse(&picture).unwrap();
+        // Span, rise, fill, and the height and width of its equal piers.
+        let dimensions = if draws_sizes { 5 } else { 0 };
+        assert_eq!(
+            named(&document, "dimension").len(),
+            dimensions,
+            "{arguments:?}"
+        );
+        let words = texts(&document).join(" ");
+        assert!(
+            words.contains("span 6 m") && words.contains("1500 kg"),
+            "{words}"
+        );
+        assert!(named(&document, "fill").len() >= 4, "{arguments:?}");
+        assert!(!named(&document, "load").is_empty(), "{arguments:?}");
+    }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::output::Folder;
+use archrock::output::scene::Scene;
 use archrock::studies::impact::{LinkImpact, Question, chain_answer, four_links_answer};
 use archrock::studies::pictures;
 
@@ -88,7 +89,8 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(plot) = &arguments.plot {
         chosen()?;
-        let picture = pictures::impact(arguments.figure.get()?, &asked);
+        let scene = Scene::new(scenario.structure());
+        let picture = pictures::impact(arguments.figure.get()?, &asked, Some(&scene));
         let picture = picture.ok_or_else(|| {
             Failure::Input(format!(
                 "--plot: impact {} stops the arch; there is no mechanism after it to draw",

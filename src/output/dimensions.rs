@@ -14,8 +14,10 @@ pub struct Dimension {
     pub ends_m: [Vector2<f64>; 2],
     /// Where it is drawn.
     pub side: Side,
-    /// Its name and value.
+    /// Its value, with a name where its place does not tell which it is.
     pub text: String,
+    /// Its name and value.
+    pub words: String,
 }
 
 /// Where a dimension is drawn: outside the structure.
@@ -30,18 +32,30 @@ pub enum Side {
 }
 
 impl Dimension {
-    fn new(side: Side, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
+    /// A dimension that has its name beside it.
+    fn named(side: Side, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
+        let own = Self::plain(side, ends_m, name);
+        Self {
+            text: own.words.clone(),
+            ..own
+        }
+    }
+
+    /// A dimension whose place tells which it is.
+    fn plain(side: Side, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
         let [from, to] = ends_m;
         let length_m = match side {
             Side::Below => to.x - from.x,
             Side::Left | Side::Right => to.y - from.y,
         };
-        let value = metres(length_m);
-        let text = match name {
-            "" => format!("{value} m"),
-            name => format!("{name} {value} m"),
-        };
-        Self { ends_m, side, text }
+        let text = format!("{} m", metres(length_m));
+        let words = format!("{name} {text}");
+        Self {
+            ends_m,
+            side,
+            text,
+            words,
+        }
     }
 }
 
@@ -70,8 +84,8 @@ fn of_arch(arch: &Arch) -> Vec<Dimension> {
     let ends = [0.0, ring.embrace_rad()].map(|angle_rad| ring.radial(angle_rad) * radius_m);
     let crown = Vector2::new(ends[0].x, radius_m);
     vec![
-        Dimension::new(Side::Below, ends, "span"),
-        Dimension::new(Side::Left, [ends[0], crown], "rise"),
+        Dimension::named(Side::Below, ends, "span"),
+        Dimension::named(Side::Left, [ends[0], crown], "rise"),
     ]
 }
 
@@ -80,8 +94,8 @@ fn of_column(column: &Column) -> Vec<Dimension> {
     let [left, right] = [-half_m, half_m].map(|x| Vector2::new(x, 0.0));
     let top = Vector2::new(-half_m, column.height_m());
     vec![
-        Dimension::new(Side::Below, [left, right], ""),
-        Dimension::new(Side::Left, [left, top], ""),
+        Dimension::plain(Side::Below, [left, right], "width"),
+        Dimension::plain(Side::Left, [left, top], "height"),
     ]
 }
 
@@ -93,8 +107,8 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
             [low.inf(corner), high.sup(corner)]
         });
         return vec![
-            Dimension::new(Side::Below, [low, Vector2::new(high.x, low.y)], ""),
-            Dimension::new(Side::Left, [low, Vector2::new(low.x, high.y)], ""),
+            Dimension::plain(Side::Below, [low, Vector2::new(high.x, low.y)], "width"),
+            Dimension::plain(Side::Left, [low, Vector2::new(low.x, high.y)], "height"),
         ];
     };
     let ends = [left.middle_m(), right.middle_m()];
@@ -109,8 +123,8 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     };
     let crown = Vector2::new(ends[0].x, ends[0].y + rise_m);
     let mut dimensions = vec![
-        Dimension::new(Side::Below, ends, "span"),
-        Dimension::new(Side::Left, [ends[0], crown], "rise"),
+        Dimension::named(Side::Below, ends, "span"),
+        Dimension::named(Side::Left, [ends[0], crown], "rise"),
     ];
     let piers = [
         (masonry.piers().left, left.intrados_m, Side::Left),
@@ -131,7 +145,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     if let Some(level_m) = level_m {
         let from = right.extrados_m;
         let to = Vector2::new(from.x, level_m);
-        dimensions.push(Dimension::new(Side::Right, [from, to], "fill"));
+        dimensions.push(Dimension::named(Side::Right, [from, to], "fill"));
     }
     dimensions
 }
@@ -144,8 +158,8 @@ fn of_pier(pier: &Pier, inner: Vector2<f64>, side: Side) -> [Dimension; 2] {
         _ => [foot, foot + Vector2::new(pier.width_m, 0.0)],
     };
     [
-        Dimension::new(side, [foot, inner], ""),
-        Dimension::new(Side::Below, base, ""),
+        Dimension::plain(side, [foot, inner], "pier height"),
+        Dimension::plain(Side::Below, base, "pier width"),
     ]
 }
 

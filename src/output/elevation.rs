@@ -18,6 +18,8 @@ const OUTLINE: Stroke = Stroke::new(color::BLACK, 1.1, "");
 pub const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
 const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
 const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
+/// A tie.
+pub const TIE: Stroke = Stroke::new(color::ORANGE, 1.8, "");
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
 
 /// From the structure to the first line of dimensions.
@@ -52,13 +54,7 @@ impl Place {
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let mut drawing = Drawing::new(figure);
     let top = drawing.title(title) + 12.0;
-    let levels = levels(scene.dimensions());
-    let room = |side: Side| {
-        let own = scene.dimensions().iter().zip(&levels);
-        let deepest = own.filter(|(dimension, _)| dimension.side == side);
-        let deepest = deepest.map(|(_, level)| BESIDE_PX + APART_PX * f64::from(*level));
-        deepest.reduce(f64::max).map_or(24.0, |px| px + 20.0)
-    };
+    let room = |side: Side| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();
     let size_m = high_m - low_m;
     let above = if scene.loads(&[]).is_empty() {
@@ -79,9 +75,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         scale,
     };
     let bottom = place.px(low_m).y;
-    for (dimension, level) in scene.dimensions().iter().zip(&levels) {
-        draw_dimension(&mut drawing, &place, [low_m, high_m], dimension, *level);
-    }
+    draw_dimensions(&mut drawing, &place, scene);
     supports(&mut drawing, &place, scene);
     for piece in scene.fill(&[]) {
         let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
@@ -90,6 +84,10 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     for piece in scene.pieces(&[]) {
         let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
         drawing.polygon("block", outline, STONE, OUTLINE);
+    }
+    for ends in scene.ties(&[]) {
+        let ends = ends.map(|mark| place.px(mark.at_m));
+        drawing.curve("tie", ends, TIE);
     }
     loads(
         &mut drawing,
@@ -101,6 +99,24 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     joint_numbers(&mut drawing, &place, scene);
     let end = drawing.caption(bottom + room(Side::Below) + 22.0, text);
     drawing.finish(end + 10.0)
+}
+
+/// The room that the dimensions of a structure take on a side of it, in pixels.
+#[must_use]
+pub fn room_px(scene: &Scene, side: Side) -> f64 {
+    let levels = levels(scene.dimensions());
+    let own = scene.dimensions().iter().zip(&levels);
+    let own = own.filter(|(dimension, _)| dimension.side == side);
+    let lines = own.map(|(_, level)| BESIDE_PX + APART_PX * f64::from(*level) + 20.0);
+    lines.fold(0.0, f64::max)
+}
+
+/// The dimensions of a structure, beside it.
+pub fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scene) {
+    let levels = levels(scene.dimensions());
+    for (dimension, level) in scene.dimensions().iter().zip(levels) {
+        draw_dimension(drawing, place, scene.frame_m(), dimension, level);
+    }
 }
 
 /// The fill and the loads of a structure whose bodies are at these poses, displacements drawn so many times as large.
@@ -150,7 +166,7 @@ fn loads(
             drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
         }
         if text_above.is_some() {
-            let text = format!("{} kg", super::dimensions::metres(load.mass_kg));
+            let text = mass_in_words(load.mass_kg);
             let half = 0.5 * text_px(&text);
             // Beside the last one, or not at all: the words below have it.
             if foot.x - half > farthest {
@@ -162,9 +178,16 @@ fn loads(
     }
 }
 
-/// The arrow of a load that stands there.
-pub fn draw_load(drawing: &mut Drawing, foot: Vector2<f64>) {
-    draw_arrow(drawing, foot - Vector2::new(0.0, 20.0), foot);
+/// The arrow of a load that stands there, with its mass.
+pub fn draw_load(drawing: &mut Drawing, foot: Vector2<f64>, mass_kg: f64) {
+    let tail = foot - Vector2::new(0.0, 20.0);
+    draw_arrow(drawing, tail, foot);
+    let at = tail - Vector2::new(0.0, 4.0);
+    drawing.label(at, Anchor::Middle, 0.0, &mass_in_words(mass_kg));
+}
+
+fn mass_in_words(mass_kg: f64) -> String {
+    format!("{} kg", super::dimensions::metres(mass_kg))
 }
 
 fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {
@@ -175,7 +198,7 @@ fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {
 
 /// What carries the structure: hatched ground under its supports.
 fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
-    let mut faces = scene.supports_m();
+    let mut faces = scene.supports_m(1.0);
     if faces.is_empty() {
         let [low_m, high_m] = scene.bounds_m();
         let middle = Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y);
@@ -260,16 +283,22 @@ fn draw_dimension(
     drawing.curve("dimension", feet, DIMENSION);
     let middle = 0.5 * (feet[0] + feet[1]);
     let beside = 5.0;
-    match dimension.side {
-        Side::Below => {
-            let at = middle - Vector2::new(0.0, beside);
-            drawing.label(at, Anchor::Middle, 0.0, &dimension.text);
+    let (at, anchor, turn_deg) = match dimension.side {
+        // What has no room between the ends stands at the right of them.
+        Side::Below if (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside => {
+            let end = feet[0].sup(&feet[1]);
+            (end + Vector2::new(beside + 3.0, 4.5), Anchor::Start, 0.0)
         }
-        Side::Left | Side::Right => {
-            let at = middle - Vector2::new(beside, 0.0);
-            drawing.label(at, Anchor::Middle, 90.0, &dimension.text);
-        }
-    }
+        Side::Below => (middle - Vector2::new(0.0, beside), Anchor::Middle, 0.0),
+        // Vertical texts are on the outer side, where ticks do not reach them.
+        Side::Left => (middle - Vector2::new(beside, 0.0), Anchor::Middle, 90.0),
+        Side::Right => (
+            middle + Vector2::new(beside + 0.75 * TEXT_PX, 0.0),
+            Anchor::Middle,
+            90.0,
+        ),
+    };
+    drawing.label(at, anchor, turn_deg, &dimension.text);
 }
 
 /// Numbers of the joints inside the intrados, or left of a column: all, or every second, fifth, tenth as there is room.

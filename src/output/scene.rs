@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::dimensions::{Dimension, dimensions};
+use super::dimensions::{Dimension, dimensions, metres};
 use crate::dynamics::history::{OpenHinge, Sample};
 use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::Row;
@@ -300,10 +300,10 @@ impl Scene {
         &self.sections
     }
 
-    /// The faces of the supports of an arch, in metres, from the intrados to the extrados; empty for a column, which stands
-    /// on the ground.
+    /// The faces of the supports of an arch, in metres, from the intrados to the extrados, how far they have moved drawn so many times
+    /// as large; empty for a column, which stands on the ground.
     #[must_use]
-    pub fn supports_m(&self) -> Vec<[Vector2<f64>; 2]> {
+    pub fn supports_m(&self, exaggeration: f64) -> Vec<[Vector2<f64>; 2]> {
         let is_arch = match &self.shape {
             Shape::Ring { .. } => true,
             Shape::Block { .. } => false,
@@ -315,7 +315,10 @@ impl Scene {
         faces
             .filter(|_| is_arch)
             .map(|(section, pose)| {
-                [-0.5, 0.5].map(|part| pose.of(section.middle_m + section.across_m * part))
+                [-0.5, 0.5].map(|part| {
+                    let built_m = section.middle_m + section.across_m * part;
+                    built_m + (pose.of(built_m) - built_m) * exaggeration
+                })
             })
             .collect()
     }
@@ -323,10 +326,17 @@ impl Scene {
     /// Lower left and upper right corner of the undeformed structure, in metres.
     #[must_use]
     pub fn bounds_m(&self) -> [Vector2<f64>; 2] {
-        let pieces = self.pieces(&[]);
         let ends = self.ties.iter().flat_map(|tie| &tie.ends);
+        ends.fold(self.blocks_m(), |[low, high], end| {
+            [low.inf(&end.at_m), high.sup(&end.at_m)]
+        })
+    }
+
+    /// The same of its blocks alone.
+    #[must_use]
+    pub fn blocks_m(&self) -> [Vector2<f64>; 2] {
+        let pieces = self.pieces(&[]);
         let corners = pieces.iter().flat_map(|piece| &piece.outline_m);
-        let corners = corners.chain(ends.map(|end| &end.at_m));
         let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
         corners.fold(empty, |[low, high], corner| {
             [low.inf(corner), high.sup(corner)]
@@ -387,6 +397,16 @@ impl Scene {
     #[must_use]
     pub fn dimensions(&self) -> &[Dimension] {
         &self.dimensions
+    }
+
+    /// Its dimensions and loads in words, for pictures that have no room to draw them; empty where there are none.
+    #[must_use]
+    pub fn sizes_in_words(&self) -> String {
+        let lengths = self.dimensions.iter();
+        let lengths = lengths.map(|dimension| dimension.words.clone());
+        let loads = self.loads.iter();
+        let loads = loads.map(|load| format!("load {} kg", metres(load.mass_kg)));
+        lengths.chain(loads).collect::<Vec<_>>().join(", ")
     }
 
     /// Joints from left to right, or from below, each from the intrados to the extrados, in metres; none where hinges open

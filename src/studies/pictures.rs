@@ -14,7 +14,9 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
-use crate::output::elevation::{FILL, FILL_LINE, draw_load};
+use crate::output::dimensions::Side;
+use crate::output::elevation::{self, FILL, FILL_LINE, draw_dimensions, draw_load, room_px};
+use crate::output::figure::text_px;
 use crate::output::scene::Scene;
 use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
@@ -140,15 +142,32 @@ impl<'a> Place<'a> {
         drawing.path(name, &path, fill, stroke);
     }
 
+    /// Profiles have units of their own: how many a metre has, and the lower left corner of the structure in metres and in them.
+    fn units(&self, scene: &Scene) -> (f64, Vector2<f64>, Vector2<f64>) {
+        let [left, low, right, _] = bounds(self.profile(Sway::Right));
+        let [low_m, high_m] = scene.blocks_m();
+        let per_metre = (right - left) / (high_m.x - low_m.x);
+        (per_metre, low_m, Vector2::new(left, low))
+    }
+
+    /// The dimensions of the structure at rest.
+    fn dimensions(&self, drawing: &mut Drawing) {
+        let Some(scene) = self.scene else { return };
+        let (per_metre, low_m, low) = self.units(scene);
+        let place = elevation::Place {
+            middle_m: low_m,
+            at: self.px(low, Sway::Right),
+            scale: self.scale * per_metre,
+        };
+        draw_dimensions(drawing, &place, scene);
+    }
+
     /// What the structure carries: the fill behind its blocks, and its loads; with the mechanism as it is drawn, or at rest.
     fn carried(&self, drawing: &mut Drawing, mechanism: Option<(&ArchLink, Sway)>) {
         let Some(scene) = self.scene else { return };
         let profile = self.profile(Sway::Right);
-        // Profiles have units of their own.
-        let [left, low, right, _] = bounds(profile);
-        let [low_m, high_m] = scene.bounds_m();
-        let per_metre = (right - left) / (high_m.x - low_m.x);
-        let seen = |at_m: Vector2<f64>| (at_m - low_m) * per_metre + Vector2::new(left, low);
+        let (per_metre, low_m, low) = self.units(scene);
+        let seen = |at_m: Vector2<f64>| (at_m - low_m) * per_metre + low;
         let mut poses = Vec::new();
         if let Some((link, _)) = mechanism {
             let q_rad = DRAWN_PART * link.link.limit_rad;
@@ -178,8 +197,8 @@ impl<'a> Place<'a> {
             let outline = corners.map(|corner| px(piece.body, *corner));
             drawing.polygon("fill", outline, FILL, FILL_LINE);
         }
-        for (mark, _) in scene.loads_of_blocks() {
-            draw_load(drawing, px(mark.body, mark.at_m));
+        for (mark, load) in scene.loads_of_blocks() {
+            draw_load(drawing, px(mark.body, mark.at_m), load.mass_kg);
         }
     }
 
@@ -264,8 +283,15 @@ impl<'a> Place<'a> {
             };
             let outward = profile.outward(section);
             let away = Vector2::new(outward.x, -outward.y) * (side * 17.0);
-            let text = at + away + Vector2::new(0.0, 4.5);
-            drawing.label(text, Anchor::Middle, 0.0, &format!("{letter}{mark}"));
+            let named = format!("{letter}{mark}");
+            // On white, so that no line strikes it through.
+            let half = Vector2::new(0.5 * text_px(&named) + 2.0, 7.5);
+            let middle = at + away;
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let corners = corners.map(|(x, y)| middle + half.component_mul(&Vector2::new(x, y)));
+            drawing.polygon("", corners, "#ffffff", Stroke::new("none", 0.0, ""));
+            let text = middle + Vector2::new(0.0, 4.5);
+            drawing.label(text, Anchor::Middle, 0.0, &named);
         }
     }
 
@@ -306,8 +332,8 @@ fn rotations_text([left, middle, right]: [f64; 3]) -> String {
 /// Incipient rocking to one side: the thrust line at `A_L`, through its hinges, and the mechanism. The chain must begin
 /// with that sway.
 ///
-/// The mechanism is drawn to scale at finite rotations, at a quarter of the way to its limit position; of a scene, with what it
-/// carries.
+/// The mechanism is drawn to scale at finite rotations, at a quarter of the way to its limit position; of a scene, with its
+/// dimensions and what it carries.
 #[must_use]
 pub fn limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>) -> String {
     figure.fitted(|figure| draw_limit(figure, chain, first, scene))
@@ -328,6 +354,7 @@ fn draw_limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>)
     let cells = Cells::new(figure, (chain, scene), first);
 
     let (left, middle) = cells.first(top);
+    left.dimensions(&mut drawing);
     left.carried(&mut drawing, None);
     left.whole(&mut drawing, "#f4f4f4", Stroke::new(color::BLACK, 1.2, ""));
     left.joints(&mut drawing);
@@ -338,7 +365,8 @@ fn draw_limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>)
          turns",
         first.name()
     );
-    let first_end = cells.caption(&mut drawing, middle, left.bottom, &text);
+    let below = left.bottom + sizes_px(scene, Side::Below);
+    let first_end = cells.caption(&mut drawing, middle, below, &text);
 
     let (right, middle) = cells.second(top, first_end);
     let rotations = right.mechanism(&mut drawing, link, first);
@@ -358,21 +386,47 @@ struct Cells<'a> {
     first: Sway,
     /// Width of a cell in pixels.
     width: f64,
+    /// Room on the left and the right of an arch for its dimensions, in pixels.
+    beside: [f64; 2],
     side_by_side: bool,
+}
+
+/// Room for the dimensions on a side, in pixels.
+fn sizes_px(scene: Option<&Scene>, side: Side) -> f64 {
+    scene.map_or(0.0, |scene| room_px(scene, side))
 }
 
 /// Space above an arch, for its hinges and a body that rises.
 const ABOVE_PX: f64 = 42.0;
 
 impl<'a> Cells<'a> {
-    fn new(figure: Figure, chain: (&'a Chain, Option<&'a Scene>), first: Sway) -> Self {
-        let columns = figure.columns(2, 340.0);
+    /// Whether two arches have room for their captions side by side.
+    fn fit_side_by_side(figure: Figure) -> bool {
+        figure.columns(2, 340.0) == 2
+    }
+
+    /// Two arches side by side, however narrow.
+    fn pair(figure: Figure, chain: (&'a Chain, Option<&'a Scene>), first: Sway) -> Self {
         Self {
             figure,
             chain,
             first,
-            width: figure.width_px() / if columns == 2 { 2.0 } else { 1.0 },
-            side_by_side: columns == 2,
+            width: 0.5 * figure.width_px(),
+            beside: [0.0; 2],
+            side_by_side: true,
+        }
+    }
+
+    /// With room for dimensions beside the first.
+    fn new(figure: Figure, chain: (&'a Chain, Option<&'a Scene>), first: Sway) -> Self {
+        let side_by_side = Self::fit_side_by_side(figure);
+        Self {
+            figure,
+            chain,
+            first,
+            width: figure.width_px() / if side_by_side { 2.0 } else { 1.0 },
+            beside: [Side::Left, Side::Right].map(|side| sizes_px(chain.1, side)),
+            side_by_side,
         }
     }
 
@@ -382,8 +436,11 @@ impl<'a> Cells<'a> {
     }
 
     fn place(&self, middle: f64, top: f64) -> (Place<'a>, f64) {
-        let (top, width) = (top + ABOVE_PX, self.figure.squeezed_px(0.8 * self.width));
-        let place = Place::new(self.chain, self.first, middle, top, width);
+        let [left, right] = self.beside;
+        let width = (0.8 * self.width).min(self.width - left - right);
+        let width = self.figure.squeezed_px(width);
+        let shifted = middle + 0.5 * (left - right);
+        let place = Place::new(self.chain, self.first, shifted, top + ABOVE_PX, width);
         (place, middle)
     }
 
@@ -406,16 +463,16 @@ impl<'a> Cells<'a> {
 /// An impact, as in Fig. 10 of the paper: the mechanisms before and after, the bodies into which both together cut the
 /// ring (Eq. (3)), and the impulse line. `None` if this impact or one before it stops the arch.
 #[must_use]
-pub fn impact(figure: Figure, impact: &LinkImpact<'_>) -> Option<String> {
+pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: Option<&Scene>) -> Option<String> {
     let (before, after) = (impact.before()?, impact.after()?);
-    Some(figure.fitted(|figure| draw_impact(figure, impact, before, after)))
+    Some(figure.fitted(|figure| draw_impact(figure, impact, scene, (before, after))))
 }
 
 fn draw_impact(
     figure: Figure,
     impact: &LinkImpact<'_>,
-    before: &ArchLink,
-    after: &ArchLink,
+    scene: Option<&Scene>,
+    (before, after): (&ArchLink, &ArchLink),
 ) -> String {
     let (chain, first, index) = (impact.chain(), impact.first, impact.index);
     let (profile, sway_after) = (impact.profile(), impact.sway());
@@ -428,26 +485,52 @@ fn draw_impact(
         shape(profile)
     );
     let top = drawing.title(&title);
-    let cells = Cells::new(figure, (chain, None), first);
+    // Narrow pictures have short captions, and dimensions in words.
+    let wide = Cells::fit_side_by_side(figure);
+    let cells = Cells::pair(figure, (chain, scene), first);
     let caption = |text: &str, mark: &str, rotations: [f64; 3]| {
-        let rotations = rotations_text(rotations);
-        format!("{text}, hinges A{mark} to D{mark}, drawn at rotations of {rotations}")
+        let rotations = match wide {
+            true => format!(", drawn at rotations of {}", rotations_text(rotations)),
+            false => String::new(),
+        };
+        format!("{text}, hinges A{mark} to D{mark}{rotations}")
     };
     let (place, middle) = cells.first(top);
     let rotations = place.mechanism(&mut drawing, before, sway_before);
-    let text = caption("u before the impact", "", rotations);
+    let text = caption(
+        if wide {
+            "u before the impact"
+        } else {
+            "before: u"
+        },
+        "",
+        rotations,
+    );
     let first_end = cells.caption(&mut drawing, middle, place.bottom, &text);
     let (place, middle) = cells.second(top, first_end);
     let rotations = place.mechanism(&mut drawing, after, sway_after);
-    let text = caption("u' after the impact", "'", rotations);
+    let text = caption(
+        if wide {
+            "u' after the impact"
+        } else {
+            "after: u'"
+        },
+        "'",
+        rotations,
+    );
     let second_end = cells.caption(&mut drawing, middle, place.bottom, &text);
 
     let lower_top = first_end.max(second_end) + ABOVE_PX + 14.0;
-    let (wide, middle) = (
-        figure.squeezed_px(0.71 * figure.width_px()),
-        0.5 * figure.width_px(),
-    );
-    let place = Place::new((chain, None), first, middle, lower_top, wide);
+    let [left, right, below] =
+        [Side::Left, Side::Right, Side::Below].map(|side| sizes_px(scene.filter(|_| wide), side));
+    let width = (0.71 * figure.width_px()).min(figure.width_px() - left - right);
+    let width = figure.squeezed_px(width);
+    let middle = 0.5 * (figure.width_px() + left - right);
+    let place = Place::new((chain, scene), first, middle, lower_top, width);
+    if wide {
+        place.dimensions(&mut drawing);
+    }
+    place.carried(&mut drawing, None);
     let closing = closing_field(&before.mechanism, profile);
     let field = after.mechanism.field();
     // Everything is in the frame of the new mechanism, which is mirrored if it sways left.
@@ -507,10 +590,16 @@ fn draw_impact(
         let at = place.px(seen.point(section, edge), Sway::Right);
         drawing.circle("hinge before", at, 2.5, Stroke::new(color::GREY, 1.2, ""));
     }
-    let text = "Impulse line through the hinges A' to D' of u', at the edges about which the arch turns after the \
-                impact; grey circles: the hinges A to D of u, which close; 1, 2 ...: the bodies that both together cut \
-                out of the arch";
-    let end = drawing.caption(place.bottom + 34.0, text);
+    let text = match scene.map(Scene::sizes_in_words).filter(|_| !wide) {
+        None => "Impulse line through the hinges A' to D' of u', at the edges about which the arch turns after the \
+                 impact; grey circles: the hinges A to D of u, which close; 1, 2 ...: the bodies that both together cut \
+                 out of the arch"
+            .to_owned(),
+        Some(sizes) => format!(
+            "blue: impulse line through A' to D'; grey circles: A to D, which close; 1, 2 ...: bodies that both cut out; {sizes}"
+        ),
+    };
+    let end = drawing.caption(place.bottom + below + 34.0, &text);
     drawing.finish(end + 12.0)
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
-use crate::output::elevation::{Place, STONE, draw_carried};
+use crate::output::elevation::{Place, STONE, TIE, draw_carried};
 use crate::output::scene::{Mark, Scene};
 use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
@@ -152,6 +152,10 @@ impl Snapshots {
                 1e-6 * largest_pa
             );
         }
+        let sizes = self.scene.sizes_in_words();
+        if !sizes.is_empty() {
+            let _ = write!(caption, "; {sizes}");
+        }
         let end = drawing.caption(top, &caption);
         drawing.finish(end + 8.0)
     }
@@ -194,8 +198,7 @@ impl Snapshots {
                     drawing.curve("broken tie", [end, stub], stroke);
                 }
             } else {
-                let stroke = Stroke::new(color::ORANGE, 1.8, "");
-                drawing.curve("tie", [from, to], stroke);
+                drawing.curve("tie", [from, to], TIE);
             }
         }
         for pressed in self.scene.pressed(sample) {

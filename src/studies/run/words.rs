@@ -114,12 +114,22 @@ fn trusted(scenario: &Scenario, model: &dyn Model, history: &Summary, beside: &[
         String::new()
     };
     format!(
-        "{trust}  friction coefficient needed to prevent sliding: {value:.3} (at {time_s:.4} s){compared}\n"
+        "{trust}  friction coefficient needed to prevent sliding: {} (at {time_s:.4} s){compared}\n",
+        friction(value, 3)
     )
 }
 
 /// Coefficients of friction of stone on stone: the smallest and the largest that can be relied on.
 const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
+
+/// A coefficient of friction with so many decimals. One that nothing has stands for a joint that hardly presses.
+fn friction(coefficient: f64, decimals: usize) -> String {
+    if coefficient > 10.0 {
+        "more than 10".to_owned()
+    } else {
+        format!("{coefficient:.decimals$}")
+    }
+}
 
 /// The friction that a motion without sliding needs, if stone may not have it.
 pub(super) fn needs(scenario: &Scenario, history: &Summary) -> Option<String> {
@@ -133,7 +143,8 @@ pub(super) fn needs(scenario: &Scenario, history: &Summary) -> Option<String> {
     let [low, high] = STONE_FRICTION;
     if needed > high {
         return Some(format!(
-            "would slide: needs a friction of {needed:.2}, and stone has {low} to {high}"
+            "would slide: needs a friction of {}, and stone has {low} to {high}",
+            friction(needed, 2)
         ));
     }
     (needed > low).then(|| format!("needs a friction of {needed:.2}"))

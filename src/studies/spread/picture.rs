@@ -5,6 +5,8 @@ use nalgebra::Vector2;
 use super::{Path, Pushes, SpreadPaths, Stage};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
+use crate::output::elevation::{Place, STONE, draw_carried};
+use crate::output::scene::Scene;
 use crate::output::svg::{Anchor, Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 
 /// Pictures of the arch side by side, at most, and how wide they are at least.
@@ -14,7 +16,7 @@ const LEAST_PX: f64 = 180.0;
 const FIRST_MOTION_PX: f64 = 1.0;
 
 /// The picture.
-pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths) -> String {
+pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths, scene: &Scene) -> String {
     let mut drawing = Drawing::new(figure);
     let top = drawing.title(title);
     let top = draw_pushes(&mut drawing, figure, top, spread);
@@ -25,7 +27,7 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths) -> String 
     for paths in spread.paths.chunks(columns) {
         let cells: Vec<Cell<'_>> = paths
             .iter()
-            .filter_map(|path| Cell::new(&spread.row, path, cell_px))
+            .filter_map(|path| Cell::new(figure, &spread.row, scene, path, cell_px))
             .collect();
         let height = cells.iter().map(Cell::height_px).fold(0.0, f64::max);
         for (column, cell) in (0_u32..).zip(&cells) {
@@ -34,10 +36,12 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths) -> String 
         }
         top += height + 58.0;
     }
-    let end = drawing.caption(
-        top,
-        "to scale; dashed: as built; circles: hinges; blue: line of thrust",
-    );
+    let how = "to scale; dashed: as built; circles: hinges; blue: line of thrust";
+    let caption = match scene.sizes_in_words() {
+        sizes if sizes.is_empty() => how.to_owned(),
+        sizes => format!("{how}; {sizes}"),
+    };
+    let end = drawing.caption(top, &caption);
     drawing.finish(end + 8.0)
 }
 
@@ -67,10 +71,17 @@ fn draw_pushes(drawing: &mut Drawing, figure: Figure, top: f64, spread: &SpreadP
             curves.push((name, points, style(stroke, thin)));
         }
     }
-    let keys: Vec<Key<'_>> = curves
-        .iter()
-        .map(|(name, _, stroke)| (name.as_str(), Sign::Line(*stroke)))
+    let ways = spread.paths.iter();
+    let ways: Vec<String> = ways
+        .map(|path| format!("{} {}", path.way.springing.name(), path.way.words()))
         .collect();
+    let mut keys: Vec<Key<'_>> = ways
+        .iter()
+        .zip(strokes())
+        .map(|(way, (_, stroke))| (way.as_str(), Sign::Line(style(stroke, false))))
+        .collect();
+    let dashed = style(Stroke::new(color::BLACK, 1.0, ""), true);
+    keys.push(("dashed: first motion", Sign::Line(dashed)));
     let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let points = || curves.iter().flat_map(|(_, points, _)| points);
     let height = figure.height_px(300.0);
@@ -90,6 +101,7 @@ fn draw_pushes(drawing: &mut Drawing, figure: Figure, top: f64, spread: &SpreadP
 /// The arch at the end of a way.
 struct Cell<'a> {
     row: &'a Row,
+    scene: &'a Scene,
     path: &'a Path,
     stage: &'a Stage,
     low_m: Vector2<f64>,
@@ -99,25 +111,32 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn new(row: &'a Row, path: &'a Path, width_px: f64) -> Option<Self> {
+    fn new(
+        figure: Figure,
+        row: &'a Row,
+        scene: &'a Scene,
+        path: &'a Path,
+        width_px: f64,
+    ) -> Option<Self> {
         let stage = path.stages.last()?;
         let blocks = row.outlines_m().iter().zip(&stage.poses);
         let corners = blocks.flat_map(|(outline, pose)| {
             let corners = outline.iter();
             corners.flat_map(|corner| [*corner, pose.of(*corner)])
         });
-        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
-        let [low_m, high_m] = corners.fold(empty, |[low, high], corner: Vector2<f64>| {
+        // What it carries hardly moves farther than its blocks.
+        let [low_m, high_m] = corners.fold(scene.frame_m(), |[low, high], corner: Vector2<f64>| {
             [low.inf(&corner), high.sup(&corner)]
         });
         let across_m = high_m - low_m;
         Some(Self {
             row,
+            scene,
             path,
             stage,
             low_m,
             high_m,
-            scale: ((width_px - 30.0) / across_m.x).min(width_px / across_m.y),
+            scale: figure.squeezed_px(((width_px - 30.0) / across_m.x).min(width_px / across_m.y)),
         })
     }
 
@@ -127,11 +146,13 @@ impl<'a> Cell<'a> {
 
     /// Draws it above the middle of its foot.
     fn draw(&self, drawing: &mut Drawing, foot: Vector2<f64>) {
-        let middle_m = Vector2::new(0.5 * (self.low_m.x + self.high_m.x), self.low_m.y);
-        let px = |point: Vector2<f64>| {
-            let away = point - middle_m;
-            foot + Vector2::new(away.x, -away.y) * self.scale
+        let place = Place {
+            middle_m: Vector2::new(0.5 * (self.low_m.x + self.high_m.x), self.low_m.y),
+            at: foot,
+            scale: self.scale,
         };
+        let px = |point: Vector2<f64>| place.px(point);
+        draw_carried(drawing, &place, self.scene, &[], (&self.stage.poses, 1.0));
         let thin = Stroke::new(color::GREY, 0.7, "3 3");
         let solid = Stroke::new(color::BLACK, 1.1, "");
         for outline in self.row.outlines_m() {
@@ -145,7 +166,7 @@ impl<'a> Cell<'a> {
             .enumerate()
         {
             let corners = outline.iter().map(|corner| px(pose.of(*corner)));
-            drawing.polygon(&format!("block {}", block + 1), corners, "#f3efe6", solid);
+            drawing.polygon(&format!("block {}", block + 1), corners, STONE, solid);
         }
         if let Some(state) = &self.stage.state {
             let joints = self.row.joints().iter().zip(&state.corners);

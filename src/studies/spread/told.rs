@@ -8,6 +8,7 @@ use super::picture::draw;
 use super::{Path, Pushes, SpreadPaths, Stage};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::settling::{Hinge, Snap};
+use crate::output::scene::Scene;
 use crate::output::svg::Figure;
 use crate::output::table::{Cell, column, csv, several};
 use crate::output::{OutputError, pretty};
@@ -29,13 +30,14 @@ pub fn tell(
     spread: &SpreadPaths,
     figure: Figure,
 ) -> Result<Results, OutputError> {
+    let scene = Scene::of_row(&spread.row).of_structure(scenario.structure());
     let weight_n = spread.row.mass_kg() * scenario.gravity_m_s2();
     let title = scenario.title().unwrap_or("Springings that move");
     let mut json = to_json(spread, weight_n);
     json["scenario"] = scenario.to_json();
     let contents = [
         figure
-            .fitted(|figure| draw(figure, title, spread))
+            .fitted(|figure| draw(figure, title, spread, &scene))
             .into_bytes(),
         table(spread, weight_n)?,
         pretty(&json).into_bytes(),

@@ -136,7 +136,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 
-const MANY: Stroke = Stroke::new(color::BLUE, 0.9, "");
+const MANY: Stroke = Stroke::new(color::GREY, 0.9, "");
 /// Fractiles of the peaks at each level, over all records.
 const FRACTILES: [(&str, Stroke); 3] = [
     ("16 %", Stroke::new(color::BLACK, 1.8, "2 3")),

@@ -22,7 +22,8 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     let label = intensity_label(results.measure);
     axes.draw(&mut drawing, Some(label), "fraction that overturns");
     for (fit, look) in &curves {
-        let curve = along(&axes.x).map(|x| axes.place(x, fit.probability(x)));
+        let intensities = along(&axes.x, &curves).into_iter();
+        let curve = intensities.map(|x| axes.place(x, fit.probability(x)));
         drawing.curve(look.name, curve, look.line);
     }
     for level in &results.levels {
@@ -118,21 +119,31 @@ const POINT: Stroke = Stroke::new(color::VERMILION, 1.8, "");
 const BAND: &str = "#d6e8f4";
 const BETWEEN: &str = "#9cc7e3";
 
-/// Number of points of a smooth curve.
+/// Number of points along the axis, and of those where a curve rises.
 const POINTS: u32 = 200;
+/// A curve rises within so many dispersions of its median.
+const RISES: f64 = 4.0;
 
-/// Positive values along an axis.
-fn along(scale: &Scale) -> impl Iterator<Item = f64> {
-    let scale = *scale;
-    (0..=POINTS)
-        .map(move |i| scale.at(f64::from(i) / f64::from(POINTS)))
-        .filter(|x| *x > 0.0)
+/// Positive values along an axis: evenly, and closer together where a curve rises, however steep it is.
+fn along(scale: &Scale, curves: &[(&Fragility, Look)]) -> Vec<f64> {
+    let parts = (0..=POINTS).map(|i| f64::from(i) / f64::from(POINTS));
+    let even = parts.clone().map(|part| scale.at(part));
+    let rising = curves.iter().flat_map(|(fit, _)| {
+        parts
+            .clone()
+            .map(|part| fit.median * (fit.dispersion * RISES * (2.0 * part - 1.0)).exp())
+    });
+    let mut values: Vec<f64> = even.chain(rising).collect();
+    values.retain(|x| *x > 0.0 && (scale.low..=scale.high).contains(x));
+    values.sort_by(f64::total_cmp);
+    values
 }
 
 /// Draws the joint 95 % band of the curves, and the area between them.
 fn draw_bands(drawing: &mut Drawing, axes: &Axes, curves: &[(&Fragility, Look)]) {
     let mut fill = |name: &str, color: &'static str, ends: &dyn Fn(f64) -> [f64; 2]| {
-        let (low, mut high): (Vec<_>, Vec<_>) = along(&axes.x)
+        let (low, mut high): (Vec<_>, Vec<_>) = along(&axes.x, curves)
+            .into_iter()
             .map(|x| {
                 let [low, high] = ends(x).map(|probability| axes.place(x, probability));
                 (low, high)
@@ -158,5 +169,48 @@ fn draw_bands(drawing: &mut Drawing, axes: &Axes, curves: &[(&Fragility, Look)])
         fill("between", BETWEEN, &|x| {
             range(&mut curves.iter().map(|(fit, _)| fit.probability(x)))
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fragility::{Observation, fit};
+    use super::*;
+
+    /// However steep a curve is, it turns by a few degrees at most from one piece to the next on the sheet.
+    #[test]
+    fn steep_curves_have_no_kinks() {
+        let case = |intensity, overturned, record| Observation {
+            intensity,
+            overturned,
+            record,
+        };
+        let near = [0.99, 1.0, 1.01];
+        let cases = near
+            .into_iter()
+            .zip([1, 5, 9])
+            .flat_map(|(intensity, falls)| {
+                (0..10).map(move |record| case(intensity, record < falls, record))
+            });
+        let fit = fit(&cases.collect::<Vec<_>>()).unwrap();
+        assert!(fit.dispersion < 0.02, "{}", fit.dispersion);
+        for x in [Scale::exactly(0.0, 3.0, 8), Scale::logarithmic(0.1, 10.0)] {
+            let axes = Axes {
+                frame: Figure::SCREEN.plot(0.0, 405.0),
+                x,
+                y: Scale::exactly(0.0, 1.0, 5),
+            };
+            let curves = [(&fit, CURVE)];
+            let points: Vec<_> = along(&x, &curves)
+                .into_iter()
+                .map(|x| axes.place(x, fit.probability(x)))
+                .collect();
+            let pieces: Vec<_> = points.windows(2).map(|ends| ends[1] - ends[0]).collect();
+            let turns = pieces
+                .windows(2)
+                .map(|pair| pair[0].perp(&pair[1]).atan2(pair[0].dot(&pair[1])).abs());
+            let sharpest = turns.fold(0.0, f64::max);
+            assert!(sharpest.to_degrees() < 8.0, "{sharpest}");
+        }
     }
 }

@@ -7,7 +7,8 @@ use nalgebra::Vector2;
 use super::{Check, Mechanism, StateCheck, Way};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::field::turned;
-use crate::output::elevation::{Place, draw_carried};
+use crate::output::dimensions::Side;
+use crate::output::elevation::{Place, TIE, draw_carried, draw_dimensions, room_px};
 use crate::output::scene::{Piece, Scene};
 use crate::output::svg::{Anchor, Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::scenario::{LimitState, Structure};
@@ -24,7 +25,8 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
     let scene = Scene::new(structure);
     let [low, high] = scene.frame_m();
     let size = high - low;
-    let (left, width_px) = (40.0, figure.width_px() - 80.0);
+    let [left, right] = [Side::Left, Side::Right].map(|side| room_px(&scene, side).max(40.0));
+    let width_px = figure.width_px() - left - right;
     let tall_px = figure.height_px(420.0);
     let scale = (width_px / size.x).min(tall_px / size.y);
     let top = 30.0;
@@ -35,6 +37,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
     };
     let px = |point_m: Vector2<f64>| place.px(point_m);
     let mut drawing = Drawing::new(figure);
+    draw_dimensions(&mut drawing, &place, &scene);
     draw_carried(&mut drawing, &place, &scene, &[], (&[], 1.0));
     let thin = Stroke::new("#777777", 0.6, "");
     for piece in &pieces {
@@ -47,7 +50,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
     }
     for tie in structure.ties() {
         let ends = tie.ends.map(|end| px(end.at_m));
-        drawing.curve("tie", ends, Stroke::new(color::ORANGE, 1.8, ""));
+        drawing.curve("tie", ends, TIE);
     }
     let fastest = mechanism.bodies.iter().map(|body| body.displacement.norm());
     let fastest = fastest.fold(f64::MIN_POSITIVE, f64::max);
@@ -90,7 +93,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
         let label = at + Vector2::new(side, if away.y < 0.0 { -3.0 } else { 15.0 });
         drawing.label(label, Anchor::Middle, 0.0, &name.to_string());
     }
-    drawing.finish(top + scale * size.y + 26.0)
+    drawing.finish(top + scale * size.y + room_px(&scene, Side::Below).max(26.0))
 }
 
 fn pieces(structure: &Structure, mechanism: &Mechanism) -> Vec<Piece> {
