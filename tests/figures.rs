@@ -140,6 +140,15 @@ fn frame(svg: &Node<'_, '_>) -> Box {
     [x, y, x + width, y + height]
 }
 
+/// What of these lines a box does not cover.
+fn outside(lines: &[[[f64; 2]; 2]], covered: Box) -> Vec<[[f64; 2]; 2]> {
+    let parts = |line: &[[f64; 2]; 2]| match clipped(*line, covered) {
+        None => vec![*line],
+        Some([enters, leaves]) => vec![[line[0], enters], [leaves, line[1]]],
+    };
+    lines.iter().flat_map(parts).collect()
+}
+
 /// The lines of a picture that can be seen.
 fn lines(document: &Document<'_>) -> Vec<[[f64; 2]; 2]> {
     let mut lines = Vec::new();
@@ -147,6 +156,14 @@ fn lines(document: &Document<'_>) -> Vec<[[f64; 2]; 2]> {
         .descendants()
         .filter(|node| node.has_tag_name("path"))
     {
+        if path.attribute("data-name") == Some("paper") {
+            let corners = segments(path.attribute("d").unwrap()).concat();
+            let axis = |axis: usize| corners.iter().map(move |corner| corner[axis]);
+            let low = [0, 1].map(|of| axis(of).fold(f64::INFINITY, f64::min));
+            let high = [0, 1].map(|of| axis(of).fold(f64::NEG_INFINITY, f64::max));
+            lines = outside(&lines, [low[0], low[1], high[0], high[1]]);
+            continue;
+        }
         if path.attribute("stroke") == Some("none") || number(&path, "stroke-width") == 0.0 {
             continue;
         }

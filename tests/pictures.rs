@@ -9,6 +9,7 @@ use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::output::Figure;
+use archrock::output::scene::Scene;
 use archrock::scenario::Structure;
 use archrock::studies::chart::shape_result;
 use archrock::studies::impact::LinkImpact;
@@ -205,7 +206,8 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 fn the_second_impact_has_a_picture_of_its_own() {
     let arch = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2), None).unwrap();
+    let scene = Scene::new(&Structure::Arch(Arch::new(5.0, 0.15, 180.0).unwrap()));
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2), Some(&scene)).unwrap();
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 2, Sway::Right);
     let title = &texts(&document)[0];

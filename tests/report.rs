@@ -92,7 +92,7 @@ fn four_links_in_a_browser() {
 #[test]
 fn a_fall_in_a_browser() {
     let bodies = ["left", "middle", "right"];
-    check("overturning-at-once.toml", &bodies, 4, &[]);
+    check("overturning-after-impacts.toml", &bodies, 4, &[]);
 }
 
 #[test]

@@ -289,7 +289,7 @@ impl<'a> Place<'a> {
             let middle = at + away;
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             let corners = corners.map(|(x, y)| middle + half.component_mul(&Vector2::new(x, y)));
-            drawing.polygon("", corners, "#ffffff", Stroke::new("none", 0.0, ""));
+            drawing.polygon("paper", corners, "#ffffff", Stroke::new("none", 0.0, ""));
             let text = middle + Vector2::new(0.0, 4.5);
             drawing.label(text, Anchor::Middle, 0.0, &named);
         }
