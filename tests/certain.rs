@@ -1,10 +1,12 @@
 //! What a run calls certain holds with other steps, and most results are still called certain.
 
+use std::ops::ControlFlow;
+
 use crate::common::{GRAVITY, Random, noise, random_row};
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::Outcome;
-use archrock::dynamics::model::Model;
+use archrock::dynamics::history::{Outcome, State, Summary};
+use archrock::dynamics::model::{Model, Until};
 use archrock::dynamics::spread::Repetitions;
 use archrock::studies::ending::Ending;
 use archrock::{Contact, ElasticJoints, ElasticProperties, Request, Sway};
@@ -346,4 +348,62 @@ fn maps_of_elastic_joints_answer_as_runs_do() {
     if cases > 4 {
         std::io::Write::write_all(&mut std::io::stderr(), counts.as_bytes()).unwrap();
     }
+}
+
+/// A block on a joint as soft and as viscous as rubber: once past its barrier it falls slowly, and loses on the way down all that made it
+/// overturn. That it has little energy says that it is safe only on its way back: histories that are ended early overturn where
+/// whole ones do, although some had less than half of the barrier long before.
+#[test]
+fn what_falls_slowly_is_not_safe() {
+    let row = archrock::Column::new(5.0, 1.0).unwrap().row();
+    let properties = ElasticProperties {
+        damping_time_s: 1.0,
+        ..ElasticProperties::of_stiffness(5e6)
+    };
+    let model = ElasticJoints::new(row.unwrap(), properties).unwrap();
+    let barrier_j = model.elastic_barrier_j(GRAVITY).unwrap();
+    let request = Request {
+        end_s: 60.0,
+        output_step_s: 0.05,
+        ..Request::default()
+    };
+    // Whether the whole history overturns, whether one that is ended early does, and the least energy on quiet ground.
+    let history = |amplitude_g: f64| {
+        let push_m_s2 = -amplitude_g * GRAVITY;
+        let ground = GroundMotion::pulse(Pulse::Rectangular, push_m_s2, 0.5, 0.0).unwrap();
+        let mut least_j = f64::INFINITY;
+        let mut watch = |sample: &archrock::Sample| {
+            if sample.time_s > ground.end_s() && matches!(sample.state, State::Rocking(_)) {
+                least_j = least_j.min(sample.energy_j);
+            }
+            ControlFlow::Continue(())
+        };
+        let whole = model.simulate(&ground, &request, Some(&mut watch));
+        let early = model.simulate_until(Until::Safe, &[(ground.clone(), request)]);
+        let [whole, early] = [whole, early.into_iter().next().unwrap()];
+        let falls = |summary: &Summary| matches!(summary.outcome, Outcome::Overturned(_));
+        let (whole, early) = (whole.unwrap(), early.unwrap());
+        assert!(
+            falls(&whole) || early.end_s < whole.end_s,
+            "{amplitude_g} g"
+        );
+        (falls(&whole), falls(&early), least_j)
+    };
+    let (mut low_g, mut high_g) = (0.02, 2.0);
+    while high_g - low_g > 1e-3 {
+        let middle_g = 0.5 * (low_g + high_g);
+        let (whole, early, _) = history(middle_g);
+        assert_eq!(whole, early, "{middle_g} g");
+        if whole {
+            high_g = middle_g;
+        } else {
+            low_g = middle_g;
+        }
+    }
+    let (whole, early, least_j) = history(high_g);
+    assert!(
+        whole && early && least_j < 0.45 * barrier_j,
+        "{high_g} g: {least_j} of {barrier_j}"
+    );
+    assert!(high_g < 1.9 && low_g > 0.03, "{high_g}");
 }

@@ -192,7 +192,22 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         said.starts_with("g.AT2: ") && said.contains("\ncomma.csv: table"),
         "{said}"
     );
-    // For an AT2 file alone, a key of tables is refused.
+    // What is left out of a file with a unit of its own is said.
+    let output = check(&two);
+    assert!(
+        stderr(&output).contains("g.AT2: `unit` is for the tables among the files"),
+        "{}",
+        stderr(&output)
+    );
+    // Without a table among the files the unit is theirs: 0.4 cm/s2.
+    let output = check(&["g.AT2", "g.AT2", "--set", "unit=cm/s2"]);
+    let said = stderr(&output);
+    assert_eq!(
+        said.matches("g.AT2 peaks at 4.07747e-4 g").count(),
+        2,
+        "{said}"
+    );
+    // For an AT2 file alone, other keys of tables are refused.
     let said = refusal(&check(&["g.AT2", "--set", "skip_rows=3"]));
     assert!(
         said.contains("--set skip_rows=3: `skip_rows = 3` applies to `format = \"csv\"` only"),

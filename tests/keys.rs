@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-fn document(name: &str) -> String {
+pub fn document(name: &str) -> String {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     fs::read_to_string(docs.join(name)).unwrap()
 }
@@ -37,7 +37,7 @@ fn code(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Rows of the reference below the heading of a table: the keys, and the default.
-fn rows(reference: &str, table: &str) -> Vec<(Vec<String>, String)> {
+pub fn rows(reference: &str, table: &str) -> Vec<(Vec<String>, String)> {
     let heading = format!("| **`[{table}]`** |");
     let mut lines = reference
         .lines()

@@ -140,7 +140,7 @@ fn axes_that_do_not_suit_are_refused() {
         "{said}"
     );
     let said = refused(pulse, "amplitude_g = [1, 2]\n'map.spread' = [1, 2]");
-    assert!(said.contains("names no number of another table"), "{said}");
+    assert!(said.contains("names no number of the structure"), "{said}");
     let said = refused(pulse, "amplitude_g = [1, 2]");
     assert!(
         said.contains("needs exactly two of the keys duration_s"),

@@ -521,6 +521,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
             outcome_time_s: 1.0,
             impacts: Some(0),
             peak: PeakRotation::OverCritical(Some(0.5)),
+            peak_rotation_rad: 0.1,
             energy_defect_ratio: 0.0,
             steps: None,
             safe_from_s: None,
@@ -555,13 +556,14 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                     outcome_time_s: 1.0,
                     impacts: Some(0),
                     peak: PeakRotation::Rad(0.5),
+                    peak_rotation_rad: 0.5,
                     energy_defect_ratio: 0.0,
                     steps: Some(Steps {
                         longest_s: 1e-4,
                         shortest_s: 1e-5,
                     }),
                     safe_from_s: None,
-                    uncertain,
+                    uncertain: uncertain.map(String::into_boxed_str),
                 }),
             }
         });
@@ -1229,4 +1231,109 @@ fn spectral(duration_s: f64, period_s: f64, damping: f64) -> f64 {
         peak = peak.max(state[0].abs());
     }
     omega * omega * peak
+}
+
+/// The probability with which a peak is at most this, of those in ascending order or not; what overturned is infinite.
+fn share(peaks: &[f64], up_to: f64) -> f64 {
+    peaks.iter().filter(|peak| **peak <= up_to).count() as f64 / peaks.len() as f64
+}
+
+/// A block rocks alike as Housner's and as a row of one block, so that the distributions of its peaks are as good as one; those of a block
+/// whose Housner restitution is halved are not. The tables of the models give the same peaks, and the distance is that of their
+/// shares.
+#[test]
+fn distributions_of_models_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (name, second) in [("a", 0.9), ("b", 0.4), ("c", 0.2)] {
+        let table = format!("0.0,0.0\n0.3,1.0\n0.6,{second}\n0.9,-0.8\n1.2,0.0\n");
+        write(at, &format!("{name}.csv"), &table);
+    }
+    let suite = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 4.0\n[suite]\nrecords = '?.csv'\nunit = 'g'\n\
+                 both_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n[impact]\n";
+    write(at, "s.toml", suite);
+    let said = done(
+        at,
+        &["suite", "s.toml", "--hinges", "four,free", "--out", "r"],
+    );
+    assert!(
+        said.contains("distributions of the largest rotation, four links against free hinges: "),
+        "{said}"
+    );
+    let summary = json(&at.join("r/models/peaks.json"));
+    let pair = &summary["pairs"][0];
+    let table = Table::read(at.join("r/models/peaks.csv"));
+    let of = |model: &str| -> Vec<f64> {
+        let rows = table.rows.iter().filter(|row| row["model"] == *model);
+        rows.map(|row| row.number("peak_rotation_rad")).collect()
+    };
+    // Of Housner's block the critical rotation is the slenderness.
+    let slenderness_rad = (0.8_f64 / 4.0).atan();
+    let mut all = Vec::new();
+    for (name, words, column, unit_rad) in [
+        (
+            "four",
+            "four links",
+            "peak_rotation_over_critical",
+            slenderness_rad,
+        ),
+        ("free", "free hinges", "peak_rotation_rad", 1.0),
+    ] {
+        let suite = Table::read(at.join("r").join(name).join("suite.csv"));
+        let peak = |row: &Row| {
+            if row["outcome"] == "overturned" {
+                f64::INFINITY
+            } else {
+                unit_rad * row.number(column)
+            }
+        };
+        let mut peaks: Vec<f64> = suite.rows.iter().map(peak).collect();
+        peaks.sort_by(f64::total_cmp);
+        let finite = peaks.iter().filter(|peak| peak.is_finite());
+        for (told, known) in of(words).iter().zip(finite.clone()) {
+            assert!((told - known).abs() < 1e-9, "{name}: {told} {known}");
+        }
+        assert_eq!(of(words).len(), finite.count());
+        assert!((6..15).contains(&of(words).len()), "{name}");
+        all.push(peaks);
+    }
+    let finite = || all.iter().flatten().filter(|peak| peak.is_finite());
+    let apart = finite().map(|peak| (share(&all[0], *peak) - share(&all[1], *peak)).abs());
+    let distance = pair["kolmogorov_distance"].as_f64().unwrap();
+    assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
+    // Peaks that differ by the steps of the row change places, one in fifteen at a time.
+    assert!(
+        distance < 0.14 && pair["p"].as_f64().unwrap() > 0.2,
+        "{pair}"
+    );
+    for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
+        assert!(at.join("r").join(name).exists(), "{name}");
+    }
+
+    // The same of the samples of a run, with a model that is not alike.
+    let run = suite.replace("[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n", "")
+        + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
+           [uncertain]\nsamples = 16\n'ground.one_sine.duration_s' = { from = 0.4, to = 0.9 }\n";
+    write(at, "run.toml", &run);
+    let options = [
+        "run",
+        "run.toml",
+        "--hinges",
+        "four,free",
+        "--no-report",
+        "--no-spread",
+        "--out",
+        "u",
+    ];
+    let said = String::from_utf8(crate::program::archrock(at, &options).stdout).unwrap();
+    assert!(said.contains("four links against free hinges: "), "{said}");
+    let table = Table::read(at.join("u/models/peaks.csv"));
+    for (name, words) in [("four", "four links"), ("free", "free hinges")] {
+        let samples = Table::read(at.join("u").join(name).join("uncertain/samples.csv"));
+        let survived = samples.rows[1..]
+            .iter()
+            .filter(|row| row["outcome"] != "overturned");
+        let rows = table.rows.iter().filter(|row| row["model"] == *words);
+        assert_eq!(survived.count(), rows.count(), "{name}");
+    }
 }

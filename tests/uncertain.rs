@@ -1,5 +1,6 @@
 //! Uncertain numbers: their samples, the consequences, and which of them matter.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
 use std::num::NonZeroUsize;
@@ -14,6 +15,7 @@ use archrock::studies::ensemble::{Ensemble, SampleRow};
 use archrock::studies::runner::Runner;
 
 use crate::common::{ARCH, COLUMN, GRAVITY, parsed};
+use crate::keys::{document, rows};
 use crate::program::{archrock, done, files, names, printed, refused, scenarios, shown_commands};
 use crate::results::{Table, json};
 
@@ -416,6 +418,30 @@ fn maps_tell_the_probability_of_each_cell() {
         said.contains("the scenario itself overturns in ") && said.contains("width decides "),
         "{said}"
     );
+    // Cells that the block of 0.8 m survives and narrower ones do not, counted from the tables.
+    let of = |path: &str| Table::read(at.join(path));
+    let (own, likely) = (of("r/map.csv"), of("r/uncertain_map/map.csv"));
+    let doubtful = own.rows.iter().zip(&likely.rows);
+    let doubtful = doubtful.filter(|(own, likely)| {
+        own["outcome"] != "overturned" && likely.number("overturned") >= 0.05
+    });
+    let doubtful = doubtful.count();
+    assert!(
+        doubtful > 0
+            && said.contains(&format!(
+                "and in {doubtful} that it survives the probability is at least 5 %"
+            )),
+        "{doubtful}: {said}"
+    );
+    // The command of a cell is of that cell alone.
+    for page in ["r/map.html", "r/uncertain_map/map.html"] {
+        let data = crate::results::data_of(&fs::read_to_string(at.join(page)).unwrap());
+        let command = data["command"].as_str().unwrap();
+        assert!(
+            command.contains("[column]") && !command.contains("uncertain"),
+            "{command}"
+        );
+    }
     let results = at.join("r/uncertain_map");
     assert_eq!(
         names(&results),
@@ -673,6 +699,51 @@ fn numbers_that_go_with_others_take_these_along() {
     }
 }
 
+/// The span of an arch that is measured by it may vary while its rise and its thickness stay, as they were measured; and the joints of an
+/// arch go with its angle. The expected ring is that of the circle through the springings and the crown.
+#[test]
+fn measured_arches_vary_as_they_are_measured() {
+    let text = "[arch]\nspan_m = 6\nrise_m = 2\nthickness_m = 0.7\nmeasured_at = 'intrados'\n";
+    let uncertain = "[uncertain]\n'arch.span_m' = { deviation = 0.05 }\n'arch.rise_m' = { from = 1.9, to = 2.1 }\n\
+                     'arch.thickness_m' = { from = 0.6, to = 0.8 }\n";
+    let scenario = parsed(&format!("{text}{PULSE}{uncertain}"));
+    assert_eq!(parsed(&scenario.to_toml()), scenario);
+    let known = scenario.uncertain().unwrap();
+    assert_eq!(known.keys[0].own, Some(6.0));
+    let values = known.values(5);
+    let sample = known.scenario(&scenario, &values).unwrap().to_json();
+    let of = |key: &str| sample["arch"][key].as_f64().unwrap();
+    let [span_m, rise_m, thickness_m] = values[..] else {
+        panic!("{values:?}");
+    };
+    let inner_m = (0.25 * span_m * span_m + rise_m * rise_m) / (2.0 * rise_m);
+    assert!((of("mean_radius_m") - inner_m - 0.5 * thickness_m).abs() < 1e-12);
+    assert!((of("thickness_ratio") * of("mean_radius_m") - thickness_m).abs() < 1e-12);
+    let half_rad = (0.5 * span_m / inner_m).asin();
+    assert!((of("embrace_deg") - 2.0 * half_rad.to_degrees()).abs() < 1e-9);
+    // Without uncertain numbers it is resolved as ever.
+    let plain = scenario.without_uncertain().to_json();
+    assert!(plain["arch"].get("span_m").is_none() && plain["arch"]["mean_radius_m"].is_f64());
+    // The joints stay where they are in proportion.
+    let joints = text.replace(
+        "thickness_m",
+        "joints_deg = [0.0, 40.0, 70.0, 100.0, 134.76027010391914]\nthickness_m",
+    );
+    let joints = format!(
+        "{joints}{PULSE}[free_hinges]\n[uncertain]\n'arch.span_m' = {{ from = 5.9, to = 6.1 }}\n"
+    );
+    let joints = parsed(&joints);
+    let wider = joints
+        .with_values(&[("arch.span_m", 6.1)])
+        .unwrap()
+        .to_json();
+    let angles = wider["arch"]["joints_deg"].as_array().unwrap();
+    let angle = |index: usize| angles[index].as_f64().unwrap();
+    let embrace_deg = wider["arch"]["embrace_deg"].as_f64().unwrap();
+    assert!((angle(4) - embrace_deg).abs() < 1e-9 && embrace_deg < 134.0);
+    assert!((angle(1) - embrace_deg * 40.0 / 134.760_270_103_919).abs() < 1e-9);
+}
+
 /// With eight samples in place of 200, the first of these, the commands of the page run; what they say of the scenario itself is what
 /// the page shows, and their intervals hold the shares that it shows.
 #[test]
@@ -746,7 +817,11 @@ fn what_cannot_be_uncertain_is_refused() {
         ),
         (
             "'map.duration_s' = { from = 1.0, to = 2.0 }",
-            "names no number of another table",
+            "[map] says what is asked of them",
+        ),
+        (
+            "'verify.confidence_factor' = { from = 1.0, to = 1.2 }",
+            "[verify] says what is asked of them",
         ),
         (
             "arch.depth_m = { from = 1.0, to = 2.0 }",
@@ -811,7 +886,7 @@ fn what_cannot_be_uncertain_is_refused() {
         ),
         (
             "'arch.span_m' = { from = 9.0, to = 11.0 }",
-            "the arch is resolved to mean_radius_m",
+            "[arch] lacks `measured_at`",
         ),
         (
             "total_indices = 3\n'arch.depth_m' = { deviation = 0.1 }",
@@ -832,6 +907,7 @@ fn what_cannot_be_uncertain_is_refused() {
 fn all_numbers_may_be_uncertain() {
     let voussoirs = "thickness_m = 0.5\nvoussoirs = 9\n";
     let mut tried = 0;
+    let mut names_tried = BTreeSet::new();
     for structure in [
         ARCH.to_owned(),
         format!(
@@ -849,6 +925,23 @@ fn all_numbers_may_be_uncertain() {
         "[arch]\nmean_radius_m = 3.0\nthickness_m = 0.6\nembrace_deg = 150.0\n\
          joints_deg = [0.0, 20.0, 50.0, 75.0, 100.0, 150.0]\n[free_hinges]\n"
             .to_owned(),
+        // The arch as it is measured.
+        "[arch]\nspan_m = 6\nrise_m = 2.2\nthickness_m = 0.7\nmeasured_at = 'intrados'\n".to_owned(),
+        "[arch]\nspan_m = 6.0\nembrace_deg = 150.0\nthickness_ratio = 0.2\nmeasured_at = 'extrados'\nvoussoirs = 9\n\
+         [elastic_joints]\nstone_modulus_gpa = 20.0\nmortar_modulus_gpa = 1.0\nmortar_thickness_m = 0.01\n\
+         damping_ratio = 0.05\ndamping_frequency_hz = 20.0\ncompressive_strength_mpa = 10.0\nlongest_step_s = 1e-6\n\
+         [supports]\nright = { spread_m = 1e-3, settlement_m = 1e-3, rotation_rad = 1e-4 }\n"
+            .to_owned(),
+        format!(
+            "{ARCH}voussoirs = 9\n[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\nshear_stiffness_gpa_m = 3.0\ndamping_time_s = 1e-4\n"
+        ),
+        // Ties.
+        format!(
+            "{ARCH}voussoirs = 9\n[[tie]]\nheight_m = 2.0\narea_mm2 = 491.0\nmodulus_gpa = 210.0\nprestress_n = 1e3\n\
+             yield_stress_mpa = 235.0\nbreaks_at_strain = 0.05\n[[tie]]\nfrom_m = [-4.95, 1.0]\nto_m = [4.95, 1.0]\n\
+             stiffness_n_m = 1e6\nyield_force_n = 1e4\n[free_hinges]\n"
+        ),
+        format!("{ARCH}[initial]\nsway = 'right'\nrotation_rad = 0.01\n[impact]\nrestitution_factor = 0.9\n"),
         format!("[pointed_arch]\nspan_m = 4.0\nrise_m = 3.0\n{voussoirs}[free_hinges]\n"),
         format!("[elliptic_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
         format!("[basket_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
@@ -866,11 +959,30 @@ fn all_numbers_may_be_uncertain() {
             if ground != PULSE && structure != ARCH {
                 continue;
             }
-            let scenario = parsed(&format!("{structure}{ground}"));
-            for (table, keys) in scenario.to_json().as_object().unwrap() {
+            let text = format!("{structure}{ground}");
+            let scenario = parsed(&text);
+            let given: serde_json::Value = toml::from_str(&text).unwrap();
+            let tables = [scenario.to_json(), given];
+            let tables = tables.iter().flat_map(|tables| tables.as_object().unwrap());
+            let mut done = BTreeSet::new();
+            for (table, keys) in tables {
                 let mut all = Vec::new();
                 numbers(table, keys, &mut all);
                 for (key, value) in all {
+                    if !done.insert(key.clone()) {
+                        continue;
+                    }
+                    let mut names = key.split('.').filter(|part| part.parse::<usize>().is_err());
+                    names_tried.insert((table.clone(), names.next_back().unwrap().to_owned()));
+                    // What a file gives in two ways contradicts what it is resolved to.
+                    let contradicts = match &*key {
+                        "arch.mean_radius_m" => structure.contains("[arch]\nspan_m"),
+                        "elastic_joints.damping_time_s" => structure.contains("damping_ratio"),
+                        _ => false,
+                    };
+                    if contradicts {
+                        continue;
+                    }
                     // The first and the last joint are the springings: they follow the embrace angle.
                     if ["arch.joints_deg.1", "arch.joints_deg.6"].contains(&&*key) {
                         continue;
@@ -898,7 +1010,45 @@ fn all_numbers_may_be_uncertain() {
             }
         }
     }
-    assert!(tried > 100, "{tried}");
+    assert!(tried > 150, "{tried}");
+    // All numbers of the reference were among them.
+    let whole = [
+        "voussoirs",
+        "drums",
+        "contact_points",
+        "from_block",
+        "to_block",
+    ];
+    let no_numbers = [
+        "measured_at",
+        "pedestal",
+        "contact",
+        "left",
+        "right",
+        "between",
+        "model",
+        "sway",
+    ];
+    let reference = document("scenario.md");
+    for (heading, table) in [
+        ("arch", "arch"),
+        ("column", "column"),
+        ("free_hinges", "free_hinges"),
+        ("elastic_joints", "elastic_joints"),
+        ("supports", "supports"),
+        ("supports.right", "supports"),
+        ("[tie]", "tie"),
+        ("ground.<kind>", "ground"),
+        ("impact", "impact"),
+        ("initial", "initial"),
+        ("simulation", "simulation"),
+    ] {
+        for key in rows(&reference, heading).into_iter().flat_map(|row| row.0) {
+            let is_number = !whole.contains(&&*key) && !no_numbers.contains(&&*key);
+            let was_tried = names_tried.contains(&(table.to_owned(), key.clone()));
+            assert!(!is_number || was_tried, "`{key}` of [{heading}]");
+        }
+    }
 }
 
 fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
@@ -913,7 +1063,8 @@ fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
                 numbers(&format!("{key}.{number}"), value, all);
             }
         }
-        serde_json::Value::Number(number) if number.is_f64() => {
+        // Lengths may be written without a point.
+        serde_json::Value::Number(number) if number.is_f64() || key.ends_with("span_m") => {
             all.push((key.to_owned(), number.as_f64().unwrap()));
         }
         _ => {}
@@ -947,9 +1098,19 @@ fn suites_tell_the_parts_of_fragility() {
     fs::write(at.join("s.toml"), text).unwrap();
     let said = done(at, &["suite", "s.toml", "--out", "r"]);
     assert!(
-        said.contains("of 24 samples of [uncertain]:\n  half of the records and samples overturn"),
+        said.contains(
+            "of 24 samples of [uncertain]:\n  overturns with a probability of 5 % up to peak_g "
+        ),
         "{said}"
     );
+    for words in [
+        ", of 50 % up to ",
+        "the scenario itself with 5 % up to ",
+        "width decides ",
+        "not considered: ",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
     let results = at.join("r/uncertain_suite");
     let capacities = Table::read(results.join("capacities.csv"));
     assert_eq!(capacities.rows.len(), 3 * 25);

@@ -104,14 +104,25 @@ fn check_record(
     arguments: &Arguments,
     quiet: bool,
 ) -> Result<(String, Value), Failure> {
-    // Among several files, the tables may need keys that the other formats do not have.
-    let several = arguments.files.len() > 1;
-    let is_table = Format::of_file(file).is_none_or(|format| format == Format::Csv);
-    let keys = arguments.set.assignments().iter();
-    let keys: Vec<_> = keys
-        .filter(|assignment| is_table || !several || !Layout::is_of_tables(assignment.key()))
+    // Beside tables there may be files of other formats, which do not have their keys.
+    let is_table = |file: &Path| match Format::of_file(file) {
+        Some(format) => format == Format::Csv,
+        None => is_format_given(arguments),
+    };
+    let mut files = arguments.files.iter();
+    let has_all = is_table(file) || !files.any(|file| is_table(file));
+    let (keys, left_out): (Vec<_>, Vec<_>) = arguments
+        .set
+        .assignments()
+        .iter()
         .cloned()
-        .collect();
+        .partition(|assignment| has_all || !Layout::is_of_tables(assignment.key()));
+    if !quiet && left_out.iter().any(|assignment| assignment.key() == "unit") {
+        super::warn(&[format!(
+            "{}: `unit` is for the tables among the files; this one has its own",
+            file.display()
+        )]);
+    }
     let series = Series::read_file(file, &keys).map_err(|errors| {
         let hint = "keys of [ground.record] are given with --set, as in --set unit=cm/s2 --set skip_rows=3";
         Failure::Input(format!("{errors}\n{hint}"))

@@ -18,6 +18,7 @@ use serde_json::{Map, Value};
 use self::progress::RunProgress;
 use super::figure::{FigureOption, PanelsOption};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
+use super::studies::compare;
 use super::study::Work;
 use super::uncertain::{Asked, Telling, words};
 use super::{Failure, Format, print, print_all};
@@ -226,6 +227,7 @@ impl Job {
             return Ok(());
         };
         let several = self.scenarios.len() > 1;
+        let mut models = Vec::new();
         for scenario in &self.scenarios {
             let name = scenario.motion().hinges().name();
             let place = if several { &place.within(name) } else { place };
@@ -237,7 +239,13 @@ impl Job {
                     &mut told.summary
                 };
                 summary["uncertain"] = results.summary;
+                models.push((scenario.motion().words(), results.peaks));
             }
+        }
+        let title = self.scenarios[0].title();
+        if let Some(compared) = compare(title, &models, place, samples.figure)? {
+            let _ = writeln!(told.words, "{}", compared.words);
+            told.summary["peaks"] = compared.summary;
         }
         Ok(())
     }

@@ -8,10 +8,13 @@ use archrock::studies::catalogue::{StudyError, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
+use archrock::studies::peaks::{self, Peak};
 use archrock::studies::results::{Look, Results};
 use clap::ValueEnum;
+use serde_json::Map;
 
 use super::figure::FigureOption;
+use super::run::Models;
 use super::scenario_file::{Destination, Input};
 use super::study::{HingesOption, Options, say};
 use super::uncertain::{Asked, Telling, words};
@@ -33,8 +36,10 @@ pub struct MapArguments {
 pub struct SuiteArguments {
     #[command(flatten)]
     options: Options,
-    #[command(flatten)]
-    hinges: HingesOption,
+    /// Models of motion; several write to a folder each, named after the model, and the distributions of their peaks are compared
+    /// [default: the scenario's own choice].
+    #[arg(long, value_enum, value_delimiter = ',')]
+    hinges: Vec<Models>,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -208,17 +213,89 @@ fn with_samples(
 pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
     let input = options.open()?;
-    let scenario = arguments.hinges.read(&input, quiet)?;
+    let scenarios = Models::read(&arguments.hinges, &input)?;
+    if !quiet {
+        super::warn(&scenarios[0].unlikely());
+        if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
+            say(ignored);
+        }
+    }
     let look = Look::of(arguments.figure.get()?);
-    with_samples(
-        StudyKind::Suite,
-        Asked::Suite,
-        options,
-        (&input, &scenario),
-        (look, arguments.figure),
+    if let [scenario] = &scenarios[..] {
+        return with_samples(
+            StudyKind::Suite,
+            Asked::Suite,
+            options,
+            (&input, scenario),
+            (look, arguments.figure),
+            quiet,
+        );
+    }
+    let place = options.place(&input, arguments.figure)?;
+    let samples = Telling {
+        work: options.work(),
+        figure: look.figure,
         quiet,
-    )
+    };
+    let (mut models, mut summaries) = (Vec::new(), Map::new());
+    for scenario in &scenarios {
+        let name = scenario.motion().hinges().name();
+        let place = place.within(name);
+        if scenario.uncertain().is_none() || !samples.work.is_part() {
+            let own = options.compute(StudyKind::Suite, &input, scenario, (look, &place), quiet)?;
+            if let Some(results) = own {
+                if !quiet {
+                    say(scenario.motion().words());
+                }
+                show(&results, &place, Format::Text, quiet)?;
+                models.push((scenario.motion().words(), results.peaks));
+                summaries.insert(name.to_owned(), results.summary);
+            }
+        }
+        if let Some(results) = samples.tell(scenario, Asked::Suite, &place)?
+            && !quiet
+        {
+            say(words(&results).trim_end());
+        }
+    }
+    let compared = compare(scenarios[0].title(), &models, &place, look.figure)?;
+    if let (Some(compared), false) = (&compared, quiet) {
+        say(&compared.words);
+    }
+    if let Format::Json = options.format() {
+        let peaks = compared.map(|compared| ("peaks".to_owned(), compared.summary));
+        summaries.extend(peaks);
+        print(&pretty(&summaries.into()))?;
+    }
+    Ok(())
 }
+
+/// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
+pub fn compare(
+    title: Option<&str>,
+    models: &[(&str, Vec<Peak>)],
+    place: &Destination,
+    figure: Figure,
+) -> Result<Option<Results>, Failure> {
+    if models.len() < 2 {
+        return Ok(None);
+    }
+    let models: Vec<(&str, &[Peak])> = models
+        .iter()
+        .map(|(name, peaks)| (*name, &peaks[..]))
+        .collect();
+    let results = peaks::tell(
+        title.unwrap_or("Largest rotations of several models"),
+        &models,
+        figure,
+    );
+    let results = results.map_err(StudyError::from)?;
+    place.within(MODELS).write(&results, true)?;
+    Ok(Some(results))
+}
+
+/// The folder of what several models of motion have in common.
+const MODELS: &str = "models";
 
 pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
@@ -257,6 +334,16 @@ pub fn write(
     quiet: bool,
 ) -> Result<(), Failure> {
     place.write(results, true)?;
+    show(results, place, format, quiet)
+}
+
+/// Tells results that are written.
+pub fn show(
+    results: &Results,
+    place: &Destination,
+    format: Format,
+    quiet: bool,
+) -> Result<(), Failure> {
     if let Format::Json = format {
         print(&pretty(&results.summary))?;
     } else if !quiet {

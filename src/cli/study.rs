@@ -149,7 +149,7 @@ impl Options {
         Ok(figure.printed(input.results(self.out.as_deref())?))
     }
 
-    /// Computes the study of a scenario, or the part that was asked for, and writes the results once all rows are computed.
+    /// Computes the study of a scenario, or the part that was asked for, and tells the results once all rows are computed.
     pub fn study(
         &self,
         kind: StudyKind,
@@ -159,9 +159,29 @@ impl Options {
         quiet: bool,
     ) -> Result<(), Failure> {
         let place = self.place(input, figure)?;
+        match self.compute(kind, input, scenario, (look, &place), quiet)? {
+            Some(results) => super::studies::show(&results, &place, self.format, quiet),
+            None => Ok(()),
+        }
+    }
+
+    /// The format of the printed summary.
+    pub const fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Computes the study of a scenario into a folder. Returns its results, which are written; `None` of a part.
+    pub fn compute(
+        &self,
+        kind: StudyKind,
+        input: &Input<'_>,
+        scenario: &Scenario,
+        (look, place): (Look, &Destination),
+        quiet: bool,
+    ) -> Result<Option<Results>, Failure> {
         let done = self
             .work
-            .compute(kind.name(), &place, quiet, |runner, task, watch| {
+            .compute(kind.name(), place, quiet, |runner, task, watch| {
                 let done = kind.compute(scenario, look, runner, Some(task), watch);
                 done.map_err(|error| match error {
                     StudyError::Scenario(_) => input.about(error.into()),
@@ -169,10 +189,11 @@ impl Options {
                 })
             })?;
         let Some((results, part)) = done else {
-            return Ok(());
+            return Ok(None);
         };
-        super::studies::write(&results, &place, self.format, quiet)?;
-        Ok(part.map_or(Ok(()), PartFile::remove)?)
+        place.write(&results, true)?;
+        part.map_or(Ok(()), PartFile::remove)?;
+        Ok(Some(results))
     }
 }
 

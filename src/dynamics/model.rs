@@ -62,7 +62,8 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
-    /// Energy above that at rest, in J, that it must reach to overturn; only for elastic joints, and where it is known.
+    /// Energy above that at rest, in J, that it must reach to overturn while no joint slips; only for elastic joints, and where it is
+    /// known. What slips may overturn with less.
     fn elastic_barrier_j(&self, _gravity_m_s2: f64) -> Option<f64> {
         None
     }

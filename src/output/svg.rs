@@ -579,6 +579,22 @@ impl Axes {
         )
     }
 
+    /// The corners of a curve that goes across the plot level, from this height, and rises at each x to the height given with it.
+    pub(crate) fn staircase(
+        &self,
+        first: f64,
+        rises: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Vec<Vector2<f64>> {
+        let mut before = first;
+        let mut corners = vec![self.place(self.x.low, before)];
+        for (x, y) in rises {
+            corners.extend([self.place(x, before), self.place(x, y)]);
+            before = y;
+        }
+        corners.push(self.place(self.x.high, before));
+        corners
+    }
+
     /// Draws frame, ticks and labels, that of the y axis along it; without `x_label` the lower side has ticks only.
     pub fn draw(&self, drawing: &mut Drawing, x_label: Option<&str>, y_label: &str) {
         let widest = self.grid(drawing);

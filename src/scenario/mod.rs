@@ -130,6 +130,8 @@ pub struct Scenario {
     demand: Option<Demand>,
     verify: Option<Verify>,
     uncertain: Option<Uncertain>,
+    /// Tables that are written as they were given, because they give an uncertain number that is resolved to others.
+    as_given: serde_json::Map<String, Value>,
     /// The motion of `ground`, and of the right foot, built when they were read.
     ground_motion: Arc<GroundMotion>,
 }
@@ -238,6 +240,7 @@ impl Scenario {
     pub fn without_uncertain(self) -> Self {
         Self {
             uncertain: None,
+            as_given: serde_json::Map::new(),
             ..self
         }
     }
@@ -361,7 +364,7 @@ impl Scenario {
             let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
             return Err(table.wrong("initial", wrong));
         }
-        let certain = Self {
+        let mut certain = Self {
             title: title?.map(|title| shown(&title)),
             structure,
             ties,
@@ -377,14 +380,15 @@ impl Scenario {
             demand,
             verify,
             uncertain: None,
+            as_given: serde_json::Map::new(),
             ground_motion: Arc::new(GroundMotion::still()),
         };
-        let ground_motion = Arc::new(certain.under_both_feet(ground_motion));
-        let certain = Self {
-            ground_motion,
-            ..certain
-        };
-        let uncertain = uncertain?.map(|uncertain| uncertain.check(table, &certain));
+        certain.ground_motion = Arc::new(certain.under_both_feet(ground_motion));
+        let uncertain = uncertain?.map(|uncertain| {
+            let resolved = certain.to_json();
+            certain.as_given = uncertain.as_given(table, &resolved);
+            uncertain.check(table, &certain, &resolved)
+        });
         Ok(Self {
             uncertain: uncertain.transpose()?,
             ..certain
@@ -413,6 +417,7 @@ impl Scenario {
             spectrum: None,
             suite: None,
             uncertain: None,
+            as_given: serde_json::Map::new(),
             ground_motion: Arc::new(motion),
             ..self.clone()
         }
@@ -609,6 +614,11 @@ impl Scenario {
             .map(|(key, table)| (key.to_owned(), table));
         let title = ("title".to_owned(), json(&self.title));
         let all = [title].into_iter().chain(structure).chain(tables);
+        let all = all.map(|(key, value)| {
+            let given = self.as_given.get(&key).filter(|_| !value.is_null());
+            let value = given.cloned().unwrap_or(value);
+            (key, value)
+        });
         Value::Object(all.filter(|(_, value)| !value.is_null()).collect())
     }
 }

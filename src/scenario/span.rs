@@ -119,7 +119,7 @@ impl Circular {
         );
         let (span_m, height, measured_at, thickness) = (span_m?, height?, measured_at?, thickness?);
         let embrace_deg = if rises {
-            embrace_deg_of(table, span_m, height)?
+            checked_embrace_deg(table, span_m, height)?
         } else {
             height
         };
@@ -169,10 +169,15 @@ impl Circular {
 }
 
 /// The embrace angle of an arc of this span and rise.
-fn embrace_deg_of(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
+pub(super) fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
     let half_m = 0.5 * span_m;
     // The angle between chord and tangent at the crown is a quarter of the embrace angle.
-    let embrace_deg = 4.0 * (rise_m / half_m).atan().to_degrees();
+    4.0 * (rise_m / half_m).atan().to_degrees()
+}
+
+/// The same, which must be one of an arch.
+fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
+    let embrace_deg = embrace_deg(span_m, rise_m);
     if EMBRACE_DEG.contains(embrace_deg) {
         return Ok(embrace_deg);
     }

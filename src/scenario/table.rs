@@ -5,8 +5,10 @@
 use std::fmt;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
 
+use serde::Deserialize as _;
+use serde_json::Value;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use super::assignment::{Appended, Assignment};
 use super::error::{Fault, excerpt};
@@ -307,6 +309,12 @@ impl<'a> Table<'a> {
         let keys = self.entries.keys().map(|key| key.get_ref().as_ref());
         let keys = keys.filter(|key: &&str| key.contains('.'));
         keys.map(str::to_owned).collect()
+    }
+
+    /// A value as the file gives it, if it does.
+    pub(super) fn as_given(&self, key: &str) -> Option<Value> {
+        let given = ValueDeserializer::from(self.entries.get(key)?.clone());
+        Value::deserialize(given).ok()
     }
 
     /// Whether the file gives a table for the key.

@@ -14,12 +14,12 @@
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::Scenario;
 use super::sequence::Spacing;
 use super::table::{Count, Number, OneOf, Reading, Switch, Table};
-use super::variant::{number, parts};
+use super::variant::{number, parts, value};
 use crate::argument::{plain, short};
 use crate::bisection::{Width, bisect, middle};
 
@@ -250,13 +250,43 @@ impl Uncertain {
         })
     }
 
+    /// The tables with uncertain numbers whose numbers are resolved to others, as span and rise of an arch are: they stay as the file
+    /// gives them, so that what it gives varies, and what else it gives does not.
+    pub(super) fn as_given(&self, table: &Table<'_>, resolved: &Value) -> Map<String, Value> {
+        let mut kept = Map::new();
+        for key in &self.keys {
+            let name = parts(&key.key).swap_remove(0);
+            // Of a record only its strength and its start may vary, which the resolved scenario has.
+            let Some(given) = table.as_given(name).filter(|_| name != "ground") else {
+                continue;
+            };
+            if lacks(resolved.get(name), &given) {
+                kept.insert(name.to_owned(), given);
+            }
+        }
+        // Entries of lists that the file does not give are there in the resolved table only.
+        let tables = Value::Object(kept.clone());
+        for key in &self.keys {
+            let parts = parts(&key.key);
+            let is_entry = parts.iter().any(|part| part.parse::<usize>().is_ok());
+            if is_entry && value(&tables, &key.key).is_none() {
+                kept.shift_remove(parts[0]);
+            }
+        }
+        kept
+    }
+
     /// Adds the scenario's own values, and refuses keys and values that the scenario does not allow. The faults go to the
     /// table around `[uncertain]`.
-    pub(super) fn check(mut self, table: &mut Table<'_>, scenario: &Scenario) -> Reading<Self> {
-        let resolved = scenario.to_json();
+    pub(super) fn check(
+        mut self,
+        table: &mut Table<'_>,
+        scenario: &Scenario,
+        resolved: &Value,
+    ) -> Reading<Self> {
         let mut faulty = Ok(());
         for index in 0..self.keys.len() {
-            if let Err(wrong) = self.check_key(index, &resolved, scenario) {
+            if let Err(wrong) = self.check_key(index, resolved, scenario) {
                 faulty = Err(table.wrong_in(TABLE, &self.keys[index].key, wrong));
             }
         }
@@ -288,8 +318,14 @@ impl Uncertain {
         {
             return Err("is the same as a key before it; leave one out".to_owned());
         }
-        match number(resolved, &key.key) {
-            Some(Value::Number(number)) if number.is_f64() => key.own = number.as_f64(),
+        // Where the file gives another number, a length may be written without a point.
+        let resolved = number(resolved, &key.key);
+        let is_given = resolved.is_none();
+        let given = || value(&scenario.to_json(), &key.key).cloned();
+        match resolved.or_else(given) {
+            Some(Value::Number(number)) if number.is_f64() || is_given => {
+                key.own = number.as_f64();
+            }
             Some(Value::Number(number)) => {
                 return Err(format!(
                     "is the whole number {number} in the scenario; only numbers that may have a fraction are uncertain"
@@ -299,12 +335,6 @@ impl Uncertain {
             Some(_) => {
                 return Err("is no number in the scenario; only numbers are uncertain".to_owned());
             }
-        }
-        if let (None, ["arch", "span_m" | "rise_m"]) = (key.own, &parts(&key.key)[..]) {
-            return Err(
-                "is not uncertain by itself: the arch is resolved to mean_radius_m, thickness_ratio and embrace_deg, which may be"
-                    .to_owned(),
-            );
         }
         if key.own.is_none() && matches!(key.spread, Spread::About { .. }) {
             return Err(format!(
@@ -383,6 +413,17 @@ impl Uncertain {
         let keys = self.keys.iter().map(|key| key.key.as_str());
         let values: Vec<_> = keys.zip(values.iter().copied()).collect();
         scenario.with_values(&values)
+    }
+}
+
+/// Whether a table of the file gives a number that the resolved one does not have.
+fn lacks(resolved: Option<&Value>, given: &Value) -> bool {
+    match given {
+        Value::Object(given) => given
+            .iter()
+            .any(|(key, given)| lacks(resolved.and_then(|table| table.get(key)), given)),
+        Value::Number(_) => resolved.is_none(),
+        _ => false,
     }
 }
 

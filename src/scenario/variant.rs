@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::span;
 use super::toml_text::toml_text;
 use super::{Assignment, Changes, Ground, Scenario, Source};
 use std::sync::Arc;
@@ -92,17 +93,22 @@ pub(super) fn parts(key: &str) -> Vec<&str> {
     key.split('.').map(str::trim).collect()
 }
 
-/// A number of a resolved scenario by its key, entries of lists counted from 1; also the thickness of a circular arch, of which the
-/// resolved scenario has the ratio.
+/// A value of some tables by its key, entries of lists counted from 1.
+pub(super) fn value<'v>(tables: &'v Value, key: &str) -> Option<&'v Value> {
+    parts(key)
+        .iter()
+        .try_fold(tables, |table, part| match table {
+            Value::Array(entries) => entries.get(part.parse::<usize>().ok()?.checked_sub(1)?),
+            table => table.get(part),
+        })
+}
+
+/// A value of a resolved scenario by its key; also the thickness of a circular arch, of which the resolved scenario has the ratio.
 pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
-    let parts = parts(key);
-    let found = parts.iter().try_fold(resolved, |table, part| match table {
-        Value::Array(entries) => entries.get(part.parse::<usize>().ok()?.checked_sub(1)?),
-        table => table.get(part),
-    });
-    if let Some(found) = found {
+    if let Some(found) = value(resolved, key) {
         return Some(found.clone());
     }
+    let parts = parts(key);
     let other = |keys: &[&str]| {
         let found = keys.iter().try_fold(resolved, |table, key| table.get(key));
         found.and_then(Value::as_f64)
@@ -116,21 +122,34 @@ pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
     }
 }
 
+/// Keys of an arch that say the same in two ways: where one is given, the other goes.
+const SAME: [[&str; 2]; 4] = [
+    ["thickness_m", "thickness_ratio"],
+    ["thickness_ratio", "thickness_m"],
+    ["rise_m", "embrace_deg"],
+    ["embrace_deg", "rise_m"],
+];
+
 /// Changes what has to go with other numbers in a resolved scenario: of an arch either the thickness is there or its ratio, its last
 /// joint is at the other springing, and the drums of a column add up to its height.
 fn make_room(table: &mut Value, values: &[(&str, f64)]) {
     let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
-    if keys.iter().any(|key| key[..] == ["arch", "thickness_m"])
-        && let Some(Value::Object(arch)) = table.get_mut("arch")
-    {
-        arch.shift_remove("thickness_ratio");
-    }
     let given = |wanted: [&str; 2]| {
         let index = keys.iter().position(|key| key[..] == wanted)?;
         Some(values[index].1)
     };
+    for [is_given, goes] in SAME {
+        if given(["arch", is_given]).is_some()
+            && let Some(Value::Object(arch)) = table.get_mut("arch")
+        {
+            arch.shift_remove(goes);
+        }
+    }
+    let of_arch = |key: &str| given(["arch", key]).or_else(|| table["arch"][key].as_f64());
+    let measured = of_arch("span_m").zip(of_arch("rise_m"));
+    let measured_deg = measured.map(|(span_m, rise_m)| span::embrace_deg(span_m, rise_m));
     if let (Some(embrace_deg), Some(Value::Array(joints_deg))) = (
-        given(["arch", "embrace_deg"]),
+        given(["arch", "embrace_deg"]).or(measured_deg),
         table.pointer_mut("/arch/joints_deg"),
     ) && let Some(last_deg) = joints_deg.last().and_then(Value::as_f64)
     {
@@ -184,11 +203,13 @@ fn fit_drums(table: &mut Value, values: &[(&str, f64)], height_m: Option<f64>, d
 
 /// An assignment of a number to a key of a table; whole numbers may stand for counts.
 fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
-    let is_study = key
-        .split('.')
-        .next()
-        .is_some_and(|table| STUDIES.contains(&table.trim()));
-    if is_study || !key.contains('.') {
+    let table = parts(key)[0];
+    if STUDIES.contains(&table) || CHECK.contains(&table) {
+        return Err(format!(
+            "names no number of the structure or of its motion, as \"arch.depth_m\" does: [{table}] says what is asked of them"
+        ));
+    }
+    if !key.contains('.') {
         return Err("names no number of another table, as \"arch.depth_m\" does".to_owned());
     }
     let whole = value.fract() == 0.0 && value.abs() < 1e15;

@@ -28,6 +28,7 @@ mod kind;
 pub mod limit;
 pub mod map;
 pub mod part;
+pub mod peaks;
 pub mod pictures;
 mod remarks;
 pub mod results;

@@ -125,7 +125,8 @@ fn rotations_rad(peaks: &[Peak]) -> Vec<f64> {
 /// When a value is not finite.
 pub fn tell(title: &str, models: &[OfModel<'_>], figure: Figure) -> Result<Results, OutputError> {
     let distributions: Vec<_> = models.iter().map(|model| distribution(*model)).collect();
-    let pairs = (0..models.len()).flat_map(|one| (one + 1..models.len()).map(move |two| [one, two]));
+    let pairs =
+        (0..models.len()).flat_map(|one| (one + 1..models.len()).map(move |two| [one, two]));
     let pairs: Vec<([&str; 2], Apart)> = pairs
         .filter_map(|pair| {
             let [one, other] = pair.map(|index| models[index]);
@@ -142,8 +143,8 @@ pub fn tell(title: &str, models: &[OfModel<'_>], figure: Figure) -> Result<Resul
             "p": apart.p,
         })).collect::<Vec<_>>(),
     });
-    let columns: Vec<Column<'_, &UpTo<'_>>> = vec![
-        column("model", |at: &&UpTo<'_>| at.model),
+    let columns: [Column<'_, &UpTo<'_>>; 3] = [
+        column("model", |at: &&UpTo<'_>| at.model.to_owned()),
         column("peak_rotation_rad", |at: &&UpTo<'_>| at.rotation_rad),
         column("share", |at: &&UpTo<'_>| at.share),
     ];
@@ -201,7 +202,11 @@ fn in_words([one, other]: [&str; 2], apart: &Apart) -> String {
     format!(
         "distributions of the largest rotation, {one} against {other}: {distance:.2} apart at most (Kolmogorov), {verdict} (p = {}): up to \
          {at_rad:.4} rad rock {one_there} and {other_there}",
-        if *p < 0.01 { format!("{p:.3}") } else { format!("{p:.2}") }
+        if *p < 0.01 {
+            format!("{p:.3}")
+        } else {
+            format!("{p:.2}")
+        }
     )
 }
 
@@ -227,7 +232,11 @@ fn draw(
         y: Scale::exactly(0.0, 1.0, 5),
     };
     let label = "largest rotation (rad); what overturned is beyond";
-    axes.draw(&mut drawing, Some(label), "share with at most this rotation");
+    axes.draw(
+        &mut drawing,
+        Some(label),
+        "share with at most this rotation",
+    );
     for ((name, stroke), distribution) in named.zip(distributions) {
         let rises = distribution.iter().map(|at| (at.rotation_rad, at.share));
         drawing.curve(name, axes.staircase(0.0, rises), stroke);
@@ -274,8 +283,8 @@ mod tests {
         assert_eq!(apart(&one, &[]), None);
     }
 
-    /// Values without any pairing: then the chance to be as far apart is that of the limit theorem, to the noise of a thousand draws
-    /// (0.016 at most) and its finite samples.
+    /// Values without any pairing: then the chance to be as far apart is that of the limit theorem, to three deviations (of 0.016 at
+    /// most) of a thousand draws.
     #[test]
     fn chance_is_that_of_kolmogorov() {
         let value = |index: u64, shift: f64| {
@@ -290,7 +299,7 @@ mod tests {
             };
             let found = apart(&sample(0, 0.0), &sample(500, shift)).unwrap();
             let known = kolmogorov(found.distance, 150, 150);
-            assert!((found.p - known).abs() < 0.08, "{shift}: {found:?} {known}");
+            assert!((found.p - known).abs() < 0.05, "{shift}: {found:?} {known}");
         }
         // Far apart: nothing that chance does is as far.
         let far = apart(

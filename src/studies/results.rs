@@ -4,10 +4,11 @@ use std::io::Write as _;
 
 use serde_json::Value;
 
+use super::peaks::Peak;
 use crate::output::{Figure, Folder, OutputError};
 
 /// The results of a study.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Results {
     /// Files by their names; a folder that has the last of them is complete.
     pub files: Vec<(&'static str, Vec<u8>)>,
@@ -17,6 +18,8 @@ pub struct Results {
     pub words: String,
     /// The summary for programs, with all numbers.
     pub summary: Value,
+    /// How far each case rocked, of suites and samples of a run, to be [compared](super::peaks) with other models of motion.
+    pub peaks: Vec<Peak>,
 }
 
 impl Results {

@@ -53,7 +53,7 @@ pub(super) struct Start<'a> {
     pub rest: &'a Rest,
     /// Whether steps may be halved where the energy balance needs it.
     pub may_halve: bool,
-    /// Energy above that at rest without which it does not overturn, where that is known; it takes time to find.
+    /// Energy above that at rest without which it does not overturn unless joints slip, where that is known; it takes time to find.
     pub barrier_j: &'a dyn Fn() -> Option<f64>,
     pub until: Until,
 }

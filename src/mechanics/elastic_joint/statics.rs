@@ -248,8 +248,8 @@ const SOFTER: usize = 6;
 const BALANCED_ON_WAY: f64 = 1e-7;
 
 impl ElasticStructure {
-    /// Energy in J above that at rest that it needs at least to overturn; `None` if that is not found, or if something crushes on the
-    /// path.
+    /// Energy in J above that at rest that it needs at least to overturn while no joint slips; `None` if that is not found, or if something
+    /// crushes on the path. What slips may overturn with less.
     ///
     /// It is pushed over slowly. If that path is lost, because joints are too stiff or bear on points, the path of softer joints with
     /// continuous contact gives a lower bound: in no shape do these have more energy (the sum over points is the trapezoidal rule, which

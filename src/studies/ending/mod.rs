@@ -38,12 +38,15 @@ pub struct Ending {
     pub energy_defect_ratio: f64,
     /// The largest rotation.
     pub peak: PeakRotation,
+    /// The same of any body, in radians, with every model.
+    #[serde(default)]
+    pub peak_rotation_rad: f64,
     /// The time steps of the computation; `None` for models whose steps follow from a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steps: Option<Steps>,
     /// Why it is uncertain whether the structure overturns: its outcome, and the other outcome of a repetition. `None` if it is certain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub uncertain: Option<String>,
+    pub uncertain: Option<Box<str>>,
 }
 
 /// The largest rotation, in the measure that the model allows.
@@ -188,13 +191,18 @@ impl Ending {
             impacts: summary.known_impacts(),
             energy_defect_ratio: summary.energy_defect_ratio,
             peak: PeakRotation::of(summary),
+            peak_rotation_rad: summary.largest_rotation_rad(),
             steps: summary.row.as_ref().map(|row| Steps {
                 longest_s: row.longest_step_s,
                 shortest_s: row.shortest_step_s,
             }),
-            uncertain,
+            uncertain: uncertain.map(String::into_boxed_str),
         };
-        check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
+        check_finite(&[
+            ending.outcome_time_s,
+            ending.energy_defect_ratio,
+            ending.peak_rotation_rad,
+        ])?;
         check_finite(ending.peak.over_critical().as_slice())?;
         check_finite(ending.peak.rad().as_slice())?;
         Ok(ending)

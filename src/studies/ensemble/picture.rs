@@ -113,15 +113,8 @@ pub(super) fn probability(
         y: Scale::exactly(0.0, 1.0, 5),
     };
     // A step curve: the share rises at each factor at which a sample overturns.
-    let steps = |of: fn(&ProbabilityAt) -> f64, first: f64| -> Vec<Vector2<f64>> {
-        let mut before = first;
-        let mut points = vec![axes.place(axes.x.low, first)];
-        for at in probabilities {
-            points.extend([axes.place(at.factor, before), axes.place(at.factor, of(at))]);
-            before = of(at);
-        }
-        points.push(axes.place(axes.x.high, before));
-        points
+    let steps = |of: fn(&ProbabilityAt) -> f64, first: f64| {
+        axes.staircase(first, probabilities.iter().map(|at| (at.factor, of(at))))
     };
     let none = super::statistics::Share::of(0, told.answered().count());
     let low = steps(|at| at.share.low, 0.0);
@@ -171,17 +164,9 @@ pub(super) fn fragility(figure: Figure, told: &Told<'_, Capacity>, asked: &Capac
         let mut strengths: Vec<f64> = edges.map(super::edges::FirstEdge::strength).collect();
         strengths.sort_by(f64::total_cmp);
         let all = strengths.len().max(1) as f64;
-        let mut points = vec![axes.place(axes.x.low, 0.0)];
-        let mut last = 0.0;
-        for (strength, count) in strengths.iter().zip(1..) {
-            if strength.is_finite() {
-                let share = f64::from(count) / all;
-                points.extend([axes.place(*strength, last), axes.place(*strength, share)]);
-                last = share;
-            }
-        }
-        points.push(axes.place(axes.x.high, last));
-        points
+        let shares = (1..).map(|count| f64::from(count) / all);
+        let rises = strengths.into_iter().zip(shares);
+        axes.staircase(0.0, rises.filter(|(strength, _)| strength.is_finite()))
     };
     let label = asked.measure().column().replace('_', " ");
     axes.draw(&mut drawing, Some(&label), "share that overturns");

@@ -127,6 +127,21 @@ pub const REPLICATES: usize = 300;
 
 /// Draws indices below `count` with replacement, `count` at a time, [`REPLICATES`] times; the same ones on every machine.
 pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
+    let mut draw = draws();
+    (0..REPLICATES).map(move |_| (0..count).map(|_| draw(count)).collect())
+}
+
+/// Number of permutations of a test.
+const PERMUTATIONS: usize = 999;
+
+/// Draws which of `count` pairs are swapped, each with even odds, 999 times; the same ones on every machine.
+pub fn swaps(count: usize) -> impl Iterator<Item = Vec<bool>> {
+    let mut draw = draws();
+    (0..PERMUTATIONS).map(move |_| (0..count).map(|_| draw(2) == 1).collect())
+}
+
+/// Draws whole numbers below the one that it is asked with, evenly.
+fn draws() -> impl FnMut(usize) -> usize {
     let mut state = 0_u64;
     // SplitMix64 (Steele, Lea and Flood 2014).
     let mut next = move || {
@@ -137,8 +152,7 @@ pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
         mixed ^ (mixed >> 31)
     };
     #[expect(clippy::cast_possible_truncation, reason = "below a count")]
-    let mut draw = move || ((u128::from(next()) * count as u128) >> 64) as usize;
-    (0..REPLICATES).map(move |_| (0..count).map(|_| draw()).collect())
+    move |below| ((u128::from(next()) * below as u128) >> 64) as usize
 }
 
 /// The ends of the 95 % interval of bootstrapped values.

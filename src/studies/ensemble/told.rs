@@ -6,13 +6,14 @@ use serde_json::{Value, json};
 use super::edges::{FirstEdge, ProbabilityAt};
 use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
-use super::records::{AtLevel, Capacities, Capacity};
-use super::statistics::{Share, band};
-use super::{NoAnswer, Told, picture};
+use super::records::{AtLevel, Capacities, Capacity, Fragilities};
+use super::statistics::{Share, band, quantile};
+use super::{NoAnswer, SampleRow, Told, picture};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, pretty};
 use crate::scenario::{Uncertain, UncertainKey, shown};
 use crate::studies::ending::columns::{self, UNCERTAIN};
+use crate::studies::peaks::Peak;
 use crate::studies::results::Results;
 use crate::studies::threshold::rounded;
 
@@ -77,8 +78,19 @@ impl<'a> Decides<'a> {
         }
     }
 
+    /// The end of the first sentence of every study: what decides, and what was not considered.
+    pub(super) fn ending(&self, uncertain: &Uncertain) -> String {
+        let decided = self.in_words(uncertain).unwrap_or_else(|| {
+            format!(
+                "what decides {} cannot be said: the samples are alike, or too few",
+                self.what
+            )
+        });
+        format!(";\n    {decided};\n    {NOT_CONSIDERED}")
+    }
+
     /// `friction coefficient decides 60 % of the first factor that overturns, thickness ratio 25 %`.
-    pub(super) fn in_words(&self, uncertain: &Uncertain) -> Option<String> {
+    fn in_words(&self, uncertain: &Uncertain) -> Option<String> {
         const LEAST: f64 = 0.05;
         let mut of: Vec<_> = self.of.as_ref()?.iter().collect();
         of.sort_by(|a, b| b.1.first_order.total_cmp(&a.1.first_order));
@@ -303,7 +315,20 @@ pub(super) fn histories(
     }
     lines_of_words.push(far_in_words(told));
     lines_of_words.extend(without_answer(told));
+    let peak_of = |(group, row): (usize, &SampleRow<Went>)| {
+        let rotation_rad = row.answer.as_ref().ok()?.peak_rad();
+        Some(Peak {
+            group,
+            rotation_rad,
+        })
+    };
     Ok(Results {
+        peaks: told
+            .samples
+            .iter()
+            .enumerate()
+            .filter_map(peak_of)
+            .collect(),
         files: vec![
             (
                 "bands.svg",
@@ -368,14 +393,13 @@ fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> Stri
         },
         Err(_) => "has no answer".to_owned(),
     };
+    // Where all samples end alike, how far they rock may still be decided by something.
     let [whether, far] = decides;
-    let decided = whether
-        .in_words(told.uncertain)
-        .or_else(|| far.in_words(told.uncertain));
-    let decided = decided.map_or(String::new(), |decided| format!(";\n    {decided}"));
+    let decides = if whether.of.is_some() { whether } else { far };
     format!(
-        "overturns with a probability of {};\n    the scenario itself {own}{decided};\n    {NOT_CONSIDERED}",
-        share_in_words(&share)
+        "overturns with a probability of {};\n    the scenario itself {own}{}",
+        share_in_words(&share),
+        decides.ending(told.uncertain)
     )
 }
 
@@ -489,15 +513,50 @@ fn first_of_edges(told: &Told<'_, FirstEdge>, decides: &Decides<'_>) -> String {
         },
         Err(_) => "the scenario itself has no answer".to_owned(),
     };
-    let decided = decides.in_words(told.uncertain);
-    let decided = decided.map_or(String::new(), |decided| format!(";\n    {decided}"));
     format!(
-        "first overturns at a factor of {} (5 to 95 %: {} to {}), {own}; up to the factor 1 with a probability of \
-         {}{decided};\n    {NOT_CONSIDERED}",
+        "first overturns at a factor of {} (5 to 95 %: {} to {}), {own};\n    up to the factor 1 with a probability of \
+         {}{}",
         factor(median),
         factor(low),
         factor(high),
-        share_in_words(&at_one)
+        share_in_words(&at_one),
+        decides.ending(told.uncertain)
+    )
+}
+
+/// With which probability records overturn, and how much stronger those are that overturn half of the cases.
+fn first_of_capacities(
+    told: &Told<'_, Capacity>,
+    asked: &Capacities,
+    fragilities: &Fragilities,
+) -> String {
+    let column = asked.measure().column();
+    let all: Vec<f64> = told
+        .answered()
+        .flat_map(|(_, capacity)| capacity.0.iter().map(FirstEdge::strength))
+        .collect();
+    let own = told.own.as_ref().ok();
+    let own = own.map_or_else(Vec::new, |own| {
+        own.0.iter().map(FirstEdge::strength).collect()
+    });
+    let up_to = |part: f64, of: &[f64]| {
+        let mut of = of.to_vec();
+        of.sort_by(f64::total_cmp);
+        let found = quantile(&of, part).filter(|at| at.is_finite());
+        found.map_or("beyond the levels".to_owned(), rounded)
+    };
+    format!(
+        "overturns with a probability of 5 % up to {column} {}, of 50 % up to {} (dispersion {}), over records and samples;\n    \
+         the scenario itself with 5 % up to {}, with 50 % up to {}",
+        up_to(0.05, &all),
+        up_to(0.5, &all),
+        fragilities
+            .both
+            .of
+            .dispersion
+            .map_or("not known".to_owned(), rounded),
+        up_to(0.05, &own),
+        up_to(0.5, &own)
     )
 }
 
@@ -593,13 +652,10 @@ pub(super) fn capacities(
             interval(estimated.dispersion)
         )
     });
-    let both = &fragilities.both.of;
-    let decided = decides[0].in_words(told.uncertain);
-    let decided = decided.map_or(String::new(), |decided| format!(";\n    {decided}"));
     let mut words = vec![format!(
-        "half of the records and samples overturn up to {column_name} {}, with a dispersion of {}{decided};\n    {NOT_CONSIDERED}",
-        rounded_or(both.median),
-        rounded_or(both.dispersion)
+        "{}{}",
+        first_of_capacities(told, asked, &fragilities),
+        decides[0].ending(told.uncertain)
     )];
     words.extend(distributions);
     words.push("in brackets: 95 % by bootstrap over records".to_owned());

@@ -51,7 +51,7 @@ pub(in crate::studies) struct Cells<'c> {
     /// That of each cell.
     pub(in crate::studies) kinds: Vec<Kind>,
     /// The uncertain cells by their numbers, and why.
-    pub(in crate::studies) doubts: Vec<(usize, String)>,
+    pub(in crate::studies) doubts: Vec<(usize, Box<str>)>,
     /// Numbers of each cell, by their names; what a cell does not have is left out.
     pub(in crate::studies) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }
@@ -149,7 +149,8 @@ fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
 /// command works wherever the page is, and whichever keys define the dimensions in the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
     let scenario = map.scenario();
-    let mut table = scenario.to_json();
+    // A cell alone, without samples.
+    let mut table = scenario.clone().without_uncertain().to_json();
     for study in ["map", "suite", "spectrum", "demand", "verify"] {
         if let Some(table) = table.as_object_mut() {
             table.shift_remove(study);

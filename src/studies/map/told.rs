@@ -45,6 +45,7 @@ impl OverturningMap<'_> {
             obsolete: (!look.no_impact).then_some(BOUNDARY),
             words: words(self, &cells, &remarks),
             summary,
+            peaks: Vec::new(),
         })
     }
 

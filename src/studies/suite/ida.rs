@@ -10,6 +10,7 @@ use crate::dynamics::history::Outcome;
 use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::ensemble::statistics::quantile;
+use crate::studies::peaks::Peak;
 
 /// Number of records whose curves have looks and names of their own.
 const NAMED: usize = CURVES.len();
@@ -194,6 +195,32 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
+/// How far all cases rocked, by record, to be compared with other models of motion.
+pub(super) fn by_record(cases: &[CaseRow]) -> Vec<Peak> {
+    let mut records: Vec<&str> = Vec::new();
+    let mut peaks = Vec::new();
+    for case in cases {
+        let known = records.iter().position(|record| *record == case.record);
+        let group = known.unwrap_or_else(|| {
+            records.push(&case.record);
+            records.len() - 1
+        });
+        let Ok(ending) = &case.result else {
+            continue;
+        };
+        let rotation_rad = if goes_over(case) {
+            f64::INFINITY
+        } else {
+            ending.peak_rotation_rad
+        };
+        peaks.push(Peak {
+            group,
+            rotation_rad,
+        });
+    }
+    peaks
+}
+
 /// Whether the history itself overturned, whether certain or not.
 fn goes_over(case: &CaseRow) -> bool {
     let ending = case.result.as_ref();
@@ -261,14 +288,8 @@ pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -
         "peak rotation (rad)"
     };
     axes.draw(&mut drawing, Some(label), "share with at most this peak");
-    let mut points = vec![axes.place(0.0, 0.0)];
-    let mut before = 0.0;
-    for at in &peaks {
-        points.extend([axes.place(at.peak, before), axes.place(at.peak, at.share)]);
-        before = at.share;
-    }
-    points.push(axes.place(axes.x.high, before));
-    drawing.curve("peaks", points, PEAKS);
+    let rises = peaks.iter().map(|at| (at.peak, at.share));
+    drawing.curve("peaks", axes.staircase(0.0, rises), PEAKS);
     drawing.finish(axes.frame.top + axes.frame.height + 56.0)
 }
 

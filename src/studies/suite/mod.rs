@@ -154,8 +154,9 @@ impl Study for RecordSuite<'_> {
         self.rows(&[index]).remove(0)
     }
 
-    fn family(&self, _: usize) -> Option<usize> {
-        self.model.is_faster_together().then_some(0)
+    /// The levels of a record: whether a level has an edge below it is then known from its neighbour.
+    fn family(&self, index: usize) -> Option<usize> {
+        Some(index / self.levels.len())
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CaseRow> {
@@ -168,17 +169,26 @@ impl Study for RecordSuite<'_> {
         };
         let cases: Vec<Case> = indices.iter().map(case).collect();
         let results = Ending::of_all(&*self.model, &cases);
-        let rows = indices.iter().zip(results);
-        rows.map(|(index, result)| {
-            let overturns = |ending: &Ending| ending.verdict() == Verdict::Overturns;
-            let edge = match &result {
-                Ok(ending) if overturns(ending) => self.edge(*index),
-                _ => None,
-            };
-            self.case_row(*index, result, edge)
-        })
-        .collect()
+        let overturn: Vec<Option<bool>> = results.iter().map(overturns).collect();
+        let edge = |case: usize| {
+            let index = indices[case];
+            let below = (index % self.levels.len()).checked_sub(1)?;
+            let known = indices.iter().position(|other| *other == index - 1);
+            let survives_below = known.map(|known| overturn[known] == Some(false));
+            let upper = overturn[case] == Some(true) && survives_below != Some(false);
+            upper.then(|| self.edge(index, below, survives_below.is_some()))?
+        };
+        let edges: Vec<Option<f64>> = (0..indices.len()).map(edge).collect();
+        let rows = indices.iter().zip(results).zip(edges);
+        rows.map(|((index, result), edge)| self.case_row(*index, result, edge))
+            .collect()
     }
+}
+
+/// Whether a history certainly overturns, if there is one.
+fn overturns(result: &Result<Ending, String>) -> Option<bool> {
+    let ending = result.as_ref().ok()?;
+    Some(ending.verdict() == Verdict::Overturns)
 }
 
 /// How closely an edge is enclosed, as a part of it: far closer than records agree.
@@ -192,9 +202,9 @@ impl RecordSuite<'_> {
         (level, shake / self.signs(), shake % self.signs() == 1)
     }
 
-    /// The lowest level that overturns above the one below that of a case that does, if that one does not.
-    fn edge(&self, index: usize) -> Option<f64> {
-        let below = (index % self.levels.len()).checked_sub(1)?;
+    /// The lowest level that overturns between the one below that of a case that does, by its number, and that of the case; `None` if
+    /// the one below overturns as well, unless it is known that it survives.
+    fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<f64> {
         let (level, record, mirrored) = self.place(index);
         let request = self.scenario.request_from_rest();
         let overturns = |level: f64| {
@@ -205,7 +215,7 @@ impl RecordSuite<'_> {
             ending.map(|ending| ending.verdict() == Verdict::Overturns)
         };
         let below = self.levels[below];
-        if overturns(below).ok()? {
+        if !survives_below && overturns(below).ok()? {
             return None;
         }
         let ends = try_bisect(below, level, Width::Relative(EDGE_WIDTH), overturns);

@@ -67,6 +67,7 @@ impl Heading {
     pub fn tell(&self, rows: Vec<CaseRow>, figure: Figure) -> Result<Results, OutputError> {
         let results = SuiteFragility::new(self.measure, rows);
         Ok(Results {
+            peaks: ida::by_record(&results.cases),
             files: vec![
                 (
                     "suite.svg",

@@ -9,7 +9,7 @@ use crate::output::{OutputError, pretty};
 use crate::studies::ensemble::picture;
 use crate::studies::ensemble::statistics::{Share, band};
 use crate::studies::ensemble::told::{
-    Decides, NOT_CONSIDERED, SUMMARY, band_to_json, beginning, percent, without_answer,
+    Decides, SUMMARY, band_to_json, beginning, percent, without_answer,
 };
 use crate::studies::kind::Kind;
 use crate::studies::map::page::Cells;
@@ -86,6 +86,7 @@ pub(super) fn tell(
         ..look
     };
     let page = page_cells(&found).page(title, &study.map, &draw(title, study, &found, screen));
+    let own = &rows[..found.likely.len()];
     let samples = study.samples(rows);
     let counted = |wanted: &str| -> usize {
         samples
@@ -119,7 +120,7 @@ pub(super) fn tell(
             ("map.csv", csv(columns(study), &found.likely)?),
             (SUMMARY, pretty(&json).into_bytes()),
         ],
-        words: words(study, told, &found, samples, &decides[0]).join("\n  "),
+        words: words(study, told, &found, [own, samples], &decides[0]).join("\n  "),
         summary: json,
         ..Results::default()
     })
@@ -245,7 +246,7 @@ fn words(
     study: &CellsOfSamples<'_>,
     told: &Told<'_, Share>,
     found: &Found,
-    samples: &[Came],
+    [own, samples]: [&[Came]; 2],
     decides: &Decides<'_>,
 ) -> Vec<String> {
     let all = found.likely.len();
@@ -257,14 +258,17 @@ fn words(
     };
     let cells = LEVELS.map(|level| format!("{} in {}", percent(level), at_least(level)));
     let own = match told.own {
-        Ok(share) => format!("the scenario itself overturns in {}", share.count),
+        Ok(share) => format!(
+            "the scenario itself overturns in {}, and in {} that it survives the probability is at least 5 %",
+            share.count,
+            in_doubt(&found.likely, own)
+        ),
         Err(_) => "the scenario itself has no outcome".to_owned(),
     };
-    let decided = decides.in_words(told.uncertain);
-    let decided = decided.map_or(String::new(), |decided| format!(";\n    {decided}"));
     let mut lines = vec![format!(
-        "of {all} cells the probability of overturning is at least {}; {own}{decided};\n    {NOT_CONSIDERED}",
-        cells.join(", ")
+        "of {all} cells the probability of overturning is at least {};\n    {own}{}",
+        cells.join(", "),
+        decides.ending(told.uncertain)
     )];
     lines.extend(columns_in_words(study, found));
     lines.extend(without_answer(told));
@@ -278,6 +282,15 @@ fn words(
         ));
     }
     lines
+}
+
+/// The number of cells in which the scenario itself does not overturn, but samples do with some probability.
+fn in_doubt(likely: &[Likely], own: &[Came]) -> usize {
+    let cells = likely.iter().zip(own);
+    let survives = |came: &Came| *came != Came::Overturned && came.why_not().is_none();
+    cells
+        .filter(|(cell, own)| survives(own) && cell.probability() >= Some(LEVELS[0]))
+        .count()
 }
 
 /// Where the probability is reached, in words, at the ends and in the middle of the map.
