@@ -61,6 +61,7 @@ mod run_input;
 mod runner;
 mod scenario;
 mod set;
+mod settled;
 mod settling;
 mod shapes;
 mod sliding;

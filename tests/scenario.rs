@@ -2,6 +2,7 @@
 
 use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::free_hinges::RowOptions;
+use archrock::scenario::FreeTable;
 use archrock::scenario::{
     Ground, Motion, Place, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
 };
@@ -94,10 +95,7 @@ fn defaults() {
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
 
     let scenario = parse(&format!("{COLUMN}[free_hinges]\n")).unwrap();
-    assert_eq!(
-        scenario.motion(),
-        &Motion::FreeHinges(RowOptions::default())
-    );
+    assert_eq!(scenario.motion(), &Motion::FreeHinges(FreeTable::default()));
     let Structure::Column(column) = scenario.structure() else {
         panic!("a column")
     };
@@ -129,7 +127,11 @@ fn every_key_of_a_row() {
         shortest_step_s: Some(1e-5),
         friction_coefficient: None,
     };
-    assert_eq!(scenario.motion(), &Motion::FreeHinges(steps));
+    let table = FreeTable {
+        options: steps,
+        ..FreeTable::default()
+    };
+    assert_eq!(scenario.motion(), &Motion::FreeHinges(table));
     let column = Column::new(2.0, 0.8)
         .and_then(|column| column.with_drum_heights_m(vec![0.8, 0.8, 0.4]))
         .and_then(|column| column.with_top_width_m(0.6))

@@ -51,14 +51,14 @@ fn falls_at(row: &Row, way: [f64; 2]) -> f64 {
 
 /// An arch of annular voussoirs of unit mean radius: places of the blocks, `x`, `y` of the centre and rotation.
 #[derive(Clone)]
-struct Blocks {
+pub struct Blocks {
     masses: Vec<f64>,
     centres: Vec<[f64; 2]>,
     /// Corners of every joint, intrados and extrados.
     joints: Vec<[[f64; 2]; 2]>,
     moved: Vec<[f64; 3]>,
     /// How far the right support went out and down.
-    support: [f64; 2],
+    pub support: [f64; 2],
     /// Forces on a unit of mass.
     push: f64,
 }
@@ -66,7 +66,7 @@ struct Blocks {
 type Triplets = (Vec<usize>, Vec<usize>, Vec<f64>);
 
 impl Blocks {
-    fn new(embrace_deg: f64, thickness: f64, voussoirs: usize) -> Self {
+    pub fn new(embrace_deg: f64, thickness: f64, voussoirs: usize) -> Self {
         let half = 0.5 * embrace_deg.to_radians();
         let [inner, outer] = [1.0 - 0.5 * thickness, 1.0 + 0.5 * thickness];
         let angle = |joint: f64| -half + 2.0 * half * joint / voussoirs as f64;
@@ -208,7 +208,7 @@ impl Blocks {
     }
 
     /// Lets it come to rest; false where it falls.
-    fn settle(&mut self) -> bool {
+    pub fn settle(&mut self) -> bool {
         let start = self.moved.clone();
         for _ in 0..400 {
             let Some(farthest) = self.descend(0.3) else {
@@ -228,7 +228,7 @@ impl Blocks {
     }
 
     /// The highest push under which forces at the corners that touch balance all blocks where they are.
-    fn first_motion(&self) -> f64 {
+    pub fn first_motion(&self) -> f64 {
         let (blocks, joints) = (self.masses.len(), self.joints.len());
         // Of every joint: the force along it, and those across it at either corner; last, the push.
         let (mut rows, mut columns, mut values): Triplets = Default::default();
@@ -768,12 +768,10 @@ fn a_scenario_says_where_its_springings_have_gone() {
     );
     let told: serde_json::Value = serde_json::from_str(&told).unwrap();
     assert!(told["incipient_acceleration_g"]["right"].as_f64().unwrap() < 0.08);
-    // Its rigid twin would stand on other springings.
+    // Its rigid twin has moved alike.
     let said = printed(folder.path(), &["run", "arch.toml"]);
     assert!(
-        said.contains(
-            "with rigid joints (free hinges): they start on the springings that were built"
-        ),
+        said.contains("with rigid joints (free hinges)") && !said.contains("that were built"),
         "{said}"
     );
     for (supports, words) in [
@@ -803,7 +801,7 @@ fn a_scenario_says_where_its_springings_have_gone() {
     );
     refused(
         folder.path(),
-        &["limit", "arch.toml"],
+        &["capacity", "arch.toml"],
         &["leave [supports] out"],
     );
     std::fs::write(folder.path().join("column.toml"), format!("[column]\nheight_m = 4\nwidth_m = 1\n{ELASTIC}[supports]\nright = {{ spread_m = 0.1 }}\n")).unwrap();

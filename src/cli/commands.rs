@@ -30,7 +30,12 @@ pub fn limit(
     format: Format,
     plot: Option<(&Path, FigureOption, Sway)>,
 ) -> Result<(), Failure> {
-    let scenario = file.open()?.read_as_built()?;
+    let input = file.open()?;
+    let scenario = if plot.is_some() {
+        input.read_as_built()?
+    } else {
+        input.read(None)?
+    };
     if let Some((plot, figure, first)) = plot {
         let model = four_links(&scenario, "--plot is")?;
         write_picture(

@@ -126,10 +126,9 @@ impl Input<'_> {
     /// The scenario for what is computed of a structure as it was built.
     pub fn read_as_built(&self) -> Result<Scenario, Failure> {
         let scenario = self.read(None)?;
-        let settled = scenario.motion().supports();
-        if settled.is_some_and(|movements| !movements.is_none()) {
-            let message = "this command is about the structure on the springings that were built: leave [supports] out; `archrock spread` tells \
-                           what push it bears where they have moved";
+        if scenario.motion().supports().is_some() {
+            let message = "this command is about the structure on the springings that were built: leave [supports] out; `archrock limit` and \
+                           `archrock spread` tell what push it bears where they have moved";
             return Err(self.about(Failure::Input(message.to_owned())));
         }
         Ok(scenario)

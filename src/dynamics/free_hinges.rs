@@ -5,13 +5,16 @@
 
 mod landing;
 mod model;
+mod rest;
 mod sliding;
+mod ties;
 
 use thiserror::Error;
 
 pub use model::{DOUBTFUL_ENERGY_ERROR, FreeHinges, FreeHingesError, RowOptions};
 
 use self::landing::LandingStepper;
+use self::rest::Rest;
 use super::ground::GroundMotion;
 use super::history::Summary;
 use super::model::{Recorder, SimulationError};
@@ -247,14 +250,16 @@ pub fn simulate(
         gravity_m_s2,
         clock: settings.clock(),
         barrier_j: None,
+        energy_scale_j: 0.0,
     };
-    motion(task, settings, initial_rad, recorder)
+    motion(task, settings, &Placement::new(row), initial_rad, recorder)
 }
 
-/// The same for any task.
+/// The same for any task and a row that stands anywhere.
 fn motion(
     task: Task<'_>,
     settings: &Settings,
+    standing: &Placement,
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, FreeHingeError> {
@@ -265,15 +270,19 @@ fn motion(
         return course::run(LandingStepper::released(
             task,
             settings,
+            standing,
             initial_rad,
             recorder,
         )?);
     };
     let placement = match initial_rad {
-        Some(_) => LandingStepper::released(task, settings, initial_rad, None)?.into_placement(),
-        None => Placement::new(task.row),
+        Some(_) => {
+            LandingStepper::released(task, settings, standing, initial_rad, None)?.into_placement()
+        }
+        None => standing.clone(),
     };
     course::run(sliding::SlidingStepper::new(
+        Rest::new(task.row, standing),
         &placement,
         task,
         settings,

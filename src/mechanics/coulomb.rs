@@ -176,6 +176,14 @@ impl Program {
         }
     }
 
+    /// Starts the next solution with these corners pressed.
+    pub fn touch(&mut self, touching: &[[bool; 2]]) {
+        for (mode, pressed) in self.modes.iter_mut().zip(touching) {
+            mode.pressed = *pressed;
+            *mode = mode.settled();
+        }
+    }
+
     /// What the joints do in the last solution.
     #[must_use]
     pub fn modes(&self) -> &[Mode] {

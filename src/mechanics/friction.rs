@@ -12,9 +12,9 @@ use clarabel::solver::{
 use thiserror::Error;
 
 use super::blocks::Row;
-use super::geometry::field::turned;
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::Placement;
 use crate::mechanics::sway::Sway;
 
 /// Rates below this fraction of the largest one count as zero.
@@ -82,19 +82,33 @@ pub fn onset(
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    if !stands(row, coefficient)? {
-        return Err(FrictionError::CannotStand(coefficient));
-    }
-    onset_of_standing(row, coefficient, sway)
+    onset_at(row, &Placement::new(row), coefficient, sway)
 }
 
-/// The same for a row that is known to stand with this coefficient.
-pub(crate) fn onset_of_standing(
+/// The same where its blocks are there.
+///
+/// # Errors
+/// As [`onset`].
+pub fn onset_at(
     row: &Row,
+    placement: &Placement,
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    let program = Program::new(row, coefficient, Goal::Push);
+    if !stands_at(row, placement, coefficient)? {
+        return Err(FrictionError::CannotStand(coefficient));
+    }
+    onset_of_standing(row, placement, coefficient, sway)
+}
+
+/// The same for a row that is known to stand there with this coefficient. Joints that are open press at the corner that touches alone.
+pub(crate) fn onset_of_standing(
+    row: &Row,
+    placement: &Placement,
+    coefficient: f64,
+    sway: Sway,
+) -> Result<Option<FrictionOnset>, FrictionError> {
+    let program = Program::new(row, placement, coefficient, Goal::Push);
     match program.solve(-sway.sign())? {
         Answer::Found(solution) => Ok(Some(FrictionOnset {
             acceleration_g: sway.sign() * solution.goal,
@@ -110,7 +124,19 @@ pub(crate) fn onset_of_standing(
 /// # Errors
 /// When it falls with any coefficient, or the programme is not solved.
 pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
-    match Program::new(row, coefficient, Goal::Shortage).solve(1.0)? {
+    stands_at(row, &Placement::new(row), coefficient)
+}
+
+/// The same where its blocks are there. Joints that are open press at the corner that touches alone.
+///
+/// # Errors
+/// As [`stands`].
+pub fn stands_at(
+    row: &Row,
+    placement: &Placement,
+    coefficient: f64,
+) -> Result<bool, FrictionError> {
+    match Program::new(row, placement, coefficient, Goal::Shortage).solve(1.0)? {
         Answer::Found(solution) => Ok(solution.goal <= LEAST_SHORTAGE),
         Answer::Unbounded => Ok(true),
         Answer::Infeasible => Err(FrictionError::NeverStands),
@@ -156,17 +182,20 @@ struct Solution {
 }
 
 /// Unknowns: the goal, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: the equilibrium of every
-/// block, then four conditions a joint.
+/// block, that open corners do not press, then four conditions a joint.
 struct Program {
     matrix: CscMatrix,
     right: Vec<f64>,
-    blocks: usize,
+    /// How many rows are equations.
+    equations: usize,
     joints: usize,
 }
 
 impl Program {
-    fn new(row: &Row, coefficient: f64, goal: Goal) -> Self {
+    fn new(row: &Row, placement: &Placement, coefficient: f64, goal: Goal) -> Self {
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let centres_m = placement.centres_m();
+        let equations = 3 * blocks + placement.open_corners();
         let (size_m, mass_kg) = (row.size_m(), row.mass_kg());
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
         let mut put = |row: usize, column: usize, value: f64| {
@@ -174,7 +203,7 @@ impl Program {
             columns.push(column);
             values.push(value);
         };
-        let mut right = Vec::with_capacity(3 * blocks + 4 * joints);
+        let mut right = Vec::with_capacity(equations + 4 * joints);
         for (index, block) in row.blocks().iter().enumerate() {
             let weight = block.mass_kg / mass_kg;
             if goal == Goal::Push {
@@ -187,7 +216,7 @@ impl Program {
             let pull = tie.prestress_n / (row.gravity_m_s2() * mass_kg);
             for (anchor, towards) in tie.ends.iter().zip([tie.along(), -tie.along()]) {
                 if let Some(number) = anchor.block {
-                    let arm_m = anchor.at_m - row.blocks()[number].centre_m;
+                    let arm_m = anchor.at_m - centres_m[number];
                     let moment = arm_m.perp(&towards) / size_m;
                     for (axis, value) in [towards.x, towards.y, moment].into_iter().enumerate() {
                         right[3 * number + axis] -= pull * value;
@@ -195,31 +224,43 @@ impl Program {
                 }
             }
         }
-        for (index, joint) in row.joints().iter().enumerate() {
-            let along = joint.along();
-            let normal = turned(along) * row.handedness();
+        for (index, gaps) in placement.gaps_m().iter().enumerate() {
+            for edge in (0..2).filter(|edge| gaps[*edge] > 0.0) {
+                put(right.len(), 1 + 3 * index + edge, 1.0);
+                right.push(0.0);
+            }
+        }
+        for (index, frame) in placement.frames().iter().enumerate() {
+            let open = placement.gaps_m()[index].map(|gap| gap > 0.0);
             let forces = [
-                (joint.intrados_m, normal),
-                (joint.extrados_m, normal),
-                (joint.intrados_m, along),
+                (frame.corner_m(Edge::Intrados), frame.normal),
+                (frame.corner_m(Edge::Extrados), frame.normal),
+                (frame.intrados_m, frame.along),
             ];
             for (block, side) in [(index.checked_sub(1), -1.0), (Some(index), 1.0)] {
-                let Some((number, block)) =
-                    block.and_then(|number| Some((number, row.blocks().get(number)?)))
+                let Some((number, centre_m)) =
+                    block.and_then(|number| Some((number, centres_m.get(number)?)))
                 else {
                     continue;
                 };
                 for (kind, (point_m, force)) in forces.iter().enumerate() {
-                    let moment = (point_m - block.centre_m).perp(force) / size_m;
+                    let moment = (point_m - centre_m).perp(force) / size_m;
                     for (axis, value) in [force.x, force.y, moment].into_iter().enumerate() {
                         put(3 * number + axis, 1 + 3 * index + kind, side * value);
                     }
                 }
             }
             let [intrados, extrados, along] = [0, 1, 2].map(|kind| 1 + 3 * index + kind);
-            let first = 3 * blocks + 4 * index;
-            put(first, intrados, -1.0);
-            put(first + 1, extrados, -1.0);
+            let first = equations + 4 * index;
+            for (edge, corner) in [intrados, extrados].into_iter().enumerate() {
+                // What is zero already is bound by nothing else.
+                if open[edge] {
+                    right.push(1.0);
+                } else {
+                    put(first + edge, corner, -1.0);
+                    right.push(0.0);
+                }
+            }
             for (slip, sign) in [(2, 1.0), (3, -1.0)] {
                 put(first + slip, intrados, -coefficient);
                 put(first + slip, extrados, -coefficient);
@@ -228,13 +269,13 @@ impl Program {
                     put(first + slip, 0, -1.0);
                 }
             }
-            right.extend([0.0; 4]);
+            right.extend([0.0; 2]);
         }
-        let (height, width) = (3 * blocks + 4 * joints, 1 + 3 * joints);
+        let (height, width) = (equations + 4 * joints, 1 + 3 * joints);
         Self {
             matrix: CscMatrix::new_from_triplets(height, width, rows, columns, values),
             right,
-            blocks,
+            equations,
             joints,
         }
     }
@@ -253,10 +294,7 @@ impl Program {
             &objective,
             &self.matrix,
             &self.right,
-            &[
-                ZeroConeT(3 * self.blocks),
-                NonnegativeConeT(4 * self.joints),
-            ],
+            &[ZeroConeT(self.equations), NonnegativeConeT(4 * self.joints)],
             settings,
         )
         .expect("the dimensions fit and the settings are valid");
@@ -272,7 +310,7 @@ impl Program {
             }
             status => return Err(FrictionError::NotSolved(status)),
         }
-        let rates = &solution.z[3 * self.blocks..];
+        let rates = &solution.z[self.equations..];
         let largest = rates.iter().copied().fold(0.0, f64::max);
         let moves = |rate: f64| rate > LEAST_RATE * largest;
         let yields = rates.chunks(4).enumerate().map(|(joint, rates)| Yield {

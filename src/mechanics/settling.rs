@@ -109,6 +109,12 @@ impl Movements {
         *self == Self::default()
     }
 
+    /// Whether both supports have moved alike, without turning.
+    fn are_one_translation(&self) -> bool {
+        let [left, right] = self.displacements();
+        left == right && left[2] == 0.0
+    }
+
     /// Displacements to the right and upwards, in metres, and rotations of the left and the right support.
     #[must_use]
     pub fn displacements(&self) -> [[f64; 3]; 2] {
@@ -286,6 +292,13 @@ impl<'a> Follower<'a> {
         let (first, last) = (movements(from), movements(to));
         let extent = last.and(&first.times(-1.0)).extent(row.size_m());
         if extent == 0.0 {
+            return Ok(Reached::End);
+        }
+        // Moved along as a whole it is as it was.
+        if self.hinges.is_none() && last.are_one_translation() {
+            self.condition.supports = last.poses(row);
+            self.placement.move_supports(self.condition.supports);
+            self.placement.open(|_| [0.0; 2]);
             return Ok(Reached::End);
         }
         let way = |at: f64| Condition {

@@ -32,7 +32,7 @@ pub struct Position {
 }
 
 impl Position {
-    /// The position of a support, whose faces are given in the undeformed row.
+    /// The position of a support that stands where it was built: its faces are given in the undeformed row.
     pub const HELD: Self = Self {
         centre_m: Vector2::new(0.0, 0.0),
         rotation_rad: 0.0,
@@ -49,6 +49,12 @@ impl Position {
         }
     }
 
+    /// That of a support, which has its faces from the origin.
+    #[must_use]
+    pub fn of(support: &Pose) -> Self {
+        Self::new(support.translation, support.rotation_rad())
+    }
+
     /// The pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
     #[must_use]
     pub fn pose(&self, undeformed_m: Vector2<f64>) -> Pose {
@@ -58,7 +64,12 @@ impl Position {
     /// Present position of the point that has this arm from the centre in the undeformed row.
     #[must_use]
     pub fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
-        self.centre_m + product(product(self.half, self.half), arm_m)
+        self.centre_m + self.turned(arm_m)
+    }
+
+    /// Where a vector of the block in the undeformed row points now.
+    fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
+        product(product(self.half, self.half), vector)
     }
 }
 
@@ -104,7 +115,8 @@ impl Faces {
     #[must_use]
     pub fn contact(&self, left: &Position, right: &Position) -> Contact {
         if let Some(side) = self.on_support {
-            return self.contact_with_support([left, right][side], side);
+            let bodies = [left, right];
+            return self.contact_with_support(bodies[side], bodies[1 - side], side);
         }
         let s = self.handedness;
         let half = product(right.half, Vector2::new(left.half.x, -left.half.y));
@@ -130,13 +142,14 @@ impl Faces {
     }
 
     /// The joint between a block, on the given side, and a support that extends beyond it.
-    fn contact_with_support(&self, block: &Position, side: usize) -> Contact {
-        let (along, normal) = (self.along, turned(self.along) * self.handedness);
+    fn contact_with_support(&self, block: &Position, support: &Position, side: usize) -> Contact {
+        let along = support.turned(self.along);
+        let normal = turned(along) * self.handedness;
         // Coordinates are those of the right face; if the block is on the left, its face counts with the opposite sign.
         let sign = if side == 1 { 1.0 } else { -1.0 };
         let intrados_m = block.of_arm(self.arms_m[side]);
-        let face = product(product(block.half, block.half), along) * self.thickness_m;
-        let moved = intrados_m - self.arms_m[1 - side];
+        let face = block.turned(self.along) * self.thickness_m;
+        let moved = intrados_m - support.of_arm(self.arms_m[1 - side]);
         let gaps_m = [moved, moved + face].map(|corner| sign * corner.dot(&normal));
         let reach_m = face.dot(&along);
         let (middle_m, ends_m, shift_m) = if gaps_m[0] <= gaps_m[1] {

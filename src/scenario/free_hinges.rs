@@ -3,8 +3,34 @@
 use super::structure::Structure;
 use super::table::{Number, Reading, Table};
 use crate::argument::{plain, rounded_up};
-use crate::dynamics::free_hinges::RowOptions;
-use crate::mechanics::friction;
+use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
+use crate::mechanics::friction::{self, FrictionError};
+use crate::mechanics::settling::Movements;
+
+/// Free hinges on supports that may have moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FreeTable {
+    /// `[free_hinges]`.
+    pub options: RowOptions,
+    /// Where the supports have gone before time begins, by `[supports]`.
+    pub supports: Movements,
+}
+
+impl FreeTable {
+    /// The model of a structure.
+    ///
+    /// # Errors
+    /// When it is an arch without voussoirs, cannot stand, or falls or slides as its supports move.
+    pub fn model(&self, structure: &Structure) -> Result<FreeHinges, FreeHingesError> {
+        let built = structure.free_hinges(RowOptions {
+            friction_coefficient: None,
+            ..self.options
+        })?;
+        built
+            .on_supports(&self.supports)?
+            .with_options(self.options)
+    }
+}
 
 const STEP_S: Number = Number::within(&RowOptions::STEP_S);
 const COEFFICIENT: Number = Number::within(&RowOptions::FRICTION_COEFFICIENT);
@@ -22,6 +48,18 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
     options
         .checked()
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
+}
+
+/// Refuses friction that does not hold the structure where its springings have gone; whether it does as it was built is asked before.
+pub(super) fn holds(table: &mut Table<'_>, structure: &Structure, free: &FreeTable) -> Reading<()> {
+    match free.model(structure) {
+        Err(FreeHingesError::Friction(FrictionError::CannotStand(_))) => {
+            let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";
+            Err(table.wrong_in("free_hinges", "friction_coefficient", wrong.to_owned()))
+        }
+        // Anything else is reported where it is used.
+        _ => Ok(()),
+    }
 }
 
 /// Refuses friction that cannot carry the weight of the structure; `name` is the table in which it is given.

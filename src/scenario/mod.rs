@@ -70,6 +70,7 @@ use crate::mechanics::four_link::arch::FourLinkError;
 pub use assignment::Assignment;
 pub use elastic_joints::ElasticTable;
 pub use error::{Place, ScenarioError, ScenarioErrors};
+pub use free_hinges::FreeTable;
 pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
 pub use map::{Axis, Map, Quantity};
@@ -578,6 +579,7 @@ impl Scenario {
             unreachable!("a structure is some tables");
         };
         let supports = self.motion.supports();
+        let supports = supports.map_or(Value::Null, |movements| json(&movements));
         let mut ground = json(&self.ground);
         if let (Value::Object(ground), Some(right)) = (&mut ground, &self.right_foot) {
             ground.insert("right".to_owned(), json(right));
@@ -592,12 +594,7 @@ impl Scenario {
                 },
             ),
             motion(true),
-            (
-                "supports",
-                supports
-                    .filter(|movements| !movements.is_none())
-                    .map_or(Value::Null, |movements| json(&movements)),
-            ),
+            ("supports", supports),
             ("ground", ground),
             motion(false),
             ("initial", json(&self.initial)),

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::elastic_joints::ElasticTable;
+use super::free_hinges::FreeTable;
 use super::simulation::Simulation;
 use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
@@ -42,7 +43,7 @@ pub enum Motion {
     /// [`Hinges::Four`], with the impact law of `[impact]`.
     FourLinks(ImpactLaw),
     /// [`Hinges::Free`]: `[free_hinges]`.
-    FreeHinges(RowOptions),
+    FreeHinges(FreeTable),
     /// [`Hinges::Elastic`]: `[elastic_joints]`.
     ElasticJoints(ElasticTable),
 }
@@ -91,7 +92,7 @@ impl Motion {
     pub fn model(&self, structure: &Structure) -> Result<Box<dyn Model>, ModelError> {
         Ok(match self {
             Self::FourLinks(law) => structure.model(*law)?,
-            Self::FreeHinges(options) => Box::new(structure.free_hinges(*options)?),
+            Self::FreeHinges(free) => Box::new(free.model(structure)?),
             Self::ElasticJoints(joints) => Box::new(joints.model(structure)?),
         })
     }
@@ -105,23 +106,16 @@ impl Motion {
             return Ok(Vec::new());
         };
         let mut variations = joints.model(structure)?.variations();
-        // Free hinges that slip take no ties.
-        let slips = joints.friction_coefficient.is_some() && structure.ties().is_empty();
-        let rigid = structure.free_hinges(RowOptions {
-            friction_coefficient: joints.friction_coefficient.filter(|_| slips),
-            ..RowOptions::default()
-        });
-        let name = if slips || joints.friction_coefficient.is_none() {
-            "rigid joints (free hinges)"
-        } else {
-            "rigid joints that do not slip (free hinges)"
+        let rigid = FreeTable {
+            options: RowOptions {
+                friction_coefficient: joints.friction_coefficient,
+                ..RowOptions::default()
+            },
+            supports: joints.supports,
         };
         variations.push(Variation {
-            name: name.to_owned(),
-            model: match rigid {
-                _ if !joints.supports.is_none() => {
-                    Err("they start on the springings that were built".to_owned())
-                }
+            name: "rigid joints (free hinges)".to_owned(),
+            model: match rigid.model(structure) {
                 Ok(rigid) => Ok(Box::new(rigid)),
                 Err(error) => Err(error.to_string()),
             },
@@ -141,10 +135,7 @@ impl Motion {
         match self {
             Self::FourLinks(_) => self.model(structure),
             Self::ElasticJoints(joints) => Ok(Box::new(joints.model(structure)?.for_many_cases())),
-            Self::FreeHinges(options) => {
-                let row = structure.free_hinges(*options)?;
-                Ok(Box::new(row.for_many_cases()))
-            }
+            Self::FreeHinges(free) => Ok(Box::new(free.model(structure)?.for_many_cases())),
         }
     }
 
@@ -162,7 +153,7 @@ impl Motion {
     pub const fn friction_coefficient(&self) -> Option<f64> {
         match self {
             Self::FourLinks(_) => None,
-            Self::FreeHinges(options) => options.friction_coefficient,
+            Self::FreeHinges(free) => free.options.friction_coefficient,
             Self::ElasticJoints(joints) => joints.friction_coefficient,
         }
     }
@@ -171,10 +162,7 @@ impl Motion {
     pub(super) fn longest_step_s(&self, structure: &Structure, request: &Request) -> Option<f64> {
         match self {
             Self::FourLinks(_) => None,
-            Self::FreeHinges(options) => {
-                let model = structure.free_hinges(*options).ok()?;
-                Some(model.longest_step_s(request))
-            }
+            Self::FreeHinges(free) => Some(free.model(structure).ok()?.longest_step_s(request)),
             Self::ElasticJoints(joints) => Some(joints.model(structure).ok()?.longest_step_s()),
         }
     }
@@ -191,12 +179,14 @@ impl Motion {
         }
         match self {
             Self::FourLinks(_) => Ok(()),
-            Self::FreeHinges(options) => free_hinges::carries(
-                table,
-                "free_hinges",
-                structure,
-                options.friction_coefficient,
-            ),
+            Self::FreeHinges(free) => {
+                let coefficient = free.options.friction_coefficient;
+                free_hinges::carries(table, "free_hinges", structure, coefficient)?;
+                if free.supports.is_none() || coefficient.is_none() {
+                    return Ok(());
+                }
+                free_hinges::holds(table, structure, free)
+            }
             Self::ElasticJoints(joints) => {
                 let coefficient = joints.friction_coefficient;
                 free_hinges::carries(table, "elastic_joints", structure, coefficient)?;
@@ -207,13 +197,15 @@ impl Motion {
         }
     }
 
-    /// Where the supports have gone before time begins; `None` of models that start on those that were built.
+    /// Where the supports have gone before time begins; `None` where they stand as they were built.
     #[must_use]
-    pub const fn supports(&self) -> Option<Movements> {
-        match self {
-            Self::FourLinks(_) | Self::FreeHinges(_) => None,
-            Self::ElasticJoints(joints) => Some(joints.supports),
-        }
+    pub fn supports(&self) -> Option<Movements> {
+        let supports = match self {
+            Self::FourLinks(_) => return None,
+            Self::FreeHinges(free) => free.supports,
+            Self::ElasticJoints(joints) => joints.supports,
+        };
+        (!supports.is_none()).then_some(supports)
     }
 
     /// The compressive strength of joints that may crush, in MPa; otherwise `None`.
@@ -239,7 +231,7 @@ impl Motion {
     pub(super) fn table(&self) -> Value {
         match self {
             Self::FourLinks(law) => impact::to_json(law),
-            Self::FreeHinges(options) => json!(options),
+            Self::FreeHinges(free) => json!(free.options),
             Self::ElasticJoints(joints) => json!(joints),
         }
     }
@@ -295,20 +287,19 @@ impl Tables {
         }
         let (law, free_hinges, elastic_joints) = (law?, self.free_hinges?, self.elastic_joints?);
         let supports = self.supports?;
-        if supports.is_some() && self.hinges != Hinges::Elastic {
-            return Err(table.wrong("supports", match self.hinges {
-                Hinges::Four => "needs joints that follow: four links start undeformed; choose [elastic_joints], or leave it out",
-                _ => "goes with [elastic_joints] so far: rigid joints start on the springings that were built; choose those, or leave it out",
-            }));
+        if supports.is_some() && !self.hinges.has_joints() {
+            let wrong = "needs joints that follow: four links start undeformed; choose [free_hinges] or [elastic_joints], or leave it out";
+            return Err(table.wrong("supports", wrong));
         }
+        let supports = supports.unwrap_or_default();
         let motion = match self.hinges {
             Hinges::Four => Motion::FourLinks(law),
-            Hinges::Free => Motion::FreeHinges(free_hinges.unwrap_or_default()),
+            Hinges::Free => Motion::FreeHinges(FreeTable {
+                options: free_hinges.unwrap_or_default(),
+                supports,
+            }),
             Hinges::Elastic => match elastic_joints {
-                Some(joints) => Motion::ElasticJoints(ElasticTable {
-                    supports: supports.unwrap_or_default(),
-                    ..joints
-                }),
+                Some(joints) => Motion::ElasticJoints(ElasticTable { supports, ..joints }),
                 None => {
                     return Err(table.wrong_itself(
                         "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there; \

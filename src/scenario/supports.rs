@@ -43,9 +43,6 @@ pub(super) fn check(
     let Ok(row) = structure.row() else {
         return Ok(());
     };
-    if movements.is_none() {
-        return Ok(());
-    }
     let mut wrong = |message: String| Err(table.wrong("supports", message));
     if row.supports() == Supports::Left {
         return wrong(

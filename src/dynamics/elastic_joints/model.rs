@@ -272,16 +272,18 @@ impl ElasticJoints {
         request: &Request,
     ) -> Result<Task<'a>, SimulationError> {
         self.check(request)?;
+        // Where its feet part the row overturns at another energy, if at any.
+        let barrier_j = match ground.right_foot() {
+            Some(_) => None,
+            None => self.barrier_j(request.gravity_m_s2),
+        };
         Ok(Task {
             row: self.row(),
             ground,
             gravity_m_s2: request.gravity_m_s2,
             clock: self.clock(request)?,
-            // Where its feet part the row overturns at another energy, if at any.
-            barrier_j: match ground.right_foot() {
-                Some(_) => None,
-                None => self.barrier_j(request.gravity_m_s2),
-            },
+            barrier_j,
+            energy_scale_j: barrier_j.unwrap_or(0.0),
         })
     }
 

@@ -15,17 +15,16 @@
 //! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
 
 mod observation;
-mod ties;
 
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
-pub(super) use self::observation::{rise, sway};
-use self::ties::Ties;
+use super::rest::Rest;
+use super::ties::Ties;
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::model::Recorder;
-use crate::dynamics::row::course::{Course, Stepper as _, Task};
+use crate::dynamics::row::course::{Course, Stepper as _, Summit, Task};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{Corners, Load, Program};
@@ -132,6 +131,7 @@ pub(super) struct LandingStepper<'a> {
     gravity: f64,
     settings: &'a Settings,
     thinnest: f64,
+    rest: Rest<'a>,
     course: Course<'a>,
     /// The time up to which gravity and ground have acted on the velocities.
     kicked_s: f64,
@@ -158,7 +158,7 @@ pub(super) struct LandingStepper<'a> {
     shares: Vec<[f64; 2]>,
     /// Corners that touched at the beginning of the step.
     closed: Vec<Corners>,
-    /// Whether all joints are shut and stay so.
+    /// Whether it lies where it stood and stays there.
     stands: bool,
     /// Where the joints were pressed in the step that ended at an impact.
     pressed: Vec<Corners>,
@@ -168,10 +168,19 @@ pub(super) struct LandingStepper<'a> {
     least_normal: f64,
     step_iterations: u64,
     crowd: Crowd,
+    /// Of a row that stood on hinges: since when it hardly moves, when it was highest, and whether it lies far from where it stood.
+    quiet_since_s: f64,
+    summit: Summit,
+    overturned: bool,
 }
 
 impl<'a> LandingStepper<'a> {
-    fn new(task: Task<'a>, settings: &'a Settings, recorder: Option<&'a mut dyn Recorder>) -> Self {
+    fn new(
+        task: Task<'a>,
+        settings: &'a Settings,
+        standing: &Placement,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Self {
         let Task {
             row,
             ground,
@@ -179,8 +188,12 @@ impl<'a> LandingStepper<'a> {
             ..
         } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
-        let placement = Placement::new(row);
-        let program = Program::new(row);
+        let rest = Rest::new(row, standing);
+        let mut program = Program::new(row);
+        program.place(standing);
+        if rest.is_on_hinges() {
+            program.start_from(rest.touching());
+        }
         let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
         let fallen = -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity * row.size_m();
         let mut stepper = Self {
@@ -191,7 +204,8 @@ impl<'a> LandingStepper<'a> {
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
             course: Course::new(task, Some(fallen), recorder),
             kicked_s: 0.0,
-            placement,
+            placement: standing.clone(),
+            rest,
             auxiliary: program.clone(),
             program,
             closer: Closer::new(row),
@@ -216,6 +230,9 @@ impl<'a> LandingStepper<'a> {
             least_normal: f64::INFINITY,
             step_iterations: 0,
             crowd: Crowd::default(),
+            quiet_since_s: 0.0,
+            summit: Summit::new(0.0),
+            overturned: false,
         };
         stepper.stand_still();
         stepper
@@ -235,14 +252,15 @@ impl<'a> LandingStepper<'a> {
         self.weigh_pieces();
     }
 
-    /// A stepper that starts from rest, or released at rest with the initial rotations.
+    /// A stepper that starts where the row stands, or released at rest with the initial rotations.
     pub(super) fn released(
         task: Task<'a>,
         settings: &'a Settings,
+        standing: &Placement,
         initial_rad: Option<&[f64]>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Result<Self, FreeHingeError> {
-        let mut stepper = Self::new(task, settings, recorder);
+        let mut stepper = Self::new(task, settings, standing, recorder);
         if let Some(rotations_rad) = initial_rad {
             stepper.release(rotations_rad)?;
         }
@@ -285,11 +303,12 @@ impl<'a> LandingStepper<'a> {
         }
         self.program.place(&self.placement);
         self.weigh_pieces();
-        self.ties.stretch(self.placement.poses());
+        let poses = self.placement.poses();
+        self.ties.stretch(|block| poses[block]);
         self.start_energy = self.energy();
         self.stands = open == 0;
         let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
-        let sway = sway(self.row, self.placement.centres_m());
+        let sway = self.sway_kg_m();
         self.course
             .released(rotations, self.start_energy, sway, open > 0);
         Ok(())
@@ -398,7 +417,12 @@ impl<'a> LandingStepper<'a> {
             self.free[piece.first..end].fill(piece.twist(kick));
         }
         let centres_m = self.placement.centres_m();
-        self.ties.pull(centres_m, lasts_s, &mut self.free);
+        let free = &mut self.free;
+        self.ties
+            .pull(centres_m, lasts_s, |block, velocity, turning| {
+                let turning = Twist::rotation(centres_m[block], turning);
+                free[block] = free[block] + (Twist::translation(velocity) + turning);
+            });
     }
 
     /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
@@ -669,7 +693,8 @@ impl<'a> LandingStepper<'a> {
         self.take_pieces();
         self.course.time += step.length_s;
         self.closer.close(&mut self.placement);
-        self.ties.stretch(self.placement.poses());
+        let poses = self.placement.poses();
+        self.ties.stretch(|block| poses[block]);
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
         let of_row = &mut self.course.of_row;
@@ -752,7 +777,9 @@ impl<'a> LandingStepper<'a> {
     /// Shuts the corners that belong to an impact besides those that the closure shut.
     fn shut_what_landed(&mut self) {
         loop {
-            let few = self.row.supports() == Supports::Both && self.placement.open_corners() <= 3;
+            // Where supports have moved three joints stay open.
+            let may_shut = self.row.supports() == Supports::Both && !self.rest.is_on_hinges();
+            let few = may_shut && self.placement.open_corners() <= 3;
             let near = self.placement.largest_gap_ratio() < LAST_THREE_RATIO;
             let ratio = if few && near {
                 LAST_THREE_RATIO
@@ -892,8 +919,9 @@ mod tests {
                 gravity_m_s2: 9.81,
                 clock: settings.clock(),
                 barrier_j: None,
+                energy_scale_j: 0.0,
             };
-            let mut stepper = LandingStepper::new(task, &settings, None);
+            let mut stepper = LandingStepper::new(task, &settings, &Placement::new(&row), None);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;

@@ -10,11 +10,12 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
 use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
 use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task};
-use crate::dynamics::row::standing::RigidRow;
+use crate::dynamics::row::standing::{RigidRow, SettledError};
 use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::column::Column;
 use crate::mechanics::friction::FrictionError;
+use crate::mechanics::settling::Movements;
 use crate::mechanics::stability::StabilityError;
 use crate::mechanics::sway::Sway;
 
@@ -108,11 +109,9 @@ pub enum FreeHingesError {
     /// It slides apart under its own weight.
     #[error(transparent)]
     Friction(#[from] FrictionError),
-    /// It has ties, and joints that slip.
-    #[error(
-        "free hinges that slip take no ties: leave friction_coefficient out, or give [elastic_joints], whose joints slip with ties"
-    )]
-    Ties,
+    /// It does not stand on supports that have moved.
+    #[error(transparent)]
+    Settled(#[from] SettledError),
 }
 
 impl FreeHinges {
@@ -145,16 +144,27 @@ impl FreeHinges {
         Self::new(column.row()?)
     }
 
+    /// The same on supports that have moved slowly before time begins, from where they were built: it starts on the hinges on which it
+    /// followed them, and its motion is told from there.
+    ///
+    /// # Errors
+    /// When it falls on the way, or slides there.
+    pub fn on_supports(self, movements: &Movements) -> Result<Self, FreeHingesError> {
+        if movements.is_none() {
+            return Ok(self);
+        }
+        let rigid = self.rigid.on_supports(movements)?;
+        let rigid = rigid.with_friction(self.options.friction_coefficient)?;
+        Ok(Self { rigid, ..self })
+    }
+
     /// The same with other options.
     ///
     /// # Errors
     /// When a step or the coefficient is out of range, the longest step is shorter than the shortest, a
-    /// shortest step or ties are given for joints that slip, or the row slides apart under its own weight.
+    /// shortest step is given for joints that slip, or the row slides apart under its own weight.
     pub fn with_options(self, options: RowOptions) -> Result<Self, FreeHingesError> {
         let options = options.checked()?;
-        if options.friction_coefficient.is_some() && !self.row().ties().is_empty() {
-            return Err(FreeHingesError::Ties);
-        }
         let rigid = self.rigid.with_friction(options.friction_coefficient)?;
         Ok(Self {
             rigid,
@@ -277,8 +287,10 @@ impl Model for FreeHinges {
             gravity_m_s2: request.gravity_m_s2,
             clock: settings.clock(),
             barrier_j: self.barrier_j(request.gravity_m_s2),
+            energy_scale_j: self.rigid.energy_scale_j(request.gravity_m_s2),
         };
-        let summary = motion(task, &settings, initial_rad.as_deref(), recorder)?;
+        let standing = self.rigid.standing();
+        let summary = motion(task, &settings, standing, initial_rad.as_deref(), recorder)?;
         match summary.row.as_ref().map_or(0.0, |row| row.energy_error) {
             error if error > LARGEST_ENERGY_ERROR => Err(FreeHingeError::Energy {
                 error,

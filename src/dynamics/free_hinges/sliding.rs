@@ -11,7 +11,8 @@ use std::mem;
 
 use nalgebra::{Vector2, Vector3};
 
-use super::landing::{rise, sway};
+use super::rest::Rest;
+use super::ties::Ties;
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{Sample, Sliding};
@@ -45,11 +46,21 @@ pub(super) struct SlidingStepper<'a> {
     velocity: GroundVelocity<'a>,
     gravity: f64,
     settings: &'a Settings,
+    rest: Rest<'a>,
+    /// Gaps and offsets of the joints where the row stood.
+    stood_m: Vec<Vector3<f64>>,
     course: Course<'a>,
     faces: Vec<Faces>,
+    /// Where the left and the right support are.
+    supports: [Position; 2],
     positions: Vec<Position>,
     velocities: Vec<Vector3<f64>>,
     contacts: Vec<Contact>,
+    ties: Ties<'a>,
+    /// Energy that ties took so far as they yielded and broke.
+    taken_by_ties: f64,
+    /// What ties add to the velocities of the blocks in a kick.
+    pulled: Vec<Vector3<f64>>,
     /// Offset at which every joint stuck last.
     stuck: Vec<f64>,
     /// How far the coordinates of every joint will be from zero at the end of the step, per time, apart from their rates.
@@ -83,7 +94,9 @@ pub(super) struct SlidingStepper<'a> {
 }
 
 impl<'a> SlidingStepper<'a> {
+    /// A stepper for a row that is released at rest at a placement, or stands there.
     pub(super) fn new(
+        rest: Rest<'a>,
         placement: &Placement,
         task: Task<'a>,
         settings: &'a Settings,
@@ -98,20 +111,28 @@ impl<'a> SlidingStepper<'a> {
         } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
         let faces = Faces::of_row(row);
-        let at = placement.centres_m().iter().zip(placement.poses());
-        let positions: Vec<Position> = at
-            .map(|(centre, pose)| Position::new(*centre, pose.rotation_rad()))
-            .collect();
-        let contacts: Vec<Contact> = (0..joints)
-            .map(|joint| contact(&faces, &positions, joint))
-            .collect();
-        let program = Program::new(row, coefficient);
+        let supports = placement.support_poses().map(|pose| Position::of(&pose));
+        let contacts_at = |placement: &Placement| -> (Vec<Position>, Vec<Contact>) {
+            let at = placement.centres_m().iter().zip(placement.poses());
+            let positions: Vec<Position> = at
+                .map(|(centre, pose)| Position::new(*centre, pose.rotation_rad()))
+                .collect();
+            let contacts = (0..joints)
+                .map(|joint| contact(&faces, &supports, &positions, joint))
+                .collect();
+            (positions, contacts)
+        };
+        let (positions, contacts) = contacts_at(placement);
+        let (_, stood) = contacts_at(rest.placement());
+        let mut program = Program::new(row, coefficient);
+        program.touch(rest.touching());
         let mut course = Course::new(task, None, recorder);
-        let start_energy = gravity * rise(row, placement.centres_m());
-        let stands = placement.open_corners() == 0;
+        let start_energy = gravity * rest.rise_kg_m(placement.centres_m());
+        let stands = rest.has(placement.gaps_m());
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
-            let sway = sway(row, placement.centres_m());
+            let rotations = rest.turned_rad(rotations);
+            let sway = rest.sway_kg_m(placement.centres_m());
             course.released(rotations, start_energy, sway, true);
         }
         Self {
@@ -129,10 +150,16 @@ impl<'a> SlidingStepper<'a> {
             auxiliary: program.clone(),
             program,
             modes_before: vec![Mode::WHOLE; joints],
+            stood_m: stood.iter().map(|c| c.coordinates_m).collect(),
+            rest,
+            supports,
             stands,
             sliding: Sliding::none(joints),
             ground_work: 0.0,
             summit: Summit::new(start_energy),
+            ties: Ties::new(row),
+            taken_by_ties: 0.0,
+            pulled: vec![Vector3::zeros(); blocks],
             held_back: 0.0,
             overturned: false,
             least_energy: f64::INFINITY,
@@ -154,8 +181,29 @@ impl<'a> SlidingStepper<'a> {
         (-ground - fall, ground)
     }
 
-    fn load(program: &mut Program, velocities: &[Vector3<f64>], kick: Vector2<f64>) {
-        program.load(|block| velocities[block] + Vector3::new(kick.x, kick.y, 0.0));
+    /// Finds what ties add to the velocities of the blocks from the last kick until a time.
+    fn pull(&mut self, to_s: f64) {
+        if self.ties.are_none() {
+            return;
+        }
+        self.pulled.fill(Vector3::zeros());
+        let pulled = &mut self.pulled;
+        self.ties.pull(
+            &self.centres,
+            to_s - self.kicked_s,
+            |block, velocity, turning| {
+                pulled[block] += Vector3::new(velocity.x, velocity.y, turning);
+            },
+        );
+    }
+
+    fn load(
+        program: &mut Program,
+        velocities: &[Vector3<f64>],
+        kick: Vector2<f64>,
+        pulled: &[Vector3<f64>],
+    ) {
+        program.load(|block| velocities[block] + Vector3::new(kick.x, kick.y, 0.0) + pulled[block]);
     }
 
     fn kinetic(&self) -> f64 {
@@ -167,13 +215,13 @@ impl<'a> SlidingStepper<'a> {
     fn lag(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
-                return Position::HELD;
+                return self.supports[1];
             };
             let v = self.program.velocity(block) * step;
             Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z)
         };
         // Position of the block before, where it was needed.
-        let mut left = Some(Position::HELD);
+        let mut left = Some(self.supports[0]);
         for joint in 0..self.faces.len() {
             let now = self.contacts[joint].coordinates_m;
             let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
@@ -257,7 +305,7 @@ impl<'a> SlidingStepper<'a> {
         }
         self.course.time += step;
         for joint in 0..self.faces.len() {
-            let contact = contact(&self.faces, &self.positions, joint);
+            let contact = contact(&self.faces, &self.supports, &self.positions, joint);
             let offset_m = contact.coordinates_m.z;
             if self.program.modes()[joint].along != Along::Stick {
                 self.stuck[joint] = offset_m;
@@ -265,19 +313,29 @@ impl<'a> SlidingStepper<'a> {
             let largest = &mut self.sliding.largest_offsets_m[joint];
             *largest = largest.max(self.stuck[joint].abs());
             let least = APART_RATIO * self.faces[joint].thickness_m;
-            let [intrados, extrados, _] = contact.coordinates_m.into();
-            self.course.moved |= self.stuck[joint].abs().max(intrados).max(extrados) > least;
+            let stood_m = &self.stood_m[joint];
+            let slipped_m = (self.stuck[joint] - stood_m.z).abs();
+            let [intrados, extrados, _] = (contact.coordinates_m - stood_m).into();
+            self.course.moved |= slipped_m.max(intrados).max(extrados) > least;
             self.overturned |= contact.ends_m[1] <= contact.ends_m[0];
             self.contacts[joint] = contact;
         }
         let kinetic = self.kinetic();
-        let potential = self.gravity * rise(self.row, &self.centres);
-        self.audit(kinetic + 0.5 * (self.course.potential + potential));
+        let (blocks, positions) = (self.row.blocks(), &self.positions);
+        self.ties
+            .stretch(|block| positions[block].pose(blocks[block].centre_m));
+        let height = self.gravity * self.rest.rise_kg_m(&self.centres);
+        let potential = height + self.ties.energy_j();
+        let taken = self.ties.taken_j();
+        let before = self.course.potential + self.taken_by_ties;
+        self.audit(kinetic + 0.5 * (before + potential + taken));
+        self.taken_by_ties = taken;
         let sway = self.displacement();
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
+        let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
         self.overturned |= self.has_fallen();
-        let height = potential + self.held_back;
+        let height = potential + self.held_back + taken;
         let least = LEAST_RETURN * self.course.energy_unit;
         self.summit.note(self.course.time, height, least);
         if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
@@ -288,7 +346,8 @@ impl<'a> SlidingStepper<'a> {
     /// How far the row slid along its supports, left and right.
     fn slides(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
-            let along = self.row.joints()[joint].along();
+            let support = self.rest.placement().support_poses()[usize::from(joint > 0)];
+            let along = support.turned(self.row.joints()[joint].along());
             along * (sign * self.contacts[joint].coordinates_m.z)
         };
         // At the right support the block is the left one.
@@ -302,10 +361,12 @@ impl<'a> SlidingStepper<'a> {
     fn has_fallen(&self) -> bool {
         let slides = self.slides();
         let far = (OVERTURNED_RATIO * self.row.size_m()).powi(2);
-        let mut blocks = self.row.blocks().iter().zip(&self.positions);
-        blocks.any(|(block, position)| {
-            let moved = position.centre_m - block.centre_m;
-            position.rotation_rad.abs() >= OVERTURNED_RAD
+        let stood = self.rest.placement();
+        let stood = stood.centres_m().iter().zip(stood.poses());
+        let mut blocks = stood.zip(&self.positions);
+        blocks.any(|((centre_m, pose), position)| {
+            let moved = position.centre_m - centre_m;
+            (position.rotation_rad - pose.rotation_rad()).abs() >= OVERTURNED_RAD
                 || slides
                     .iter()
                     .all(|slide| (moved - slide).norm_squared() >= far)
@@ -328,7 +389,8 @@ impl<'a> SlidingStepper<'a> {
         self.auxiliary
             .place(&self.faces, &self.contacts, &self.positions);
         self.auxiliary.start_from(&self.program, 0.5);
-        Self::load(&mut self.auxiliary, &self.velocities, kick);
+        self.pull(self.course.time);
+        Self::load(&mut self.auxiliary, &self.velocities, kick, &self.pulled);
         let (modes, contacts, step) = (self.program.modes(), &self.contacts, self.last_step);
         let apart = |joint: usize| {
             let gap = |end: usize| {
@@ -350,13 +412,14 @@ impl<'a> SlidingStepper<'a> {
         let opened = &mut self.course.opened;
         opened.clear();
         for (joint, mode) in self.program.modes().iter().enumerate() {
-            if mode.pressed != [true; 2] {
+            let stood = self.rest.touching()[joint];
+            if mode.pressed != stood && mode.pressed != [true; 2] {
                 let edge = only(mode.pressed);
                 opened.push(Hinge::Joint { joint, edge });
             }
             let gaps = &self.contacts[joint].coordinates_m;
             let least = APART_RATIO * self.faces[joint].thickness_m;
-            let is_open = (0..2).any(|end| !mode.pressed[end] && gaps[end] > least);
+            let is_open = (0..2).any(|end| stood[end] && !mode.pressed[end] && gaps[end] > least);
             self.stands &= !is_open;
         }
         if !self.stands {
@@ -364,6 +427,14 @@ impl<'a> SlidingStepper<'a> {
                 stepper.before.iter().copied().unzip()
             });
         }
+    }
+
+    /// Whether the corners are pressed that were where the row stood.
+    fn touches_as_it_stood(&self) -> bool {
+        let modes = self.program.modes().iter().zip(self.rest.touching());
+        modes
+            .into_iter()
+            .all(|(mode, stood)| mode.pressed == *stood)
     }
 
     /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground.
@@ -378,7 +449,7 @@ impl<'a> SlidingStepper<'a> {
             .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
             .sum();
         let mass = self.row.mass_kg();
-        let sway = sway(self.row, &self.centres) - mass * slid;
+        let sway = self.rest.sway_kg_m(&self.centres) - mass * slid;
         if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
             sway
         } else {
@@ -387,14 +458,16 @@ impl<'a> SlidingStepper<'a> {
     }
 }
 
-/// The joint of this index at the positions of its blocks.
-fn contact(faces: &[Faces], positions: &[Position], joint: usize) -> Contact {
+/// The joint of this index at the positions of supports and blocks.
+fn contact(
+    faces: &[Faces],
+    supports: &[Position; 2],
+    positions: &[Position],
+    joint: usize,
+) -> Contact {
     let block = |index: Option<usize>| index.and_then(|index| positions.get(index));
     let (left, right) = (block(joint.checked_sub(1)), block(Some(joint)));
-    faces[joint].contact(
-        left.unwrap_or(&Position::HELD),
-        right.unwrap_or(&Position::HELD),
-    )
+    faces[joint].contact(left.unwrap_or(&supports[0]), right.unwrap_or(&supports[1]))
 }
 
 impl<'a> Stepper<'a> for SlidingStepper<'a> {
@@ -411,6 +484,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     fn completed(&mut self) -> &mut Course<'a> {
         self.sliding.offsets_m.copy_from_slice(&self.stuck);
         self.course.of_row.sliding = Some(self.sliding.clone());
+        self.course.of_row.ties = self.ties.summaries();
         &mut self.course
     }
 
@@ -435,7 +509,8 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             self.rates_before[joint] = self.program.joint_rate(joint);
         }
         self.lag(step);
-        Self::load(&mut self.program, &self.velocities, kick);
+        self.pull(to_s);
+        Self::load(&mut self.program, &self.velocities, kick, &self.pulled);
         let fastest = self
             .velocities
             .iter()
@@ -487,15 +562,18 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         self.drift(step);
         if landed {
             self.course.summary.impacts += 1;
-            let moves = self.program.modes().iter().any(|mode| *mode != Mode::WHOLE);
+            let sticks = |mode: &Mode| mode.along == Along::Stick;
+            let moves = !(self.touches_as_it_stood() && self.program.modes().iter().all(sticks));
             let before_j = self.kinetic() + taken + rubbed;
             self.tell_impact(moves, [before_j, taken + rubbed], Some(rubbed));
         }
         if let Some((from_s, energy_j)) = stood {
             self.report_uplift(from_s, energy_j);
         } else {
-            let mut modes = self.program.modes().iter();
-            self.stands = modes.all(|mode| mode.pressed == [true; 2]);
+            self.stands = self.touches_as_it_stood();
+        }
+        for (tie, kind) in self.ties.happened(self.course.time) {
+            self.tell_tie(tie, kind);
         }
         Ok(())
     }
@@ -508,6 +586,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             sample.poses.push(position.pose(block.centre_m));
         }
         sample.offsets_m.extend(&self.stuck);
+        sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
         if thrust_line {
             let impulses = self.auxiliary.impulses().iter();
@@ -520,8 +599,9 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
-        let moving = self.positions.iter().zip(&self.velocities);
-        moving.map(|(position, velocity)| (position.rotation_rad, velocity.z))
+        let rotations = self.positions.iter().map(|position| position.rotation_rad);
+        let rates = self.velocities.iter().map(|velocity| velocity.z);
+        self.rest.turned_rad(rotations).zip(rates)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
@@ -548,6 +628,15 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     fn slips(&self) -> bool {
         let mut modes = self.program.modes().iter();
         modes.any(|mode| matches!(mode.along, Along::Slip(_)))
+    }
+
+    fn stands(&self, sample: &Sample) -> bool {
+        let joints = 0..self.faces.len();
+        let stood = self.rest.touching();
+        let lies = joints
+            .into_iter()
+            .all(|joint| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint]);
+        (lies && !self.slips()) || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
 
     fn rests_since(&self) -> Option<f64> {

@@ -107,6 +107,8 @@ pub(in crate::dynamics) struct Task<'a> {
     pub clock: Clock,
     /// Energy that the first mechanism has to gain to overturn, where that is known.
     pub barrier_j: Option<f64>,
+    /// Energy beside which errors of the balance are small or not, if the motion has less.
+    pub energy_scale_j: f64,
 }
 
 /// The motion so far.
@@ -183,6 +185,10 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         let shut = sample.hinges.is_empty() && !self.slips();
         shut || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
+    /// Whether a row with these rotations lies where it stood before it moved.
+    fn lies_where_it_stood(&self, rotations_rad: &[f64]) -> bool {
+        rotations_rad.iter().all(|angle| *angle == 0.0)
+    }
     /// Since when it stands still for good, once the ground is still.
     fn rests_since(&self) -> Option<f64>;
     /// When the row passed its last point of return, once it has overturned.
@@ -253,8 +259,8 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
         let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
-        // A row that lands undeformed came from the other side.
-        let undeformed = rotations_rad.iter().all(|angle| *angle == 0.0);
+        // A row that lands where it stood came from the other side.
+        let stood = self.lies_where_it_stood(&rotations_rad);
         let sway = if moves { self.heading() } else { Sway::Right };
         let event = Event {
             time_s: course.time,
@@ -266,7 +272,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
                 .filter_map(hinge)
                 .collect(),
             impact: Some(Impact {
-                sway_before: if undeformed { sway.opposite() } else { sway },
+                sway_before: if stood { sway.opposite() } else { sway },
                 restitution: if energy_before_j > 0.0 {
                     energy_after_j / energy_before_j
                 } else {
@@ -755,8 +761,12 @@ impl<'a> Course<'a> {
     /// Makes the summary, and reports the end if the row rests or has overturned.
     pub(in crate::dynamics) fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.end_cycle(None);
-        let Task { barrier_j, .. } = self.task;
-        let energy_error = self.energy_error(barrier_j.unwrap_or(0.0));
+        let Task {
+            barrier_j,
+            energy_scale_j,
+            ..
+        } = self.task;
+        let energy_error = self.energy_error(energy_scale_j);
         let (mut summary, mut of_row) = (self.summary.clone(), self.of_row.clone());
         of_row.energy_error = energy_error;
         let sliding = of_row.sliding.as_ref();

@@ -11,6 +11,7 @@ use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::Placement;
 use crate::mechanics::settling::{Follower, Movements, Reached, SettlingError};
 use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::sway::Sway;
@@ -36,6 +37,8 @@ pub enum SettledError {
 #[derive(Clone, Debug)]
 pub(in crate::dynamics) struct RigidRow {
     row: Row,
+    /// Where it stands: undeformed, or on supports that have moved.
+    standing: Placement,
     /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
     incipient_g: [Option<f64>; 2],
     /// The same where joints slip.
@@ -71,11 +74,17 @@ impl RigidRow {
                 .map(FirstMechanism::FourLinks),
         };
         Ok(Self {
+            standing: Placement::new(&row),
             row,
             incipient_g,
             with_friction_g: None,
             first,
         })
+    }
+
+    /// Where it stands before it moves.
+    pub(in crate::dynamics) const fn standing(&self) -> &Placement {
+        &self.standing
     }
 
     /// Its blocks.
@@ -123,19 +132,19 @@ impl RigidRow {
         let Some(coefficient) = coefficient else {
             return Ok(self);
         };
-        if !friction::stands(&self.row, coefficient)? {
+        if !friction::stands_at(&self.row, &self.standing, coefficient)? {
             return Err(FrictionError::CannotStand(coefficient));
         }
         let push_g = |sway| {
-            let onset = friction::onset_of_standing(&self.row, coefficient, sway)?;
+            let onset = friction::onset_of_standing(&self.row, &self.standing, coefficient, sway)?;
             Ok(onset.map(|onset| onset.acceleration_g))
         };
         self.with_friction_g = Some([push_g(Sway::Right)?, push_g(Sway::Left)?]);
         Ok(self)
     }
 
-    /// The same row on supports that have moved: the push that starts it is that which makes its hinges give way, and its first mechanism
-    /// is none of one degree of freedom whose barrier is known.
+    /// The same row on supports that have moved: the push that starts it is that which makes its hinges give way, and where it stands on
+    /// hinges its first mechanism is none of one degree of freedom whose barrier is known.
     ///
     /// # Errors
     /// When it falls on the way.
@@ -153,7 +162,8 @@ impl RigidRow {
         Ok(Self {
             incipient_g,
             with_friction_g: None,
-            first: None,
+            first: self.first,
+            standing: follower.placement().clone(),
             row: self.row,
         })
     }
@@ -162,6 +172,24 @@ impl RigidRow {
     /// not known.
     #[must_use]
     pub(in crate::dynamics) fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+        if self.is_on_hinges() {
+            return None;
+        }
+        self.built_barrier_j(gravity_m_s2)
+    }
+
+    /// Energy beside which errors of a motion's balance are judged, in J: the barrier, or that of the row as it was built. Where hinges are
+    /// open a small push sets it in a motion of hardly any energy.
+    pub(in crate::dynamics) fn energy_scale_j(&self, gravity_m_s2: f64) -> f64 {
+        self.built_barrier_j(gravity_m_s2).unwrap_or(0.0)
+    }
+
+    /// Whether it stands on hinges, of supports that have moved.
+    fn is_on_hinges(&self) -> bool {
+        self.standing.open_corners() > 0
+    }
+
+    fn built_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         if !self.row.ties().is_empty() {
             return None;
         }
@@ -203,9 +231,9 @@ impl RigidRow {
             Sway::Left => -1.0,
         };
         let row = match &self.first {
-            Some(FirstMechanism::FourLinks(row)) => row,
+            Some(FirstMechanism::FourLinks(row)) if !self.is_on_hinges() => row,
             Some(FirstMechanism::Base) => return Ok(vec![-side * initial.rotation_rad; blocks]),
-            None => {
+            _ => {
                 return Err(refused(
                     "left out: this row does not start as a mechanism from which it could be released"
                         .to_owned(),

@@ -1,5 +1,6 @@
 //! Limit analysis of a scenario: the ground acceleration that starts the structure, and its mechanism.
 
+mod settled;
 mod told;
 
 use thiserror::Error;
@@ -9,6 +10,7 @@ use super::results::Answer;
 use crate::dynamics::free_hinges::FreeHingesError;
 use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::friction::FrictionError;
+use crate::mechanics::settling::SettlingError;
 use crate::mechanics::stability::StabilityError;
 use crate::scenario::{ModelError, Scenario};
 
@@ -27,16 +29,24 @@ pub enum NoLimit {
     /// The structure does not stand.
     #[error(transparent)]
     Stability(#[from] StabilityError),
+    /// It does not follow its supports.
+    #[error(transparent)]
+    Settling(#[from] SettlingError),
     /// The structure slides apart, or the analysis failed.
     #[error(transparent)]
     Friction(#[from] FrictionError),
 }
 
-/// The onset of motion of a scenario's structure, to either side; if joints may slip, also with their coefficient of friction.
+/// The onset of motion of a scenario's structure, to either side; if joints may slip, also with their coefficient of friction. Of one whose
+/// supports have moved: where it then stands, and also the push at which it falls.
 ///
 /// # Errors
 /// When the structure does not stand, or the analysis does not apply to it.
 pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
+    if let Some(movements) = scenario.motion().supports() {
+        let row = scenario.structure().row().map_err(FreeHingesError::from)?;
+        return settled::limit(scenario, &row, &movements);
+    }
     let mut answer = match scenario.row()? {
         Some(row) => told::row(scenario, &row)?,
         None => told::mechanism(scenario)?,

@@ -84,7 +84,7 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
 }
 
 /// The joints that open in a mechanism, a line each.
-fn openings_text(row: &Row, onset: &RowOnset) -> String {
+pub(super) fn openings_text(row: &Row, onset: &RowOnset) -> String {
     let mut text = String::new();
     for opening in &onset.openings {
         let edge = opening.hinge.map_or("both edges", Edge::name);

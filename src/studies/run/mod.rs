@@ -331,8 +331,8 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
         Some(row) => {
             let scene = Scene::of_row(row).of_structure(scenario.structure());
             match scenario.motion().supports() {
-                Some(movements) if !movements.is_none() => scene.on_supports(movements.poses(row)),
-                _ => scene,
+                Some(movements) => scene.on_supports(movements.poses(row)),
+                None => scene,
             }
         }
         None => Scene::new(scenario.structure()),

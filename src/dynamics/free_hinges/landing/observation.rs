@@ -6,15 +6,13 @@ use super::{LandingStepper, Piece};
 use crate::dynamics::free_hinges::FreeHingeError;
 use crate::dynamics::history::Sample;
 use crate::dynamics::row::course::{
-    Course, Stepper, eccentricity_ratio, equal_step, only, open_hinge,
+    Course, LEAST_RETURN, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, REST_TIME_RATIO,
+    Stepper, eccentricity_ratio, equal_step, only, open_hinge,
 };
-use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 
-/// At rest, kinetic and potential energy are below this fraction of weight times size.
-const REST_ENERGY_RATIO: f64 = 1e-9;
 /// Joints that open at less than this fraction of the fastest rate do not count as opened by an
 /// impact.
 const LEAST_OPENING: f64 = 1e-9;
@@ -30,25 +28,9 @@ pub(super) fn momentum(pieces: &[Piece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
 }
 
-/// Rise of the blocks with their centres at the given places, times their masses.
-pub(in crate::dynamics::free_hinges) fn rise(row: &Row, centres_m: &[Vector2<f64>]) -> f64 {
-    let rises = row.blocks().iter().zip(centres_m);
-    rises
-        .map(|(block, centre)| block.mass_kg * (centre.y - block.centre_m.y))
-        .sum()
-}
-
-/// Horizontal displacement of the centre of gravity times the mass.
-pub(in crate::dynamics::free_hinges) fn sway(row: &Row, centres_m: &[Vector2<f64>]) -> f64 {
-    let shifts = row.blocks().iter().zip(centres_m);
-    shifts
-        .map(|(block, centre)| block.mass_kg * (centre.x - block.centre_m.x))
-        .sum()
-}
-
 impl LandingStepper<'_> {
     pub(super) fn height_energy(&self) -> f64 {
-        self.gravity * rise(self.row, self.placement.centres_m())
+        self.gravity * self.rest.rise_kg_m(self.placement.centres_m())
     }
 
     /// Potential energy of the blocks.
@@ -75,12 +57,47 @@ impl LandingStepper<'_> {
 
     /// Reports the state after a step to the course of the motion.
     fn observe(&mut self) {
-        self.course.moved |= self.placement.gaps_m().iter().any(|gaps| *gaps != [0.0; 2]);
+        let lies = self.lies_at_rest();
+        self.course.moved |= !lies;
         let potential = self.energy();
-        let sway = sway(self.row, self.placement.centres_m());
-        let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
+        // On hinges rounding leaves a little of it, which is no side.
+        let sway = if lies { 0.0 } else { self.sway_kg_m() };
         let kinetic = kinetic(&self.pieces);
+        let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
+        let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
+        if self.rest.is_on_hinges() {
+            self.observe_hinges(kinetic);
+        }
+    }
+
+    /// What says of a row that stood on hinges when it rests, and when it has overturned: it may come to rest on others, lower or higher,
+    /// so its energy says neither.
+    fn observe_hinges(&mut self, kinetic: f64) {
+        let (course, time) = (&self.course, self.course.time);
+        if kinetic >= REST_ENERGY_RATIO * course.energy_unit {
+            self.quiet_since_s = time;
+        }
+        let least = LEAST_RETURN * course.energy_unit;
+        self.summit.note(time, course.potential, least);
+        let far_m = OVERTURNED_RATIO * self.row.size_m();
+        let stood = self.rest.placement();
+        let moved_m = self.placement.centres_m().iter().zip(stood.centres_m());
+        self.overturned |= moved_m
+            .into_iter()
+            .any(|(now, stood)| (now - stood).norm() >= far_m)
+            || self
+                .turns()
+                .any(|(rotation_rad, _)| rotation_rad.abs() >= OVERTURNED_RAD);
+    }
+
+    /// Whether the row lies where it stood before it moved.
+    fn lies_at_rest(&self) -> bool {
+        self.rest.has(self.placement.gaps_m())
+    }
+
+    pub(super) fn sway_kg_m(&self) -> f64 {
+        self.rest.sway_kg_m(self.placement.centres_m())
     }
 
     fn report_impact(&mut self, taken_before: f64) {
@@ -107,21 +124,24 @@ impl LandingStepper<'_> {
             }
         }
         let taken_j = self.course.of_row.energy_taken_j - taken_before;
-        let gaps_m = self.placement.gaps_m();
-        self.stands = self.course.opened.is_empty() && gaps_m.iter().all(|gaps| *gaps == [0.0; 2]);
+        self.stands = self.course.opened.is_empty() && self.lies_at_rest();
         let before_j = kinetic(&self.pieces) + taken_j;
         self.tell_impact(!self.stands, [before_j, taken_j], None);
     }
 
-    /// Reports the joints that opened in a step that began at this time with all joints shut.
+    /// Reports the joints that opened in a step that began at this time where the row stood.
     fn report_uplift(&mut self, from_s: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
         let gaps = self.placement.gaps_m().iter().enumerate();
-        opened.extend(gaps.filter_map(|(joint, gaps)| open_hinge(joint, *gaps)));
+        let stood = self.rest.touching();
+        opened.extend(
+            gaps.filter(|(joint, _)| stood[*joint] == [true; 2])
+                .filter_map(|(joint, gaps)| open_hinge(joint, *gaps)),
+        );
         self.stands = opened.is_empty();
         if !self.stands {
-            // With all joints shut the row stood undeformed, and still.
+            // Until then it stood still.
             let blocks = self.row.blocks().len();
             self.tell_uplift(from_s, 0.0, |_| (vec![0.0; blocks], vec![0.0; blocks]));
         }
@@ -210,7 +230,9 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
         let rates = self.program.velocities().iter().map(|twist| twist.rate);
         let poses = self.placement.poses().iter();
-        poses.map(Pose::rotation_rad).zip(rates)
+        self.rest
+            .turned_rad(poses.map(Pose::rotation_rad))
+            .zip(rates)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
@@ -225,8 +247,21 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         momentum(&self.pieces)
     }
 
+    fn stands(&self, sample: &Sample) -> bool {
+        self.lies_at_rest() || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
+    }
+
+    fn lies_where_it_stood(&self, _: &[f64]) -> bool {
+        self.lies_at_rest()
+    }
+
     fn rests_since(&self) -> Option<f64> {
         let least = REST_ENERGY_RATIO * self.course.energy_unit;
+        if self.rest.is_on_hinges() && !self.lies_at_rest() {
+            let quiet_s = self.course.time - self.quiet_since_s;
+            let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
+            return (quiet_s > long_s).then_some(self.quiet_since_s);
+        }
         // Ties that have yielded or broken hold another energy where the row rests.
         let height = self.height();
         let rests = kinetic(&self.pieces) < least && height.abs() < least;
@@ -235,6 +270,9 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
 
     /// By its height: what is in ties may be less than at rest.
     fn overturned_s(&self) -> Option<f64> {
+        if self.rest.is_on_hinges() {
+            return self.overturned.then_some(self.summit.time);
+        }
         self.course.fallen_s(self.height())
     }
 }

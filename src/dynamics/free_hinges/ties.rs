@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 
 use crate::dynamics::history::{EventKind, TieSample, TieSummary};
 use crate::mechanics::blocks::Row;
-use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::tie::{Tie, TieMemory};
@@ -52,11 +51,11 @@ impl<'a> Ties<'a> {
         self.ties.is_empty()
     }
 
-    /// The blocks have moved there.
-    pub fn stretch(&mut self, poses: &[Pose]) {
+    /// The blocks have moved to these poses.
+    pub fn stretch(&mut self, pose: impl Fn(usize) -> Pose) {
         for tie in &mut self.ties {
             let moved = tie.tie.ends.map(|anchor| {
-                let pose = anchor.block.map(|block| poses[block]);
+                let pose = anchor.block.map(&pose);
                 pose.map_or(anchor.at_m, |pose| pose.of(anchor.at_m))
             });
             let by_m = [0, 1].map(|end| moved[end] - tie.tie.ends[end].at_m);
@@ -67,8 +66,14 @@ impl<'a> Ties<'a> {
         }
     }
 
-    /// Adds what ties make of the motion of free blocks, with their centres there, in a time.
-    pub fn pull(&self, centres_m: &[Vector2<f64>], lasts_s: f64, free: &mut [Twist]) {
+    /// What the ties add to the motion of free blocks, with their centres there, in a time: to the velocity of the centre and the rate of
+    /// rotation of a block.
+    pub fn pull(
+        &self,
+        centres_m: &[Vector2<f64>],
+        lasts_s: f64,
+        mut gain: impl FnMut(usize, Vector2<f64>, f64),
+    ) {
         for tie in &self.ties {
             let impulse = tie.along * (tie.memory.force_n.0[0] * lasts_s);
             for (end, impulse) in [impulse, -impulse].into_iter().enumerate() {
@@ -77,9 +82,7 @@ impl<'a> Ties<'a> {
                 };
                 let (block, centre_m) = (&self.row.blocks()[index], centres_m[index]);
                 let turning = (tie.ends_m[end] - centre_m).perp(&impulse) / block.inertia_kg_m2;
-                let gained = Twist::translation(impulse / block.mass_kg)
-                    + Twist::rotation(centre_m, turning);
-                free[index] = free[index] + gained;
+                gain(index, impulse / block.mass_kg, turning);
             }
         }
     }

@@ -1,0 +1,75 @@
+//! Where a row with rigid joints stands before it moves: undeformed, or on the hinges of supports that have moved. Its motion is told from
+//! there.
+
+use nalgebra::Vector2;
+
+use crate::mechanics::blocks::Row;
+use crate::mechanics::contact::Corners;
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::joints::Placement;
+
+/// A row where it stands.
+#[derive(Clone, Debug)]
+pub(super) struct Rest<'a> {
+    row: &'a Row,
+    placement: Placement,
+    /// Corners that touch there.
+    touching: Vec<Corners>,
+}
+
+impl<'a> Rest<'a> {
+    pub fn new(row: &'a Row, placement: &Placement) -> Self {
+        Self {
+            row,
+            touching: touching(placement.gaps_m()).collect(),
+            placement: placement.clone(),
+        }
+    }
+
+    pub const fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// The corners that touch.
+    pub fn touching(&self) -> &[Corners] {
+        &self.touching
+    }
+
+    /// Whether joints are open.
+    pub fn is_on_hinges(&self) -> bool {
+        self.placement.open_corners() > 0
+    }
+
+    /// Whether a row with these gaps lies there: three hinges leave no other place.
+    pub fn has(&self, gaps_m: &[[f64; 2]]) -> bool {
+        touching(gaps_m).eq(self.touching.iter().copied())
+    }
+
+    /// How the blocks are turned from there.
+    pub fn turned_rad(&self, poses: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
+        let stood = self.placement.poses().iter().map(Pose::rotation_rad);
+        poses.zip(stood).map(|(now, stood)| now - stood)
+    }
+
+    /// Rise of the blocks with their centres at the given places, times their masses.
+    pub fn rise_kg_m(&self, centres_m: &[Vector2<f64>]) -> f64 {
+        self.moved_kg_m(centres_m, |moved| moved.y)
+    }
+
+    /// Horizontal displacement of the centre of gravity times the mass.
+    pub fn sway_kg_m(&self, centres_m: &[Vector2<f64>]) -> f64 {
+        self.moved_kg_m(centres_m, |moved| moved.x)
+    }
+
+    fn moved_kg_m(&self, centres_m: &[Vector2<f64>], part: impl Fn(Vector2<f64>) -> f64) -> f64 {
+        let stood = self.placement.centres_m().iter();
+        let blocks = self.row.blocks().iter().zip(centres_m.iter().zip(stood));
+        blocks
+            .map(|(block, (now, stood))| block.mass_kg * part(now - stood))
+            .sum()
+    }
+}
+
+fn touching(gaps_m: &[[f64; 2]]) -> impl Iterator<Item = Corners> {
+    gaps_m.iter().map(|gaps| gaps.map(|gap| gap == 0.0))
+}

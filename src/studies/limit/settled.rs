@@ -1,0 +1,107 @@
+//! The two pushes of a row on supports that have moved: see [`crate::mechanics::settling`].
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::told::{openings_text, row_json};
+use super::{Answer, NoLimit};
+use crate::mechanics::blocks::Row;
+use crate::mechanics::friction;
+use crate::mechanics::settling::{Follower, Hinge, Movements};
+use crate::mechanics::stability::onset_at;
+use crate::mechanics::sway::Sway;
+use crate::scenario::Scenario;
+
+/// Both sides, right first.
+const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
+
+/// The push of the first motion and the one at which it falls, to either side, as JSON and in words.
+pub(super) fn limit(
+    scenario: &Scenario,
+    row: &Row,
+    movements: &Movements,
+) -> Result<Answer, NoLimit> {
+    let mut follower = Follower::new(row)?;
+    // That it follows them was seen when the scenario was read.
+    follower.move_supports(|part| movements.times(part), 0.0, 1.0)?;
+    let placement = follower.placement();
+    let [right, left] = SIDES.map(|sway| onset_at(row, placement, sway));
+    let onsets = [right?, left?];
+    let [right, left] = SIDES.map(|sway| follower.pushes_g(sway));
+    let falls_g = [right?, left?].map(|pushes| pushes.map(|[_, falls_g]| falls_g));
+    let hinges = follower
+        .hinges()
+        .map_or(&[][..], |hinges| &hinges.hinges()[..]);
+
+    let mut json = row_json(row, &onsets, scenario.gravity_m_s2());
+    json["capacity_g"] = json!({ "right": falls_g[0], "left": falls_g[1] });
+    json["hinges"] = hinges
+        .iter()
+        .map(|hinge| json!({ "joint": hinge.joint, "edge": hinge.edge.name() }))
+        .collect();
+
+    let mut text = format!(
+        "its springings have moved; it stands on hinges at {}\n\n",
+        list(hinges)
+    );
+    for ((sway, onset), falls_g) in SIDES.into_iter().zip(&onsets).zip(falls_g) {
+        let side = sway.name();
+        let Some(onset) = onset else {
+            let _ = writeln!(text, "no push to the {side} moves it without sliding\n");
+            continue;
+        };
+        let _ = writeln!(
+            text,
+            "first motion to the {side}, where hinges give way to others: {:.8} g; then hinges open at",
+            onset.acceleration_g
+        );
+        text += &openings_text(row, onset);
+        let _ = match falls_g {
+            Some(falls_g) => writeln!(
+                text,
+                "capacity to the {side}, where it falls: {falls_g:.8} g\n"
+            ),
+            None => writeln!(text, "no push to the {side} was found at which it falls\n"),
+        };
+    }
+    if let Some(coefficient) = scenario.motion().friction_coefficient() {
+        let mut sides = [Value::Null, Value::Null];
+        let _ = writeln!(
+            text,
+            "with joints that slip at a coefficient of friction of {coefficient:?}:"
+        );
+        for (sway, told) in SIDES.into_iter().zip(&mut sides) {
+            let onset = friction::onset_at(row, placement, coefficient, sway)?;
+            *told = onset.as_ref().map(|onset| onset.acceleration_g).into();
+            let _ = match onset {
+                Some(onset) => writeln!(
+                    text,
+                    "  first motion to the {} at {:.8} g",
+                    sway.name(),
+                    onset.acceleration_g
+                ),
+                None => writeln!(text, "  no push to the {} starts it", sway.name()),
+            };
+        }
+        let [right, left] = sides;
+        json["friction"] = json!({
+            "coefficient": coefficient,
+            "incipient_acceleration_g": { "right": right, "left": left },
+        });
+        text.push('\n');
+    }
+    text += "joints are counted from the left, 0 at the left base or springing; places are those of the structure as it was built\n";
+    Ok(Answer { json, text })
+}
+
+fn list(hinges: &[Hinge]) -> String {
+    let each: Vec<String> = hinges
+        .iter()
+        .map(|hinge| format!("joint {} ({})", hinge.joint, hinge.edge.name()))
+        .collect();
+    match &each[..] {
+        [] => "no joint: they moved as one".to_owned(),
+        each => each.join(", "),
+    }
+}
