@@ -113,7 +113,7 @@ mod converted {
     use krilla::geom::Size;
     use krilla::page::PageSettings;
     use krilla_svg::{SurfaceExt as _, SvgSettings};
-    use resvg::tiny_skia::{Pixmap, Transform};
+    use resvg::tiny_skia::{self, Pixmap, Transform};
     use resvg::usvg::fontdb::{Family, Query};
     use resvg::usvg::{self, Options, Tree};
 
@@ -156,7 +156,8 @@ mod converted {
             SCREEN_DPI
         };
         let size = tree.size();
-        let scaled = size.scale_by(dpi / CSS_DPI);
+        let scale = dpi / CSS_DPI;
+        let scaled = tiny_skia::Size::from_wh(scale * size.width(), scale * size.height());
         let whole = scaled
             .ok_or_else(|| failed("it has no size"))?
             .to_int_size();
