@@ -83,7 +83,7 @@ pub(super) fn words(
     text += &variations(history, varied);
     let compared = beside.contains(&Hinges::Elastic);
     if scenario.motion().hinges() == Hinges::Free && !compared {
-        text += "  joints that give way make an arch fall before this one does: compare with --hinges elastic\n";
+        text += "  with joints that give way it falls under weaker ground motion: compare with --hinges elastic\n";
     }
     text += &computed(scenario, model, history);
     text
