@@ -483,6 +483,27 @@ fn paths_are_those_of_another_program() {
     }
 }
 
+/// An arch that spreads and comes back falls inwards where it does without the way out. With a settlement beside it, joints shut on
+/// the way back within the step in which another one has to open, and its hinges were once lost there.
+#[test]
+fn an_arch_that_comes_back_falls_where_it_would_have_fallen() {
+    let row = arch(180.0, 0.15, 20);
+    let inwards_from = |out: [f64; 2]| {
+        let mut follower = Follower::new(&row).unwrap();
+        let reached = follower.move_supports(right(out), 0.0, 1.0).unwrap();
+        assert!(matches!(reached, Reached::End));
+        let back = |s: f64| right([out[0] - s, out[1]])(1.0);
+        match follower.move_supports(back, 0.0, 1.6).unwrap() {
+            Reached::Falls(at) => at,
+            Reached::End => panic!("it stands"),
+        }
+    };
+    let fall = inwards_from([0.04, 0.0]);
+    assert!((fall - 0.04 - falls_at(&row, INWARDS)).abs() < 1e-9);
+    let settled = inwards_from([0.04, 0.01]);
+    assert!((settled - fall).abs() < 0.01, "{settled} {fall}");
+}
+
 /// What moves outwards to the right does so to the left; and half to each side is the same.
 #[test]
 fn either_springing_moves_an_arch_alike() {

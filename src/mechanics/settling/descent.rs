@@ -71,7 +71,8 @@ impl<'a> Descent<'a> {
             if fastest <= STANDSTILL {
                 return Ok(true);
             }
-            self.step(placement, STEP * size_m / fastest);
+            let (length, shut) = self.first_shut(placement, STEP * size_m / fastest);
+            self.go_on(placement, length, shut);
             let fallen = placement.closure_error() > PARTED * size_m
                 || start_m
                     .iter()
@@ -88,7 +89,8 @@ impl<'a> Descent<'a> {
         Ok(false)
     }
 
-    /// Moves the supports, and the row by the velocities that they force on it while the load decides.
+    /// Moves the supports, and the row by the velocities that they force on it while the load decides: from one joint that shuts on the
+    /// way to the next.
     fn nudge(
         &mut self,
         placement: &mut Placement,
@@ -96,18 +98,26 @@ impl<'a> Descent<'a> {
         to: &Condition,
         load: Vector2<f64>,
     ) -> Result<(), ContactError> {
-        if from.supports == to.supports {
-            return Ok(());
-        }
-        let moved = [0, 1].map(|side| between(&from.supports[side], &to.supports[side]));
+        let mut here = from.supports;
         let last = self.jumps.len() - 1;
-        self.jumps.fill(Twist::ZERO);
-        self.jumps[0] = moved[0];
-        self.jumps[last] = self.jumps[last] - moved[1];
-        self.free.fill(Twist::translation(load));
-        self.solve(placement)?;
-        placement.move_supports(to.supports);
-        self.step(placement, 1.0);
+        for _ in 0..=2 * last {
+            if here == to.supports {
+                break;
+            }
+            let moved = [0, 1].map(|side| between(&here[side], &to.supports[side]));
+            self.jumps.fill(Twist::ZERO);
+            self.jumps[0] = moved[0];
+            self.jumps[last] = self.jumps[last] - moved[1];
+            self.free.fill(Twist::translation(load));
+            self.solve(placement)?;
+            let (part, shut) = self.first_shut(placement, 1.0);
+            here = match shut {
+                None => to.supports,
+                Some(_) => [0, 1].map(|side| partway(&here[side], &to.supports[side], part)),
+            };
+            placement.move_supports(here);
+            self.go_on(placement, part, shut);
+        }
         Ok(())
     }
 
@@ -132,8 +142,8 @@ impl<'a> Descent<'a> {
         Ok(speeds.fold(0.0, f64::max))
     }
 
-    /// Goes on with the last velocities, at most for so long, and at most to where the first corner shuts.
-    fn step(&mut self, placement: &mut Placement, longest: f64) {
+    /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
+    fn first_shut(&self, placement: &Placement, longest: f64) -> (f64, Option<(usize, usize)>) {
         let mut length = longest;
         let mut first = None;
         let gaps_m = placement.gaps_m();
@@ -146,16 +156,29 @@ impl<'a> Descent<'a> {
                 }
             }
         }
+        (length, first)
+    }
+
+    /// Goes on with the last velocities for so long, until this corner shuts.
+    fn go_on(&mut self, placement: &mut Placement, length: f64, shut: Option<(usize, usize)>) {
+        let gaps_m = placement.gaps_m();
         let mut change = vec![[0.0; 2]; gaps_m.len()];
         for (joint, rates) in self.program.open_joints() {
             change[joint] = rates.map(|rate| rate * length);
         }
-        if let Some((joint, edge)) = first {
+        if let Some((joint, edge)) = shut {
             change[joint][edge] = -gaps_m[joint][edge];
         }
         placement.open(|joint| change[joint]);
         self.closer.close(placement);
     }
+}
+
+/// The pose after this part of the motion from one pose to another near by.
+fn partway(from: &Pose, to: &Pose, part: f64) -> Pose {
+    let between = |from: f64, to: f64| from + part * (to - from);
+    let translation = from.translation + (to.translation - from.translation) * part;
+    Pose::new(between(from.rotation_rad(), to.rotation_rad()), translation)
 }
 
 /// The motion, over one unit of time, that takes a body from one pose to another near by.
