@@ -16,13 +16,7 @@ const MIDDLE_M: [f64; 2] = [0.12, 0.2];
 fn structure(contact: Contact, strength_m: Option<f64>, damping_time_s: f64) -> ElasticStructure {
     let arm = |centre: [f64; 2]| [MIDDLE_M[0] - centre[0], MIDDLE_M[1] - centre[1]];
     let joint = ElasticJoint {
-        link: Link {
-            bodies: [0, 1],
-            arms_m: CENTRES_M.map(arm),
-            along: ALONG,
-            handedness: 1.0,
-            length_m: LENGTH_M,
-        },
+        link: Link::new([0, 1], CENTRES_M.map(arm), ALONG, 1.0, LENGTH_M),
         normal_n_m: NORMAL_N_M,
         shear_n_m: 0.4 * NORMAL_N_M,
         strength_m: strength_m.unwrap_or(f64::INFINITY),
@@ -109,7 +103,7 @@ fn a_joint_acts_by_its_energy_and_keeps_momenta() {
         for q in positions() {
             let (mut memory, mut fibres) = virgin(&structure);
             let [one, other] = places(q);
-            let (action, _) = structure.act(joint, [&one, &other], None, &mut memory, &mut fibres);
+            let (action, ..) = structure.act(joint, [&one, &other], None, &mut memory, &mut fibres);
             let [x, y] = action.force_n.map(|part| part.0[0]);
             let [first, second] = action.moments_n_m.map(|part| part.0[0]);
             let size = x.hypot(y);
@@ -149,13 +143,14 @@ fn the_stress_of_a_joint_is_that_of_its_parts() {
         let from = memory.penetrations_m.map(|end| end.0[0]);
         let [one, other] = places(after);
         let rates = Some(Lanes([damping]));
-        let (_, pressure) = structure.act(joint, [&one, &other], rates, &mut memory, &mut fibres);
+        let (_, pressing, rubbing) =
+            structure.act(joint, [&one, &other], rates, &mut memory, &mut fibres);
         let to = memory.penetrations_m.map(|end| end.0[0]);
         (
             from,
             to,
-            pressure.edges_n.map(|edge| edge.0[0]),
-            pressure.work.damped_j.0[0],
+            pressing.edges_n.map(|edge| edge.0[0]),
+            pressing.damped_j.0[0] + rubbing.damped_j.0[0],
         )
     };
     let parts = 200_000;
@@ -218,11 +213,11 @@ fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
                 0.0,
             ];
             let [one, other] = places(q);
-            let (_, pressure) =
+            let (_, pressing, _) =
                 structure.act(joint, [&one, &other], None, &mut memory, &mut fibres);
-            taken_j += pressure.work.crushed_j.0[0];
-            largest_n = largest_n.max(pressure.edges_n[0].0[0] + pressure.edges_n[1].0[0]);
-            pressure.edges_n[0].0[0] + pressure.edges_n[1].0[0]
+            taken_j += pressing.crushed_j.0[0];
+            largest_n = largest_n.max(pressing.edges_n[0].0[0] + pressing.edges_n[1].0[0]);
+            pressing.edges_n[0].0[0] + pressing.edges_n[1].0[0]
         };
         for step in 0..=300 {
             press(1e-5 * f64::from(step));

@@ -88,7 +88,7 @@ fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     let places = [Place::undeformed(), Place::at(&rest.moved[0])];
     let mut memory = rest.memories[0];
     let mut fibres = rest.fibres.clone();
-    let (action, _) = structure.act(
+    let (action, ..) = structure.act(
         &structure.joints()[0],
         [&places[0], &places[1]],
         None::<Lanes<1>>,

@@ -14,8 +14,8 @@ mod statics;
 mod structure;
 mod tie;
 
-pub use contact::{Contact, Fibre, Memory, Pressure, Work};
-pub use kinematics::{Gap, Link, Place};
+pub use contact::{Contact, Fibre, Memory, Pressing, Rubbing};
+pub use kinematics::{Action, Gap, Link, Place};
 pub use statics::{Rest, RestError};
 pub use structure::{
     Body, ElasticJoint, ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness,

@@ -2,7 +2,9 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::mechanics::elastic_joint::{Body, ElasticStructure, Fibre, Memory, Place, Rest};
+use crate::mechanics::elastic_joint::{
+    Body, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Pressing, Rest,
+};
 use crate::mechanics::lanes::{Lanes, Real, both};
 use crate::mechanics::tie::TieMemory;
 
@@ -41,6 +43,23 @@ impl<R> Moving<R> {
     }
 }
 
+impl<R: Real> Moving<R> {
+    /// Adds a force and a moment.
+    #[inline(always)]
+    fn feel(&mut self, force_n: [R; 2], moment_n_m: R) {
+        let before = self.force_n;
+        self.force_n = both!(i: before[i] + force_n[i]);
+        self.moment_n_m += moment_n_m;
+    }
+}
+
+/// The bodies of a joint, of which the last two are the supports.
+#[inline(always)]
+fn ends(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
+    let right = structure.bodies().len() + 1;
+    both!(end: joint.link.bodies()[end].min(right))
+}
+
 /// Motions side by side, each in its lane. What happens in one lane depends on no other.
 pub(super) struct Motion<'a, const L: usize> {
     pub structure: &'a ElasticStructure,
@@ -53,10 +72,39 @@ pub(super) struct Motion<'a, const L: usize> {
     /// One over the mass, and over the moment of inertia, of each body.
     inverses: Vec<[f64; 2]>,
     memories: Vec<Memory<Lanes<L>>>,
+    /// Of the joints whose forces are found now.
+    bearing: [Bearing<Lanes<L>>; TOGETHER],
     /// Of each place of each joint, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
     ties: Vec<TieMemory<Lanes<L>>>,
     spent: Spent<Lanes<L>>,
+}
+
+/// The forces of so many joints are found together, each part of the law for all of them before the next one. Such short loops have
+/// steps that do not depend on each other, so that the processor computes several at a time; more joints would not fit into its cache.
+const TOGETHER: usize = 12;
+
+/// How a joint bears at the places.
+#[derive(Clone, Copy)]
+struct Bearing<R> {
+    gap: Gap<R>,
+    pressing: Pressing<R>,
+    shear_n: R,
+}
+
+impl<R: Real> Bearing<R> {
+    fn none() -> Self {
+        let zero = R::of(0.0);
+        Self {
+            gap: Gap::none(),
+            pressing: Pressing {
+                edges_n: [zero; 2],
+                damped_j: zero,
+                crushed_j: zero,
+            },
+            shear_n: zero,
+        }
+    }
 }
 
 /// Energies spent since the beginning, in J.
@@ -172,6 +220,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             datum: vec![[0.0; 3]; structure.bodies().len()],
             inverses: structure.bodies().iter().map(inverse).collect(),
             memories: vec![Memory::none(); joints],
+            bearing: [Bearing::none(); TOGETHER],
             fibres: vec![Fibre::none(); joints * structure.fibres()],
             ties: structure
                 .ties()
@@ -312,26 +361,44 @@ impl<'a, const L: usize> Motion<'a, L> {
         let damps = structure.damping_time_s() > 0.0;
         let damping = if damps { Some(damping) } else { None };
         let each = structure.fibres();
-        let ground = structure.bodies().len();
-        let joints = structure.joints();
-        let mut index = 0;
-        while index < joints.len() {
-            let (joint, memory) = (&joints[index], &mut self.memories[index]);
-            let fibres = &mut self.fibres[index * each..(index + 1) * each];
-            index += 1;
-            let [first, second] = both!(end: joint.link.bodies[end].min(ground + 1));
-            let places = [&self.bodies[first].place, &self.bodies[second].place];
-            let (action, pressure) = structure.act(joint, places, damping, memory, fibres);
-            let body = &mut self.bodies[first];
-            body.force_n = both!(i: body.force_n[i] - action.force_n[i]);
-            body.moment_n_m += action.moments_n_m[0];
-            let body = &mut self.bodies[second];
-            body.force_n = both!(i: body.force_n[i] + action.force_n[i]);
-            body.moment_n_m += action.moments_n_m[1];
-            self.spent.friction_j += pressure.work.friction_j;
-            self.spent.damped_j += pressure.work.damped_j;
-            self.spent.crushed_j += pressure.work.crushed_j;
+        let (mut friction_j, mut damped_j, mut crushed_j) = (zero, zero, zero);
+        for (part, joints) in structure.joints().chunks(TOGETHER).enumerate() {
+            let first = part * TOGETHER;
+            let memories = &mut self.memories[first..first + joints.len()];
+            let bearing = &mut self.bearing[..joints.len()];
+            for (joint, bearing) in joints.iter().zip(bearing.iter_mut()) {
+                let [one, other] = ends(structure, joint);
+                let (one, other) = (&self.bodies[one].place, &self.bodies[other].place);
+                bearing.gap = joint.link.gap(one, other);
+            }
+            let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *bearing);
+            for (index, ((joint, memory), bearing)) in each_joint.enumerate() {
+                let from = (first + index) * each;
+                let fibres = &mut self.fibres[from..from + each];
+                let pressing = structure.press(joint, damping, &bearing.gap, memory, fibres);
+                damped_j += pressing.damped_j;
+                crushed_j += pressing.crushed_j;
+                bearing.pressing = pressing;
+            }
+            let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *bearing);
+            for ((joint, memory), bearing) in each_joint {
+                let (gap, pressing) = (&bearing.gap, &bearing.pressing);
+                let rubbing = structure.rub(joint, damping, gap, pressing, memory);
+                friction_j += rubbing.friction_j;
+                damped_j += rubbing.damped_j;
+                bearing.shear_n = rubbing.shear_n;
+            }
+            for (joint, bearing) in joints.iter().zip(&*bearing) {
+                let edges_n = bearing.pressing.edges_n;
+                let action = joint.link.action(&bearing.gap, edges_n, bearing.shear_n);
+                let [one, other] = ends(structure, joint);
+                self.bodies[one].feel(both!(i: -action.force_n[i]), action.moments_n_m[0]);
+                self.bodies[other].feel(action.force_n, action.moments_n_m[1]);
+            }
         }
+        self.spent.friction_j += friction_j;
+        self.spent.damped_j += damped_j;
+        self.spent.crushed_j += crushed_j;
         self.pull();
     }
 
@@ -348,12 +415,8 @@ impl<'a, const L: usize> Motion<'a, L> {
             let span = bound.span(places);
             memory.stretch(&bound.tie, span.stretch_m);
             let action = bound.action(places, &span, memory.force_n);
-            let body = &mut self.bodies[first];
-            body.force_n = both!(i: body.force_n[i] - action.force_n[i]);
-            body.moment_n_m += action.moments_n_m[0];
-            let body = &mut self.bodies[second];
-            body.force_n = both!(i: body.force_n[i] + action.force_n[i]);
-            body.moment_n_m += action.moments_n_m[1];
+            self.bodies[first].feel(both!(i: -action.force_n[i]), action.moments_n_m[0]);
+            self.bodies[second].feel(action.force_n, action.moments_n_m[1]);
         }
     }
 
@@ -389,7 +452,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             seen.sway_kg_m += x * mass;
             let mut nearest = Lanes([f64::INFINITY; L]);
             for slide in slides {
-                let along = structure.joints()[slide.joint].link.along;
+                let along = structure.joints()[slide.joint].link.along();
                 let slid = self.memories[slide.joint].slipped_m * slide.sense;
                 let gone = self.gone(slide.support);
                 let beside = [

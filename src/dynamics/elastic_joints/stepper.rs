@@ -366,7 +366,7 @@ impl<'a, const L: usize> Group<'a, L> {
                 .find(|slide| slide.joint == joint && slide.goes_on)
             {
                 Some(slide) => slid += slipped_m * slide.along_x,
-                None => lane.overturned |= slipped_m.abs() >= joints[joint].link.length_m,
+                None => lane.overturned |= slipped_m.abs() >= joints[joint].link.length_m(),
             }
         }
         // Between feet that part the middle goes half the way.
@@ -522,7 +522,7 @@ impl<'a> ElasticStepper<'a> {
     fn places(&self, joint: usize) -> [Place<Lanes<1>>; 2] {
         let structure = self.group.start.structure;
         let ground = structure.bodies().len();
-        let pair = structure.joints()[joint].link.bodies;
+        let pair = structure.joints()[joint].link.bodies();
         pair.map(|body| self.group.motion.place(body.min(ground + 1), 0))
     }
 
@@ -647,10 +647,10 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         let link = &self.group.start.structure.joints()[joint].link;
         let blocks = self.group.row.blocks();
         // The face of the block, or of the first of two.
-        let end = usize::from(link.bodies[0] >= blocks.len());
-        let centre_m = blocks[link.bodies[end]].centre_m;
-        let moved_m = Vector2::from(self.group.motion.moved_m(link.bodies[end], 0));
-        let (rotation_rad, _) = self.group.motion.turn(link.bodies[end], 0);
+        let end = usize::from(link.bodies()[0] >= blocks.len());
+        let centre_m = blocks[link.bodies()[end]].centre_m;
+        let moved_m = Vector2::from(self.group.motion.moved_m(link.bodies()[end], 0));
+        let (rotation_rad, _) = self.group.motion.turn(link.bodies()[end], 0);
         Pose::about(centre_m, centre_m + moved_m, rotation_rad)
             .of(self.group.row.joints()[joint].corner_m(edge))
     }

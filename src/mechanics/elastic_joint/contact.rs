@@ -1,6 +1,6 @@
 //! The stress that a joint bears, summed over its length.
 //!
-//! Forces are divided by the stiffness of the whole joint (N per N/m: metres), until the end. The penetration changes linearly from
+//! Until the end, forces are six times those divided by the stiffness of the whole joint (N per N/m: metres). The penetration changes linearly from
 //! edge to edge, so the part that presses is an interval, found without branches, and Simpson's rule is exact for forces, moments
 //! and energies.
 
@@ -128,7 +128,7 @@ pub struct Memory<R> {
 pub struct Fibre<R> {
     /// By how much it is crushed, in m.
     pub crushed_m: R,
-    /// Its elastic force, per stiffness.
+    /// Six times its elastic force, per stiffness.
     force_m: R,
 }
 
@@ -229,26 +229,26 @@ impl<R: Real> Fibre<R> {
     }
 }
 
-/// Energy that a joint dissipated in a step, in J, by the trapezoidal rule.
+/// How a joint presses.
 #[derive(Clone, Copy, Debug)]
-pub struct Work<R> {
-    /// By slip.
-    pub friction_j: R,
-    /// By damping.
+pub struct Pressing<R> {
+    /// Forces at the edges that are equivalent to the stress, in N.
+    pub edges_n: [R; 2],
+    /// Energy taken in the step by damping, in J, by the trapezoidal rule, as all of these are.
     pub damped_j: R,
     /// By crushing.
     pub crushed_j: R,
 }
 
-/// What a joint bears.
+/// How the faces of a joint rub.
 #[derive(Clone, Copy, Debug)]
-pub struct Pressure<R> {
-    /// Forces at the edges that are equivalent to the stress, in N.
-    pub edges_n: [R; 2],
+pub struct Rubbing<R> {
     /// Shear force, in N.
     pub shear_n: R,
-    /// Energy dissipated in the step.
-    pub work: Work<R>,
+    /// Energy taken in the step by damping, in J.
+    pub damped_j: R,
+    /// By friction.
+    pub friction_j: R,
 }
 
 /// What all joints of a structure have in common.
@@ -261,7 +261,7 @@ pub(super) struct Law {
 }
 
 impl Law {
-    /// The stress of a joint, whose memory is updated. `damping` is the damping time over the length of the step.
+    /// How a joint presses with such a gap; its memory is updated. `damping` is the damping time over the length of the step.
     #[inline(always)]
     pub fn press<R: Real>(
         &self,
@@ -270,11 +270,11 @@ impl Law {
         gap: &Gap<R>,
         memory: &mut Memory<R>,
         fibres: &mut [Fibre<R>],
-    ) -> Pressure<R> {
+    ) -> Pressing<R> {
         let zero = R::of(0.0);
-        let k = joint.normal_n_m;
         let p = gap.penetrations_m;
         let moved = both!(end: p[end] - memory.penetrations_m[end]);
+        memory.penetrations_m = p;
         #[expect(
             clippy::manual_map,
             reason = "in functions as large as a step the compiler leaves calls of closures"
@@ -305,43 +305,54 @@ impl Law {
                 at_points(points, limit, p, brakes, fibres)
             }
         };
-        let edges_n = both!(end: sums.total[end] * k);
-        let mut damped = zero;
+        let k = joint.normal_n_m * (1.0 / 6.0);
+        let mut damped_j = zero;
         if damping.is_some() {
             let before = memory.viscous_n;
             let viscous = both!(end: (sums.total[end] - sums.elastic[end]) * k);
             let taken = both!(end: (viscous[end] + before[end]) * moved[end]);
-            damped += taken[0] + taken[1];
+            damped_j = (taken[0] + taken[1]) * 0.5;
             memory.viscous_n = viscous;
         }
+        Pressing {
+            edges_n: both!(end: sums.total[end] * k),
+            damped_j,
+            crushed_j: sums.crushed * k,
+        }
+    }
 
+    /// How its faces rub with such a gap, as they press with this force; its memory is updated.
+    #[inline(always)]
+    pub fn rub<R: Real>(
+        &self,
+        joint: &ElasticJoint,
+        damping: Option<R>,
+        gap: &Gap<R>,
+        pressing_n: R,
+        memory: &mut Memory<R>,
+    ) -> Rubbing<R> {
         let [coefficient, lock] = self.friction;
-        let bound = (edges_n[0] + edges_n[1]) * coefficient + R::of(lock);
+        let bound = pressing_n * coefficient + R::of(lock);
         let kt = joint.shear_n_m;
         let slid = gap.slip_m - memory.slip_m;
         let trial = memory.shear_n + slid * kt;
         let elastic = clamped(trial, bound);
         let slipped = (trial - elastic) * (1.0 / kt);
-        let rubbed = (memory.shear_n + elastic) * slipped * 0.5;
-        let mut shear_n = elastic;
+        let friction_j = (memory.shear_n + elastic) * slipped * 0.5;
+        let (mut shear_n, mut damped_j) = (elastic, R::of(0.0));
         if let Some(damping) = damping {
             shear_n = clamped(elastic + slid * damping * kt, bound);
             let viscous = shear_n - elastic;
-            damped += (viscous + memory.viscous_shear_n) * slid;
+            damped_j = (viscous + memory.viscous_shear_n) * slid * 0.5;
             memory.viscous_shear_n = viscous;
         }
-        memory.penetrations_m = p;
         memory.slip_m = gap.slip_m;
         memory.shear_n = elastic;
         memory.slipped_m += slipped;
-        Pressure {
-            edges_n,
+        Rubbing {
             shear_n,
-            work: Work {
-                friction_j: rubbed,
-                damped_j: damped * 0.5,
-                crushed_j: sums.crushed * k,
-            },
+            damped_j,
+            friction_j,
         }
     }
 }
@@ -352,7 +363,7 @@ fn clamped<R: Real>(force: R, bound: R) -> R {
     force.min(bound).max(-bound)
 }
 
-/// Forces at the edges, elastic and with damping, and work of crushing, per stiffness.
+/// Six times the forces at the edges, elastic and with damping, and the work of crushing, per stiffness.
 struct Sums<R> {
     elastic: [R; 2],
     total: [R; 2],
@@ -405,6 +416,7 @@ fn at_points<R: Real>(
         let ([at, share], memory) = (points[index], &mut fibres[index]);
         index += 1;
         let (q, v, over) = fibre(at, p, brakes, limit, memory);
+        let share = 6.0 * share;
         let elastic = q.max(zero) * share;
         let total = q.positive(v.max(zero), zero) * share;
         let parts = [1.0 - at, at];
@@ -485,16 +497,16 @@ fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     ]
 }
 
-/// Forces at the ends equivalent to a stress that is linear over a part of the length, between these values.
+/// Six times the forces at the ends equivalent to a stress that is linear over a part of the length, between these values.
 #[inline(always)]
 fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
-    let part = to - from;
-    let whole = part * (low + high) * 0.5;
-    let at_one = part * (low * (from * 2.0 + to) + high * (from + to * 2.0)) * (1.0 / 6.0);
-    [whole - at_one, at_one]
+    let (part, sum) = (to - from, from + to);
+    let whole = (low + high) * 3.0;
+    let at_one = low * (from + sum) + high * (to + sum);
+    [part * (whole - at_one), part * at_one]
 }
 
-/// Forces at the ends due to a stress that is linear between them, where it presses; nothing pulls.
+/// Six times the forces at the ends due to a stress that is linear between them, where it presses; nothing pulls.
 #[inline(always)]
 fn pressed<R: Real>(ends: [R; 2]) -> [R; 2] {
     let zero = R::of(0.0);

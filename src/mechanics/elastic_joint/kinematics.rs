@@ -47,16 +47,16 @@ impl<R: Real> Place<R> {
 /// What a joint joins, undeformed: the first body is before the joint, the second one after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    /// The indices of the two bodies.
-    pub bodies: [usize; 2],
-    /// From the centres of the bodies to the middle of the joint, in m.
-    pub arms_m: [[f64; 2]; 2],
-    /// Unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
-    pub along: [f64; 2],
-    /// 1 where the second body is to the left of that vector, else -1.
-    pub handedness: f64,
-    /// Length of the joint, in m.
-    pub length_m: f64,
+    bodies: [usize; 2],
+    arms_m: [[f64; 2]; 2],
+    along: [f64; 2],
+    handedness: f64,
+    length_m: f64,
+    /// The arm of the first body along the joint, and across it, a quarter turn anticlockwise from there. Twice the second one less
+    /// the first one, and their sum, likewise.
+    first_m: [f64; 2],
+    twice_between_m: [f64; 2],
+    sum_m: [f64; 2],
 }
 
 /// The relative position of the faces of a joint.
@@ -66,14 +66,14 @@ pub struct Gap<R> {
     pub penetrations_m: [R; 2],
     /// By how much the second face has slipped towards edge 1, in m.
     pub slip_m: R,
+    /// By how much it has moved a quarter turn anticlockwise from there, in m.
+    rise_m: R,
+    /// How much farther the second body has moved than the first one, in m.
+    apart_m: [R; 2],
     /// Mean direction of the faces.
     along: [R; 2],
-    /// Normal of that, towards the second body.
-    normal: [R; 2],
-    /// Cosine of half the angle between the faces, times the handedness and half the length.
-    half_cos: R,
-    /// From the centres of the bodies to midway between the middles of the faces.
-    levers_m: [[R; 2]; 2],
+    /// Cosine and sine of half the angle between the faces.
+    half: [R; 2],
 }
 
 /// The action of a joint on its two bodies, at their centres.
@@ -85,64 +85,149 @@ pub struct Action<R> {
     pub moments_n_m: [R; 2],
 }
 
-impl Link {
-    /// The relative position of the faces with the bodies at these places.
-    ///
-    /// With `e_a`, `e_b` the directions of the faces, `e` the mean direction and `n` its normal, `e_b - e_a` is along `n` whatever the
-    /// angle. So the gap is linear along the joint, and the slip the same everywhere.
-    #[inline(always)]
-    pub fn gap<R: Real>(&self, first: &Place<R>, second: &Place<R>) -> Gap<R> {
-        let swings = [first.swing(self.arms_m[0]), second.swing(self.arms_m[1])];
-        let apart = both!(i: second.moved_m[i] - first.moved_m[i] + (swings[1][i] - swings[0][i]));
-        // In the frame of the undeformed joint: the mean direction of the faces, turned by the mean of both rotations, and half the
-        // angle between them. With the halves of the rotations both are products, without a root.
-        let ([cos_a, sin_a], [cos_b, sin_b]) = (first.half_turn, second.half_turn);
-        let (cosines, sines) = (cos_a * cos_b, sin_a * sin_b);
-        let (forth, back) = (cos_a * sin_b, sin_a * cos_b);
-        let both_cos = cos_a + cos_b;
-        let x = R::of(1.0) + (both_cos + (cosines - sines));
-        let y = (sin_a + sin_b) + (forth + back);
-        let half_cos = R::of(1.0) + (both_cos + (cosines + sines));
-        let half_sin = (sin_b - sin_a) + (forth - back);
-        let [ex, ey] = self.along;
-        let along = [x * ex - y * ey, y * ex + x * ey];
-        let q = self.handedness;
-        let normal = [along[1] * -q, along[0] * q];
-        let half_t = 0.5 * self.length_m;
-        let gap = dot(apart, normal);
-        let tilt = half_sin * (2.0 * q * half_t);
-        let half = both!(i: apart[i] * 0.5);
-        Gap {
-            penetrations_m: [tilt - gap, -gap - tilt],
-            slip_m: dot(apart, along),
-            along,
-            normal,
-            half_cos: half_cos * (q * half_t),
-            levers_m: [
-                both!(i: swings[0][i] + R::of(self.arms_m[0][i]) + half[i]),
-                both!(i: swings[1][i] + R::of(self.arms_m[1][i]) - half[i]),
-            ],
+impl<R: Real> Gap<R> {
+    /// Of an undeformed joint whose mean direction does not matter.
+    #[must_use]
+    pub fn none() -> Self {
+        let (zero, one) = (R::of(0.0), R::of(1.0));
+        Self {
+            penetrations_m: [zero; 2],
+            slip_m: zero,
+            rise_m: zero,
+            apart_m: [zero; 2],
+            along: [one, zero],
+            half: [one, zero],
         }
     }
 }
 
-impl<R: Real> Gap<R> {
-    /// The action of the joint for these pressing forces at its edges and this shear force, which resists slip. The work of the
-    /// action equals theirs on the penetrations and the slip.
+impl Link {
+    /// A joint between the bodies with these indices.
+    ///
+    /// * `arms_m`: from the centres of the bodies to the middle of the joint.
+    /// * `along`: unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
+    /// * `handedness`: 1 where the second body is to the left of that vector, else -1.
+    /// * `length_m`: length of the joint.
+    #[must_use]
+    pub fn new(
+        bodies: [usize; 2],
+        arms_m: [[f64; 2]; 2],
+        along: [f64; 2],
+        handedness: f64,
+        length_m: f64,
+    ) -> Self {
+        let [ex, ey] = along;
+        let [first_m, second_m] = arms_m.map(|[x, y]| [ex * x + ey * y, ex * y - ey * x]);
+        Self {
+            bodies,
+            arms_m,
+            along,
+            handedness,
+            length_m,
+            first_m,
+            twice_between_m: both!(i: 2.0 * (second_m[i] - first_m[i])),
+            sum_m: both!(i: first_m[i] + second_m[i]),
+        }
+    }
+
+    /// The indices of the two bodies.
+    #[inline(always)]
+    #[must_use]
+    pub const fn bodies(&self) -> [usize; 2] {
+        self.bodies
+    }
+
+    /// From the centres of the bodies to the middle of the joint, in m.
+    #[must_use]
+    pub const fn arms_m(&self) -> [[f64; 2]; 2] {
+        self.arms_m
+    }
+
+    /// Unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
+    #[must_use]
+    pub const fn along(&self) -> [f64; 2] {
+        self.along
+    }
+
+    /// 1 where the second body is to the left of that vector, else -1.
+    #[must_use]
+    pub const fn handedness(&self) -> f64 {
+        self.handedness
+    }
+
+    /// Length of the joint, in m.
+    #[must_use]
+    pub const fn length_m(&self) -> f64 {
+        self.length_m
+    }
+
+    /// The relative position of the faces with the bodies at these places.
+    ///
+    /// With `e_a`, `e_b` the directions of the faces, `e` the mean direction and `n` its normal, `e_b - e_a` is along `n` whatever the
+    /// angle. So the gap is linear along the joint, and the slip the same everywhere.
+    ///
+    /// The bodies turn by `m - d` and `m + d`, so their arms `a`, `b` move the middles of the faces apart by
+    /// `R(m) (cos d (b - a) + sin d J (a + b)) - (b - a)`, with `J` a quarter turn. Along `e = R(m) e_0` and `J e` that is, by the
+    /// components of the arms along `e_0` and `J e_0`, a sum of terms that are small while the turns are: they keep all their digits.
+    #[inline(always)]
+    pub fn gap<R: Real>(&self, first: &Place<R>, second: &Place<R>) -> Gap<R> {
+        let apart = both!(i: second.moved_m[i] - first.moved_m[i]);
+        // Cosines and sines of `m` and `d` are products, without a root, of those of the halves of the rotations.
+        let ([cos_a, sin_a], [cos_b, sin_b]) = (first.half_turn, second.half_turn);
+        let (cosines, sines) = (cos_a * cos_b, sin_a * sin_b);
+        let (forth, back) = (cos_a * sin_b, sin_a * cos_b);
+        let both_cos = R::of(1.0) + (cos_a + cos_b);
+        let mean_cos = both_cos + (cosines - sines);
+        let mean_sin = (sin_a + sin_b) + (forth + back);
+        let half_cos = both_cos + (cosines + sines);
+        let half_sin = (sin_b - sin_a) + (forth - back);
+        let [ex, ey] = self.along;
+        let along = [mean_cos * ex - mean_sin * ey, mean_sin * ex + mean_cos * ey];
+        // `cos d - cos m` is twice the product of the sines.
+        let (twice, sum) = (self.twice_between_m, self.sum_m);
+        let slip = sines * twice[0] - half_sin * sum[1] - mean_sin * (0.5 * twice[1]);
+        let rise = sines * twice[1] + half_sin * sum[0] + mean_sin * (0.5 * twice[0]);
+        let slip_m = dot(along, apart) + slip;
+        let rise_m = cross(along, apart) + rise;
+        let tilt = half_sin * self.length_m;
+        let q = self.handedness;
+        Gap {
+            penetrations_m: [(tilt - rise_m) * q, (tilt + rise_m) * -q],
+            slip_m,
+            rise_m,
+            apart_m: apart,
+            along,
+            half: [half_cos, half_sin],
+        }
+    }
+
+    /// The action of the joint with this gap, for these pressing forces at its edges and this shear force, which resists slip. The
+    /// work of the action equals theirs on the penetrations and the slip.
     ///
     /// The force acts midway between the middles of the faces, since both bodies share in turning the mean direction.
     #[inline(always)]
-    pub fn action(&self, edges_n: [R; 2], shear_n: R) -> Action<R> {
-        let pressing = edges_n[0] + edges_n[1];
-        let force_n = both!(i: self.normal[i] * pressing - self.along[i] * shear_n);
-        // `half_cos` includes the handedness and half the length.
-        let couple = (edges_n[1] - edges_n[0]) * self.half_cos;
+    pub fn action<R: Real>(&self, gap: &Gap<R>, edges_n: [R; 2], shear_n: R) -> Action<R> {
+        let q = self.handedness;
+        let across_n = (edges_n[0] + edges_n[1]) * q;
+        let [ex, ey] = gap.along;
+        let force_n = [
+            -(ey * across_n + ex * shear_n),
+            ex * across_n - ey * shear_n,
+        ];
+        // Twice the lever from the centre of the first body, along the mean direction and across it.
+        let ([half_cos, half_sin], [a, b]) = (gap.half, both!(i: 2.0 * self.first_m[i]));
+        let lever_m = [
+            half_cos * a + half_sin * b + gap.slip_m,
+            half_cos * b - half_sin * a + gap.rise_m,
+        ];
+        let couple = (edges_n[1] - edges_n[0]) * (half_cos * (q * self.length_m));
+        let about_first = (lever_m[0] * across_n + lever_m[1] * shear_n + couple) * 0.5;
+        // From the centre of the first body to that of the second one.
+        let [from, to] = self.arms_m;
+        let between_m = both!(i: gap.apart_m[i] + R::of(from[i] - to[i]));
         Action {
             force_n,
-            moments_n_m: [
-                -(cross(self.levers_m[0], force_n) + couple),
-                cross(self.levers_m[1], force_n) + couple,
-            ],
+            moments_n_m: [-about_first, about_first - cross(between_m, force_n)],
         }
     }
 }

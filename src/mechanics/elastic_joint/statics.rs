@@ -90,7 +90,7 @@ impl Rest {
             |body: usize| Place::at(self.moved.get(body).unwrap_or(structure.support(body)));
         let joints = structure.joints().iter().enumerate();
         let eccentricities = joints.map(|(index, joint)| {
-            let [first, second] = joint.link.bodies.map(place);
+            let [first, second] = joint.link.bodies().map(place);
             let mut fibres = self.fibres[index * each..(index + 1) * each].to_vec();
             let memory = &self.memories[index];
             let (edges_n, _) = structure.elastic_n(joint, [&first, &second], memory, &mut fibres);
@@ -361,12 +361,12 @@ impl<'a> Search<'a> {
         let joints = structure.joints();
         let bodies = structure.bodies().len();
         let ties = structure.ties().iter().map(|tie| tie.bodies);
-        let pairs = joints.iter().map(|joint| joint.link.bodies).chain(ties);
+        let pairs = joints.iter().map(|joint| joint.link.bodies()).chain(ties);
         let reach = pairs.map(|pair| match pair {
             [one, other] if one < bodies && other < bodies => one.abs_diff(other),
             _ => 0,
         });
-        let lengths: f64 = joints.iter().map(|joint| joint.link.length_m).sum();
+        let lengths: f64 = joints.iter().map(|joint| joint.link.length_m()).sum();
         Self {
             structure,
             load_m_s2,
@@ -391,21 +391,21 @@ impl<'a> Search<'a> {
             forces[3 * index + 2] = 0.0;
         }
         for joint in self.structure.joints() {
-            let pair = joint.link.bodies;
+            let pair = joint.link.bodies();
             let [first, second] = [0, 1].map(|end| self.variable(moved, pair[end], end));
-            let gap = joint.link.gap(&first, &second);
-            let law = self.structure.law();
+            let section = &self.structure.law().section;
             let action = if bonded {
-                let edges = law.section.bonded(gap.penetrations_m);
-                gap.action(
-                    edges.map(|edge| edge * joint.normal_n_m),
-                    gap.slip_m * joint.shear_n_m,
-                )
+                let gap = joint.link.gap(&first, &second);
+                let edges = section.bonded(gap.penetrations_m);
+                let edges_n = edges.map(|edge| edge * joint.normal_n_m);
+                let shear_n = gap.slip_m * joint.shear_n_m;
+                joint.link.action(&gap, edges_n, shear_n)
             } else {
-                let mut fibres = [Fibre::none(); MOST_FIBRES];
-                let fibres = &mut fibres[..law.section.fibres()];
-                let pressure = law.press(joint, None, &gap, &mut Memory::none(), fibres);
-                gap.action(pressure.edges_n, pressure.shear_n)
+                let (mut memory, mut fibres) = (Memory::none(), [Fibre::none(); MOST_FIBRES]);
+                let fibres = &mut fibres[..section.fibres()];
+                let places = [&first, &second];
+                let (action, ..) = self.structure.act(joint, places, None, &mut memory, fibres);
+                action
             };
             self.add(pair, &action, matrix.as_deref_mut(), forces);
         }
@@ -651,12 +651,11 @@ impl<'a> Search<'a> {
         });
         let ties = ties.collect();
         for (index, joint) in joints.iter().enumerate() {
-            let [one, other] = joint.link.bodies.map(place);
-            let gap = joint.link.gap(&one, &other);
+            let [one, other] = joint.link.bodies().map(place);
             let fibres = &mut fibres[index * each..(index + 1) * each];
+            let memory = &mut memories[index];
             self.structure
-                .law()
-                .press(joint, None, &gap, &mut memories[index], fibres);
+                .act(joint, [&one, &other], None, memory, fibres);
         }
         Rest {
             bent: moved.clone(),

@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::contact::{Contact, Fibre, Law, Memory, Pressure, Section};
-use super::kinematics::{Action, Link, Place};
+use super::contact::{Contact, Fibre, Law, Memory, Pressing, Rubbing, Section};
+use super::kinematics::{Action, Gap, Link, Place};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::blocks::{Row, Supports};
@@ -236,13 +236,13 @@ impl ElasticStructure {
             let area_m2 = properties.depth_m * length_m;
             let strength_pa = properties.compressive_strength_pa;
             Ok(ElasticJoint {
-                link: Link {
-                    bodies: pair,
-                    arms_m: arms_m.map(|arm| [arm.x, arm.y]),
-                    along: [along.x, along.y],
-                    handedness: row.handedness(),
+                link: Link::new(
+                    pair,
+                    arms_m.map(|arm| [arm.x, arm.y]),
+                    [along.x, along.y],
+                    row.handedness(),
                     length_m,
-                },
+                ),
                 normal_n_m: stiffness.normal_pa_m * area_m2,
                 shear_n_m: stiffness.shear_pa_m * area_m2,
                 strength_m: strength_pa.map_or(f64::INFINITY, |pa| pa / stiffness.normal_pa_m),
@@ -407,8 +407,34 @@ impl ElasticStructure {
         &self.law
     }
 
-    /// The action of a joint on its bodies at these places, and the stress that it bears; its memory is updated. `damping` is the
-    /// damping time over the length of the step.
+    /// How a joint presses with such a gap; its memory is updated. `damping` is the damping time over the length of the step.
+    #[inline(always)]
+    pub fn press<R: Real>(
+        &self,
+        joint: &ElasticJoint,
+        damping: Option<R>,
+        gap: &Gap<R>,
+        memory: &mut Memory<R>,
+        fibres: &mut [Fibre<R>],
+    ) -> Pressing<R> {
+        self.law.press(joint, damping, gap, memory, fibres)
+    }
+
+    /// How its faces then rub; its memory is updated.
+    #[inline(always)]
+    pub fn rub<R: Real>(
+        &self,
+        joint: &ElasticJoint,
+        damping: Option<R>,
+        gap: &Gap<R>,
+        pressing: &Pressing<R>,
+        memory: &mut Memory<R>,
+    ) -> Rubbing<R> {
+        let pressing_n = pressing.edges_n[0] + pressing.edges_n[1];
+        self.law.rub(joint, damping, gap, pressing_n, memory)
+    }
+
+    /// All of this one after the other, for a joint with its bodies at these places, and its action on them.
     #[inline(always)]
     pub fn act<R: Real>(
         &self,
@@ -417,10 +443,12 @@ impl ElasticStructure {
         damping: Option<R>,
         memory: &mut Memory<R>,
         fibres: &mut [Fibre<R>],
-    ) -> (Action<R>, Pressure<R>) {
+    ) -> (Action<R>, Pressing<R>, Rubbing<R>) {
         let gap = joint.link.gap(places[0], places[1]);
-        let pressure = self.law.press(joint, damping, &gap, memory, fibres);
-        (gap.action(pressure.edges_n, pressure.shear_n), pressure)
+        let pressing = self.press(joint, damping, &gap, memory, fibres);
+        let rubbing = self.rub(joint, damping, &gap, &pressing, memory);
+        let action = joint.link.action(&gap, pressing.edges_n, rubbing.shear_n);
+        (action, pressing, rubbing)
     }
 
     /// The elastic stress of a joint at rest, summed up: forces at its edges and the shear force, in N.
@@ -432,14 +460,8 @@ impl ElasticStructure {
         memory: &Memory<Lanes<1>>,
         fibres: &mut [Fibre<Lanes<1>>],
     ) -> ([f64; 2], f64) {
-        let gap = joint.link.gap(places[0], places[1]);
-        let pressure = self
-            .law
-            .press(joint, None, &gap, &mut memory.clone(), fibres);
-        (
-            pressure.edges_n.map(|edge| edge.0[0]),
-            pressure.shear_n.0[0],
-        )
+        let (_, pressing, rubbing) = self.act(joint, places, None, &mut memory.clone(), fibres);
+        (pressing.edges_n.map(|edge| edge.0[0]), rubbing.shear_n.0[0])
     }
 
     /// Elastic energy of a joint, in J.
@@ -463,7 +485,7 @@ impl ElasticStructure {
     pub fn frequency_bound_rad_s(&self) -> f64 {
         let mut held_n_m = vec![0.0; self.bodies.len()];
         for joint in &self.joints {
-            for body in joint.link.bodies {
+            for body in joint.link.bodies() {
                 if let Some(held) = held_n_m.get_mut(body) {
                     *held += joint.normal_n_m;
                 }
@@ -472,9 +494,9 @@ impl ElasticStructure {
         let squares = self.joints.iter().map(|joint| {
             let mut flexibility = Matrix3::zeros();
             let link = &joint.link;
-            let along = Vector2::from(link.along);
-            let normal = Vector2::new(-along.y, along.x) * link.handedness;
-            for (body, arm_m) in link.bodies.into_iter().zip(link.arms_m) {
+            let along = Vector2::from(link.along());
+            let normal = Vector2::new(-along.y, along.x) * link.handedness();
+            for (body, arm_m) in link.bodies().into_iter().zip(link.arms_m()) {
                 let Some(of_body) = self.bodies.get(body) else {
                     continue;
                 };
@@ -488,7 +510,7 @@ impl ElasticStructure {
                 flexibility += (by_x * by_x.transpose() + by_y * by_y.transpose()) / mass;
                 flexibility += by_turn * by_turn.transpose() / (part * of_body.inertia_kg_m2);
             }
-            let turning = self.law.section.second_moment() * link.length_m.powi(2);
+            let turning = self.law.section.second_moment() * link.length_m().powi(2);
             let roots = Vector3::new(
                 joint.normal_n_m.sqrt(),
                 joint.shear_n_m.sqrt(),
