@@ -74,6 +74,7 @@ mod ties;
 mod ties_in_motion;
 mod tour;
 mod two_feet;
+mod two_feet_rigid;
 mod uncertain;
 mod validation;
 mod verify;

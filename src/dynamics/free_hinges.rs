@@ -6,6 +6,7 @@
 mod landing;
 mod model;
 mod rest;
+mod right_support;
 mod sliding;
 mod ties;
 

@@ -463,6 +463,10 @@ pub struct RowSummary {
     /// Energy taken by impacts, in J, without what friction takes; with elastic joints, all that damping, friction and crushing
     /// took.
     pub energy_taken_j: f64,
+    /// Work of the moving ground, in J; of feet that move differently, of the ground under the left one, on all that rides on it.
+    pub ground_j: f64,
+    /// Work of the right foot as it goes away from the left one, in J.
+    pub right_foot_j: f64,
     /// Error of the energy balance, over the larger of the largest kinetic energy and the barrier, where that is known.
     pub energy_error: f64,
     /// Least normal force at a joint outside impacts, in N; infinite without any step, and with elastic joints.
@@ -544,10 +548,6 @@ pub struct ElasticSummary {
     pub crushed_j: f64,
     /// What ties took as they yielded and broke, in J.
     pub ties_j: f64,
-    /// Work of the moving ground, in J; of feet that move differently, of the ground under the left one, on all that rides on it.
-    pub ground_j: f64,
-    /// Work of the right foot as it goes away from the left one, in J.
-    pub feet_j: f64,
     /// How far the thrust lies from the middle of the worst joint at rest, over its length, before the motion.
     pub rest_eccentricity_ratio: f64,
     /// Which joint that is.

@@ -332,9 +332,8 @@ impl Request {
     }
 }
 
-/// Why only elastic joints take feet that move differently.
-pub(crate) const FEET_NEED_JOINTS: &str =
-    "rigid joints would have to be open at every instant between feet that move differently";
+/// Why four links do not take feet that move differently.
+pub(crate) const FEET_NEED_JOINTS: &str = "between feet that move differently joints are open at every instant, and the hinges of four links all shut at once";
 
 /// Why a motion could not be computed.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -351,8 +350,10 @@ pub enum SimulationError {
         /// When, in seconds.
         time_s: f64,
     },
-    /// The feet move differently, and the joints cannot follow.
-    #[error("{FEET_NEED_JOINTS}: choose [elastic_joints] (`--hinges elastic`)")]
+    /// The feet move differently, and the hinges cannot follow.
+    #[error(
+        "{FEET_NEED_JOINTS}: choose [free_hinges] or [elastic_joints] (`--hinges free` or `--hinges elastic`)"
+    )]
     Feet,
     /// The history takes too much memory.
     #[error(transparent)]

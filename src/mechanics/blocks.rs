@@ -684,6 +684,16 @@ impl Row {
         &self.ties
     }
 
+    /// Middles of the joints on its left and its right support; a stack has one support.
+    #[must_use]
+    pub fn feet_m(&self) -> [Vector2<f64>; 2] {
+        let last = match self.supports {
+            Supports::Left => 0,
+            Supports::Both => self.joints.len() - 1,
+        };
+        [0, last].map(|joint| self.joints[joint].middle_m())
+    }
+
     /// The gravity that its ties were given with, in m/s2.
     #[must_use]
     pub const fn gravity_m_s2(&self) -> f64 {

@@ -55,6 +55,15 @@ impl Position {
         Self::new(support.translation, support.rotation_rad())
     }
 
+    /// The same, moved.
+    #[must_use]
+    pub fn moved(&self, by_m: Vector2<f64>) -> Self {
+        Self {
+            centre_m: self.centre_m + by_m,
+            ..*self
+        }
+    }
+
     /// The pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
     #[must_use]
     pub fn pose(&self, undeformed_m: Vector2<f64>) -> Pose {
@@ -205,6 +214,13 @@ impl Contact {
         } else {
             faces.handedness * self.half.y / self.half.x * offset_m.signum()
         }
+    }
+
+    /// Rates of the three coordinates as the right block moves with this velocity and does not turn.
+    #[must_use]
+    pub fn carried(&self, faces: &Faces, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
+        let [_, right] = self.gradients(faces, self.middle_m, self.middle_m);
+        right * velocity_m_s.push(0.0)
     }
 
     /// Gradients of the three coordinates, one row each, with respect to the velocity (x, y) and the rate of rotation of a

@@ -19,6 +19,15 @@ pub struct Anchor {
     pub at_m: Vector2<f64>,
 }
 
+impl Anchor {
+    /// On which of two supports it is where it is on no block, 0 or 1: the nearer one across.
+    #[must_use]
+    pub fn support(&self, feet_m: [Vector2<f64>; 2]) -> usize {
+        let [left, right] = feet_m.map(|foot_m| (self.at_m.x - foot_m.x).abs());
+        usize::from(right < left)
+    }
+}
+
 /// A tie, as it is in the undeformed structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tie {

@@ -63,7 +63,7 @@ use serde_json::Value;
 
 use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{FEET_NEED_JOINTS, Initial, MechanismModel, Model, Request};
+use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_link::arch::FourLinkError;
@@ -431,9 +431,8 @@ impl Scenario {
         };
         let row = self.structure.row();
         let apart_m = row.map_or(0.0, |row| {
-            let ends = [row.joints().first(), row.joints().last()];
-            let [from_m, to_m] = ends.map(|joint| joint.map_or(0.0, |joint| joint.middle_m().x));
-            to_m - from_m
+            let [from_m, to_m] = row.feet_m();
+            to_m.x - from_m.x
         });
         right.beside(left, apart_m, self.simulation.gravity_m_s2)
     }
@@ -457,13 +456,7 @@ impl Scenario {
     /// # Errors
     /// As [`Motion::model`].
     pub fn variations(&self) -> Result<Vec<Variation>, ModelError> {
-        let mut variations = self.motion.variations(&self.structure)?;
-        if self.right_foot.is_some()
-            && let Some(rigid) = variations.last_mut()
-        {
-            rigid.model = Err(FEET_NEED_JOINTS.to_owned());
-        }
-        Ok(variations)
+        self.motion.variations(&self.structure)
     }
 
     /// The name of the model of motion in results.

@@ -84,9 +84,10 @@ impl RightFoot {
         structure: Option<&Structure>,
         hinges: Hinges,
     ) -> Reading<()> {
-        if hinges != Hinges::Elastic {
+        if hinges == Hinges::Four {
             let wrong = format!(
-                "cannot be followed: {FEET_NEED_JOINTS}; choose [elastic_joints] (`--hinges elastic`), or leave it out"
+                "cannot be followed: {FEET_NEED_JOINTS}; choose [free_hinges] or [elastic_joints] (`--hinges free` or `--hinges \
+                 elastic`), or leave it out"
             );
             return Err(outer.wrong_in("ground", "right", wrong));
         }

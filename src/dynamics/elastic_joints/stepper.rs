@@ -327,8 +327,6 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.elastic.damped_j = of(spent.damped_j);
         lane.elastic.friction_j = of(spent.friction_j);
         lane.elastic.crushed_j = of(spent.crushed_j);
-        lane.elastic.ground_j = of(spent.ground_j);
-        lane.elastic.feet_j = of(spent.feet_j);
         lane.elastic.ties_j = of(spent.ties_j);
         let joints_j = lane.elastic.damped_j + lane.elastic.friction_j + lane.elastic.crushed_j;
         let taken = joints_j + lane.elastic.ties_j;
@@ -342,9 +340,11 @@ impl<'a, const L: usize> Group<'a, L> {
             let happened = known.note(&bound.tie, &memory, time).into_iter().flatten();
             lane.happened.extend(happened.map(|kind| (tie, kind)));
         }
-        course.of_row.energy_taken_j = taken;
+        let of_row = &mut course.of_row;
+        of_row.energy_taken_j = taken;
+        (of_row.ground_j, of_row.right_foot_j) = (of(spent.ground_j), of(spent.feet_j));
         let potential = stored - rest_j;
-        let due = lane.elastic.ground_j + lane.elastic.feet_j - taken;
+        let due = of_row.ground_j + of_row.right_foot_j - taken;
         course.note_defect((kinetic + potential - due).abs());
         if of(seen.deepest[0]) > lane.elastic.largest_stress.stress_pa {
             lane.elastic.largest_stress = Stress {
@@ -378,8 +378,11 @@ impl<'a, const L: usize> Group<'a, L> {
         let far = OVERTURNED_RATIO * self.row.size_m();
         lane.overturned |=
             of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
-        lane.summit
-            .note(time, potential + taken, LEAST_RETURN * course.energy_unit);
+        let least = LEAST_RETURN * course.energy_unit;
+        match lane.feet {
+            Some(_) => lane.summit.note_between_feet(time, kinetic, least),
+            None => lane.summit.note(time, potential + taken, least),
+        }
         let vibrates = kinetic < lane.still_j && potential < lane.still_j;
         // A row that is still but stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {

@@ -20,6 +20,7 @@ use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
 use super::rest::Rest;
+use super::right_support::RightSupport;
 use super::ties::Ties;
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
@@ -132,6 +133,7 @@ pub(super) struct LandingStepper<'a> {
     settings: &'a Settings,
     thinnest: f64,
     rest: Rest<'a>,
+    right: RightSupport<'a>,
     course: Course<'a>,
     /// The time up to which gravity and ground have acted on the velocities.
     kicked_s: f64,
@@ -199,6 +201,7 @@ impl<'a> LandingStepper<'a> {
         let mut stepper = Self {
             row,
             velocity: GroundVelocity::new(ground),
+            right: RightSupport::new(row, ground),
             gravity,
             settings,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
@@ -440,7 +443,9 @@ impl<'a> LandingStepper<'a> {
         let time = self.course.time;
         let (impulse, ground) = self.impulse(self.kicked_s, time);
         self.kick(impulse, time - self.kicked_s);
+        self.right.stop_at(time);
         self.jumps.fill(Twist::ZERO);
+        self.jump_to_right_support();
         self.landing.fill([0.0; 2]);
         self.touch_shut();
         ground
@@ -454,6 +459,7 @@ impl<'a> LandingStepper<'a> {
     fn solve_step(&mut self, step: f64) -> Result<(), FreeHingeError> {
         let (from_s, to_s) = self.kicked(step);
         self.kick(self.impulse(from_s, to_s).0, to_s - from_s);
+        self.right.step(self.course.time, step);
         self.jump(step);
         self.solve()
     }
@@ -515,6 +521,31 @@ impl<'a> LandingStepper<'a> {
                     + Twist::rotation(frame.intrados_m, rate);
             }
         }
+        self.jump_to_right_support();
+    }
+
+    /// The right support moves: beside one that is still, its joint jumps the other way.
+    fn jump_to_right_support(&mut self) {
+        if self.right.moves()
+            && let Some(last) = self.jumps.last_mut()
+        {
+            *last = *last - Twist::translation(self.right.next_m_s());
+        }
+    }
+
+    /// Work of the right support by the impulses of the last solution, and of ties that pulled so long.
+    fn work_of_right_support(&mut self, lasts_s: f64) -> f64 {
+        if !self.right.moves() {
+            return 0.0;
+        }
+        self.program.joint_impulses(&mut self.shares);
+        let joints = self.placement.frames().iter().zip(&self.shares);
+        let by_row = joints.last().map_or(Vector2::zeros(), |(frame, shares)| {
+            let [along, normal] = shares;
+            frame.along * *along + frame.normal * *normal
+        });
+        let impulse = by_row + self.ties.on_right_support_n() * lasts_s;
+        -impulse.dot(&self.right.mean_m_s())
     }
 
     /// The open corner that lands first at the rates of the last solution.
@@ -547,7 +578,7 @@ impl<'a> LandingStepper<'a> {
         }
         self.crowd.impacts = 0;
         self.solve_step(step)?;
-        let without = self.kinetic_of_solution();
+        let without = self.kinetic_of_solution() - self.work_of_right_support(0.0);
         for round in 0.. {
             self.landed.clear();
             for (joint, rates) in self.program.open_joints() {
@@ -589,7 +620,8 @@ impl<'a> LandingStepper<'a> {
             }
             self.solve_step(step)?;
         }
-        self.course.of_row.energy_taken_j += without - self.kinetic_of_solution();
+        let with = self.kinetic_of_solution() - self.work_of_right_support(0.0);
+        self.course.of_row.energy_taken_j += without - with;
         Ok(())
     }
 
@@ -653,6 +685,8 @@ impl<'a> LandingStepper<'a> {
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.ground_work -= self.impulse(from_s, to_s).1.dot(&mean);
+        let work = self.work_of_right_support(to_s - from_s);
+        self.right.works(work);
         // In a shorter time the rounding of the velocities exceeds the effect of the forces.
         if step.merged || to_s - from_s < self.settings.shortest_step_s {
             return;
@@ -688,8 +722,7 @@ impl<'a> LandingStepper<'a> {
                 *change += rate * step.length_s;
             }
         }
-        let change = &self.change;
-        self.placement.open(|joint| change[joint]);
+        self.open_gaps(self.course.time + step.length_s);
         self.take_pieces();
         self.course.time += step.length_s;
         self.closer.close(&mut self.placement);
@@ -709,8 +742,28 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
+    /// Changes the gaps, with the right support where it is at this time.
+    fn open_gaps(&mut self, time_s: f64) {
+        let change = &self.change;
+        if !self.right.moves() {
+            self.placement.open(|joint| change[joint]);
+            return;
+        }
+        let was_open = self.placement.open_corners() > 0;
+        self.right.go(time_s);
+        let stood = self.rest.placement().support_poses();
+        let poses = self.right.poses(stood);
+        self.placement.move_supports(poses);
+        self.ties.move_supports(poses);
+        self.placement.open(|joint| change[joint]);
+        if was_open || self.placement.open_corners() > 0 {
+            self.right.is_followed();
+        }
+    }
+
     /// Makes the pieces of the solution those of the motion, and notes about which corners they turn.
     fn take_pieces(&mut self) {
+        self.right.take();
         std::mem::swap(&mut self.pieces, &mut self.next_pieces);
         self.turning.fill(None);
         for (joint, _) in self.program.open_joints() {
@@ -765,7 +818,9 @@ impl<'a> LandingStepper<'a> {
         self.press_landed();
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
-        self.course.of_row.energy_taken_j += kinetic_before - kinetic_after;
+        let work = self.work_of_right_support(0.0);
+        self.right.works(work);
+        self.course.of_row.energy_taken_j += kinetic_before + work - kinetic_after;
         self.take_pieces();
         self.kicked_s = self.course.time;
         self.course.summary.impacts += 1;
@@ -778,7 +833,8 @@ impl<'a> LandingStepper<'a> {
     fn shut_what_landed(&mut self) {
         loop {
             // Where supports have moved three joints stay open.
-            let may_shut = self.row.supports() == Supports::Both && !self.rest.is_on_hinges();
+            let moved = self.rest.is_on_hinges() || self.right_support_is_gone();
+            let may_shut = self.row.supports() == Supports::Both && !moved;
             let few = may_shut && self.placement.open_corners() <= 3;
             let near = self.placement.largest_gap_ratio() < LAST_THREE_RATIO;
             let ratio = if few && near {
@@ -806,6 +862,9 @@ impl<'a> LandingStepper<'a> {
         self.solve()?;
         self.form_pieces();
         self.ground_work -= ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
+        let work = self.work_of_right_support(self.course.time - self.kicked_s);
+        self.right.works(work);
+        self.right.take();
         Ok(())
     }
 }

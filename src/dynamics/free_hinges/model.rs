@@ -273,9 +273,6 @@ impl Model for FreeHinges {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
         request.check()?;
-        if ground.right_foot().is_some() {
-            return Err(SimulationError::Feet);
-        }
         let settings = self.settings(request);
         let initial_rad = request
             .initial
@@ -286,7 +283,11 @@ impl Model for FreeHinges {
             ground,
             gravity_m_s2: request.gravity_m_s2,
             clock: settings.clock(),
-            barrier_j: self.barrier_j(request.gravity_m_s2),
+            // Where its feet part the row overturns at another energy, if at any.
+            barrier_j: match ground.right_foot() {
+                Some(_) => None,
+                None => self.barrier_j(request.gravity_m_s2),
+            },
             energy_scale_j: self.rigid.energy_scale_j(request.gravity_m_s2),
         };
         let standing = self.rigid.standing();

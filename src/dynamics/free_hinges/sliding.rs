@@ -12,6 +12,7 @@ use std::mem;
 use nalgebra::{Vector2, Vector3};
 
 use super::rest::Rest;
+use super::right_support::RightSupport;
 use super::ties::Ties;
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
@@ -47,6 +48,7 @@ pub(super) struct SlidingStepper<'a> {
     gravity: f64,
     settings: &'a Settings,
     rest: Rest<'a>,
+    right: RightSupport<'a>,
     /// Gaps and offsets of the joints where the row stood.
     stood_m: Vec<Vector3<f64>>,
     course: Course<'a>,
@@ -152,6 +154,7 @@ impl<'a> SlidingStepper<'a> {
             modes_before: vec![Mode::WHOLE; joints],
             stood_m: stood.iter().map(|c| c.coordinates_m).collect(),
             rest,
+            right: RightSupport::new(row, ground),
             supports,
             stands,
             sliding: Sliding::none(joints),
@@ -215,7 +218,8 @@ impl<'a> SlidingStepper<'a> {
     fn lag(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
-                return self.supports[1];
+                let way_m = self.right.next_m_s() * step;
+                return self.supports[1].moved(way_m);
             };
             let v = self.program.velocity(block) * step;
             Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z)
@@ -231,9 +235,20 @@ impl<'a> SlidingStepper<'a> {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
                 let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
                 lag += then.coordinates_m - now - self.program.joint_rate(joint) * step;
+            } else {
+                lag += self.carried(joint, self.right.next_m_s()) * step;
             }
             self.lags[joint] = lag / step;
             left = right;
+        }
+    }
+
+    /// Rates of the coordinates of a joint as the right support moves with this velocity.
+    fn carried(&self, joint: usize, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
+        if self.right.moves() && joint + 1 == self.faces.len() {
+            self.contacts[joint].carried(&self.faces[joint], velocity_m_s)
+        } else {
+            Vector3::zeros()
         }
     }
 
@@ -304,6 +319,14 @@ impl<'a> SlidingStepper<'a> {
             *position = Position::new(*centre, position.rotation_rad + velocity.z * step);
         }
         self.course.time += step;
+        if self.right.moves() {
+            self.right.take();
+            self.right.go(self.course.time);
+            self.right.is_followed();
+            let poses = self.right.poses(self.rest.placement().support_poses());
+            self.supports = poses.map(|pose| Position::of(&pose));
+            self.ties.move_supports(poses);
+        }
         for joint in 0..self.faces.len() {
             let contact = contact(&self.faces, &self.supports, &self.positions, joint);
             let offset_m = contact.coordinates_m.z;
@@ -337,7 +360,12 @@ impl<'a> SlidingStepper<'a> {
         self.overturned |= self.has_fallen();
         let height = potential + self.held_back + taken;
         let least = LEAST_RETURN * self.course.energy_unit;
-        self.summit.note(self.course.time, height, least);
+        if self.right.moves() {
+            self.summit
+                .note_between_feet(self.course.time, kinetic, least);
+        } else {
+            self.summit.note(self.course.time, height, least);
+        }
         if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
             self.quiet_since_s = self.course.time;
         }
@@ -357,9 +385,10 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Whether a block has turned or moved too far.
+    /// Whether a block has turned or moved too far, from where either foot would have it.
     fn has_fallen(&self) -> bool {
-        let slides = self.slides();
+        let [left, right] = self.slides();
+        let gone = [left, right + self.right.gone_m()];
         let far = (OVERTURNED_RATIO * self.row.size_m()).powi(2);
         let stood = self.rest.placement();
         let stood = stood.centres_m().iter().zip(stood.poses());
@@ -367,9 +396,7 @@ impl<'a> SlidingStepper<'a> {
         blocks.any(|((centre_m, pose), position)| {
             let moved = position.centre_m - centre_m;
             (position.rotation_rad - pose.rotation_rad()).abs() >= OVERTURNED_RAD
-                || slides
-                    .iter()
-                    .all(|slide| (moved - slide).norm_squared() >= far)
+                || gone.iter().all(|gone| (moved - gone).norm_squared() >= far)
         })
     }
 
@@ -377,7 +404,7 @@ impl<'a> SlidingStepper<'a> {
     /// created by the computation. In mid-step the leapfrog knows velocities and heights, and their sum stays constant in equal steps
     /// without impulses at the joints.
     fn audit(&mut self, energy: f64) {
-        let left = energy - self.ground_work;
+        let left = energy - self.ground_work - self.right.work_j();
         self.course.note_defect(left - self.least_energy);
         self.least_energy = self.least_energy.min(left);
     }
@@ -391,6 +418,9 @@ impl<'a> SlidingStepper<'a> {
         self.auxiliary.start_from(&self.program, 0.5);
         self.pull(self.course.time);
         Self::load(&mut self.auxiliary, &self.velocities, kick, &self.pulled);
+        self.right.stop_at(self.course.time);
+        let last = self.faces.len() - 1;
+        let parting = self.carried(last, self.right.next_m_s());
         let (modes, contacts, step) = (self.program.modes(), &self.contacts, self.last_step);
         let apart = |joint: usize| {
             let gap = |end: usize| {
@@ -400,7 +430,12 @@ impl<'a> SlidingStepper<'a> {
                     contacts[joint].coordinates_m[end].max(0.0) / step
                 }
             };
-            Vector3::new(gap(0), gap(1), 0.0)
+            let apart = Vector3::new(gap(0), gap(1), 0.0);
+            if joint == last {
+                apart + parting
+            } else {
+                apart
+            }
         };
         self.auxiliary
             .solve(apart, RATE_TOLERANCE * self.gravity * step);
@@ -435,9 +470,24 @@ impl<'a> SlidingStepper<'a> {
         modes
             .into_iter()
             .all(|(mode, stood)| mode.pressed == *stood)
+            && !self.right_support_is_gone()
     }
 
-    /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground.
+    /// Whether it has hardly moved for a while.
+    fn is_quiet(&self) -> bool {
+        let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
+        self.course.time - self.quiet_since_s > long_s
+    }
+
+    /// Whether the right support is not where it stood beside the left one.
+    fn right_support_is_gone(&self) -> bool {
+        let faces = self.faces.iter().map(|faces| faces.thickness_m);
+        let thinnest_m = faces.fold(f64::INFINITY, f64::min);
+        self.right.is_gone(APART_RATIO * thinnest_m)
+    }
+
+    /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground; from between the
+    /// feet, where these part.
     fn displacement(&self) -> f64 {
         let on_ground = match (self.row.supports(), self.row.supports_go_on()) {
             (Supports::Left, [base, _]) => [base; 2],
@@ -449,7 +499,7 @@ impl<'a> SlidingStepper<'a> {
             .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
             .sum();
         let mass = self.row.mass_kg();
-        let sway = self.rest.sway_kg_m(&self.centres) - mass * slid;
+        let sway = self.rest.sway_kg_m(&self.centres) - mass * (slid + 0.5 * self.right.gone_m().x);
         if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
             sway
         } else {
@@ -484,7 +534,10 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     fn completed(&mut self) -> &mut Course<'a> {
         self.sliding.offsets_m.copy_from_slice(&self.stuck);
         self.course.of_row.sliding = Some(self.sliding.clone());
-        self.course.of_row.ties = self.ties.summaries();
+        let of_row = &mut self.course.of_row;
+        of_row.ties = self.ties.summaries();
+        of_row.ground_j = self.ground_work;
+        of_row.right_foot_j = self.right.work_j();
         &mut self.course
     }
 
@@ -508,6 +561,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         for joint in 0..self.faces.len() {
             self.rates_before[joint] = self.program.joint_rate(joint);
         }
+        self.right.step(self.course.time, step);
         self.lag(step);
         self.pull(to_s);
         Self::load(&mut self.program, &self.velocities, kick, &self.pulled);
@@ -539,12 +593,19 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         for (joint, impulse) in self.program.impulses().iter().enumerate() {
             let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
             taken -= impulse.dot(&mean);
+            let carried_j = impulse.dot(&self.carried(joint, self.right.mean_m_s()));
+            taken -= carried_j;
+            self.right.works(-carried_j);
             // Friction at a joint that sticks does no work, except in an impact.
             if let Along::Slip(_) = self.program.modes()[joint].along {
                 let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
                 // Below the tolerance of the rates its sign is rounding.
                 rubbed += (-impulse.z * rate).max(0.0);
             }
+        }
+        if self.right.moves() {
+            let pulled = self.ties.on_right_support_n() * (to_s - self.kicked_s);
+            self.right.works(-pulled.dot(&self.right.mean_m_s()));
         }
         taken -= rubbed;
         self.course.of_row.energy_taken_j += taken;
@@ -585,6 +646,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             sample.rates_rad_s.push(self.auxiliary.velocity(index).z);
             sample.poses.push(position.pose(block.centre_m));
         }
+        sample.feet_apart_m = self.right.gone_m();
         sample.offsets_m.extend(&self.stuck);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
@@ -636,14 +698,23 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let lies = joints
             .into_iter()
             .all(|joint| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint]);
+        let lies = if self.right_support_is_gone() {
+            self.is_quiet()
+        } else {
+            lies
+        };
         (lies && !self.slips()) || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
 
     fn rests_since(&self) -> Option<f64> {
-        let quiet_s = self.course.time - self.quiet_since_s;
-        let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
-        let undeformed = self.course.potential.abs() < REST_ENERGY_RATIO * self.course.energy_unit;
-        (quiet_s > if undeformed { 0.0 } else { long_s }).then_some(self.quiet_since_s)
+        let low = self.course.potential.abs() < REST_ENERGY_RATIO * self.course.energy_unit;
+        let undeformed = low && !self.right_support_is_gone();
+        let rests = if undeformed {
+            self.course.time > self.quiet_since_s
+        } else {
+            self.is_quiet()
+        };
+        rests.then_some(self.quiet_since_s)
     }
 
     fn overturned_s(&self) -> Option<f64> {

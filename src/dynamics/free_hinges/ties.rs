@@ -22,6 +22,8 @@ struct Pulling<'a> {
 pub(super) struct Ties<'a> {
     row: &'a Row,
     ties: Vec<Pulling<'a>>,
+    /// Where the left and the right support are.
+    supports: [Pose; 2],
     /// Elastic energy in the undeformed row.
     at_rest_j: f64,
 }
@@ -41,6 +43,7 @@ impl<'a> Ties<'a> {
         let mut ties = Self {
             row,
             ties: ties.collect(),
+            supports: [Pose::UNDEFORMED; 2],
             at_rest_j: 0.0,
         };
         ties.at_rest_j = ties.energy_j();
@@ -51,12 +54,30 @@ impl<'a> Ties<'a> {
         self.ties.is_empty()
     }
 
+    /// The supports have moved, and with them what is on the ground nearer to each.
+    pub const fn move_supports(&mut self, poses: [Pose; 2]) {
+        self.supports = poses;
+    }
+
+    /// Forces on the right support.
+    pub fn on_right_support_n(&self) -> Vector2<f64> {
+        let feet_m = self.row.feet_m();
+        let ends = self.ties.iter().flat_map(|tie| {
+            let force = tie.along * tie.memory.force_n.0[0];
+            tie.tie.ends.into_iter().zip([force, -force])
+        });
+        ends.filter(|(anchor, _)| anchor.block.is_none() && anchor.support(feet_m) == 1)
+            .map(|(_, force)| force)
+            .sum()
+    }
+
     /// The blocks have moved to these poses.
     pub fn stretch(&mut self, pose: impl Fn(usize) -> Pose) {
+        let feet_m = self.row.feet_m();
         for tie in &mut self.ties {
             let moved = tie.tie.ends.map(|anchor| {
-                let pose = anchor.block.map(&pose);
-                pose.map_or(anchor.at_m, |pose| pose.of(anchor.at_m))
+                let support = || self.supports[anchor.support(feet_m)];
+                anchor.block.map_or_else(support, &pose).of(anchor.at_m)
             });
             let by_m = [0, 1].map(|end| moved[end] - tie.tie.ends[end].at_m);
             let span = tie.tie.span(by_m.map(|by| [Lanes([by.x]), Lanes([by.y])]));

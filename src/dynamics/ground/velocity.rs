@@ -78,20 +78,28 @@ impl<'a> Way<'a> {
 
     /// Where the ground is at a time that is not before the last one.
     fn to(&mut self, time_s: f64) -> Vector2<f64> {
+        (self.piece, self.at_m) = self.ahead(time_s);
+        self.time_s = self.time_s.max(time_s);
+        self.at_m
+    }
+
+    /// The same without going there, and the piece in which that is.
+    fn ahead(&self, time_s: f64) -> (usize, Vector2<f64>) {
         let pieces = self.velocity.ground.pieces();
-        while self.time_s < time_s {
-            let piece = &pieces[self.piece];
-            let (from_s, to_s) = (self.time_s, piece.end_s.min(time_s));
-            let start_m_s = self.velocity.at_starts_m_s[self.piece];
+        let (mut index, mut from_s, mut at_m) = (self.piece, self.time_s, self.at_m);
+        while from_s < time_s {
+            let piece = &pieces[index];
+            let to_s = piece.end_s.min(time_s);
+            let start_m_s = self.velocity.at_starts_m_s[index];
             let at = |time_s: f64| start_m_s + piece.velocity_gained_m_s(time_s);
             let sum = at(from_s) + at(0.5 * (from_s + to_s)) * 4.0 + at(to_s);
-            self.at_m += sum * ((to_s - from_s) / 6.0);
-            self.time_s = to_s;
+            at_m += sum * ((to_s - from_s) / 6.0);
+            from_s = to_s;
             if to_s == piece.end_s {
-                self.piece += 1;
+                index += 1;
             }
         }
-        self.at_m
+        (index, at_m)
     }
 }
 
@@ -118,6 +126,22 @@ impl<'a> FeetApart<'a> {
         let [left, right] = &mut self.ways;
         let time_s = time_s.min(self.end_s);
         right.to(time_s) - left.to(time_s)
+    }
+
+    /// The same without going there.
+    pub(in crate::dynamics) fn ahead(&self, time_s: f64) -> Vector2<f64> {
+        let time_s = time_s.min(self.end_s);
+        let [left_m, right_m] = self.ways.each_ref().map(|way| way.ahead(time_s).1);
+        right_m - left_m
+    }
+
+    /// Velocity of the right foot against the left one at a time, in m/s.
+    pub(in crate::dynamics) fn velocity_m_s(&self, time_s: f64) -> Vector2<f64> {
+        if time_s >= self.end_s {
+            return Vector2::zeros();
+        }
+        let [left_m_s, right_m_s] = self.ways.each_ref().map(|way| way.velocity.at(time_s));
+        right_m_s - left_m_s
     }
 }
 

@@ -437,6 +437,19 @@ impl Summit {
         }
     }
 
+    /// Notes the kinetic energy of a row whose feet part: as they work, its height says of no way back, but what hardly moves has not come
+    /// down.
+    pub(in crate::dynamics) const fn note_between_feet(
+        &mut self,
+        time: f64,
+        kinetic: f64,
+        least: f64,
+    ) {
+        if kinetic < least {
+            self.time = time;
+        }
+    }
+
     /// Notes a height. If it rises again by `least` from where it was lowest, it had not come down for good.
     pub(in crate::dynamics) fn note(&mut self, time: f64, height: f64, least: f64) {
         self.lowest = self.lowest.min(height);
@@ -544,6 +557,8 @@ impl<'a> Course<'a> {
                 largest_kinetic_j: 0.0,
                 largest_potential_j: 0.0,
                 energy_taken_j: 0.0,
+                ground_j: 0.0,
+                right_foot_j: 0.0,
                 energy_error: 0.0,
                 least_normal_n: f64::INFINITY,
                 closure_error_m: 0.0,

@@ -251,13 +251,7 @@ impl ElasticStructure {
         };
         debug_assert!(row.supports() == Supports::Both || row.joints().len() == ground);
         let joints: Result<_, ArgumentError> = row.joints().iter().enumerate().map(joint).collect();
-        let ends = [row.joints().first(), row.joints().last()];
-        let feet_m = ends.map(|joint| joint.map_or(0.0, |joint| joint.middle_m().x));
-        // A stack has one foot.
-        let feet_m = match row.supports() {
-            Supports::Both => feet_m,
-            Supports::Left => [feet_m[0]; 2],
-        };
+        let feet_m = row.feet_m();
         let ties = row.ties().iter();
         let ties = ties.map(|tie| BoundTie::new(*tie, blocks, feet_m));
         Ok(Self {

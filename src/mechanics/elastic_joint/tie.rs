@@ -19,12 +19,8 @@ pub struct BoundTie {
 }
 
 impl BoundTie {
-    /// Of a row between feet at these places across: the ground moves an end as it does the nearer one.
-    pub(super) fn new(tie: Tie, blocks: &[Block], feet_m: [f64; 2]) -> Self {
-        let ground = |at_m: Vector2<f64>| {
-            let [left, right] = feet_m.map(|foot_m| (at_m.x - foot_m).abs());
-            blocks.len() + usize::from(right < left)
-        };
+    /// Of a row between these feet: the ground moves an end as it does the nearer one.
+    pub(super) fn new(tie: Tie, blocks: &[Block], feet_m: [Vector2<f64>; 2]) -> Self {
         let arm = |end: usize| {
             let anchor = tie.ends[end];
             let block = anchor.block.and_then(|block| blocks.get(block));
@@ -32,9 +28,11 @@ impl BoundTie {
             [arm_m.x, arm_m.y]
         };
         Self {
-            bodies: tie
-                .ends
-                .map(|anchor| anchor.block.unwrap_or_else(|| ground(anchor.at_m))),
+            bodies: tie.ends.map(|anchor| {
+                anchor
+                    .block
+                    .unwrap_or(blocks.len() + anchor.support(feet_m))
+            }),
             arms_m: [arm(0), arm(1)],
             tie,
         }

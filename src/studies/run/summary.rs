@@ -173,8 +173,6 @@ impl Object {
             ("friction_j", elastic.friction_j),
             ("crushed_j", elastic.crushed_j),
             ("ties_j", elastic.ties_j),
-            ("ground_j", elastic.ground_j),
-            ("right_foot_j", elastic.feet_j),
             ("rest_eccentricity_ratio", elastic.rest_eccentricity_ratio),
         ] {
             self.number(name, value)?;
@@ -252,6 +250,8 @@ impl Object {
         if row.elastic.is_none() {
             self.number("energy_taken_j", row.energy_taken_j)?;
         }
+        self.number("ground_j", row.ground_j)?;
+        self.number("right_foot_j", row.right_foot_j)?;
         self.number("energy_defect_ratio", history.energy_defect_ratio)?;
         self.number("energy_defect_over_largest", row.energy_error)?;
         self.number("closure_error_m", row.closure_error_m)?;

@@ -536,12 +536,11 @@ fn feet(scenario: &Scenario, history: &Summary) -> String {
             }
         }
     }
-    let elastic = history.row.as_ref().and_then(|row| row.elastic.as_ref());
-    if let Some(elastic) = elastic {
+    if let Some(row) = &history.row {
         let _ = write!(
             text,
             "\n  beside the left foot, the shaken ground worked {:.3} J, and the right foot {:.3} J",
-            elastic.ground_j, elastic.feet_j
+            row.ground_j, row.right_foot_j
         );
     }
     text.push('\n');

@@ -12,6 +12,7 @@ use crate::dynamics::row::course::{
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::SHUT_RATIO;
 
 /// Joints that open at less than this fraction of the fastest rate do not count as opened by an
 /// impact.
@@ -50,7 +51,7 @@ impl LandingStepper<'_> {
     /// Compares the energy at an instant with its balance.
     pub(super) fn audit(&mut self, kinetic: f64) {
         let taken = self.course.of_row.energy_taken_j + self.ties.taken_j();
-        let due = self.start_energy + self.ground_work - taken;
+        let due = self.start_energy + self.ground_work + self.right.work_j() - taken;
         let defect = kinetic + self.course.potential - due;
         self.course.note_defect(defect.abs());
     }
@@ -66,38 +67,62 @@ impl LandingStepper<'_> {
         let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
         let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
-        if self.rest.is_on_hinges() {
+        if self.may_end_on_hinges() {
             self.observe_hinges(kinetic);
         }
     }
 
-    /// What says of a row that stood on hinges when it rests, and when it has overturned: it may come to rest on others, lower or higher,
-    /// so its energy says neither.
+    /// Whether it may come to rest on hinges: if it stood on some, or its feet move differently.
+    fn may_end_on_hinges(&self) -> bool {
+        self.rest.is_on_hinges() || self.right.moves()
+    }
+
+    /// What says of a row that may end on hinges when it rests, and when it has overturned: it may come to rest on others, lower or
+    /// higher, so its energy says neither. Between feet that part it lies far away if it is far from where either foot would have it.
     fn observe_hinges(&mut self, kinetic: f64) {
         let (course, time) = (&self.course, self.course.time);
         if kinetic >= REST_ENERGY_RATIO * course.energy_unit {
             self.quiet_since_s = time;
         }
         let least = LEAST_RETURN * course.energy_unit;
-        self.summit.note(time, course.potential, least);
+        if self.right.moves() {
+            self.summit.note_between_feet(time, kinetic, least);
+        } else {
+            self.summit.note(time, course.potential, least);
+        }
         let far_m = OVERTURNED_RATIO * self.row.size_m();
         let stood = self.rest.placement();
         let moved_m = self.placement.centres_m().iter().zip(stood.centres_m());
-        self.overturned |= moved_m
-            .into_iter()
-            .any(|(now, stood)| (now - stood).norm() >= far_m)
-            || self
-                .turns()
-                .any(|(rotation_rad, _)| rotation_rad.abs() >= OVERTURNED_RAD);
+        let gone_m = [Vector2::zeros(), self.right.gone_m()];
+        self.overturned |= moved_m.into_iter().any(|(now, stood)| {
+            gone_m
+                .iter()
+                .all(|gone_m| (now - stood - gone_m).norm() >= far_m)
+        }) || self
+            .turns()
+            .any(|(rotation_rad, _)| rotation_rad.abs() >= OVERTURNED_RAD);
+    }
+
+    /// Whether it has hardly moved for a while.
+    fn is_quiet(&self) -> bool {
+        let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
+        self.course.time - self.quiet_since_s > long_s
     }
 
     /// Whether the row lies where it stood before it moved.
     fn lies_at_rest(&self) -> bool {
-        self.rest.has(self.placement.gaps_m())
+        self.rest.has(self.placement.gaps_m()) && !self.right_support_is_gone()
     }
 
+    /// Whether the right support is not where it stood beside the left one.
+    pub(super) fn right_support_is_gone(&self) -> bool {
+        self.right.is_gone(SHUT_RATIO * self.thinnest)
+    }
+
+    /// Horizontal displacement of the centre of gravity times the mass; from between the feet, where these part.
     pub(super) fn sway_kg_m(&self) -> f64 {
-        self.rest.sway_kg_m(self.placement.centres_m())
+        let sway = self.rest.sway_kg_m(self.placement.centres_m());
+        sway - 0.5 * self.row.mass_kg() * self.right.gone_m().x
     }
 
     fn report_impact(&mut self, taken_before: f64) {
@@ -139,7 +164,7 @@ impl LandingStepper<'_> {
             gaps.filter(|(joint, _)| stood[*joint] == [true; 2])
                 .filter_map(|(joint, gaps)| open_hinge(joint, *gaps)),
         );
-        self.stands = opened.is_empty();
+        self.stands = opened.is_empty() && !self.right.is_gone(SHUT_RATIO * self.thinnest);
         if !self.stands {
             // Until then it stood still.
             let blocks = self.row.blocks().len();
@@ -160,7 +185,10 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn completed(&mut self) -> &mut Course<'a> {
-        self.course.of_row.ties = self.ties.summaries();
+        let of_row = &mut self.course.of_row;
+        of_row.ties = self.ties.summaries();
+        of_row.ground_j = self.ground_work;
+        of_row.right_foot_j = self.right.work_j();
         &mut self.course
     }
 
@@ -215,12 +243,16 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
                 .eccentricity_ratios
                 .extend(impulses.map(eccentricity_ratio));
         }
+        let right_j = self.work_of_right_support(self.course.time - self.kicked_s);
         std::mem::swap(&mut self.program, &mut self.auxiliary);
         solved?;
         let work = ground.dot(&(before + momentum(&self.next_pieces))) * 0.5;
         self.ground_work -= work;
+        self.right.works(right_j);
         self.audit(kinetic_j);
         self.ground_work += work;
+        self.right.works(-right_j);
+        sample.feet_apart_m = self.right.gone_m();
         sample.poses.extend(self.placement.poses());
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
@@ -248,7 +280,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn stands(&self, sample: &Sample) -> bool {
-        self.lies_at_rest() || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
+        let lies = self.lies_at_rest() || (self.may_end_on_hinges() && self.is_quiet());
+        lies || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
 
     fn lies_where_it_stood(&self, _: &[f64]) -> bool {
@@ -257,10 +290,9 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
 
     fn rests_since(&self) -> Option<f64> {
         let least = REST_ENERGY_RATIO * self.course.energy_unit;
-        if self.rest.is_on_hinges() && !self.lies_at_rest() {
-            let quiet_s = self.course.time - self.quiet_since_s;
-            let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
-            return (quiet_s > long_s).then_some(self.quiet_since_s);
+        let on_hinges = self.rest.is_on_hinges() || self.right_support_is_gone();
+        if on_hinges && !self.lies_at_rest() {
+            return self.is_quiet().then_some(self.quiet_since_s);
         }
         // Ties that have yielded or broken hold another energy where the row rests.
         let height = self.height();
@@ -270,7 +302,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
 
     /// By its height: what is in ties may be less than at rest.
     fn overturned_s(&self) -> Option<f64> {
-        if self.rest.is_on_hinges() {
+        if self.may_end_on_hinges() {
             return self.overturned.then_some(self.summit.time);
         }
         self.course.fallen_s(self.height())
