@@ -297,6 +297,19 @@ fn four_links_refuse_feet_that_move_differently() {
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 12\n\
                     [elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n[simulation]\nduration_s = 1.5\n";
+/// What stands in place of the elastic joints in [`ARCH`]; steps are those of runs in all studies.
+const RIGID: [&str; 2] = [
+    "[free_hinges]\nlongest_step_s = 3e-4\n",
+    "[free_hinges]\nlongest_step_s = 3e-4\nfriction_coefficient = 1.0\n",
+];
+
+/// [`ARCH`] with elastic joints, and with rigid ones.
+fn arches() -> [String; 3] {
+    let rigid =
+        |joints: &str| ARCH.replace("[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n", joints);
+    [ARCH.to_owned(), rigid(RIGID[0]), rigid(RIGID[1])]
+}
+
 const PULSE: &str = "[ground.one_sine]\namplitude_g = 0.4\nduration_s = 0.4\n";
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -376,14 +389,20 @@ fn a_run_tells_of_its_feet() {
     write(folder.path(), "left.csv", &record(0.8, 0.3));
     write(folder.path(), "right.csv", &record(0.5, 0.2));
     let table = |file: &str| format!("file = \"{file}\"\nunit = \"g\"\n");
-    let text = format!(
-        "{ARCH}[ground.record]\n{}[ground.right.record]\n{}",
-        table("left.csv"),
-        table("right.csv")
-    );
-    write(folder.path(), "s.toml", &text);
+    for arch in arches() {
+        let text = format!(
+            "{arch}[ground.record]\n{}[ground.right.record]\n{}",
+            table("left.csv"),
+            table("right.csv")
+        );
+        write(folder.path(), "s.toml", &text);
+        tells_of_its_feet(folder.path());
+    }
+}
+
+fn tells_of_its_feet(folder: &Path) {
     let said = done(
-        folder.path(),
+        folder,
         &[
             "run",
             "s.toml",
@@ -394,7 +413,7 @@ fn a_run_tells_of_its_feet() {
             "0.2",
         ],
     );
-    let said = said + &fs::read_to_string(folder.path().join("r/report.html")).unwrap();
+    let said = said + &fs::read_to_string(folder.join("r/report.html")).unwrap();
     for words in [
         "with no baseline corrected",
         "the record of the right foot ends at 0.5000 s, the other at 0.8000 s: from there on that foot stays where it is",
@@ -402,13 +421,12 @@ fn a_run_tells_of_its_feet() {
     ] {
         assert!(said.contains(words), "{words}: {said:.3000}");
     }
-    let rotations = Table::read(folder.path().join("r/rotations.csv"));
+    let rotations = Table::read(folder.join("r/rotations.csv"));
     let [apart_m, upwards_m] =
         ["right_foot_x_m", "right_foot_y_m"].map(|column| rotations.numbers(column));
     assert!(apart_m[0] == 0.0 && upwards_m.iter().all(|up_m| *up_m == 0.0));
     let summary: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.path().join("r/summary.json")).unwrap())
-            .unwrap();
+        serde_json::from_str(&fs::read_to_string(folder.join("r/summary.json")).unwrap()).unwrap();
     let farthest = apart_m
         .iter()
         .map(|apart_m| apart_m.abs())
@@ -419,10 +437,10 @@ fn a_run_tells_of_its_feet() {
     assert!((last - apart_m.last().unwrap()).abs() < 1e-12);
     assert!(summary["right_foot_j"].as_f64().unwrap().abs() > 1.0);
     assert!(summary["peak_potential_over_barrier"].is_null());
-    let picture = fs::read_to_string(folder.path().join("r/history.svg")).unwrap();
+    let picture = fs::read_to_string(folder.join("r/history.svg")).unwrap();
     let picture = Document::parse(&picture).unwrap();
     assert_eq!(named(&picture, "right foot to the right").len(), 1);
-    let page = fs::read_to_string(folder.path().join("r/report.html")).unwrap();
+    let page = fs::read_to_string(folder.join("r/report.html")).unwrap();
     assert!(page.contains("\"right_foot_m\":\""));
 }
 
@@ -431,16 +449,22 @@ fn a_run_tells_of_its_feet() {
 fn commands_say_what_the_page_of_feet_shows() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    assert_eq!(says_what_it_shows("docs/two-feet.md", folder.path()), 2);
+    assert_eq!(says_what_it_shows("docs/two-feet.md", folder.path()), 4);
 }
 
 #[test]
 fn studies_shake_both_feet() {
-    let folder = tempfile::tempdir().unwrap();
-    let feet = format!("{ARCH}{PULSE}[ground.right]\ndelay_s = 0.1\n");
-    write(folder.path(), "s.toml", &feet);
-    let alike = format!("{ARCH}{PULSE}");
-    write(folder.path(), "alike.toml", &alike);
+    for arch in arches() {
+        let folder = tempfile::tempdir().unwrap();
+        study_both_feet(&arch, folder.path());
+    }
+}
+
+fn study_both_feet(arch: &str, folder: &Path) {
+    let feet = format!("{arch}{PULSE}[ground.right]\ndelay_s = 0.1\n");
+    write(folder, "s.toml", &feet);
+    let alike = format!("{arch}{PULSE}");
+    write(folder, "alike.toml", &alike);
     // A factor of two on both feet is a pulse of twice the amplitude under both.
     let peak_rad = |file: &str| {
         let arguments = [
@@ -455,8 +479,8 @@ fn studies_shake_both_feet() {
             "--stride",
             "0.3",
         ];
-        printed(folder.path(), &arguments);
-        Table::read(folder.path().join("t/threshold.csv")).numbers("peak_rotation_rad")[0]
+        printed(folder, &arguments);
+        Table::read(folder.join("t/threshold.csv")).numbers("peak_rotation_rad")[0]
     };
     let late = peak_rad("s.toml");
     assert_ne!(late, peak_rad("alike.toml"));
@@ -470,23 +494,23 @@ fn studies_shake_both_feet() {
         "--set",
         "ground.one_sine.amplitude_g=0.8",
     ];
-    done(folder.path(), &run);
-    let summary = fs::read_to_string(folder.path().join("r/summary.json")).unwrap();
+    done(folder, &run);
+    let summary = fs::read_to_string(folder.join("r/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let due = summary["largest_peak_rotation_rad"].as_f64().unwrap();
     assert!((late / due - 1.0).abs() < 1e-9, "{late} {due}");
     let map =
         format!("{feet}[map]\n\"ground.right.delay_s\" = [0.0, 0.1]\namplitude_g = [0.4, 1.2]\n");
-    write(folder.path(), "map.toml", &map);
-    done(folder.path(), &["map", "map.toml", "--out", "map"]);
-    let cells = Table::read(folder.path().join("map/map.csv"));
+    write(folder, "map.toml", &map);
+    done(folder, &["map", "map.toml", "--out", "map"]);
+    let cells = Table::read(folder.join("map/map.csv"));
     assert_eq!(cells.rows.len(), 4);
-    write(folder.path(), "a.csv", &record(0.4, 0.4));
+    write(folder, "a.csv", &record(0.4, 0.4));
     let suite = format!(
-        "{ARCH}[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.2\n[ground.right]\ndelay_s = 0.1\n[suite]\nrecords = [\"a.csv\"]\nunit = \"g\"\nscales = [1.0, 3.0]\n"
+        "{arch}[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.2\n[ground.right]\ndelay_s = 0.1\n[suite]\nrecords = [\"a.csv\"]\nunit = \"g\"\nscales = [1.0, 3.0]\n"
     );
-    write(folder.path(), "suite.toml", &suite);
-    done(folder.path(), &["suite", "suite.toml", "--out", "suite"]);
+    write(folder, "suite.toml", &suite);
+    done(folder, &["suite", "suite.toml", "--out", "suite"]);
 }
 
 #[test]

@@ -539,11 +539,13 @@ impl<'a> LandingStepper<'a> {
             return 0.0;
         }
         self.program.joint_impulses(&mut self.shares);
-        let joints = self.placement.frames().iter().zip(&self.shares);
-        let by_row = joints.last().map_or(Vector2::zeros(), |(frame, shares)| {
-            let [along, normal] = shares;
-            frame.along * *along + frame.normal * *normal
-        });
+        let mut joints = self.placement.frames().iter().zip(&self.shares);
+        let by_row = joints
+            .next_back()
+            .map_or(Vector2::zeros(), |(frame, shares)| {
+                let [along, normal] = shares;
+                frame.along * *along + frame.normal * *normal
+            });
         let impulse = by_row + self.ties.on_right_support_n() * lasts_s;
         -impulse.dot(&self.right.mean_m_s())
     }
