@@ -4,6 +4,8 @@ use crate::common::parsed;
 use crate::program;
 use archrock::mechanics::capacity::Capacity;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
+use archrock::mechanics::settling::Held;
+use archrock::mechanics::stability::onset;
 use archrock::scenario::Structure;
 use archrock::studies::capacity::{NoCapacity, capacity};
 use archrock::{
@@ -212,5 +214,136 @@ fn control_points_must_be_on_the_structure_and_move() {
     assert!(
         matches!(refused, Err(NoCapacity::FourLinks(_))),
         "{refused:?}"
+    );
+}
+
+/// A column on its toe with a bar to its left, level at first: moments about the toe, at any rotation. The bar yields and breaks on the way.
+#[test]
+fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
+    let (stiffness, natural) = (1e5, 3.0 - 5e3 / 1e5);
+    for (yields_at, breaks_at) in [(5e3, f64::INFINITY), (8e3, f64::INFINITY), (8e3, 0.1)] {
+        let breaks = if breaks_at < 1.0 {
+            format!("breaks_at_strain = {breaks_at}\n")
+        } else {
+            String::new()
+        };
+        let scenario = parsed(&format!(
+            "[column]\nheight_m = 4\nwidth_m = 0.8\n[free_hinges]\n[[tie]]\nfrom_m = [-0.4, 3.5]\nto_m = [-3.4, 3.5]\nto_block = 0\n\
+             stiffness_n_m = 1e5\nprestress_n = 5e3\nyield_force_n = {yields_at:?}\n{breaks}"
+        ));
+        let [right, left] = capacity(&scenario, None).unwrap();
+        // The clause's number of this column.
+        assert!((right.start().acceleration_g - 0.339_366_718).abs() < 5e-10);
+        let weight = 6400.0 * 9.81;
+        let bears = |q: f64| {
+            let (sin, cos) = q.sin_cos();
+            let turned = |x: f64, y: f64| [x * cos + y * sin, y * cos - x * sin];
+            let ([x, y], end) = (turned(-0.4, 2.0), turned(-0.8, 3.5));
+            let apart = [-3.8 - end[0], 3.5 - end[1]];
+            let length = apart[0].hypot(apart[1]);
+            let broken = length - natural >= breaks_at * natural;
+            let force = (stiffness * (length - natural)).min(yields_at);
+            let force = if broken { 0.0 } else { force / length };
+            let back = force * (end[0] * apart[1] - end[1] * apart[0]);
+            ((back - weight * x) / (weight * y), length)
+        };
+        for point in &right.curve {
+            // Where it breaks, just before and just after.
+            let off = |more: f64| (point.acceleration_g - bears(point.q_rad + more).0).abs();
+            let off_g = off(0.0).min(off(-1e-13)).min(off(1e-13));
+            assert!(off_g < 1e-9, "{}: {off_g:e}", point.q_rad);
+        }
+        assert!(bears(right.end().q_rad + 1e-9).0 < 0.0);
+        let gives_way = right.ties[0];
+        // The bar pulls most where it yields, and drops to nothing where it breaks: there the curve has points.
+        let at = |displacement_m: f64| {
+            let near = |point: &&archrock::mechanics::capacity::CurvePoint| {
+                (point.displacement_m - displacement_m).abs() < 1e-12
+            };
+            right
+                .curve
+                .iter()
+                .filter(near)
+                .map(|point| point.q_rad)
+                .collect::<Vec<_>>()
+        };
+        let yields = at(gives_way.yields_at_m.unwrap());
+        assert!((bears(yields[0]).1 - natural - yields_at / stiffness).abs() < 1e-9);
+        let breaks = gives_way.breaks_at_m.map(at);
+        assert_eq!(breaks.is_some(), breaks_at < 1.0);
+        if let Some(breaks) = breaks {
+            assert_eq!(breaks.len(), 2);
+            assert!((bears(breaks[0]).1 - natural * 1.1).abs() < 1e-9);
+        }
+        // To the left it goes slack at once, and falls as it would without: from less than that by what it pulls at rest.
+        let least = 0.2 - 5e3 * 3.5 / (weight * 2.0);
+        assert!((left.start().acceleration_g - least).abs() < 1e-9);
+    }
+}
+
+/// A semicircle with a tie that pulls with next to nothing bears what the linkage without it does, another computation. With a real one it
+/// starts from what the programme of limit analysis has, and what it bears on the way is the slope of the energy of weight and bar, which
+/// knows of no forces.
+#[test]
+fn a_tied_arch_bears_the_slope_of_its_energy() {
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 24\n[free_hinges]\n";
+    let tie = |stiffness: f64, prestress: f64| {
+        parsed(&format!(
+            "{arch}[[tie]]\nheight_m = 2.0\nstiffness_n_m = {stiffness:?}\nprestress_n = {prestress:?}\nyield_force_n = 2e4\n"
+        ))
+    };
+    let untied = capacity(&parsed(arch), None).unwrap();
+    let loose = capacity(&tie(1e-3, 0.0), None).unwrap();
+    for (own, other) in untied.iter().zip(&loose) {
+        let (own_m, other_m) = (own.end().displacement_m, other.end().displacement_m);
+        assert!((own_m / other_m - 1.0).abs() < 1e-6, "{own_m} {other_m}");
+        assert!((own.participating_mass_kg / other.participating_mass_kg - 1.0).abs() < 1e-6);
+        for part in [0.0, 0.3, 0.7] {
+            let [own_g, other_g] = [own, other].map(|side| side.oscillator_acceleration_g(part));
+            assert!((own_g - other_g).abs() < 2e-5, "{part}: {own_g} {other_g}");
+        }
+    }
+    let scenario = tie(1e5, 1e4);
+    let row = scenario.structure().row().unwrap();
+    for side in SIDES {
+        let held = Held::new(&row, side).unwrap();
+        let start_g = onset(&row, side).unwrap().unwrap().acceleration_g;
+        assert!((held.displaced(0.0).acceleration_g - start_g).abs() < 1e-9);
+        // Heights, ways to the side and energy of the bar, over the whole mass.
+        let known = |part: f64| {
+            let displaced = held.displaced(part);
+            let joints: Vec<usize> = held.hinges().iter().map(|hinge| hinge.joint).collect();
+            let place = |block: usize, at: Vector2<f64>| {
+                let before = joints.iter().filter(|joint| **joint <= block).count();
+                let body = before.checked_sub(1).filter(|body| *body < 3);
+                body.map_or(at, |body| displaced.poses[body].of(at))
+            };
+            let blocks = row.blocks().iter().enumerate();
+            let sum: Vector2<f64> = blocks
+                .map(|(index, block)| place(index, block.centre_m) * block.mass_kg)
+                .sum();
+            let tie = &row.ties()[0];
+            let [one, other] =
+                [0, 1].map(|end| place(tie.ends[end].block.unwrap(), tie.ends[end].at_m));
+            let stretch = (other - one).norm() - tie.slack_length_m();
+            let yields = tie.yield_force_n / tie.stiffness_n_m;
+            let elastic = stretch.clamp(0.0, yields);
+            let energy = 0.5 * tie.stiffness_n_m * elastic * elastic
+                + tie.yield_force_n * (stretch - yields).max(0.0);
+            (sum.y + energy / 9.81, side.sign() * sum.x)
+        };
+        for part in [0.05, 0.3, 0.6, 0.95] {
+            let ((before, left), (after, right)) = (known(part - 1e-4), known(part + 1e-4));
+            let due_g = (after - before) / (right - left);
+            let told_g = held.displaced(part).acceleration_g;
+            assert!((told_g - due_g).abs() < 1e-6, "{part}: {told_g} {due_g}");
+        }
+    }
+    let rigid = "stiffness_n_m = 1e8\n";
+    let text = format!("{arch}[[tie]]\nheight_m = 2.0\n{rigid}");
+    let error = capacity(&parsed(&text), None).unwrap_err();
+    assert!(
+        error.to_string().contains("give them a `yield_force_n`"),
+        "{error}"
     );
 }

@@ -15,14 +15,13 @@ use thiserror::Error;
 pub use model::{DOUBTFUL_ENERGY_ERROR, FreeHinges, FreeHingesError, RowOptions};
 
 use self::landing::LandingStepper;
-use self::rest::Rest;
 use super::ground::GroundMotion;
 use super::history::Summary;
 use super::model::{Recorder, SimulationError};
 use super::row::course::{self, Clock, Task};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::ContactError;
-use crate::mechanics::joints::Placement;
+use crate::mechanics::stance::Stance;
 use crate::mechanics::tie::square_frequency;
 
 /// The shortest step over the longest one, where it is not given.
@@ -253,14 +252,20 @@ pub fn simulate(
         barrier_j: None,
         energy_scale_j: 0.0,
     };
-    motion(task, settings, &Placement::new(row), initial_rad, recorder)
+    motion(
+        task,
+        settings,
+        &Stance::undeformed(row),
+        initial_rad,
+        recorder,
+    )
 }
 
 /// The same for any task and a row that stands anywhere.
 fn motion(
     task: Task<'_>,
     settings: &Settings,
-    standing: &Placement,
+    standing: &Stance,
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, FreeHingeError> {
@@ -280,10 +285,10 @@ fn motion(
         Some(_) => {
             LandingStepper::released(task, settings, standing, initial_rad, None)?.into_placement()
         }
-        None => standing.clone(),
+        None => standing.placement.clone(),
     };
     course::run(sliding::SlidingStepper::new(
-        Rest::new(task.row, standing),
+        standing,
         &placement,
         task,
         settings,

@@ -150,7 +150,7 @@ impl TieSample {
         Self {
             force_n: memory.force_n.0[0],
             elongation_m: memory.stretch_m.0[0] - tie.prestress_n / tie.stiffness_n_m,
-            is_broken: memory.intact.0[0] == 0.0,
+            is_broken: memory.is_broken(),
         }
     }
 }
@@ -203,7 +203,7 @@ impl TieSummary {
             self.peak_force_time_s = time_s;
         }
         let yields = self.yielded_s.is_none() && memory.yielded_m.0[0] > self.yielded_m;
-        let breaks = self.broken_s.is_none() && memory.intact.0[0] == 0.0;
+        let breaks = self.broken_s.is_none() && memory.is_broken();
         if yields {
             self.yielded_s = Some(time_s);
         }

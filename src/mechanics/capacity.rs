@@ -199,8 +199,19 @@ pub struct Capacity {
     pub mass_fraction: f64,
     /// Factor from displacements of the control point to those of the oscillator.
     pub to_oscillator: f64,
-    /// From rest to the unstable equilibrium, at equal steps of the coordinate.
+    /// From rest to the unstable equilibrium, at equal steps of the coordinate, and where ties yield or break.
     pub curve: Vec<CurvePoint>,
+    /// What its ties do on the way; none where there are none.
+    pub ties: Vec<TieOnTheWay>,
+}
+
+/// At which displacements of the control point a tie gives way, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TieOnTheWay {
+    /// It yields, if it does.
+    pub yields_at_m: Option<f64>,
+    /// It breaks, if it does.
+    pub breaks_at_m: Option<f64>,
 }
 
 /// Why there is no capacity curve.
@@ -280,40 +291,73 @@ impl Capacity {
         if end_g.is_nan() || end_g.abs() > 1e-6 * start_g {
             return Err(CapacityError::Locks { sway });
         }
-        let curve: Vec<CurvePoint> = (0..=INTERVALS)
-            .map(|step| {
-                let here = displaced(f64::from(step) / f64::from(INTERVALS));
-                // Rounding may leave the first displacement and the last acceleration on either side of zero.
-                let (first, last) = (step == 0, step == INTERVALS);
-                let displacement_m = if first {
-                    0.0
-                } else {
-                    sway.sign() * control.shift_m(&here.poses)
-                };
-                let acceleration_g = if last { 0.0 } else { here.acceleration_g };
-                let oscillator_displacement_m = displacement_m * to_oscillator;
-                let oscillator_acceleration_g = acceleration_g / mass_fraction;
-                let square_s2 =
-                    oscillator_displacement_m / (gravity_m_s2 * oscillator_acceleration_g);
-                CurvePoint {
-                    q_rad: here.q_rad,
-                    displacement_m,
-                    acceleration_g,
-                    oscillator_displacement_m,
-                    oscillator_acceleration_g,
-                    friction: here.friction,
-                    secant_period_s: (!last).then(|| 2.0 * std::f64::consts::PI * square_s2.sqrt()),
-                }
-            })
-            .collect();
-        Ok(Self {
+        let mut capacity = Self {
             sway,
             control,
             participating_mass_kg,
             mass_fraction,
             to_oscillator,
-            curve,
-        })
+            curve: Vec::new(),
+            ties: Vec::new(),
+        };
+        let curve = (0..=INTERVALS).map(|step| {
+            let part = f64::from(step) / f64::from(INTERVALS);
+            capacity.point(part, &displaced(part), gravity_m_s2)
+        });
+        capacity.curve = curve.collect();
+        Ok(capacity)
+    }
+
+    /// The same with points where ties yield and break: parts of the way, tie by tie. A tie that breaks does so between two points.
+    #[must_use]
+    pub fn with_ties(
+        mut self,
+        gives_way: &[[Option<f64>; 2]],
+        displaced: impl Fn(f64) -> Displaced,
+        gravity_m_s2: f64,
+    ) -> Self {
+        for at in gives_way {
+            let points =
+                at.map(|part| part.map(|part| self.point(part, &displaced(part), gravity_m_s2)));
+            let [yields_at_m, breaks_at_m] =
+                points.map(|point| point.map(|point| point.displacement_m));
+            self.ties.push(TieOnTheWay {
+                yields_at_m,
+                breaks_at_m,
+            });
+            let before = at[1].map(|part| part.next_down());
+            let before = before.map(|part| self.point(part, &displaced(part), gravity_m_s2));
+            self.curve
+                .extend(points.into_iter().flatten().chain(before));
+        }
+        self.curve
+            .sort_by(|one, other| one.q_rad.total_cmp(&other.q_rad));
+        self.curve.dedup_by(|one, other| one.q_rad == other.q_rad);
+        self
+    }
+
+    /// The point at this part of the way.
+    fn point(&self, part: f64, here: &Displaced, gravity_m_s2: f64) -> CurvePoint {
+        // Rounding may leave the first displacement and the last acceleration on either side of zero.
+        let (first, last) = (part == 0.0, part == 1.0);
+        let displacement_m = if first {
+            0.0
+        } else {
+            self.sway.sign() * self.control.shift_m(&here.poses)
+        };
+        let acceleration_g = if last { 0.0 } else { here.acceleration_g };
+        let oscillator_displacement_m = displacement_m * self.to_oscillator;
+        let oscillator_acceleration_g = acceleration_g / self.mass_fraction;
+        let square_s2 = oscillator_displacement_m / (gravity_m_s2 * oscillator_acceleration_g);
+        CurvePoint {
+            q_rad: here.q_rad,
+            displacement_m,
+            acceleration_g,
+            oscillator_displacement_m,
+            oscillator_acceleration_g,
+            friction: here.friction,
+            secant_period_s: (!last).then(|| 2.0 * std::f64::consts::PI * square_s2.sqrt()),
+        }
     }
 
     /// Its start: `a(0) = A_L`, and `a0*`.

@@ -14,7 +14,7 @@ use thiserror::Error;
 use super::blocks::Row;
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::joints::Placement;
+use crate::mechanics::stance::Stance;
 use crate::mechanics::sway::Sway;
 
 /// Rates below this fraction of the largest one count as zero.
@@ -82,33 +82,33 @@ pub fn onset(
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    onset_at(row, &Placement::new(row), coefficient, sway)
+    onset_at(row, &Stance::undeformed(row), coefficient, sway)
 }
 
-/// The same where its blocks are there.
+/// The same where its blocks are there, and its ties pull as they do there.
 ///
 /// # Errors
 /// As [`onset`].
 pub fn onset_at(
     row: &Row,
-    placement: &Placement,
+    stance: &Stance,
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    if !stands_at(row, placement, coefficient)? {
+    if !stands_at(row, stance, coefficient)? {
         return Err(FrictionError::CannotStand(coefficient));
     }
-    onset_of_standing(row, placement, coefficient, sway)
+    onset_of_standing(row, stance, coefficient, sway)
 }
 
 /// The same for a row that is known to stand there with this coefficient. Joints that are open press at the corner that touches alone.
 pub(crate) fn onset_of_standing(
     row: &Row,
-    placement: &Placement,
+    stance: &Stance,
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    let program = Program::new(row, placement, coefficient, Goal::Push);
+    let program = Program::new(row, stance, coefficient, Goal::Push);
     match program.solve(-sway.sign())? {
         Answer::Found(solution) => Ok(Some(FrictionOnset {
             acceleration_g: sway.sign() * solution.goal,
@@ -124,19 +124,15 @@ pub(crate) fn onset_of_standing(
 /// # Errors
 /// When it falls with any coefficient, or the programme is not solved.
 pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
-    stands_at(row, &Placement::new(row), coefficient)
+    stands_at(row, &Stance::undeformed(row), coefficient)
 }
 
 /// The same where its blocks are there. Joints that are open press at the corner that touches alone.
 ///
 /// # Errors
 /// As [`stands`].
-pub fn stands_at(
-    row: &Row,
-    placement: &Placement,
-    coefficient: f64,
-) -> Result<bool, FrictionError> {
-    match Program::new(row, placement, coefficient, Goal::Shortage).solve(1.0)? {
+pub fn stands_at(row: &Row, stance: &Stance, coefficient: f64) -> Result<bool, FrictionError> {
+    match Program::new(row, stance, coefficient, Goal::Shortage).solve(1.0)? {
         Answer::Found(solution) => Ok(solution.goal <= LEAST_SHORTAGE),
         Answer::Unbounded => Ok(true),
         Answer::Infeasible => Err(FrictionError::NeverStands),
@@ -192,7 +188,8 @@ struct Program {
 }
 
 impl Program {
-    fn new(row: &Row, placement: &Placement, coefficient: f64, goal: Goal) -> Self {
+    fn new(row: &Row, stance: &Stance, coefficient: f64, goal: Goal) -> Self {
+        let placement = &stance.placement;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
         let centres_m = placement.centres_m();
         let equations = 3 * blocks + placement.open_corners();
@@ -211,15 +208,14 @@ impl Program {
             }
             right.extend([0.0, weight, 0.0]);
         }
-        // What the ties pull with at rest.
-        for tie in row.ties() {
-            let pull = tie.prestress_n / (row.gravity_m_s2() * mass_kg);
-            for (anchor, towards) in tie.ends.iter().zip([tie.along(), -tie.along()]) {
-                if let Some(number) = anchor.block {
-                    let arm_m = anchor.at_m - centres_m[number];
-                    let moment = arm_m.perp(&towards) / size_m;
-                    for (axis, value) in [towards.x, towards.y, moment].into_iter().enumerate() {
-                        right[3 * number + axis] -= pull * value;
+        // What the ties pull with there.
+        for (line, force_n) in stance.lines(row).zip(stance.forces_n()) {
+            let pull = line.along * (force_n / (row.gravity_m_s2() * mass_kg));
+            for (end, pull) in [pull, -pull].into_iter().enumerate() {
+                if let Some(number) = line.ends[end] {
+                    let moment = (line.ends_m[end] - centres_m[number]).perp(&pull) / size_m;
+                    for (axis, value) in [pull.x, pull.y, moment].into_iter().enumerate() {
+                        right[3 * number + axis] -= value;
                     }
                 }
             }

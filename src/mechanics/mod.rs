@@ -26,6 +26,8 @@ pub mod settling;
 #[doc(hidden)]
 pub mod slip;
 pub mod stability;
+#[doc(hidden)]
+pub mod stance;
 pub mod sway;
 pub mod tie;
 pub mod virtual_work;

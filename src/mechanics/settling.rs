@@ -8,21 +8,27 @@
 //!
 //! The same holds of a push that grows while the supports stand still: it moves nothing until it makes hinges snap. That push is the first motion; the
 //! push at which the row falls, its capacity, may be many times larger.
+//!
+//! Ties are stretched by what the row does, and pull back. They may hold it on more than three hinges, where it goes on little by little: the
+//! next hinge is then the one that the last equilibrium lacks.
 
 mod descent;
-mod three_pins;
+mod held;
+mod pins;
 
 use nalgebra::Vector2;
 use serde::Serialize;
 use thiserror::Error;
 
 use self::descent::Descent;
-pub use self::three_pins::{Hinge, State, ThreePins};
+pub use self::held::{Held, HeldError};
+pub use self::pins::{Hinge, Pins, State};
 use super::blocks::{Row, Supports};
 use super::contact::ContactError;
 use super::geometry::pose::Pose;
 use super::joints::Placement;
 use super::stability::{StabilityError, onset_at};
+use super::stance::Stance;
 use super::sway::Sway;
 use crate::bisection::{Width, bisect};
 
@@ -34,6 +40,8 @@ const NUDGES: [f64; 3] = [1e-6, 1e-5, 1e-4];
 const TILTS_G: [f64; 3] = [0.0, 1e-6, 1e-4];
 /// Forces below this part of the weight, and rotations below it, are rounding.
 const ROUNDING: f64 = 1e-12;
+/// Hinges of a row that ties hold are exchanged so many times at once, at most.
+const MOST_EXCHANGES: usize = 20;
 /// No row bears a push of so many times gravity that is found by following it.
 const LARGEST_PUSH_G: f64 = 100.0;
 
@@ -109,10 +117,12 @@ impl Movements {
         *self == Self::default()
     }
 
-    /// Whether both supports have moved alike, without turning.
-    fn are_one_translation(&self) -> bool {
+    /// Whether both supports of a row of this size have moved alike, without turning, but for rounding.
+    fn are_one_translation(&self, size_m: f64) -> bool {
         let [left, right] = self.displacements();
-        left == right && left[2] == 0.0
+        let apart_m = (left[0] - right[0]).hypot(left[1] - right[1]);
+        let gone_m = left[0].hypot(left[1]);
+        apart_m <= ROUNDING * size_m.max(gone_m) && left[2] == 0.0 && right[2] == 0.0
     }
 
     /// Displacements to the right and upwards, in metres, and rotations of the left and the right support.
@@ -160,9 +170,9 @@ pub struct Snap {
     /// Where along the way.
     pub at: f64,
     /// The hinges before; none where the row was undeformed.
-    pub before: Option<[Hinge; 3]>,
+    pub before: Option<Vec<Hinge>>,
     /// The hinges after; none where it fell.
-    pub after: Option<[Hinge; 3]>,
+    pub after: Option<Vec<Hinge>>,
     /// What made them give way, where the row had hinges: joints whose line of thrust reached an edge, or that shut.
     pub causes: Vec<Hinge>,
 }
@@ -182,9 +192,6 @@ pub enum SettlingError {
     /// A stack has one support.
     #[error("the row stands on one support alone, and nothing moves against it")]
     OneSupport,
-    /// Its ties would change as it moves.
-    #[error("springings that move are followed without ties: leave [[tie]] out")]
-    Ties,
     /// The undeformed row does not stand.
     #[error(transparent)]
     Stability(#[from] StabilityError),
@@ -206,9 +213,9 @@ pub enum SettlingError {
 pub struct Follower<'a> {
     row: &'a Row,
     descent: Descent<'a>,
-    hinges: Option<ThreePins>,
+    hinges: Option<Pins>,
     condition: Condition,
-    placement: Placement,
+    stance: Stance,
     snaps: Vec<Snap>,
 }
 
@@ -216,11 +223,8 @@ impl<'a> Follower<'a> {
     /// The undeformed row.
     ///
     /// # Errors
-    /// When it is a stack, has ties, or does not stand.
+    /// When it is a stack, or does not stand.
     pub fn new(row: &'a Row) -> Result<Self, SettlingError> {
-        if !row.ties().is_empty() {
-            return Err(SettlingError::Ties);
-        }
         if row.supports() == Supports::Left {
             return Err(SettlingError::OneSupport);
         }
@@ -235,7 +239,7 @@ impl<'a> Follower<'a> {
                 supports: [Pose::UNDEFORMED; 2],
                 force_g: Vector2::new(0.0, -1.0),
             },
-            placement: Placement::new(row),
+            stance: Stance::undeformed(row),
             snaps: Vec::new(),
         })
     }
@@ -248,14 +252,28 @@ impl<'a> Follower<'a> {
 
     /// The hinges on which it stands; none while it is undeformed.
     #[must_use]
-    pub const fn hinges(&self) -> Option<&ThreePins> {
+    pub const fn hinges(&self) -> Option<&Pins> {
         self.hinges.as_ref()
+    }
+
+    /// Whether it stands on more hinges than three, which ties alone hold.
+    #[must_use]
+    pub fn is_held_by_ties(&self) -> bool {
+        self.hinges
+            .as_ref()
+            .is_some_and(|pins| pins.hinges().len() > 3)
     }
 
     /// Where its blocks are.
     #[must_use]
     pub const fn placement(&self) -> &Placement {
-        &self.placement
+        &self.stance.placement
+    }
+
+    /// Where its blocks are, and what its ties remember.
+    #[must_use]
+    pub const fn stance(&self) -> &Stance {
+        &self.stance
     }
 
     /// What it is subject to.
@@ -275,7 +293,7 @@ impl<'a> Follower<'a> {
     pub fn state(&self) -> Option<State> {
         self.hinges
             .as_ref()
-            .and_then(|hinges| hinges.state(self.row, &self.condition))
+            .and_then(|hinges| hinges.state(self.row, &self.condition, &self.stance))
     }
 
     /// Moves the supports on from where they are, in a straight line, from this part of a movement to that.
@@ -295,10 +313,10 @@ impl<'a> Follower<'a> {
             return Ok(Reached::End);
         }
         // Moved along as a whole it is as it was.
-        if self.hinges.is_none() && last.are_one_translation() {
+        if self.hinges.is_none() && last.are_one_translation(row.size_m()) {
             self.condition.supports = last.poses(row);
-            self.placement.move_supports(self.condition.supports);
-            self.placement.open(|_| [0.0; 2]);
+            self.stance.placement.move_supports(self.condition.supports);
+            self.stance.placement.open(|_| [0.0; 2]);
             return Ok(Reached::End);
         }
         let way = |at: f64| Condition {
@@ -308,12 +326,16 @@ impl<'a> Follower<'a> {
         self.follow(&way, [from, to], (to - from) / extent)
     }
 
-    /// The push to a side, in units of gravity, that makes the row give way where it stands; `None` where none does.
+    /// The push to a side, in units of gravity, that makes the row give way where it stands; `None` where none does. Zero where ties hold it
+    /// on more than three hinges.
     ///
     /// # Errors
     /// When the velocities of a trial are not found.
     pub fn first_motion_g(&self, sway: Sway) -> Result<Option<f64>, ContactError> {
-        match onset_at(self.row, &self.placement, sway) {
+        if self.is_held_by_ties() {
+            return Ok(Some(0.0));
+        }
+        match onset_at(self.row, &self.stance, sway) {
             // Where it is about to fall, rounding may leave it on either side of zero.
             Ok(onset) => Ok(onset.map(|onset| onset.acceleration_g.max(0.0))),
             Err(StabilityError::CannotStand(_)) => Ok(Some(0.0)),
@@ -330,10 +352,12 @@ impl<'a> Follower<'a> {
         let Some(first_g) = self.first_motion_g(sway)? else {
             return Ok(None);
         };
-        // Undeformed, its joints hold it until they are four.
-        if self.hinges.is_none() {
+        // Undeformed, its joints hold it until they are four; then only ties can.
+        let is_built = self.hinges.is_none();
+        if is_built && self.row.ties().is_empty() {
             return Ok(Some([first_g; 2]));
         }
+        let from_g = if is_built { first_g } else { 0.0 };
         let mut pushed = Self {
             snaps: Vec::new(),
             ..self.clone()
@@ -343,7 +367,7 @@ impl<'a> Follower<'a> {
             force_g: condition.force_g + Vector2::new(sway.sign() * push_g, 0.0),
             ..condition
         };
-        let reached = pushed.follow(&way, [0.0, LARGEST_PUSH_G], 1.0)?;
+        let reached = pushed.follow(&way, [from_g, LARGEST_PUSH_G], 1.0)?;
         Ok(match reached {
             Reached::Falls(capacity_g) => Some([first_g, capacity_g]),
             Reached::End => None,
@@ -387,7 +411,7 @@ impl<'a> Follower<'a> {
         let state = self
             .hinges
             .as_ref()
-            .and_then(|hinges| hinges.state(self.row, condition));
+            .and_then(|hinges| hinges.state(self.row, condition, &self.stance));
         state.is_some_and(|state| state.margin() >= -ROUNDING)
     }
 
@@ -395,9 +419,28 @@ impl<'a> Follower<'a> {
     fn stand(&mut self, condition: &Condition) {
         self.condition = *condition;
         if let Some(state) = self.state() {
-            self.placement.move_supports(condition.supports);
-            self.placement.turn(&state.rotations_rad);
+            self.stance.placement.move_supports(condition.supports);
+            self.stance.placement.turn(&state.rotations_rad);
+            self.stance.ties = state.ties;
         }
+    }
+
+    /// Other hinges that hold the row in a condition beyond that of its own, where ties let it go there little by little: those that the last
+    /// equilibrium lacks, without those that would shut.
+    fn exchanged(&self, condition: &Condition) -> Option<Pins> {
+        if self.row.ties().is_empty() {
+            return None;
+        }
+        let mut pins = self.hinges.clone()?;
+        for _ in 0..MOST_EXCHANGES {
+            let state = pins.state(self.row, condition, &self.stance)?;
+            let wrong = state.beyond(-ROUNDING);
+            if wrong.is_empty() {
+                return Some(pins);
+            }
+            pins = pins.exchanged(self.row, &wrong)?;
+        }
+        None
     }
 
     /// Goes on from where the present hinges hold it last. Returns from where on others do; `None` where it falls.
@@ -407,36 +450,44 @@ impl<'a> Follower<'a> {
         at: f64,
         unit: f64,
     ) -> Result<Option<f64>, SettlingError> {
-        let before = self.hinges;
+        let before = self.hinges.clone();
         let last = way(at);
         for nudge in NUDGES {
             let beyond = at + nudge * unit;
             let condition = way(beyond);
-            let causes = before
-                .and_then(|hinges| hinges.state(self.row, &condition))
-                .map_or_else(Vec::new, |state| state.beyond(-ROUNDING));
-            let snap = |after: Option<&ThreePins>| Snap {
+            let state = before
+                .as_ref()
+                .and_then(|hinges| hinges.state(self.row, &condition, &self.stance));
+            let causes = state.map_or_else(Vec::new, |state| state.beyond(-ROUNDING));
+            let snap = |after: Option<&Pins>| Snap {
                 at,
-                before: before.map(|hinges| *hinges.hinges()),
-                after: after.map(|hinges| *hinges.hinges()),
+                before: before.as_ref().map(|hinges| hinges.hinges().to_vec()),
+                after: after.map(|hinges| hinges.hinges().to_vec()),
                 causes: causes.clone(),
             };
+            if let Some(hinges) = self.exchanged(&condition) {
+                self.snaps.push(snap(Some(&hinges)));
+                self.hinges = Some(hinges);
+                self.stand(&condition);
+                return Ok(Some(beyond));
+            }
             for tilt_g in TILTS_G {
-                let mut placement = self.placement.clone();
+                let mut stance = self.stance.clone();
                 let rests = self
                     .descent
-                    .settle(&mut placement, &last, &condition, tilt_g)?;
+                    .settle(&mut stance, &last, &condition, tilt_g)?;
                 if !rests {
                     self.snaps.push(snap(None));
                     return Ok(None);
                 }
-                let Some(hinges) = ThreePins::of(self.row, &placement) else {
+                let Some(hinges) = Pins::of(self.row, &stance.placement) else {
                     continue;
                 };
-                let state = hinges.state(self.row, &condition);
+                let state = hinges.state(self.row, &condition, &stance);
                 if state.is_some_and(|state| state.margin() >= -ROUNDING) {
                     self.snaps.push(snap(Some(&hinges)));
                     self.hinges = Some(hinges);
+                    self.stance = stance;
                     self.stand(&condition);
                     return Ok(Some(beyond));
                 }

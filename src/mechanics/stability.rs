@@ -12,10 +12,10 @@ use thiserror::Error;
 
 use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
-use super::tie::Anchor;
+use super::stance::Stance;
+use super::tie::TieLine;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::joints::Placement;
 use crate::mechanics::sway::Sway;
 
 /// Velocities below this fraction of those without contact count as zero.
@@ -61,7 +61,7 @@ pub enum StabilityError {
 /// # Errors
 /// When the velocities under the weight are not found.
 pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
-    let undeformed = Placement::new(row);
+    let undeformed = Stance::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
     Ok(trial
         .moves(Vector2::new(0.0, -1.0), true)?
@@ -74,20 +74,20 @@ pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
 /// # Errors
 /// When the row does not stand, or the velocities of a trial are not found.
 pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> {
-    onset_at(row, &Placement::new(row), sway)
+    onset_at(row, &Stance::undeformed(row), sway)
 }
 
 /// The same where some joints are open already, as where supports have moved: those press at their corners alone, and may go on
-/// opening or shut again. Ties are taken as they are in the undeformed row.
+/// opening or shut again. Its ties pull as they do there.
 ///
 /// # Errors
 /// As [`onset`].
 pub fn onset_at(
     row: &Row,
-    placement: &Placement,
+    stance: &Stance,
     sway: Sway,
 ) -> Result<Option<RowOnset>, StabilityError> {
-    let mut trial = Trial::new(row, placement);
+    let mut trial = Trial::new(row, stance);
     match trial.pushed(sway)? {
         Push::Moves(onset) => Ok(Some(onset)),
         Push::MovesNothing => Ok(None),
@@ -124,9 +124,9 @@ pub fn limit_with_yielding_ties(
     let most: Vec<f64> = ties
         .map(|tie| (tie.yield_force_n / weight_n).min(STRONGEST))
         .collect();
-    let undeformed = Placement::new(row);
+    let undeformed = Stance::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
-    let work_at_rest = work(row, undeformed.centres_m(), &at_rest.velocities);
+    let work_at_rest = work(row, undeformed.placement.centres_m(), &at_rest.velocities);
     let mut planes = vec![Plane::new(row, work_at_rest, &at_rest.lengthening, sway)];
     let (mut push_g, mut forces) = (f64::INFINITY, Vec::new());
     for _ in 0..MOST_TRIALS {
@@ -317,16 +317,17 @@ struct Trial<'a> {
     free: Vec<Twist>,
     jumps: Vec<Twist>,
     touching: Vec<[bool; 2]>,
+    lines: Vec<TieLine>,
     /// What the ties pull with, over gravity.
     ties_kg: Vec<f64>,
 }
 
 impl<'a> Trial<'a> {
-    fn new(row: &'a Row, placement: &'a Placement) -> Self {
+    fn new(row: &'a Row, stance: &'a Stance) -> Self {
+        let placement = &stance.placement;
         let mut program = Program::new(row);
         program.place(placement);
         let gaps_m = placement.gaps_m().iter();
-        let ties = row.ties().iter();
         Self {
             row,
             centres_m: placement.centres_m(),
@@ -334,8 +335,10 @@ impl<'a> Trial<'a> {
             free: vec![Twist::ZERO; row.blocks().len()],
             jumps: vec![Twist::ZERO; row.joints().len()],
             touching: gaps_m.map(|gaps| gaps.map(|gap| gap == 0.0)).collect(),
-            ties_kg: ties
-                .map(|tie| tie.prestress_n / row.gravity_m_s2())
+            lines: stance.lines(row).collect(),
+            ties_kg: stance
+                .forces_n()
+                .map(|force_n| force_n / row.gravity_m_s2())
                 .collect(),
         }
     }
@@ -381,8 +384,11 @@ impl<'a> Trial<'a> {
     ) -> Result<Option<Vector2<f64>>, ContactError> {
         self.free.fill(Twist::translation(load));
         if with_ties {
-            for (tie, kg) in self.row.ties().iter().zip(&self.ties_kg) {
-                tie.pull(self.row.blocks(), *kg, |block, gained| {
+            let (blocks, centres_m) = (self.row.blocks(), self.centres_m);
+            for (line, kg) in self.lines.iter().zip(&self.ties_kg) {
+                line.pull(blocks, centres_m, *kg, |block, velocity, turning| {
+                    let gained =
+                        Twist::translation(velocity) + Twist::rotation(centres_m[block], turning);
                     self.free[block] = self.free[block] + gained;
                 });
             }
@@ -409,16 +415,11 @@ impl<'a> Trial<'a> {
 
     /// Rates at which the ties lengthen in the last trial.
     fn lengthening(&self) -> Vec<f64> {
-        let velocity = |anchor: &Anchor| {
-            let twist = anchor.block.map(|block| self.program.velocities()[block]);
-            twist.map_or(Vector2::zeros(), |twist| twist.at(anchor.at_m))
-        };
-        let ties = self.row.ties().iter();
-        ties.map(|tie| {
-            let [first, second] = [velocity(&tie.ends[0]), velocity(&tie.ends[1])];
-            tie.along().dot(&(second - first))
-        })
-        .collect()
+        let velocities = self.program.velocities();
+        self.lines
+            .iter()
+            .map(|line| line.lengthening(velocities))
+            .collect()
     }
 
     fn openings(&self) -> Vec<Opening> {

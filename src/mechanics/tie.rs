@@ -214,22 +214,16 @@ impl Tie {
         (self.ends[1].at_m - self.ends[0].at_m) / self.length_m()
     }
 
-    /// What the blocks at its ends gain in motion under an impulse of it, which pulls them together in the undeformed structure: velocity
-    /// for so much momentum per velocity.
-    pub(super) fn pull(&self, blocks: &[Block], impulse: f64, mut gain: impl FnMut(usize, Twist)) {
-        let along = self.along();
-        for (anchor, towards) in self.ends.iter().zip([along, -along]) {
-            let Some(block) = anchor.block else {
-                continue;
-            };
-            let Block {
-                mass_kg,
-                centre_m,
-                inertia_kg_m2,
-            } = blocks[block];
-            let turning = (anchor.at_m - centre_m).perp(&towards) * impulse / inertia_kg_m2;
-            let gained = Twist::translation(towards * (impulse / mass_kg));
-            gain(block, gained + Twist::rotation(centre_m, turning));
+    /// How it lies with its ends there.
+    #[must_use]
+    pub fn line(&self, ends_m: [Vector2<f64>; 2]) -> TieLine {
+        let moved = [0, 1].map(|end| ends_m[end] - self.ends[end].at_m);
+        let span = self.span(moved.map(|by| [Lanes([by.x]), Lanes([by.y])]));
+        TieLine {
+            ends: self.ends.map(|anchor| anchor.block),
+            ends_m,
+            along: Vector2::new(span.along[0].0[0], span.along[1].0[0]),
+            stretch_m: span.stretch_m.0[0],
         }
     }
 
@@ -299,6 +293,61 @@ impl Tie {
     }
 }
 
+/// How a tie lies between blocks that stand anywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TieLine {
+    /// Indices of the blocks at its ends; `None`: a support, or the ground.
+    pub ends: [Option<usize>; 2],
+    /// Where its ends are.
+    pub ends_m: [Vector2<f64>; 2],
+    /// Unit vector from its first end to its second one.
+    pub along: Vector2<f64>,
+    /// By how much it is longer than without stress, in m.
+    pub stretch_m: f64,
+}
+
+impl TieLine {
+    /// What the blocks at its ends, with their centres there, gain under an impulse of it: in velocity of the centre and in rate of
+    /// rotation.
+    pub fn pull(
+        &self,
+        blocks: &[Block],
+        centres_m: &[Vector2<f64>],
+        impulse: f64,
+        mut gain: impl FnMut(usize, Vector2<f64>, f64),
+    ) {
+        let impulse = self.along * impulse;
+        for (end, impulse) in [impulse, -impulse].into_iter().enumerate() {
+            let Some(index) = self.ends[end] else {
+                continue;
+            };
+            let (block, centre_m) = (&blocks[index], centres_m[index]);
+            let turning = (self.ends_m[end] - centre_m).perp(&impulse) / block.inertia_kg_m2;
+            gain(index, impulse / block.mass_kg, turning);
+        }
+    }
+
+    /// Rate at which it lengthens while blocks move so and supports do not.
+    #[must_use]
+    pub fn lengthening(&self, velocities: &[Twist]) -> f64 {
+        let velocity = |end: usize| {
+            let twist = self.ends[end].map(|block| velocities[block]);
+            twist.map_or(Vector2::zeros(), |twist| twist.at(self.ends_m[end]))
+        };
+        self.along.dot(&(velocity(1) - velocity(0)))
+    }
+}
+
+impl Tie {
+    /// What it pulls with, in N, where it has yielded so much before and is now stretched so far beyond its unstressed length, and does not
+    /// break.
+    #[must_use]
+    pub fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
+        let elastic_n = (stretch_m - R::of(yielded_m)) * self.stiffness_n_m;
+        elastic_n.max(R::of(0.0)).min(R::of(self.yield_force_n))
+    }
+}
+
 /// What a tie remembers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieMemory<R> {
@@ -317,14 +366,15 @@ pub struct TieMemory<R> {
 }
 
 impl<R: Real> TieMemory<R> {
-    /// Of a tie that has stretched so far beyond its unstressed length, slowly and for the first time.
+    /// Of a tie that had yielded so much before and is now stretched so far beyond its unstressed length, slowly. It has taken nothing
+    /// yet.
     #[must_use]
-    pub fn stretched(tie: &Tie, stretch_m: R) -> Self {
+    pub fn stretched(tie: &Tie, yielded_m: f64, stretch_m: R) -> Self {
         let mut memory = Self {
             stretch_m,
             force_n: R::of(0.0),
             peak_n: R::of(0.0),
-            yielded_m: R::of(0.0),
+            yielded_m: R::of(yielded_m),
             intact: R::of(1.0),
             taken_j: R::of(0.0),
         };
@@ -340,10 +390,8 @@ impl<R: Real> TieMemory<R> {
     #[inline(always)]
     pub fn stretch(&mut self, tie: &Tie, stretch_m: R) {
         let zero = R::of(0.0);
-        let trial_n = (stretch_m - self.yielded_m) * tie.stiffness_n_m;
-        let pulls_n = trial_n.max(zero);
-        let bound_n = R::of(tie.yield_force_n);
-        let force_n = pulls_n.min(bound_n);
+        let pulls_n = ((stretch_m - self.yielded_m) * tie.stiffness_n_m).max(zero);
+        let force_n = pulls_n.min(R::of(tie.yield_force_n));
         let more_m = (pulls_n - force_n) * (1.0 / tie.stiffness_n_m);
         self.yielded_m += more_m * self.intact;
         let yielded_j = (self.force_n + force_n) * more_m * 0.5 * self.intact;
@@ -362,7 +410,7 @@ impl<R: Real> TieMemory<R> {
     /// What it holds when its ends are where they are in the undeformed structure.
     #[must_use]
     pub fn undeformed(tie: &Tie) -> Self {
-        Self::stretched(tie, R::of(tie.prestress_n / tie.stiffness_n_m))
+        Self::stretched(tie, 0.0, R::of(tie.prestress_n / tie.stiffness_n_m))
     }
 
     /// Elastic energy, in J.
@@ -370,6 +418,38 @@ impl<R: Real> TieMemory<R> {
     #[must_use]
     pub fn energy_j(&self, tie: &Tie) -> R {
         self.force_n * self.force_n * (0.5 / tie.stiffness_n_m)
+    }
+}
+
+impl TieMemory<Lanes<1>> {
+    /// The same once it is stretched so far, slowly; it takes nothing.
+    #[must_use]
+    pub fn then(&self, tie: &Tie, stretch_m: f64) -> Self {
+        let stretch_m = Lanes([stretch_m]);
+        if self.is_broken() {
+            return Self { stretch_m, ..*self };
+        }
+        Self::stretched(tie, self.yielded_m.0[0], stretch_m)
+    }
+
+    /// What it would pull with then, in N, if it did not break on the way.
+    #[must_use]
+    pub fn would_pull_n(&self, tie: &Tie, stretch_m: f64) -> f64 {
+        tie.pull_n(self.yielded_m.0[0], Lanes([stretch_m])).0[0] * self.intact.0[0]
+    }
+
+    /// Whether it has broken.
+    #[must_use]
+    pub fn is_broken(&self) -> bool {
+        self.intact.0[0] == 0.0
+    }
+
+    /// By how much it pulls harder for each metre that it is stretched on, in N/m.
+    #[must_use]
+    pub fn stiffness_n_m(&self, tie: &Tie) -> f64 {
+        let force_n = self.force_n.0[0];
+        let elastic = force_n > 0.0 && force_n < tie.yield_force_n;
+        if elastic { tie.stiffness_n_m } else { 0.0 }
     }
 }
 

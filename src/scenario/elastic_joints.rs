@@ -192,6 +192,14 @@ impl ElasticTable {
                     let wrong = format!("does not fit: {error}");
                     return Err(table.wrong_element("tie", index, wrong));
                 }
+                RestError::TieOnTheWay { tie, part } => {
+                    let wrong = format!(
+                        "breaks when the springings have gone {:.2} % of the way of [supports], with these joints: give a larger \
+                         `breaks_at_strain`, or less movement",
+                        1e2 * part
+                    );
+                    return Err(table.wrong_element("tie", tie, wrong));
+                }
                 RestError::NotFound | RestError::Supports(_) => return Ok(()),
             };
             return wrong(table, key, format!("is not possible here: {error}"));

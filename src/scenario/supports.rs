@@ -50,12 +50,6 @@ pub(super) fn check(
                 .to_owned(),
         );
     }
-    if !row.ties().is_empty() {
-        return wrong(
-            "cannot be combined with [[tie]]: springings that have moved are followed without ties; leave one out"
-                .to_owned(),
-        );
-    }
     let joints = row.joints();
     let apart_m = (joints[joints.len() - 1].intrados_m - joints[0].intrados_m).x;
     let closer_m = -(movements.left.spread_m + movements.right.spread_m);
@@ -75,7 +69,14 @@ pub(super) fn check(
              `archrock spread` tells how far they may go",
             1e2 * part
         )),
-        Ok(Reached::End) => Ok(()),
+        Ok(Reached::End) => match follower.stance().broken_tie() {
+            Some(tie) => {
+                let wrong = "breaks before the springings have gone the way of [supports], with joints that are rigid: give a larger \
+                             `breaks_at_strain`, or less movement";
+                Err(table.wrong_element("tie", tie, wrong))
+            }
+            None => Ok(()),
+        },
         Err(error) => wrong(format!("cannot be followed: {error}")),
     }
 }

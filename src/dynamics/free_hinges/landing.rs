@@ -33,6 +33,7 @@ use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::{Placement, SHUT_RATIO};
+use crate::mechanics::stance::Stance;
 
 /// An arch whose ends miss each other by more than this fraction of the thickness of a joint is in error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
@@ -180,7 +181,7 @@ impl<'a> LandingStepper<'a> {
     fn new(
         task: Task<'a>,
         settings: &'a Settings,
-        standing: &Placement,
+        standing: &Stance,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
         let Task {
@@ -190,9 +191,9 @@ impl<'a> LandingStepper<'a> {
             ..
         } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
-        let rest = Rest::new(row, standing);
+        let rest = Rest::new(row, &standing.placement);
         let mut program = Program::new(row);
-        program.place(standing);
+        program.place(&standing.placement);
         if rest.is_on_hinges() {
             program.start_from(rest.touching());
         }
@@ -207,12 +208,12 @@ impl<'a> LandingStepper<'a> {
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
             course: Course::new(task, Some(fallen), recorder),
             kicked_s: 0.0,
-            placement: standing.clone(),
+            placement: standing.placement.clone(),
             rest,
             auxiliary: program.clone(),
             program,
             closer: Closer::new(row),
-            ties: Ties::new(row),
+            ties: Ties::new(row, standing),
             pieces: Vec::with_capacity(blocks),
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
@@ -259,7 +260,7 @@ impl<'a> LandingStepper<'a> {
     pub(super) fn released(
         task: Task<'a>,
         settings: &'a Settings,
-        standing: &Placement,
+        standing: &Stance,
         initial_rad: Option<&[f64]>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Result<Self, FreeHingeError> {
@@ -982,7 +983,7 @@ mod tests {
                 barrier_j: None,
                 energy_scale_j: 0.0,
             };
-            let mut stepper = LandingStepper::new(task, &settings, &Placement::new(&row), None);
+            let mut stepper = LandingStepper::new(task, &settings, &Stance::undeformed(&row), None);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;

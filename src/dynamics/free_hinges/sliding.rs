@@ -28,6 +28,7 @@ use crate::mechanics::coulomb::{Along, Mode, Program};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::slip::{Contact, Faces, Position};
+use crate::mechanics::stance::Stance;
 
 /// Rates are found to within this fraction of the fastest motion, and of what gravity does in a step.
 const RATE_TOLERANCE: f64 = 1e-9;
@@ -96,9 +97,9 @@ pub(super) struct SlidingStepper<'a> {
 }
 
 impl<'a> SlidingStepper<'a> {
-    /// A stepper for a row that is released at rest at a placement, or stands there.
+    /// A stepper for a row that stands there, or is released at rest at a placement.
     pub(super) fn new(
-        rest: Rest<'a>,
+        standing: &Stance,
         placement: &Placement,
         task: Task<'a>,
         settings: &'a Settings,
@@ -112,6 +113,7 @@ impl<'a> SlidingStepper<'a> {
             ..
         } = task;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let rest = Rest::new(row, &standing.placement);
         let faces = Faces::of_row(row);
         let supports = placement.support_poses().map(|pose| Position::of(&pose));
         let contacts_at = |placement: &Placement| -> (Vec<Position>, Vec<Contact>) {
@@ -160,7 +162,7 @@ impl<'a> SlidingStepper<'a> {
             sliding: Sliding::none(joints),
             ground_work: 0.0,
             summit: Summit::new(start_energy),
-            ties: Ties::new(row),
+            ties: Ties::new(row, standing),
             taken_by_ties: 0.0,
             pulled: vec![Vector3::zeros(); blocks],
             held_back: 0.0,

@@ -6,15 +6,14 @@ use crate::dynamics::history::{EventKind, TieSample, TieSummary};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
-use crate::mechanics::tie::{Tie, TieMemory};
+use crate::mechanics::stance::Stance;
+use crate::mechanics::tie::{Tie, TieLine, TieMemory};
 
 /// A tie that moves.
 struct Pulling<'a> {
     tie: &'a Tie,
     memory: TieMemory<Lanes<1>>,
-    /// Where its ends are, and the unit vector from the first to the second.
-    ends_m: [Vector2<f64>; 2],
-    along: Vector2<f64>,
+    line: TieLine,
     summary: TieSummary,
 }
 
@@ -24,26 +23,28 @@ pub(super) struct Ties<'a> {
     ties: Vec<Pulling<'a>>,
     /// Where the left and the right support are.
     supports: [Pose; 2],
-    /// Elastic energy in the undeformed row.
+    /// Elastic energy where the row stood.
     at_rest_j: f64,
 }
 
 impl<'a> Ties<'a> {
-    pub fn new(row: &'a Row) -> Self {
-        let ties = row.ties().iter().map(|tie| {
-            let memory = TieMemory::undeformed(tie);
-            Pulling {
+    /// Of a row that stands there.
+    pub fn new(row: &'a Row, standing: &Stance) -> Self {
+        let lines = standing.lines(row).zip(&standing.ties);
+        let ties = row
+            .ties()
+            .iter()
+            .zip(lines)
+            .map(|(tie, (line, memory))| Pulling {
                 tie,
-                ends_m: tie.ends.map(|anchor| anchor.at_m),
-                along: tie.along(),
-                summary: TieSummary::at_rest(tie, &memory),
-                memory,
-            }
-        });
+                line,
+                summary: TieSummary::at_rest(tie, memory),
+                memory: *memory,
+            });
         let mut ties = Self {
             row,
             ties: ties.collect(),
-            supports: [Pose::UNDEFORMED; 2],
+            supports: *standing.placement.support_poses(),
             at_rest_j: 0.0,
         };
         ties.at_rest_j = ties.energy_j();
@@ -63,7 +64,7 @@ impl<'a> Ties<'a> {
     pub fn on_right_support_n(&self) -> Vector2<f64> {
         let feet_m = self.row.feet_m();
         let ends = self.ties.iter().flat_map(|tie| {
-            let force = tie.along * tie.memory.force_n.0[0];
+            let force = tie.line.along * tie.memory.force_n.0[0];
             tie.tie.ends.into_iter().zip([force, -force])
         });
         ends.filter(|(anchor, _)| anchor.block.is_none() && anchor.support(feet_m) == 1)
@@ -75,15 +76,12 @@ impl<'a> Ties<'a> {
     pub fn stretch(&mut self, pose: impl Fn(usize) -> Pose) {
         let feet_m = self.row.feet_m();
         for tie in &mut self.ties {
-            let moved = tie.tie.ends.map(|anchor| {
+            let ends_m = tie.tie.ends.map(|anchor| {
                 let support = || self.supports[anchor.support(feet_m)];
                 anchor.block.map_or_else(support, &pose).of(anchor.at_m)
             });
-            let by_m = [0, 1].map(|end| moved[end] - tie.tie.ends[end].at_m);
-            let span = tie.tie.span(by_m.map(|by| [Lanes([by.x]), Lanes([by.y])]));
-            tie.memory.stretch(tie.tie, span.stretch_m);
-            tie.ends_m = moved;
-            tie.along = Vector2::new(span.along[0].0[0], span.along[1].0[0]);
+            tie.line = tie.tie.line(ends_m);
+            tie.memory.stretch(tie.tie, Lanes([tie.line.stretch_m]));
         }
     }
 
@@ -96,19 +94,13 @@ impl<'a> Ties<'a> {
         mut gain: impl FnMut(usize, Vector2<f64>, f64),
     ) {
         for tie in &self.ties {
-            let impulse = tie.along * (tie.memory.force_n.0[0] * lasts_s);
-            for (end, impulse) in [impulse, -impulse].into_iter().enumerate() {
-                let Some(index) = tie.tie.ends[end].block else {
-                    continue;
-                };
-                let (block, centre_m) = (&self.row.blocks()[index], centres_m[index]);
-                let turning = (tie.ends_m[end] - centre_m).perp(&impulse) / block.inertia_kg_m2;
-                gain(index, impulse / block.mass_kg, turning);
-            }
+            let impulse = tie.memory.force_n.0[0] * lasts_s;
+            tie.line
+                .pull(self.row.blocks(), centres_m, impulse, &mut gain);
         }
     }
 
-    /// Elastic energy in them, above that in the undeformed row.
+    /// Elastic energy in them, above that where the row stood.
     pub fn energy_j(&self) -> f64 {
         let each = self
             .ties

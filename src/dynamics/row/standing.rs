@@ -11,9 +11,9 @@ use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::row::FourLinkRow;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::joints::Placement;
 use crate::mechanics::settling::{Follower, Movements, Reached, SettlingError};
 use crate::mechanics::stability::{StabilityError, onset};
+use crate::mechanics::stance::Stance;
 use crate::mechanics::sway::Sway;
 
 /// Why a row does not stand on supports that have moved.
@@ -38,7 +38,7 @@ pub enum SettledError {
 pub(in crate::dynamics) struct RigidRow {
     row: Row,
     /// Where it stands: undeformed, or on supports that have moved.
-    standing: Placement,
+    standing: Stance,
     /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
     incipient_g: [Option<f64>; 2],
     /// The same where joints slip.
@@ -74,7 +74,7 @@ impl RigidRow {
                 .map(FirstMechanism::FourLinks),
         };
         Ok(Self {
-            standing: Placement::new(&row),
+            standing: Stance::undeformed(&row),
             row,
             incipient_g,
             with_friction_g: None,
@@ -83,7 +83,7 @@ impl RigidRow {
     }
 
     /// Where it stands before it moves.
-    pub(in crate::dynamics) const fn standing(&self) -> &Placement {
+    pub(in crate::dynamics) const fn standing(&self) -> &Stance {
         &self.standing
     }
 
@@ -163,7 +163,7 @@ impl RigidRow {
             incipient_g,
             with_friction_g: None,
             first: self.first,
-            standing: follower.placement().clone(),
+            standing: follower.stance().clone(),
             row: self.row,
         })
     }
@@ -186,7 +186,7 @@ impl RigidRow {
 
     /// Whether it stands on hinges, of supports that have moved.
     fn is_on_hinges(&self) -> bool {
-        self.standing.open_corners() > 0
+        self.standing.placement.open_corners() > 0
     }
 
     fn built_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {

@@ -65,6 +65,18 @@ pub enum RestError {
     /// A tie breaks.
     #[error("tie {number} breaks under the weight of the structure: it needs a larger breaks_at_strain, or less prestress_n", number = .0 + 1)]
     Tie(usize),
+    /// A tie breaks while its supports move.
+    #[error(
+        "tie {number} breaks when the supports have moved {part:.2} % of the way: it needs a larger breaks_at_strain",
+        number = tie + 1,
+        part = 1e2 * part
+    )]
+    TieOnTheWay {
+        /// Which one.
+        tie: usize,
+        /// At this part of the movement.
+        part: f64,
+    },
     /// No equilibrium was found.
     #[error("no equilibrium was found under the weight of the structure")]
     NotFound,
@@ -82,6 +94,11 @@ const RAISED: f64 = 3.162_277_660_168_379_5;
 const FIRST_STIFFNESS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 impl Rest {
+    /// The first tie that has broken.
+    fn broken_tie(&self) -> Option<usize> {
+        self.ties.iter().position(TieMemory::is_broken)
+    }
+
     /// The joint whose thrust lies farthest from its middle, and how far over its length.
     #[must_use]
     pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
@@ -114,16 +131,14 @@ impl ElasticStructure {
     /// When it does not rest, with the reason.
     pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Rest, RestError> {
         if self.has_settled() {
-            let rest = self.on_part_of_the_way(0.0).rest(load_m_s2)?;
-            return self.settled(load_m_s2, rest);
+            let built = self.clone().on_supports([[0.0; 3]; 2]);
+            return self.settled(load_m_s2, built.rest(load_m_s2)?);
         }
         if let Some(rest) = self.balanced(load_m_s2) {
-            let broken = |tie: &TieMemory<Alone>| tie.intact.0[0] == 0.0;
-            return rest
-                .ties
-                .iter()
-                .position(broken)
-                .map_or(Ok(rest), |tie| Err(RestError::Tie(tie)));
+            return match rest.broken_tie() {
+                Some(tie) => Err(RestError::Tie(tie)),
+                None => Ok(rest),
+            };
         }
         let would_rest = |other: Self| other.balanced(load_m_s2).is_some();
         let without_slip = self.without_slip();
@@ -145,16 +160,26 @@ impl ElasticStructure {
     }
 
     /// Where it rests once its supports have moved slowly, from where it rested before: steps of the movement, each from the equilibrium
-    /// that the last two let expect. Joints slip by what they have slipped in all.
+    /// that the last two let expect. Joints slip by what they have slipped in all; ties that have yielded on the way are longer from then
+    /// on.
     fn settled(&self, load_m_s2: [f64; 2], built: Rest) -> Result<Rest, RestError> {
         let bent = built.bent.clone();
         let length_m = Search::new(self, load_m_s2).length_m;
         let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
-        let extent_m = self.supports().iter().map(far).sum::<f64>();
+        // What both supports do alike moves everything and bends nothing.
+        let (along_m, along) = self.moved_along();
+        let from = along.supports().iter().zip(self.supports());
+        let ways = from.map(|(from, to)| far(&[0, 1, 2].map(|axis| to[axis] - from[axis])));
+        let extent_m = ways.sum::<f64>();
         // Parts of the whole movement.
         let longest = LONGEST_SETTLING * length_m / extent_m;
         let (mut part, mut stride) = (0.0, 0.1 * longest);
         let mut here = built;
+        for moved in &mut here.moved {
+            for axis in 0..2 {
+                moved[axis] += along_m[axis];
+            }
+        }
         let mut before: Option<(f64, Vec<[f64; 3]>)> = None;
         while part < 1.0 {
             let next = (part + stride).min(1.0);
@@ -168,7 +193,7 @@ impl ElasticStructure {
                 }
             }
             let on_way = self.on_part_of_the_way(next);
-            let most_m = FARTHEST * (next - part) * extent_m;
+            let most_m = (FARTHEST * (next - part) * extent_m).max(NOT_FAR * length_m);
             let near = |rest: &Rest| {
                 let moved = rest.moved.iter().zip(&here.moved);
                 let by = |(now, then): (&[f64; 3], &[f64; 3])| {
@@ -176,7 +201,7 @@ impl ElasticStructure {
                 };
                 moved.map(by).fold(0.0, f64::max) < most_m
             };
-            let search = Search::new(&on_way, load_m_s2);
+            let search = Search::new(&on_way, load_m_s2).with_ties(&here.ties);
             let found = search.from(expected, here.steps).filter(near);
             let Some(found) = found else {
                 stride *= 0.5;
@@ -185,6 +210,9 @@ impl ElasticStructure {
                 }
                 continue;
             };
+            if let Some(tie) = found.broken_tie() {
+                return Err(RestError::TieOnTheWay { tie, part: next });
+            }
             let taken = found.steps - here.steps;
             if taken <= QUICK_STEPS {
                 stride = (1.5 * stride).min(longest);
@@ -231,6 +259,8 @@ const LONGEST_SETTLING: f64 = 2e-2;
 const SHORTEST_SETTLING: f64 = 1e-5;
 /// A step of supports moves no body by more than so many times as much: else it snapped to another equilibrium.
 const FARTHEST: f64 = 50.0;
+/// By less than this part of the length of a joint it only corrects rounding.
+const NOT_FAR: f64 = 1e-9;
 /// Steps of Newton's method that let the next step be longer.
 const QUICK_STEPS: usize = 8;
 
@@ -350,6 +380,8 @@ struct Pushed {
 struct Search<'a> {
     structure: &'a ElasticStructure,
     load_m_s2: [f64; 2],
+    /// By how much its ties have yielded before, in m.
+    yielded_m: Vec<f64>,
     weight_n: f64,
     /// Rotations and moments are scaled with this length.
     length_m: f64,
@@ -370,10 +402,17 @@ impl<'a> Search<'a> {
         Self {
             structure,
             load_m_s2,
+            yielded_m: vec![0.0; structure.ties().len()],
             weight_n: structure.mass_kg() * load_m_s2[0].hypot(load_m_s2[1]),
             length_m: lengths / joints.len() as f64,
             width: 3 * reach.max().unwrap_or(0) + 2,
         }
+    }
+
+    /// The same with ties that remember this.
+    fn with_ties(mut self, ties: &[TieMemory<Alone>]) -> Self {
+        self.yielded_m = ties.iter().map(|tie| tie.yielded_m.0[0]).collect();
+        self
     }
 
     /// Unbalanced forces (moments over the length); with a matrix, minus their derivatives with respect to the coordinates.
@@ -409,14 +448,14 @@ impl<'a> Search<'a> {
             };
             self.add(pair, &action, matrix.as_deref_mut(), forces);
         }
-        for bound in self.structure.ties() {
+        for (bound, yielded_m) in self.structure.ties().iter().zip(&self.yielded_m) {
             let pair = bound.bodies;
             let [first, second] = [0, 1].map(|end| self.variable(moved, pair[end], end));
             let span = bound.span([&first, &second]);
             let force_n = if bonded {
                 span.stretch_m * bound.tie.stiffness_n_m
             } else {
-                TieMemory::stretched(&bound.tie, span.stretch_m).force_n
+                bound.tie.pull_n(*yielded_m, span.stretch_m)
             };
             let action = bound.action([&first, &second], &span, force_n);
             self.add(pair, &action, matrix.as_deref_mut(), forces);
@@ -645,9 +684,11 @@ impl<'a> Search<'a> {
         let mut fibres = vec![Fibre::none(); joints.len() * each];
         let place =
             |body: usize| Place::at(moved.get(body).unwrap_or(self.structure.support(body)));
-        let ties = self.structure.ties().iter().map(|bound| {
+        let ties = self.structure.ties().iter().zip(&self.yielded_m);
+        let ties = ties.map(|(bound, yielded_m)| {
             let [first, second] = bound.bodies.map(place);
-            TieMemory::stretched(&bound.tie, bound.span([&first, &second]).stretch_m)
+            let stretch_m = bound.span([&first, &second]).stretch_m;
+            TieMemory::stretched(&bound.tie, *yielded_m, stretch_m)
         });
         let ties = ties.collect();
         for (index, joint) in joints.iter().enumerate() {

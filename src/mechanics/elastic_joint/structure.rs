@@ -326,10 +326,22 @@ impl ElasticStructure {
         self.supports != [[0.0; 3]; 2]
     }
 
-    /// The same when its supports have gone this part of their way.
+    /// The same with supports that have moved as the left one has, without turning.
+    pub(super) fn moved_along(&self) -> ([f64; 2], Self) {
+        let [x, y, _] = self.supports[0];
+        ([x, y], self.clone().on_supports([[x, y, 0.0]; 2]))
+    }
+
+    /// The same when its supports have gone this part of their way from where they moved along.
     pub(super) fn on_part_of_the_way(&self, part: f64) -> Self {
-        let supports = self.supports.map(|moved| moved.map(|axis| part * axis));
-        self.clone().on_supports(supports)
+        let from = self.moved_along().1.supports;
+        let between = |side: usize| {
+            [0, 1, 2].map(|axis| {
+                let to = self.supports[side][axis];
+                to - (1.0 - part) * (to - from[side][axis])
+            })
+        };
+        self.clone().on_supports([between(0), between(1)])
     }
 
     /// The ties.

@@ -14,25 +14,30 @@ pub struct BoundTie {
     pub tie: Tie,
     /// The bodies at its ends; beyond the last one are the left support and the right one.
     pub bodies: [usize; 2],
-    /// From their centres to its ends, in m; from the origin where that is a support.
+    /// From their centres to its ends, in m; from the middle of its joint where that is a support.
     pub arms_m: [[f64; 2]; 2],
 }
 
 impl BoundTie {
     /// Of a row between these feet: the ground moves an end as it does the nearer one.
     pub(super) fn new(tie: Tie, blocks: &[Block], feet_m: [Vector2<f64>; 2]) -> Self {
+        let body = |end: usize| {
+            let anchor = &tie.ends[end];
+            match anchor.block {
+                Some(block) => (block, blocks[block].centre_m),
+                None => {
+                    let support = anchor.support(feet_m);
+                    (blocks.len() + support, feet_m[support])
+                }
+            }
+        };
+        let bodies = [0, 1].map(body);
         let arm = |end: usize| {
-            let anchor = tie.ends[end];
-            let block = anchor.block.and_then(|block| blocks.get(block));
-            let arm_m = anchor.at_m - block.map_or_else(Default::default, |block| block.centre_m);
+            let arm_m = tie.ends[end].at_m - bodies[end].1;
             [arm_m.x, arm_m.y]
         };
         Self {
-            bodies: tie.ends.map(|anchor| {
-                anchor
-                    .block
-                    .unwrap_or(blocks.len() + anchor.support(feet_m))
-            }),
+            bodies: bodies.map(|(body, _)| body),
             arms_m: [arm(0), arm(1)],
             tie,
         }

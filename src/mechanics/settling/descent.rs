@@ -3,16 +3,21 @@
 //! The blocks move as in a viscous fluid that resists as their masses do. Their velocities are then those nearest to the load,
 //! of all that the joints allow: the program of a step of a motion ([`crate::mechanics::contact`]). Descents that weighted
 //! rotations ten and a hundred times as much led to the same hinges.
+//!
+//! A tie may be stiffer than any step of a descent is short. So it pulls with the force that it has at the end of a step, which is found from
+//! velocities that depend on it.
 
 use nalgebra::Vector2;
 
-use super::Condition;
+use super::{Condition, Pins, ROUNDING};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{ContactError, Load, Program};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::joints::Placement;
+use crate::mechanics::stance::Stance;
+use crate::mechanics::tie::TieLine;
 
 /// Velocities below this part of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
@@ -24,6 +29,14 @@ const FALLEN: f64 = 0.5;
 const PARTED: f64 = 1e-6;
 /// Steps of a descent: none needs as many, unless it goes to and fro.
 const MOST_STEPS: usize = 20_000;
+/// A row that ties hold rests where an equilibrium of its hinges turns no block by more than this, in radians.
+const NEAR_RAD: f64 = 1e-2;
+/// Forces of ties are found to this part of the weight.
+const FORCE: f64 = 1e-11;
+/// Trials of the force of a tie, and rounds over all ties, at most.
+const MOST_TRIALS: usize = 100;
+/// The longest step of a descent with ties, as the time in which gravity alone moves a row by so many times its size.
+const LONGEST: f64 = 1e3;
 
 /// The descent of a row, with all the memory that it needs.
 #[derive(Clone, Debug)]
@@ -34,6 +47,8 @@ pub(super) struct Descent<'a> {
     free: Vec<Twist>,
     jumps: Vec<Twist>,
     touching: Vec<[bool; 2]>,
+    /// What each tie pulls with, over gravity.
+    ties_kg: Vec<f64>,
 }
 
 impl<'a> Descent<'a> {
@@ -46,6 +61,7 @@ impl<'a> Descent<'a> {
             free: vec![Twist::ZERO; row.blocks().len()],
             jumps: vec![Twist::ZERO; joints],
             touching: vec![[true; 2]; joints],
+            ties_kg: vec![0.0; row.ties().len()],
         }
     }
 
@@ -53,35 +69,52 @@ impl<'a> Descent<'a> {
     /// push of `tilt_g` makes it choose a side.
     pub fn settle(
         &mut self,
-        placement: &mut Placement,
+        stance: &mut Stance,
         from: &Condition,
         to: &Condition,
         tilt_g: f64,
     ) -> Result<bool, ContactError> {
         let size_m = self.row.size_m();
         let force_g = to.force_g + Vector2::new(tilt_g, 0.0);
+        let gravity_m_s2 = self.row.gravity_m_s2();
+        let forces = stance.forces_n().map(|force_n| force_n / gravity_m_s2);
+        self.ties_kg = forces.collect();
         self.program.reset();
-        self.nudge(placement, from, to, force_g * size_m)?;
+        self.nudge(stance, from, to, force_g)?;
         self.jumps.fill(Twist::ZERO);
-        let start_m = placement.centres_m().to_vec();
-        let start_rad: Vec<f64> = placement.poses().iter().map(Pose::rotation_rad).collect();
+        let start_m = stance.placement.centres_m().to_vec();
+        let turns = |stance: &Stance| {
+            let poses = stance.placement.poses().iter();
+            poses.map(Pose::rotation_rad).collect::<Vec<f64>>()
+        };
+        let start_rad = turns(stance);
+        let mut longest = STEP * size_m;
         for _ in 0..MOST_STEPS {
-            self.free.fill(Twist::translation(force_g));
-            let fastest = self.solve(placement)?;
+            if self.rests_near(stance, to) {
+                return Ok(true);
+            }
+            let fastest = if self.ties_kg.is_empty() {
+                let fastest = self.solve(stance, force_g, 1.0)?;
+                longest = STEP * size_m / fastest;
+                fastest
+            } else {
+                self.solve_with_ties(stance, force_g, &mut longest)?
+            };
             if fastest <= STANDSTILL {
                 return Ok(true);
             }
-            let (length, shut) = self.first_shut(placement, STEP * size_m / fastest);
-            self.go_on(placement, length, shut);
-            let fallen = placement.closure_error() > PARTED * size_m
-                || start_m
-                    .iter()
-                    .zip(placement.centres_m())
-                    .any(|(start, now)| (now - start).norm() > FALLEN * size_m)
-                || start_rad
-                    .iter()
-                    .zip(placement.poses())
-                    .any(|(start, now)| (now.rotation_rad() - start).abs() > FALLEN);
+            let (length, shut) = self.first_shut(&stance.placement, longest);
+            self.go_on(stance, length, shut);
+            longest = (2.0 * longest).min(LONGEST * size_m);
+            let centres = start_m.iter().zip(stance.placement.centres_m());
+            let turned = start_rad.iter().zip(turns(stance));
+            let fallen = stance.placement.closure_error() > PARTED * size_m
+                || centres
+                    .map(|(start, now)| (now - start).norm())
+                    .any(|moved_m| moved_m > FALLEN * size_m)
+                || turned
+                    .map(|(start, now)| (now - start).abs())
+                    .any(|turned_rad| turned_rad > FALLEN);
             if fallen {
                 return Ok(false);
             }
@@ -89,14 +122,28 @@ impl<'a> Descent<'a> {
         Ok(false)
     }
 
+    /// Whether ties hold a row on the hinges that it has, in an equilibrium near by. Without ties it comes to rest by itself.
+    fn rests_near(&self, stance: &Stance, condition: &Condition) -> bool {
+        if self.ties_kg.is_empty() {
+            return false;
+        }
+        let state = Pins::of(self.row, &stance.placement)
+            .and_then(|pins| pins.state(self.row, condition, stance));
+        state.is_some_and(|state| {
+            let pairs = state.rotations_rad.iter().zip(stance.placement.poses());
+            let mut turns = pairs.map(|(there, here)| (there - here.rotation_rad()).abs());
+            state.margin() >= -ROUNDING && turns.all(|turn_rad| turn_rad < NEAR_RAD)
+        })
+    }
+
     /// Moves the supports, and the row by the velocities that they force on it while the load decides: from one joint that shuts on the
     /// way to the next.
     fn nudge(
         &mut self,
-        placement: &mut Placement,
+        stance: &mut Stance,
         from: &Condition,
         to: &Condition,
-        load: Vector2<f64>,
+        force_g: Vector2<f64>,
     ) -> Result<(), ContactError> {
         let mut here = from.supports;
         let last = self.jumps.len() - 1;
@@ -108,21 +155,35 @@ impl<'a> Descent<'a> {
             self.jumps.fill(Twist::ZERO);
             self.jumps[0] = moved[0];
             self.jumps[last] = self.jumps[last] - moved[1];
-            self.free.fill(Twist::translation(load));
-            self.solve(placement)?;
-            let (part, shut) = self.first_shut(placement, 1.0);
+            self.solve(stance, force_g, self.row.size_m())?;
+            let (part, shut) = self.first_shut(&stance.placement, 1.0);
             here = match shut {
                 None => to.supports,
                 Some(_) => [0, 1].map(|side| partway(&here[side], &to.supports[side], part)),
             };
-            placement.move_supports(here);
-            self.go_on(placement, part, shut);
+            stance.placement.move_supports(here);
+            self.go_on(stance, part, shut);
         }
         Ok(())
     }
 
-    /// Velocities where the row is; the fastest of them.
-    fn solve(&mut self, placement: &Placement) -> Result<f64, ContactError> {
+    /// Velocities where the row is, under so many times its load; the fastest of them.
+    fn solve(
+        &mut self,
+        stance: &Stance,
+        force_g: Vector2<f64>,
+        times: f64,
+    ) -> Result<f64, ContactError> {
+        let placement = &stance.placement;
+        self.free.fill(Twist::translation(force_g * times));
+        let (blocks, centres_m) = (self.row.blocks(), placement.centres_m());
+        for (line, kg) in stance.lines(self.row).zip(&self.ties_kg) {
+            line.pull(blocks, centres_m, kg * times, |block, velocity, turning| {
+                let gained =
+                    Twist::translation(velocity) + Twist::rotation(centres_m[block], turning);
+                self.free[block] = self.free[block] + gained;
+            });
+        }
         for (touching, gaps) in self.touching.iter_mut().zip(placement.gaps_m()) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
@@ -140,6 +201,76 @@ impl<'a> Descent<'a> {
                 twist.at(*centre).norm().max(turning)
             });
         Ok(speeds.fold(0.0, f64::max))
+    }
+
+    /// The same with ties that pull as they will at the end of a step, at most as long as this one, in which no point goes too far.
+    fn solve_with_ties(
+        &mut self,
+        stance: &Stance,
+        force_g: Vector2<f64>,
+        longest: &mut f64,
+    ) -> Result<f64, ContactError> {
+        let farthest_m = STEP * self.row.size_m();
+        loop {
+            let fastest = self.balance_ties(stance, force_g, *longest)?;
+            if *longest * fastest <= farthest_m {
+                return Ok(fastest);
+            }
+            *longest = (0.9 * farthest_m / fastest).max(0.1 * *longest);
+        }
+    }
+
+    /// Finds what the ties pull with at the end of a step, one after the other until none changes: the energy of the step is convex in these
+    /// forces.
+    fn balance_ties(
+        &mut self,
+        stance: &Stance,
+        force_g: Vector2<f64>,
+        length: f64,
+    ) -> Result<f64, ContactError> {
+        let row = self.row;
+        let lines: Vec<TieLine> = stance.lines(row).collect();
+        let least_kg = FORCE * row.mass_kg();
+        let mut fastest = 0.0;
+        for _ in 0..MOST_TRIALS {
+            let mut changed = false;
+            for (index, (tie, line)) in row.ties().iter().zip(&lines).enumerate() {
+                let before_kg = self.ties_kg[index];
+                let mut excess_kg = |descent: &mut Self, kg: f64| -> Result<f64, ContactError> {
+                    descent.ties_kg[index] = kg;
+                    fastest = descent.solve(stance, force_g, 1.0)?;
+                    let longer_m = length * line.lengthening(descent.program.velocities());
+                    let then_n = stance.ties[index].would_pull_n(tie, line.stretch_m + longer_m);
+                    Ok(kg - then_n / row.gravity_m_s2())
+                };
+                // What it pulls with falls as it slows the blocks: so the answer is between what it pulls with now and after that.
+                let excess = excess_kg(self, before_kg)?;
+                let (mut one, mut other) = ((before_kg, excess), (before_kg - excess, 0.0));
+                if excess.abs() <= least_kg {
+                    continue;
+                }
+                changed = true;
+                other.1 = excess_kg(self, other.0)?;
+                for _ in 0..MOST_TRIALS {
+                    if other.1.abs() <= least_kg || other.0 == one.0 {
+                        break;
+                    }
+                    let next = (other.0 * one.1 - one.0 * other.1) / (one.1 - other.1);
+                    let left = excess_kg(self, next)?;
+                    // The end that stays counts half, so that both ends move.
+                    if left * other.1 < 0.0 {
+                        one = other;
+                    } else {
+                        one.1 *= 0.5;
+                    }
+                    other = (next, left);
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+        Ok(fastest)
     }
 
     /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
@@ -160,7 +291,8 @@ impl<'a> Descent<'a> {
     }
 
     /// Goes on with the last velocities for so long, until this corner shuts.
-    fn go_on(&mut self, placement: &mut Placement, length: f64, shut: Option<(usize, usize)>) {
+    fn go_on(&mut self, stance: &mut Stance, length: f64, shut: Option<(usize, usize)>) {
+        let placement = &mut stance.placement;
         let gaps_m = placement.gaps_m();
         let mut change = vec![[0.0; 2]; gaps_m.len()];
         for (joint, rates) in self.program.open_joints() {
@@ -171,6 +303,7 @@ impl<'a> Descent<'a> {
         }
         placement.open(|joint| change[joint]);
         self.closer.close(placement);
+        stance.stretch_ties(self.row);
     }
 }
 

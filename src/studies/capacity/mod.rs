@@ -7,10 +7,12 @@ use thiserror::Error;
 
 pub use self::told::{FILES, tell};
 use crate::dynamics::model::MechanismModel;
+use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::parts::Parts;
+use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
@@ -20,6 +22,12 @@ pub enum NoCapacity {
     /// It does not move as a mechanism of one degree of freedom.
     #[error(transparent)]
     FourLinks(#[from] FourLinkError),
+    /// It is no row of blocks.
+    #[error(transparent)]
+    Row(#[from] RowError),
+    /// With its ties it is not held along one mechanism.
+    #[error(transparent)]
+    Held(#[from] HeldError),
     /// The control point is not on the structure.
     #[error("the control point ({:?}, {:?}) m is not on the structure", .0.x, .0.y)]
     Outside(Vector2<f64>),
@@ -37,22 +45,19 @@ pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<[Capacity; 2], NoCapacity> {
+    if !scenario.structure().ties().is_empty() {
+        return with_ties(
+            &scenario.structure().row()?,
+            point_m,
+            scenario.gravity_m_s2(),
+        );
+    }
     let model = scenario.mechanisms()?;
     let structure = scenario.structure().as_parts();
-    let parts = structure.parts();
-    let control = match point_m {
-        Some(at_m) => (
-            structure.place_of(at_m).ok_or(NoCapacity::Outside(at_m))?,
-            at_m,
-        ),
-        None => structure.crown(),
-    };
+    let control = control(structure, point_m)?;
     let side = |sway| {
         let carried = carrying(&*model, sway);
-        let masses: Vec<(f64, Carried)> = parts
-            .iter()
-            .map(|part| (part.mass_kg, carried(part.place, part.centre_m)))
-            .collect();
+        let masses = carried_masses(structure, &carried);
         let (place, at_m) = control;
         let displaced = |part| {
             let displaced = model.displaced(sway, part);
@@ -63,6 +68,54 @@ pub fn capacity(
         Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
     };
     Ok([side(Sway::Right)?, side(Sway::Left)?])
+}
+
+/// The same of a row with ties, which change what its first mechanism bears along its way.
+fn with_ties(
+    row: &Row,
+    point_m: Option<Vector2<f64>>,
+    gravity_m_s2: f64,
+) -> Result<[Capacity; 2], NoCapacity> {
+    let (place, at_m) = control(row, point_m)?;
+    let side = |sway| -> Result<Capacity, NoCapacity> {
+        let held = Held::new(row, sway)?;
+        let hinges = held
+            .hinges()
+            .iter()
+            .map(|hinge| place_of_joint(hinge.joint));
+        let carried = carried_by(hinges.collect(), held.bodies());
+        let masses = carried_masses(row, &carried);
+        let control = Control::point(carried(place, at_m));
+        let displaced = |part| held.displaced(part);
+        let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
+        Ok(capacity.with_ties(&held.ties_give_way(), displaced, gravity_m_s2))
+    };
+    Ok([side(Sway::Right)?, side(Sway::Left)?])
+}
+
+/// The given point with its place, or else the crown.
+fn control(
+    structure: &dyn Parts,
+    point_m: Option<Vector2<f64>>,
+) -> Result<(f64, Vector2<f64>), NoCapacity> {
+    match point_m {
+        Some(at_m) => {
+            let place = structure.place_of(at_m).ok_or(NoCapacity::Outside(at_m))?;
+            Ok((place, at_m))
+        }
+        None => Ok(structure.crown()),
+    }
+}
+
+/// The parts of a structure as points, each with its mass.
+fn carried_masses(
+    structure: &dyn Parts,
+    carried: impl Fn(f64, Vector2<f64>) -> Carried,
+) -> Vec<(f64, Carried)> {
+    let parts = structure.parts().into_iter();
+    parts
+        .map(|part| (part.mass_kg, carried(part.place, part.centre_m)))
+        .collect()
 }
 
 /// The crown as a point of the first mechanism to a side.
@@ -77,8 +130,14 @@ fn carrying(
     sway: Sway,
 ) -> impl Fn(f64, Vector2<f64>) -> Carried + use<> {
     let hinges = model.hinges_after(0, sway);
-    let hinges: Vec<f64> = hinges.iter().map(place_of_hinge).collect();
-    let bodies = model.bodies().len();
+    carried_by(
+        hinges.iter().map(place_of_hinge).collect(),
+        model.bodies().len(),
+    )
+}
+
+/// The same with hinges at these places.
+fn carried_by(hinges: Vec<f64>, bodies: usize) -> impl Fn(f64, Vector2<f64>) -> Carried {
     move |place, at_m| {
         let before = hinges.iter().filter(|hinge| **hinge < place).count();
         let body = before.checked_sub(1).filter(|body| *body < bodies);
@@ -87,11 +146,15 @@ fn carrying(
 }
 
 /// The place of a hinge along the structure: an angle, or the number of a joint.
-#[expect(clippy::cast_precision_loss, reason = "joints are few")]
 fn place_of_hinge(hinge: &Hinge) -> f64 {
     match hinge {
         Hinge::Section { angle_rad, .. } => *angle_rad,
-        Hinge::Joint { joint, .. } => *joint as f64,
+        Hinge::Joint { joint, .. } => place_of_joint(*joint),
         Hinge::Toe(_) => 0.0,
     }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "joints are few")]
+const fn place_of_joint(joint: usize) -> f64 {
+    joint as f64
 }

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value, json};
 
-use crate::mechanics::capacity::{Capacity, CurvePoint};
+use crate::mechanics::capacity::{Capacity, CurvePoint, TieOnTheWay};
+use crate::mechanics::parts::Parts as _;
 use crate::mechanics::sway::Sway;
 use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign};
 use crate::output::table::{column, csv};
@@ -29,7 +30,10 @@ pub fn tell(
 ) -> Result<Results, OutputError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let title = scenario.title().unwrap_or("Capacity");
-    let masses = scenario.structure().as_parts().parts_in_words();
+    let masses = match scenario.structure().row() {
+        Ok(row) if !row.ties().is_empty() => row.parts_in_words(),
+        _ => scenario.structure().as_parts().parts_in_words(),
+    };
     let words = words(sides, &masses, gravity_m_s2);
     let mut json = to_json(sides, gravity_m_s2);
     json["masses"] = masses.into();
@@ -84,7 +88,7 @@ fn to_json(sides: &[Capacity; 2], gravity_m_s2: f64) -> Value {
                 )
             })
             .collect();
-        json!({
+        let mut told = json!({
             "control_point_m": [capacity.control.at_m.x, capacity.control.at_m.y],
             "acceleration_g": capacity.start().acceleration_g,
             "ultimate_displacement_m": capacity.end().displacement_m,
@@ -95,7 +99,15 @@ fn to_json(sides: &[Capacity; 2], gravity_m_s2: f64) -> Value {
                 "ultimate_displacement_m": capacity.end().oscillator_displacement_m,
                 "secant_period_s_at_part_of_ultimate": periods,
             },
-        })
+        });
+        if !capacity.ties.is_empty() {
+            let ties = capacity.ties.iter();
+            let ties = ties.map(
+                |tie| json!({ "yields_at_m": tie.yields_at_m, "breaks_at_m": tie.breaks_at_m }),
+            );
+            told["ties"] = ties.collect();
+        }
+        told
     };
     let [right, left] = sides;
     json!({ "capacity": { "right": side(right), "left": side(left) } })
@@ -165,6 +177,21 @@ fn words(sides: &[Capacity; 2], masses: &str, gravity_m_s2: f64) -> String {
             let _ = write!(text, "  {part} d0*: {period_s:.4} s");
         }
         text.push('\n');
+        for (number, tie) in (1..).zip(&side.ties) {
+            let _ = writeln!(text, "  tie {number} {}", gives_way(tie));
+        }
     }
     text
+}
+
+/// What a tie does on the way, in words.
+fn gives_way(tie: &TieOnTheWay) -> String {
+    let does = [("yields", tie.yields_at_m), ("breaks", tie.breaks_at_m)];
+    let does = does
+        .into_iter()
+        .filter_map(|(what, at_m)| Some(format!("{what} at {:.6} m", at_m?)));
+    match does.collect::<Vec<_>>().join(" and ") {
+        nothing if nothing.is_empty() => "holds".to_owned(),
+        does => does,
+    }
 }

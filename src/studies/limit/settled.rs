@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::told::{openings_text, row_json};
+use super::told::{forces, openings_text, row_json};
 use super::{Answer, NoLimit};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::friction;
-use crate::mechanics::settling::{Follower, Hinge, Movements};
-use crate::mechanics::stability::onset_at;
+use crate::mechanics::settling::{Follower, Hinge, Movements, Pins};
+use crate::mechanics::stability::{RowOnset, StabilityError, onset_at};
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
@@ -25,14 +25,12 @@ pub(super) fn limit(
     let mut follower = Follower::new(row)?;
     // That it follows them was seen when the scenario was read.
     follower.move_supports(|part| movements.times(part), 0.0, 1.0)?;
-    let placement = follower.placement();
-    let [right, left] = SIDES.map(|sway| onset_at(row, placement, sway));
+    let stance = follower.stance();
+    let [right, left] = SIDES.map(|sway| first_motion(row, &follower, sway));
     let onsets = [right?, left?];
     let [right, left] = SIDES.map(|sway| follower.pushes_g(sway));
     let falls_g = [right?, left?].map(|pushes| pushes.map(|[_, falls_g]| falls_g));
-    let hinges = follower
-        .hinges()
-        .map_or(&[][..], |hinges| &hinges.hinges()[..]);
+    let hinges = follower.hinges().map_or(&[][..], Pins::hinges);
 
     let mut json = row_json(row, &onsets, scenario.gravity_m_s2());
     json["capacity_g"] = json!({ "right": falls_g[0], "left": falls_g[1] });
@@ -42,21 +40,31 @@ pub(super) fn limit(
         .collect();
 
     let mut text = format!(
-        "its springings have moved; it stands on hinges at {}\n\n",
+        "its springings have moved; it stands on hinges at {}\n",
         list(hinges)
     );
+    if !row.ties().is_empty() {
+        let forces_n: Vec<f64> = stance.forces_n().collect();
+        let _ = writeln!(text, "{}", pulls(&forces_n, follower.is_held_by_ties()));
+        json["ties"] = json!({ "forces_at_rest_n": forces_n });
+    }
+    text.push('\n');
     for ((sway, onset), falls_g) in SIDES.into_iter().zip(&onsets).zip(falls_g) {
         let side = sway.name();
         let Some(onset) = onset else {
             let _ = writeln!(text, "no push to the {side} moves it without sliding\n");
             continue;
         };
-        let _ = writeln!(
-            text,
-            "first motion to the {side}, where hinges give way to others: {:.8} g; then hinges open at",
-            onset.acceleration_g
-        );
-        text += &openings_text(row, onset);
+        if follower.is_held_by_ties() {
+            let _ = writeln!(text, "any push to the {side} moves it");
+        } else {
+            let _ = writeln!(
+                text,
+                "first motion to the {side}, where hinges give way to others: {:.8} g; then hinges open at",
+                onset.acceleration_g
+            );
+            text += &openings_text(row, onset);
+        }
         let _ = match falls_g {
             Some(falls_g) => writeln!(
                 text,
@@ -72,7 +80,7 @@ pub(super) fn limit(
             "with joints that slip at a coefficient of friction of {coefficient:?}:"
         );
         for (sway, told) in SIDES.into_iter().zip(&mut sides) {
-            let onset = friction::onset_at(row, placement, coefficient, sway)?;
+            let onset = friction::onset_at(row, stance, coefficient, sway)?;
             *told = onset.as_ref().map(|onset| onset.acceleration_g).into();
             let _ = match onset {
                 Some(onset) => writeln!(
@@ -93,6 +101,37 @@ pub(super) fn limit(
     }
     text += "joints are counted from the left, 0 at the left base or springing; places are those of the structure as it was built\n";
     Ok(Answer { json, text })
+}
+
+/// The push at which its hinges give way, and the mechanism; none of these where ties hold it on more than three hinges.
+fn first_motion(
+    row: &Row,
+    follower: &Follower<'_>,
+    sway: Sway,
+) -> Result<Option<RowOnset>, StabilityError> {
+    if !follower.is_held_by_ties() {
+        return onset_at(row, follower.stance(), sway);
+    }
+    Ok(Some(RowOnset {
+        acceleration_g: 0.0,
+        openings: Vec::new(),
+        velocities: Vec::new(),
+        lengthening: Vec::new(),
+    }))
+}
+
+/// What its ties do, in words.
+fn pulls(forces_n: &[f64], they_hold: bool) -> String {
+    let (ties, holds) = match forces_n {
+        [_] => ("its tie pulls", "it holds"),
+        _ => ("its ties pull", "they hold"),
+    };
+    let held = if they_hold {
+        format!(", and {holds} it there: it is a mechanism without")
+    } else {
+        String::new()
+    };
+    format!("{ties} with {}{held}", forces(forces_n.iter().copied()))
 }
 
 fn list(hinges: &[Hinge]) -> String {

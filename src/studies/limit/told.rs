@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
+pub(super) use self::ties::forces;
 use super::{Answer, NoLimit};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;

@@ -483,10 +483,15 @@ fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
         _ => " until the end of the run",
     };
     let mut reaches = if peaks_g.x > 0.0 {
+        let times = peaks_g.x / incipient_g;
+        // What stands on hinges that ties hold is started by any push.
+        let times = times
+            .is_finite()
+            .then(|| format!(", {times:.2} times as much"));
         format!(
-            "reaches {:.4} g{until}, {:.2} times as much",
+            "reaches {:.4} g{until}{}",
             peaks_g.x,
-            peaks_g.x / incipient_g
+            times.unwrap_or_default()
         )
     } else {
         "stays still".to_owned()

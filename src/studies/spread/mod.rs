@@ -239,7 +239,7 @@ impl Stage {
     /// The hinges, none where nothing has moved.
     #[must_use]
     pub fn hinges(&self) -> &[Hinge] {
-        self.state.as_ref().map_or(&[], |state| &state.hinges()[..])
+        self.state.as_ref().map_or(&[], State::hinges)
     }
 
     /// The lesser of a push to the right and one to the left; `None` where none moves the arch.

@@ -57,7 +57,10 @@ fn table(spread: &SpreadPaths, weight_n: f64) -> Result<Vec<u8>, OutputError> {
     let rows: Vec<Row<'_>> = paths
         .flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))
         .collect();
-    let hinges = (1..=3).flat_map(|hinge| {
+    let states = rows.iter().filter_map(|(_, stage)| stage.state.as_ref());
+    // Ties may hold it on more.
+    let most = states.map(|state| state.hinges().len()).fold(3, usize::max);
+    let hinges = (1..=most).flat_map(|hinge| {
         ["joint", "edge", "rotation_rad"].map(|what| format!("hinge_{hinge}_{what}"))
     });
     let pushes = ["first_motion", "capacity"]
@@ -68,12 +71,13 @@ fn table(spread: &SpreadPaths, weight_n: f64) -> Result<Vec<u8>, OutputError> {
         column("angle_deg", |row: &Row<'_>| row.0.way.angle_deg),
         column("movement_m", |row: &Row<'_>| row.1.movement_m),
         several(hinges, |row: &Row<'_>, cells: &mut Vec<Cell<'_>>| {
-            for index in 0..3 {
+            for index in 0..most {
                 let state = row.1.state.as_ref();
-                let hinge = state.map(|state| state.hinges()[index]);
+                let hinge = state.and_then(|state| state.hinges().get(index));
+                let turn_rad = state.and_then(|state| state.turns_rad.get(index));
                 cells.push(hinge.map(|hinge| hinge.joint).into());
                 cells.push(hinge.map(|hinge| hinge.edge.name()).into());
-                cells.push(state.map(|state| state.turns_rad[index]).into());
+                cells.push(turn_rad.copied().into());
             }
         }),
         column("thrust_n", move |row: &Row<'_>| {
@@ -137,7 +141,7 @@ fn hinges(hinges: &[Hinge]) -> Value {
 }
 
 fn snap(snap: &Snap) -> Value {
-    let of = |three: &Option<[Hinge; 3]>| three.as_ref().map_or(Value::Null, |all| hinges(all));
+    let of = |all: &Option<Vec<Hinge>>| all.as_ref().map_or(Value::Null, |all| hinges(all));
     json!({
         "at_m": snap.at,
         "hinges_before": of(&snap.before),
@@ -149,7 +153,7 @@ fn snap(snap: &Snap) -> Value {
 fn stage_json(stage: &Stage, weight_n: f64) -> Value {
     let state = stage.state.as_ref();
     let open: Vec<Value> = state.map_or_else(Vec::new, |state| {
-        let hinges = state.hinges().iter().zip(state.turns_rad);
+        let hinges = state.hinges().iter().zip(&state.turns_rad);
         let open = hinges.map(|(hinge, turn_rad)| {
             json!({ "joint": hinge.joint, "edge": hinge.edge.name(), "rotation_rad": turn_rad })
         });

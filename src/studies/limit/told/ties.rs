@@ -112,7 +112,8 @@ fn ties(ties: &[Tie]) -> &'static str {
     }
 }
 
-fn forces(forces_n: impl Iterator<Item = f64>) -> String {
+/// Forces of ties, in words.
+pub fn forces(forces_n: impl Iterator<Item = f64>) -> String {
     let each: Vec<String> = forces_n
         .map(|force_n| format!("{:.6} kN", 1e-3 * force_n))
         .collect();

@@ -1,0 +1,550 @@
+//! A row that stands on hinges: two rigid bodies between three pins, in closed form, or more bodies that ties hold.
+//!
+//! With more than three hinges the bodies rest where the potential energy of their weight and of the ties is least, of all places in which
+//! the pins meet: Newton's method on the rotations of the bodies and the force in the last pin.
+
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+
+use super::Condition;
+use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::geometry::field::{Momentum, turned};
+use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::joints::Placement;
+use crate::mechanics::lanes::Lanes;
+use crate::mechanics::stance::{Stance, lines};
+use crate::mechanics::tie::{TieLine, TieMemory};
+
+/// Steps of Newton's method, at most.
+const MOST_STEPS: usize = 30;
+/// What is unbalanced by less than this part of the weight, or open by less than this part of the size, is rounding.
+const BALANCED: f64 = 1e-12;
+/// How much stiffer than bodies are pins that must not part, where it is seen whether an equilibrium is stable.
+const STIFFER: f64 = 1e6;
+
+/// Joints with less than this part of the weight on them are not pressed.
+const LOADED: f64 = 1e-6;
+
+const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
+
+/// A joint that turns about one of its corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hinge {
+    /// Which joint, from 0 on the left support.
+    pub joint: usize,
+    /// About which corner.
+    pub edge: Edge,
+}
+
+/// Hinges, from left to right: three or more.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pins {
+    hinges: Vec<Hinge>,
+    /// Corners of the hinges in the undeformed row, in metres.
+    pub(super) pins_m: Vec<Vector2<f64>>,
+}
+
+/// A row on hinges: positions and forces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    hinges: Vec<Hinge>,
+    /// Of the part right of each hinge against the part left of it, anticlockwise.
+    pub turns_rad: Vec<f64>,
+    /// By how much each hinge is open, in radians; below zero it would have to penetrate.
+    pub openings_rad: Vec<f64>,
+    /// Rotations of the blocks.
+    pub rotations_rad: Vec<f64>,
+    /// Normal force at intrados and extrados of every joint over the weight of the row; of a hinge, all at its corner.
+    pub corners: Vec<[f64; 2]>,
+    /// Force of the right support on the row over its weight, with its moment about the origin (in metres).
+    pub right_reaction: Momentum,
+    /// Friction coefficient without which a joint would slide.
+    pub friction: f64,
+    /// What its ties remember there.
+    pub ties: Vec<TieMemory<Lanes<1>>>,
+}
+
+impl State {
+    /// The hinges.
+    #[must_use]
+    pub fn hinges(&self) -> &[Hinge] {
+        &self.hinges
+    }
+
+    /// How far it is from giving way: the least of all openings in radians and of all forces that could pull, over the weight.
+    #[must_use]
+    pub fn margin(&self) -> f64 {
+        let forces = self.pressing().map(|(_, force)| force);
+        let openings = self.openings_rad.iter().copied();
+        // What is no number is no margin.
+        let least = |least: f64, next: f64| if least <= next { least } else { next };
+        openings.chain(forces).fold(f64::INFINITY, least)
+    }
+
+    /// Where it has less than this margin: the corner at which the thrust line leaves a joint, or a hinge that shuts.
+    #[must_use]
+    pub fn beyond(&self, margin: f64) -> Vec<Hinge> {
+        let pull = self.pressing().filter(|(_, force)| *force < margin);
+        // Where one corner would pull the thrust line is at the other.
+        let pull = pull.map(|(hinge, _)| Hinge {
+            edge: hinge.edge.opposite(),
+            ..hinge
+        });
+        let openings = self.hinges.iter().zip(&self.openings_rad);
+        let shut = openings.filter(|(_, opening)| **opening < margin);
+        pull.chain(shut.map(|(hinge, _)| *hinge)).collect()
+    }
+
+    /// All forces that must press.
+    fn pressing(&self) -> impl Iterator<Item = (Hinge, f64)> + '_ {
+        let corners = self.corners.iter().enumerate();
+        corners.flat_map(|(joint, forces)| {
+            let hinge = self.hinges.iter().find(|hinge| hinge.joint == joint);
+            EDGES
+                .into_iter()
+                .zip(*forces)
+                .filter_map(move |(edge, force)| {
+                    let there = hinge.is_none_or(|hinge| hinge.edge == edge);
+                    there.then_some((Hinge { joint, edge }, force))
+                })
+        })
+    }
+}
+
+impl Pins {
+    /// These hinges of a row, three or more from left to right.
+    #[must_use]
+    pub fn new(row: &Row, hinges: Vec<Hinge>) -> Self {
+        let pins = hinges.iter();
+        Self {
+            pins_m: pins
+                .map(|hinge| row.joints()[hinge.joint].corner_m(hinge.edge))
+                .collect(),
+            hinges,
+        }
+    }
+
+    /// The open joints of a placement; `None` where they are less than three, or one has parted.
+    #[must_use]
+    pub fn of(row: &Row, placement: &Placement) -> Option<Self> {
+        let open = placement.gaps_m().iter().enumerate();
+        let mut hinges = Vec::with_capacity(3);
+        for (joint, gaps) in open.filter(|(_, gaps)| **gaps != [0.0; 2]) {
+            let edge = match gaps {
+                [0.0, _] => Edge::Intrados,
+                [_, 0.0] => Edge::Extrados,
+                _ => return None,
+            };
+            hinges.push(Hinge { joint, edge });
+        }
+        (hinges.len() >= 3).then(|| Self::new(row, hinges))
+    }
+
+    /// The hinges.
+    #[must_use]
+    pub fn hinges(&self) -> &[Hinge] {
+        &self.hinges
+    }
+
+    /// The same without those of these that it has, and with the others; `None` where that leaves less than three, or a joint would open at
+    /// both edges.
+    pub(super) fn exchanged(&self, row: &Row, others: &[Hinge]) -> Option<Self> {
+        let stays = |hinge: &&Hinge| !others.contains(hinge);
+        let mut hinges: Vec<Hinge> = self.hinges.iter().filter(stays).copied().collect();
+        let new = others.iter().filter(|hinge| !self.hinges.contains(hinge));
+        hinges.extend(new);
+        hinges.sort_by_key(|hinge| hinge.joint);
+        let apart = hinges.windows(2).all(|pair| pair[0].joint < pair[1].joint);
+        (hinges.len() >= 3 && apart).then(|| Self::new(row, hinges))
+    }
+
+    /// Where the bodies between the pins are, of a row that stood so before; `None` where the pins do not meet, or nothing holds the bodies.
+    fn bodies(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<Vec<Pose>> {
+        match self.pins_m[..] {
+            [left, middle, right] => two_bodies([left, middle, right], &condition.supports),
+            _ => Chain::new(self, row, condition, before).rest(),
+        }
+    }
+
+    /// Positions and forces of a row on these hinges that stood so before; `None` where they cannot meet, carry no force, or nothing holds
+    /// them.
+    #[must_use]
+    pub fn state(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<State> {
+        let mut poses = vec![condition.supports[0]];
+        poses.extend(self.bodies(row, condition, before)?);
+        poses.push(condition.supports[1]);
+        self.state_at(row, condition, &poses, before)
+    }
+
+    /// Where the pins are, with the parts between them at these poses.
+    pub(super) fn at_m(&self, poses: &[Pose]) -> Vec<Vector2<f64>> {
+        let pins = self.pins_m.iter().zip(&poses[1..]);
+        pins.map(|(pin_m, pose)| pose.of(*pin_m)).collect()
+    }
+
+    /// How many hinges are before a block.
+    pub(super) fn part_of(&self, block: usize) -> usize {
+        let before = self.hinges.iter().filter(|hinge| hinge.joint <= block);
+        before.count()
+    }
+
+    /// Forces of a row whose parts before, between and after the hinges have these poses; `None` where they carry none.
+    pub(super) fn state_at(
+        &self,
+        row: &Row,
+        condition: &Condition,
+        poses: &[Pose],
+        before: &Stance,
+    ) -> Option<State> {
+        let joints: Vec<usize> = self.hinges.iter().map(|hinge| hinge.joint).collect();
+        let body_of = |block: usize| self.part_of(block);
+        let pairs = poses.windows(2);
+        let turns_rad: Vec<f64> = pairs
+            .map(|pair| pair[1].rotation_rad() - pair[0].rotation_rad())
+            .collect();
+        let mut openings_rad = turns_rad.clone();
+        for (opening, hinge) in openings_rad.iter_mut().zip(&self.hinges) {
+            let inside = hinge.edge == Edge::Intrados;
+            *opening *= row.handedness() * if inside { 1.0 } else { -1.0 };
+        }
+        let (ties, pulls) = self.pulls(row, &condition.supports, poses, before);
+        let loads = self.loads(row, poses, condition.force_g, &pulls);
+        let blocks = row.blocks().len();
+        let start = match row.supports() {
+            // Nothing holds a stack from above.
+            Supports::Left => loads[blocks] * -1.0,
+            Supports::Both => {
+                let pins_m = self.at_m(poses);
+                let between = |last: usize| loads[joints[last]] - loads[joints[0]];
+                // The force at the first pin has no moment with the loads about any two others.
+                let others = [joints.len() / 2, joints.len() - 1];
+                let arms = others.map(|other| pins_m[0] - pins_m[other]);
+                let equations = Matrix2::new(-arms[0].y, arms[0].x, -arms[1].y, arms[1].x);
+                let moments = others.map(|other| -between(other).about(pins_m[other]));
+                let first = equations.lu().solve(&Vector2::from(moments))?;
+                Momentum::applied_at(pins_m[0], first) - loads[joints[0]]
+            }
+        };
+        let mut friction = 0.0_f64;
+        let mut corners = Vec::with_capacity(row.joints().len());
+        for (index, joint) in row.joints().iter().enumerate() {
+            let force = start + loads[index];
+            // Either face of a shut joint, and the corner of a hinge, are where the block after it is.
+            let pose = poses[body_of(index)];
+            let hinge = self.hinges.iter().position(|hinge| hinge.joint == index);
+            let along = match hinge {
+                // At the mean angle of its faces.
+                Some(index) => {
+                    let half = Pose::new(-0.5 * turns_rad[index], Vector2::zeros());
+                    half.turned(pose.turned(joint.along()))
+                }
+                None => pose.turned(joint.along()),
+            };
+            let normal = turned(along) * row.handedness();
+            let pressed = force.linear.dot(&normal);
+            if pressed > LOADED {
+                friction = friction.max((force.linear.dot(&along) / pressed).abs());
+            }
+            corners.push(match hinge.map(|index| self.hinges[index].edge) {
+                Some(Edge::Intrados) => [pressed, 0.0],
+                Some(Edge::Extrados) => [0.0, pressed],
+                None => {
+                    let about = force.about(pose.of(joint.intrados_m));
+                    let outer = row.handedness() * about / joint.thickness_m();
+                    [pressed - outer, outer]
+                }
+            });
+        }
+        Some(State {
+            hinges: self.hinges.clone(),
+            turns_rad,
+            openings_rad,
+            rotations_rad: (0..blocks)
+                .map(|block| poses[body_of(block)].rotation_rad())
+                .collect(),
+            corners,
+            right_reaction: (start + loads[blocks]) * -1.0,
+            friction,
+            ties,
+        })
+    }
+}
+
+impl Pins {
+    /// What ties remember, and what they pull with and where, of a row whose parts have these poses.
+    pub(super) fn pulls(
+        &self,
+        row: &Row,
+        supports: &[Pose; 2],
+        poses: &[Pose],
+        before: &Stance,
+    ) -> (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>) {
+        let lines = lines(row, supports, |block| poses[self.part_of(block)]);
+        let ties = row.ties().iter().zip(lines).zip(&before.ties);
+        let ties = ties.map(|((tie, line), memory)| {
+            let memory = memory.then(tie, line.stretch_m);
+            (memory, (line, memory.force_n.0[0]))
+        });
+        ties.unzip()
+    }
+
+    /// Sums of the loads on the blocks before every joint, and at last on all, over the weight: a force on a unit of mass, and pulls in N.
+    pub(super) fn loads(
+        &self,
+        row: &Row,
+        poses: &[Pose],
+        force_g: Vector2<f64>,
+        pulls: &[(TieLine, f64)],
+    ) -> Vec<Momentum> {
+        let weight = 1.0 / row.mass_kg();
+        let own = row.blocks().iter().enumerate().map(|(block, body)| {
+            let centre = poses[self.part_of(block)].of(body.centre_m);
+            Momentum::applied_at(centre, force_g * (body.mass_kg * weight))
+        });
+        let mut loads: Vec<Momentum> = [Momentum::ZERO].into_iter().chain(own).collect();
+        for (line, force_n) in pulls {
+            let pull = line.along * (force_n * weight / row.gravity_m_s2());
+            for (end, pull) in [pull, -pull].into_iter().enumerate() {
+                if let Some(block) = line.ends[end] {
+                    let load = Momentum::applied_at(line.ends_m[end], pull);
+                    loads[block + 1] = loads[block + 1] + load;
+                }
+            }
+        }
+        for block in 1..loads.len() {
+            loads[block] = loads[block - 1] + loads[block];
+        }
+        loads
+    }
+}
+
+/// Where two bodies between three pins are; `None` where the outer pins are too far apart.
+pub(super) fn two_bodies(
+    [left, middle, right]: [Vector2<f64>; 3],
+    supports: &[Pose; 2],
+) -> Option<Vec<Pose>> {
+    let ends = [supports[0].of(left), supports[1].of(right)];
+    let (first, second) = (middle - left, right - middle);
+    let apart = ends[1] - ends[0];
+    let distance = apart.norm();
+    // The middle pin by its components along the line between the outer ones, and across it on the side on which it was built.
+    let squares = [distance, first.norm(), second.norm()].map(|length| length * length);
+    let along = (squares[0] + squares[1] - squares[2]) / (2.0 * distance);
+    let height_squared = squares[1] - along * along;
+    if !(height_squared > 0.0 && distance > 0.0) {
+        return None;
+    }
+    let side = (right - left).perp(&first).signum();
+    let axis = apart / distance;
+    let pin = ends[0] + axis * along + turned(axis) * (side * height_squared.sqrt());
+    let body = |from: Vector2<f64>, to: Vector2<f64>, end: Vector2<f64>, arm: Vector2<f64>| {
+        let now = to - from;
+        Pose::about(end, from, arm.perp(&now).atan2(arm.dot(&now)))
+    };
+    Some(vec![
+        body(ends[0], pin, left, first),
+        body(pin, ends[1], middle, second),
+    ])
+}
+
+/// Bodies between more than three pins, in equilibrium with the ties that hold them. Forces are parts of the weight.
+struct Chain<'a> {
+    pins: &'a Pins,
+    row: &'a Row,
+    condition: &'a Condition,
+    before: &'a Stance,
+    /// Of every body: from its first pin to its last one, in metres.
+    arms_m: Vec<Vector2<f64>>,
+    /// Of every body: its first moment of mass about its first pin, and what is beyond it at its last one, over the whole mass.
+    moments_m: Vec<Vector2<f64>>,
+    rotations_rad: Vec<f64>,
+}
+
+/// What is left of the equations of a chain, and its slopes.
+struct Unbalanced {
+    /// Slopes of the energy by the rotations.
+    slopes: DVector<f64>,
+    curvature: DMatrix<f64>,
+    /// By how much the last pin misses the support, and its slopes.
+    parted: Vector2<f64>,
+    reach: DMatrix<f64>,
+}
+
+impl<'a> Chain<'a> {
+    fn new(pins: &'a Pins, row: &'a Row, condition: &'a Condition, before: &'a Stance) -> Self {
+        let count = pins.hinges.len() - 1;
+        let arms_m: Vec<_> = pins
+            .pins_m
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
+        let per_mass = 1.0 / row.mass_kg();
+        let mut moments_m = vec![Vector2::zeros(); count];
+        for (body, moment) in moments_m.iter_mut().enumerate() {
+            let [first, after] = [body, body + 1].map(|pin| pins.hinges[pin].joint);
+            let last = pins.hinges[count].joint;
+            for (index, block) in row.blocks().iter().enumerate().take(last).skip(first) {
+                let arm_m = if index < after {
+                    block.centre_m - pins.pins_m[body]
+                } else {
+                    arms_m[body]
+                };
+                *moment += arm_m * (block.mass_kg * per_mass);
+            }
+        }
+        let poses = before.placement.poses();
+        let bodies = pins.hinges.iter().take(count);
+        Self {
+            rotations_rad: bodies
+                .map(|hinge| poses[hinge.joint].rotation_rad())
+                .collect(),
+            pins,
+            row,
+            condition,
+            before,
+            arms_m,
+            moments_m,
+        }
+    }
+
+    /// Where the bodies are.
+    fn poses(&self) -> Vec<Pose> {
+        let mut at = self.condition.supports[0].of(self.pins.pins_m[0]);
+        let bodies = self.rotations_rad.iter().enumerate();
+        bodies
+            .map(|(body, rotation_rad)| {
+                let pose = Pose::about(self.pins.pins_m[body], at, *rotation_rad);
+                at = pose.of(self.pins.pins_m[body + 1]);
+                pose
+            })
+            .collect()
+    }
+
+    /// Which body a block is of; `None` where it is of a support.
+    fn body_of(&self, block: usize) -> Option<usize> {
+        let before = |hinge: &&Hinge| hinge.joint <= block;
+        let hinges = self.pins.hinges.iter().filter(before).count();
+        hinges
+            .checked_sub(1)
+            .filter(|body| *body < self.rotations_rad.len())
+    }
+
+    /// Slopes and curvatures of the energy, with the force of the right support on the last pin.
+    fn unbalanced(&self, reaction: Vector2<f64>) -> Unbalanced {
+        let count = self.rotations_rad.len();
+        let poses = self.poses();
+        let mut slopes = DVector::zeros(count);
+        let mut curvature = DMatrix::zeros(count, count);
+        let mut reach = DMatrix::zeros(2, count);
+        for (body, pose) in poses.iter().enumerate() {
+            let (arm, moment) = (
+                pose.turned(self.arms_m[body]),
+                pose.turned(self.moments_m[body]),
+            );
+            let force = self.condition.force_g;
+            slopes[body] -= force.dot(&turned(moment)) + reaction.dot(&turned(arm));
+            curvature[(body, body)] += force.dot(&moment) + reaction.dot(&arm);
+            reach.set_column(body, &turned(arm));
+        }
+        self.add_ties(&poses, &mut slopes, &mut curvature);
+        let last = self.pins.pins_m.len() - 1;
+        let there = poses[count - 1].of(self.pins.pins_m[last]);
+        Unbalanced {
+            slopes,
+            curvature,
+            parted: there - self.condition.supports[1].of(self.pins.pins_m[last]),
+            reach,
+        }
+    }
+
+    fn add_ties(&self, poses: &[Pose], slopes: &mut DVector<f64>, curvature: &mut DMatrix<f64>) {
+        let count = poses.len();
+        let weight_n = self.row.mass_kg() * self.row.gravity_m_s2();
+        let supports = &self.condition.supports;
+        let pose = |block: usize| match self.body_of(block) {
+            Some(body) => poses[body],
+            None => supports[usize::from(block >= self.pins.hinges[0].joint)],
+        };
+        let lines_now = lines(self.row, supports, pose);
+        for ((tie, line), memory) in self.row.ties().iter().zip(lines_now).zip(&self.before.ties) {
+            let memory = memory.then(tie, line.stretch_m);
+            let force = memory.force_n.0[0] / weight_n;
+            let stiffness = memory.stiffness_n_m(tie) / weight_n;
+            let length_m = (line.ends_m[1] - line.ends_m[0]).norm();
+            // What of the line turns with each body.
+            let turns: Vec<Vector2<f64>> = (0..count)
+                .map(|body| self.turns_with(&line, body, poses))
+                .collect();
+            let moves: Vec<Vector2<f64>> = turns.iter().map(|arm| turned(*arm)).collect();
+            let longer: Vec<f64> = moves.iter().map(|by| line.along.dot(by)).collect();
+            for one in 0..count {
+                slopes[one] += force * longer[one];
+                curvature[(one, one)] -= force * line.along.dot(&turns[one]);
+                for other in 0..count {
+                    let across = moves[one].dot(&moves[other]) - longer[one] * longer[other];
+                    curvature[(one, other)] +=
+                        stiffness * longer[one] * longer[other] + force / length_m * across;
+                }
+            }
+        }
+    }
+
+    /// The part of the way from the first end of a tie to its second one that turns with a body.
+    fn turns_with(&self, line: &TieLine, body: usize, poses: &[Pose]) -> Vector2<f64> {
+        let arm = |end: usize| {
+            let of = line.ends[end].and_then(|block| self.body_of(block));
+            match of {
+                Some(own) if own == body => {
+                    line.ends_m[end] - poses[body].of(self.pins.pins_m[body])
+                }
+                Some(own) if own > body => poses[body].turned(self.arms_m[body]),
+                _ => Vector2::zeros(),
+            }
+        };
+        arm(1) - arm(0)
+    }
+
+    /// Turns the bodies until they rest; `None` where they find no stable equilibrium.
+    fn rest(mut self) -> Option<Vec<Pose>> {
+        let count = self.rotations_rad.len();
+        let size_m = self.row.size_m();
+        // The force that balances the energy best.
+        let free = self.unbalanced(Vector2::zeros());
+        let squares = &free.reach * free.reach.transpose();
+        let force = squares.lu().solve(&(&free.reach * &free.slopes))?;
+        let mut reaction = Vector2::new(force[0], force[1]);
+        for _ in 0..MOST_STEPS {
+            let left = self.unbalanced(reaction);
+            let slopes = left.slopes.amax() / size_m;
+            let rounding = BALANCED + 8.0 * f64::EPSILON * left.curvature.amax() / size_m;
+            if slopes < rounding && left.parted.amax() < BALANCED * size_m {
+                return self.is_stable(&left).then(|| self.poses());
+            }
+            let mut matrix = DMatrix::zeros(count + 2, count + 2);
+            matrix
+                .view_mut((0, 0), (count, count))
+                .copy_from(&left.curvature);
+            matrix
+                .view_mut((count, 0), (2, count))
+                .copy_from(&left.reach);
+            let across = -left.reach.transpose();
+            matrix.view_mut((0, count), (count, 2)).copy_from(&across);
+            let mut right = DVector::zeros(count + 2);
+            right.rows_mut(0, count).copy_from(&-left.slopes);
+            right.rows_mut(count, 2).copy_from(&-left.parted);
+            let step = matrix.lu().solve(&right)?;
+            for (rotation_rad, by) in self.rotations_rad.iter_mut().zip(step.iter()) {
+                *rotation_rad += by;
+            }
+            reaction += Vector2::new(step[count], step[count + 1]);
+        }
+        None
+    }
+
+    /// Whether the energy rises whatever the bodies do while the pins meet.
+    fn is_stable(&self, there: &Unbalanced) -> bool {
+        let pins = there.reach.transpose() * &there.reach;
+        let held = STIFFER * there.curvature.amax() / pins.amax();
+        (&there.curvature + pins * held).cholesky().is_some()
+    }
+}

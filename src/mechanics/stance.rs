@@ -1,0 +1,67 @@
+//! A row where it stands: undeformed, or between supports that have moved.
+
+use super::blocks::Row;
+use super::joints::Placement;
+use super::lanes::Lanes;
+use super::tie::{TieLine, TieMemory};
+use crate::mechanics::geometry::pose::Pose;
+
+/// Where the blocks of a row are, and what its ties remember.
+#[derive(Clone, Debug)]
+pub struct Stance {
+    /// Where its blocks are.
+    pub placement: Placement,
+    /// What its ties remember.
+    pub ties: Vec<TieMemory<Lanes<1>>>,
+}
+
+impl Stance {
+    /// The undeformed row.
+    #[must_use]
+    pub fn undeformed(row: &Row) -> Self {
+        Self {
+            placement: Placement::new(row),
+            ties: row.ties().iter().map(TieMemory::undeformed).collect(),
+        }
+    }
+
+    /// How the ties of the row lie there.
+    pub fn lines(&self, row: &Row) -> impl Iterator<Item = TieLine> {
+        let poses = self.placement.poses();
+        lines(row, self.placement.support_poses(), |block| poses[block])
+    }
+
+    /// What its ties pull with, in N.
+    pub fn forces_n(&self) -> impl Iterator<Item = f64> {
+        self.ties.iter().map(|tie| tie.force_n.0[0])
+    }
+
+    /// The ties follow the blocks, slowly.
+    pub fn stretch_ties(&mut self, row: &Row) {
+        let lines: Vec<TieLine> = self.lines(row).collect();
+        for ((memory, tie), line) in self.ties.iter_mut().zip(row.ties()).zip(&lines) {
+            *memory = memory.then(tie, line.stretch_m);
+        }
+    }
+
+    /// The first of its ties that has broken.
+    #[must_use]
+    pub fn broken_tie(&self) -> Option<usize> {
+        self.ties.iter().position(TieMemory::is_broken)
+    }
+}
+
+/// How the ties of a row lie between supports and blocks at these poses.
+pub fn lines(
+    row: &Row,
+    supports: &[Pose; 2],
+    pose: impl Fn(usize) -> Pose,
+) -> impl Iterator<Item = TieLine> {
+    let feet_m = row.feet_m();
+    row.ties().iter().map(move |tie| {
+        tie.line(tie.ends.map(|anchor| {
+            let support = || supports[anchor.support(feet_m)];
+            anchor.block.map_or_else(support, &pose).of(anchor.at_m)
+        }))
+    })
+}
