@@ -7,7 +7,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 
 use crate::common::{parsed, pulse, run_sampled, sampled};
-use crate::program::{done, printed, refused, says_what_it_shows, scenarios};
+use crate::program::{done, files, printed, refused, says_what_it_shows, scenarios};
 use crate::results::{Table, named};
 use archrock::dynamics::model::SimulationError;
 use archrock::mechanics::blocks::Row;
@@ -505,6 +505,16 @@ fn study_both_feet(arch: &str, folder: &Path) {
     done(folder, &["map", "map.toml", "--out", "map"]);
     let cells = Table::read(folder.join("map/map.csv"));
     assert_eq!(cells.rows.len(), 4);
+    if arch == ARCH {
+        for shard in ["1/2", "2/2"] {
+            let map = ["map", "map.toml", "--shard", shard, "--out", "parts"];
+            done(folder, &map);
+        }
+        let parts = ["parts/map-1-of-2.part", "parts/map-2-of-2.part"];
+        done(folder, &["merge", parts[0], parts[1], "--out", "merged"]);
+        let [whole, merged] = ["map", "merged"].map(|name| files(&folder.join(name)));
+        assert_eq!(whole, merged);
+    }
     write(folder, "a.csv", &record(0.4, 0.4));
     let suite = format!(
         "{arch}[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.2\n[ground.right]\ndelay_s = 0.1\n[suite]\nrecords = [\"a.csv\"]\nunit = \"g\"\nscales = [1.0, 3.0]\n"

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
+use archrock::dynamics::model::Request;
 use archrock::output::dimensions::described;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
@@ -73,9 +75,12 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
         super::warn(&scenario.unlikely());
     }
     if let Some(plot) = &arguments.plot {
-        let scene = drawn(&scenario);
+        let scene = drawn(&scenario)?;
         let title = scenario.title().unwrap_or("Structure");
-        let text = described(scenario.structure());
+        let mut text = described(scenario.structure());
+        if scene.has_settled() {
+            text += "; dashed: as built; circles: open hinges";
+        }
         let figure = arguments.figure.get()?;
         let picture = figure.fitted(|figure| elevation::draw(figure, title, &scene, &text));
         commands::write_picture(plot, &picture)?;
@@ -83,13 +88,33 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
     Ok((scenario.to_toml(), scenario.to_json()))
 }
 
-/// The blocks of the structure, as its model of motion has them where that has any.
-fn drawn(scenario: &Scenario) -> Scene {
+/// The blocks of the structure, as its model of motion has them where that has any; on supports that have moved, where they stand as time
+/// begins.
+fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     let joints = scenario.motion().hinges().has_joints();
-    match scenario.structure().row().ok().filter(|_| joints) {
-        Some(row) => Scene::of_row(&row).of_structure(scenario.structure()),
-        None => Scene::new(scenario.structure()),
-    }
+    let Some(row) = scenario.structure().row().ok().filter(|_| joints) else {
+        return Ok(Scene::new(scenario.structure()));
+    };
+    let scene = Scene::of_row(&row).of_structure(scenario.structure());
+    let Some(movements) = scenario.motion().supports() else {
+        return Ok(scene);
+    };
+    let model = scenario
+        .model()
+        .map_err(|error| Failure::Work(error.to_string()))?;
+    let request = scenario.request_from_rest();
+    let at_once = Request {
+        end_s: request.output_step_s,
+        ..request
+    };
+    let history = model.history(&GroundMotion::still(), &at_once)?;
+    let first = history.samples.iter().next();
+    let (poses, hinges) = first.map_or_else(Default::default, |first| {
+        (first.poses.to_vec(), first.hinges.to_vec())
+    });
+    Ok(scene
+        .on_supports(movements.poses(&row))
+        .standing(poses, hinges))
 }
 
 /// Whether a key given with `--set` shows that the file is a record.

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::dimensions::{Dimension, Side};
 use super::figure::{TEXT_PX, text_px};
-use super::scene::{Mark, Scene};
+use super::scene::{Mark, Piece, Scene};
 use super::svg::{Anchor, Drawing, Figure, Stroke, color};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::pose::Pose;
@@ -20,6 +20,10 @@ const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
 const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
 /// A tie.
 pub const TIE: Stroke = Stroke::new(color::ORANGE, 1.8, "");
+/// The outline of what has moved since, as it was built.
+pub const BUILT: Stroke = Stroke::new(color::GREY, 0.7, "3 3");
+/// An open hinge.
+pub const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
 
 /// From the structure to the first line of dimensions.
@@ -49,7 +53,8 @@ impl Place {
     }
 }
 
-/// Draws a structure at rest with its dimensions and the numbers of its joints; below it this text.
+/// Draws a structure at rest with its dimensions and the numbers of its joints; below it this text. Where it stands on supports that have
+/// moved, it is also drawn as it was built, which its dimensions are of.
 #[must_use]
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let mut drawing = Drawing::new(figure);
@@ -75,27 +80,33 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         scale,
     };
     let bottom = place.px(low_m).y;
+    let (poses, hinges) = scene.stands();
+    let stands = |piece: &Piece| {
+        let outline = piece.moved(poses, 1.0).into_iter();
+        outline.map(|corner| place.px(corner)).collect::<Vec<_>>()
+    };
+    let px = |mark: &Mark| place.px(mark.moved(poses, 1.0));
     draw_dimensions(&mut drawing, &place, scene);
     supports(&mut drawing, &place, scene);
     for piece in scene.fill(&[]) {
-        let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
-        drawing.polygon("fill", outline, FILL, FILL_LINE);
+        drawing.polygon("fill", stands(&piece), FILL, FILL_LINE);
     }
     for piece in scene.pieces(&[]) {
-        let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
-        drawing.polygon("block", outline, STONE, OUTLINE);
+        if !poses.is_empty() {
+            let built = piece.outline_m.iter().map(|corner| place.px(*corner));
+            drawing.polygon("built", built, "none", BUILT);
+        }
+    }
+    for piece in scene.pieces(&[]) {
+        drawing.polygon("block", stands(&piece), STONE, OUTLINE);
     }
     for ends in scene.ties(&[]) {
-        let ends = ends.map(|mark| place.px(mark.at_m));
-        drawing.curve("tie", ends, TIE);
+        drawing.curve("tie", ends.each_ref().map(px), TIE);
     }
-    loads(
-        &mut drawing,
-        scene,
-        &[],
-        &|mark| place.px(mark.at_m),
-        Some(top + above),
-    );
+    loads(&mut drawing, scene, &[], &px, Some(top + above));
+    for mark in scene.hinges(hinges) {
+        drawing.circle("hinge", px(&mark), 3.2, HINGE);
+    }
     joint_numbers(&mut drawing, &place, scene);
     let end = drawing.caption(bottom + room(Side::Below) + 22.0, text);
     drawing.finish(end + 10.0)

@@ -25,6 +25,8 @@ pub struct Scene {
     sections: Vec<Section>,
     /// Where the left and the right support of an arch are.
     supports: [Pose; 2],
+    /// Of a picture at rest: where its bodies stand, and on which hinges; empty where they stand as they were built.
+    stands: (Vec<Pose>, Vec<OpenHinge>),
     ties: Vec<Tie>,
     /// What lies on blocks, outline by outline: with the block.
     fill_m: Vec<FillColumn>,
@@ -204,6 +206,7 @@ impl Scene {
             shape,
             sections,
             supports: [Pose::UNDEFORMED; 2],
+            stands: (Vec::new(), Vec::new()),
             ties: Vec::new(),
             fill_m: Vec::new(),
             loads: Vec::new(),
@@ -276,6 +279,25 @@ impl Scene {
         self
     }
 
+    /// The same as a picture at rest shows it: where its bodies stand on supports that have moved, and the hinges that are open there.
+    #[must_use]
+    pub fn standing(mut self, poses: Vec<Pose>, hinges: Vec<OpenHinge>) -> Self {
+        self.stands = (poses, hinges);
+        self
+    }
+
+    /// Where its bodies stand, and on which hinges; empty where they stand as they were built.
+    #[must_use]
+    pub fn stands(&self) -> (&[Pose], &[OpenHinge]) {
+        (&self.stands.0, &self.stands.1)
+    }
+
+    /// Whether a support has moved.
+    #[must_use]
+    pub fn has_settled(&self) -> bool {
+        self.supports != [Pose::UNDEFORMED; 2]
+    }
+
     /// The ends of the ties when these hinges are open.
     #[must_use]
     pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[Mark; 2]> {
@@ -343,13 +365,22 @@ impl Scene {
         })
     }
 
-    /// The same with what it carries.
+    /// The same with what it carries, and where it stands.
     #[must_use]
     pub fn frame_m(&self) -> [Vector2<f64>; 2] {
         let corners = self.fill_m.iter().flat_map(|(_, outline)| outline);
         let corners = corners.chain(self.loads.iter().map(|load| &load.at_m));
-        corners.fold(self.bounds_m(), |[low, high], corner| {
-            [low.inf(corner), high.sup(corner)]
+        let there = match &self.stands.0[..] {
+            [] => Vec::new(),
+            poses => [self.pieces(&[]), self.fill(&[])]
+                .iter()
+                .flatten()
+                .flat_map(|piece| piece.moved(poses, 1.0))
+                .collect(),
+        };
+        let all = corners.copied().chain(there);
+        all.fold(self.bounds_m(), |[low, high], corner| {
+            [low.inf(&corner), high.sup(&corner)]
         })
     }
 
@@ -409,8 +440,8 @@ impl Scene {
         lengths.chain(loads).collect::<Vec<_>>().join(", ")
     }
 
-    /// Joints from left to right, or from below, each from the intrados to the extrados, in metres; none where hinges open
-    /// anywhere.
+    /// Joints from left to right, or from below, each from the intrados to the extrados, in metres, where the structure stands; none where
+    /// hinges open anywhere.
     #[must_use]
     pub fn joints_m(&self) -> Vec<[Vector2<f64>; 2]> {
         match &self.shape {
@@ -428,7 +459,7 @@ impl Scene {
             Shape::Block { .. } => Vec::new(),
             Shape::Row { .. } => (0..)
                 .map_while(|joint| self.corners(joint))
-                .map(|corners| corners.map(|corner| corner.at_m))
+                .map(|corners| corners.map(|corner| corner.moved(&self.stands.0, 1.0)))
                 .collect(),
         }
     }
@@ -548,9 +579,10 @@ impl Scene {
         let Section {
             middle_m, across_m, ..
         } = self.sections.get(joint)?;
+        // The support follows the last block of an arch. Where it has moved, the block that stands on it tells where.
+        let last = self.has_settled().then(|| outlines_m.len() - 1);
         Some([-0.5, 0.5].map(|part| Mark {
-            // The support follows the last block of an arch.
-            body: (joint < outlines_m.len()).then_some(joint),
+            body: (joint < outlines_m.len()).then_some(joint).or(last),
             at_m: middle_m + across_m * part,
         }))
     }

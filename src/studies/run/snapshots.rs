@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
-use crate::output::elevation::{Place, STONE, TIE, draw_carried};
+use crate::output::elevation::{BUILT, HINGE, Place, STONE, TIE, draw_carried};
 use crate::output::scene::{Mark, Scene};
 use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
 
@@ -169,7 +169,13 @@ impl Snapshots {
         let still = self.scene.pieces(&[]);
         for piece in &still {
             let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
-            drawing.polygon("", outline, "none", Stroke::new(color::GREY, 0.7, "3 3"));
+            drawing.polygon("", outline, "none", BUILT);
+        }
+        if self.scene.has_settled() {
+            for face in self.scene.supports_m(self.exaggeration) {
+                let ends = face.map(|end| place.px(end));
+                drawing.curve("support", ends, Stroke::new(color::BLACK, 2.0, ""));
+            }
         }
         let hinges = &sample.hinges[..];
         let displaced = (poses, self.exaggeration);
@@ -214,8 +220,7 @@ impl Snapshots {
             drawing.curve("thrust line", points, Stroke::new(color::BLUE, 1.6, ""));
         }
         for mark in self.scene.hinges(&sample.hinges) {
-            let stroke = Stroke::new(color::VERMILION, 1.6, "");
-            drawing.circle("hinge", moved(&mark), 3.2, stroke);
+            drawing.circle("hinge", moved(&mark), 3.2, HINGE);
         }
         let doing = match sample.state {
             State::Rest => "at rest".to_owned(),

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::{Path, Pushes, SpreadPaths, Stage};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
-use crate::output::elevation::{Place, STONE, draw_carried};
+use crate::output::elevation::{BUILT, HINGE, Place, STONE, TIE, draw_carried};
 use crate::output::scene::Scene;
 use crate::output::svg::{Anchor, Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 
@@ -153,10 +153,9 @@ impl<'a> Cell<'a> {
         };
         let px = |point: Vector2<f64>| place.px(point);
         draw_carried(drawing, &place, self.scene, &[], (&self.stage.poses, 1.0));
-        let thin = Stroke::new(color::GREY, 0.7, "3 3");
         let solid = Stroke::new(color::BLACK, 1.1, "");
         for outline in self.row.outlines_m() {
-            drawing.polygon("", outline.iter().map(|corner| px(*corner)), "none", thin);
+            drawing.polygon("", outline.iter().map(|corner| px(*corner)), "none", BUILT);
         }
         for (block, (outline, pose)) in self
             .row
@@ -167,6 +166,10 @@ impl<'a> Cell<'a> {
         {
             let corners = outline.iter().map(|corner| px(pose.of(*corner)));
             drawing.polygon(&format!("block {}", block + 1), corners, STONE, solid);
+        }
+        for ends in self.scene.ties(&[]) {
+            let ends = ends.map(|mark| px(mark.moved(&self.stage.poses, 1.0)));
+            drawing.curve("tie", ends, TIE);
         }
         if let Some(state) = &self.stage.state {
             let joints = self.row.joints().iter().zip(&state.corners);
@@ -182,8 +185,7 @@ impl<'a> Cell<'a> {
             for hinge in state.hinges() {
                 let corner_m = self.row.joints()[hinge.joint].corner_m(hinge.edge);
                 let at = px(self.pose_at(hinge.joint).of(corner_m));
-                let stroke = Stroke::new(color::VERMILION, 1.6, "");
-                drawing.circle("hinge", at, 3.2, stroke);
+                drawing.circle("hinge", at, 3.2, HINGE);
             }
         }
         let words = self.path.way.words();
