@@ -88,8 +88,9 @@ pub use dynamics::history::{
     Samples, Shape, State, Summary,
 };
 pub use dynamics::model::{
-    Case, Initial, MechanismModel, Model, Recorder, Request, SimulationError, Until,
+    Case, Initial, Job, Jobs, MechanismModel, Model, Recorder, Request, SimulationError,
 };
+pub use dynamics::until::Until;
 pub use mechanics::arch::Arch;
 pub use mechanics::blocks::Row;
 pub use mechanics::chain::Hinge;

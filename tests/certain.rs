@@ -6,8 +6,9 @@ use crate::common::{GRAVITY, Random, noise, random_row};
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, State, Summary};
-use archrock::dynamics::model::{Model, Until};
+use archrock::dynamics::model::Model;
 use archrock::dynamics::spread::Repetitions;
+use archrock::dynamics::until::Until;
 use archrock::studies::ending::Ending;
 use archrock::{Contact, ElasticJoints, ElasticProperties, Request, Sway};
 
@@ -379,8 +380,7 @@ fn what_falls_slowly_is_not_safe() {
             ControlFlow::Continue(())
         };
         let whole = model.simulate(&ground, &request, Some(&mut watch));
-        let early = model.simulate_until(Until::Safe, &[(ground.clone(), request)]);
-        let [whole, early] = [whole, early.into_iter().next().unwrap()];
+        let early = model.simulate_until(Until::Safe, &(ground.clone(), request));
         let falls = |summary: &Summary| matches!(summary.outcome, Outcome::Overturned(_));
         let (whole, early) = (whole.unwrap(), early.unwrap());
         assert!(

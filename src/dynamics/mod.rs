@@ -12,4 +12,5 @@ pub mod model;
 mod row;
 pub mod spread;
 pub mod thrust;
+pub mod until;
 pub mod variation;

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fmt::Debug;
-use std::ops::{ControlFlow, RangeInclusive};
+use std::ops::{ControlFlow, Range, RangeInclusive};
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -12,6 +12,7 @@ use super::ground::GroundMotion;
 use super::history::{
     Event, History, MEMORY_BYTES, MemoryError, Recording, Sample, Shape, Summary,
 };
+use super::until::{Until, UntilSafe};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::Displaced;
@@ -73,16 +74,33 @@ pub trait Model: Debug + Send + Sync {
         false
     }
 
-    /// Its motions on several grounds, in their order, as [`Model::simulate`] gives them without a recorder.
-    fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
-        self.simulate_until(Until::End, cases)
+    /// Its motion, as [`Model::simulate`] gives it without a recorder, followed so far.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    fn simulate_until(&self, until: Until, case: &Case) -> Result<Summary, SimulationError> {
+        let (ground, request) = case;
+        let mut until_safe = UntilSafe::new(until, ground, request);
+        let recorder = until_safe.as_mut().map(|recorder| recorder as _);
+        self.simulate(ground, request, recorder)
     }
 
-    /// The same, followed no further than this by a model that can tell. A model that computes several at once does so here; no result
-    /// depends on what is beside it.
-    fn simulate_until(&self, _: Until, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
-        let alone = |(ground, request): &Case| self.simulate(ground, request, None);
-        cases.iter().map(alone).collect()
+    /// Its motions on several grounds, in their order.
+    fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
+        let mut all = All {
+            waiting: 0..cases.len(),
+            answers: vec![None; cases.len()],
+        };
+        self.work(cases, &mut all);
+        let answers = all.answers.into_iter();
+        answers
+            .map(|answer| answer.expect("all jobs have ended"))
+            .collect()
+    }
+
+    /// Does all jobs on these cases. A model that computes several motions at once does so here; no result depends on what is beside it.
+    fn work(&self, cases: &[Case], jobs: &mut dyn Jobs) {
+        one_by_one(self, cases, jobs);
     }
 
     /// The size of its samples.
@@ -136,16 +154,57 @@ pub trait Model: Debug + Send + Sync {
 /// A ground motion, and a request for the motion on it.
 pub type Case = (GroundMotion, Request);
 
-/// How far a motion is followed. One that is followed no further is [`StillRocking`](super::history::Outcome::StillRocking) before its
-/// end.
+/// A motion to compute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Until {
-    /// To its end.
-    End,
-    /// Up to where it cannot overturn any more, turns no block as far as it did, and comes to rest by its end.
-    Settled,
-    /// Up to where it cannot overturn any more.
-    Safe,
+pub struct Job {
+    /// The index of its case.
+    pub case: usize,
+    /// Which of the [repetitions](Model::repetitions) of the model computes it; `None` for the model itself.
+    pub repetition: Option<usize>,
+    /// How far it is followed.
+    pub until: Until,
+}
+
+/// Motions to compute, where the answer to one may ask for others.
+pub trait Jobs {
+    /// The next one; `None` if there is none until another one has ended.
+    fn next(&mut self) -> Option<Job>;
+
+    /// Receives the answer to a job.
+    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>);
+}
+
+/// Does jobs one after the other.
+pub(super) fn one_by_one<M: Model + ?Sized>(model: &M, cases: &[Case], jobs: &mut dyn Jobs) {
+    let repetitions = model.repetitions();
+    while let Some(job) = jobs.next() {
+        let case = &cases[job.case];
+        let answer = match job.repetition {
+            None => model.simulate_until(job.until, case),
+            Some(index) => repetitions[index].model.simulate_until(job.until, case),
+        };
+        jobs.ended(job, answer);
+    }
+}
+
+/// Every case to its end, with the answers so far.
+struct All {
+    waiting: Range<usize>,
+    answers: Vec<Option<Result<Summary, SimulationError>>>,
+}
+
+impl Jobs for All {
+    fn next(&mut self) -> Option<Job> {
+        self.waiting.next().map(|case| Job {
+            case,
+            repetition: None,
+            until: Until::End,
+        })
+    }
+
+    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+        self.answers[job.case] = Some(answer);
+    }
 }
 
 /// A copy of a model that is computed in another way.

@@ -4,15 +4,15 @@
 //! and whether a survivor has come to rest, do not count. For this question most repetitions can be spared: those of motions that
 //! nothing after an impact decides (`is_plain`).
 
-use std::ops::ControlFlow;
+use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
 
 use thiserror::Error;
 
 use super::ground::GroundMotion;
-use super::history::{HalfCycle, Outcome, Sample, State, Summary};
-use super::model::{Case, Model, Recorder, Repetition, Request, SimulationError, Until};
-use crate::mechanics::sway::Sway;
+use super::history::{HalfCycle, Outcome, Summary};
+use super::model::{Case, Job, Jobs, Model, Repetition, Request, SimulationError};
+use super::until::Until;
 
 /// Peaks are called certain to within this fraction of them.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
@@ -239,45 +239,144 @@ pub(crate) fn objection(
     }
 }
 
-/// Why it is uncertain whether histories overturn. They are repeated where that may matter; those that failed are not.
-pub(crate) fn doubts<E>(
-    model: &dyn Model,
-    cases: &[Case],
-    own: &[Result<Summary, E>],
-) -> Vec<Option<String>> {
-    let mut doubts = vec![None; cases.len()];
-    let outcome = |index: &usize| own[*index].as_ref().ok().map(|own| own.outcome);
-    let is_open = |index: &usize| {
-        let (_, request) = &cases[*index];
-        own[*index]
-            .as_ref()
-            .is_ok_and(|own| !is_plain(model, request, own))
-    };
-    let mut open: Vec<usize> = (0..cases.len()).filter(is_open).collect();
-    if open.is_empty() {
-        return doubts;
-    }
-    for Repetition { name, model } in model.repetitions() {
-        let cases: Vec<Case> = open.iter().map(|index| cases[*index].clone()).collect();
-        let repeated = until_decided(&*model, &cases);
-        for (index, repeated) in open.iter().zip(&repeated) {
-            doubts[*index] = outcome(index).and_then(|own| objection(own, name, repeated));
-        }
-        open.retain(|index| doubts[*index].is_none());
-    }
-    doubts
+/// A history with what studies of many cases ask of it.
+pub(crate) struct Checked {
+    /// The history.
+    pub own: Result<Summary, SimulationError>,
+    /// When it was ended, in seconds, since it cannot overturn any more and comes to rest in time; `None` where it was followed to its end.
+    pub safe_from_s: Option<f64>,
+    /// Why it is uncertain whether it overturns, if it is.
+    pub doubt: Option<String>,
 }
 
-/// Histories up to where they cannot overturn any more.
-fn until_decided(model: &dyn Model, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
-    if model.is_faster_together() {
-        return model.simulate_until(Until::Safe, cases);
-    }
-    let alone = |(ground, request): &Case| {
-        let mut until_safe = UntilSafe::new(ground, f64::INFINITY);
-        model.simulate(ground, request, Some(&mut until_safe))
+/// Histories of cases, in their order, repeated where that may matter. Those followed until they have settled count as come to rest.
+pub(crate) fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> {
+    let mut checks = Checks::new(model, cases);
+    checks.settles = until == Until::Settled;
+    // If the result does not depend on how it is computed, the fast way serves.
+    let until = if checks.names.is_empty() {
+        Until::End
+    } else {
+        until
     };
-    cases.iter().map(alone).collect()
+    checks.waiting = (0..cases.len())
+        .map(|case| Job {
+            case,
+            repetition: None,
+            until,
+        })
+        .collect();
+    model.work(cases, &mut checks);
+    checks.answers()
+}
+
+/// The same where the histories themselves are known.
+pub(crate) fn repeated(
+    model: &dyn Model,
+    cases: &[Case],
+    own: Vec<Result<Summary, SimulationError>>,
+) -> Vec<Checked> {
+    let mut checks = Checks::new(model, cases);
+    for (case, own) in own.into_iter().enumerate() {
+        checks.keep(case, own);
+    }
+    model.work(cases, &mut checks);
+    checks.answers()
+}
+
+/// The histories that are still to be computed, and the answers so far.
+struct Checks<'a> {
+    model: &'a dyn Model,
+    cases: &'a [Case],
+    /// Names of the repetitions.
+    names: Vec<&'static str>,
+    waiting: VecDeque<Job>,
+    /// Whether histories that were ended early count as come to rest.
+    settles: bool,
+    own: Vec<Option<Result<Summary, SimulationError>>>,
+    doubts: Vec<Option<String>>,
+}
+
+impl<'a> Checks<'a> {
+    fn new(model: &'a dyn Model, cases: &'a [Case]) -> Self {
+        let repetitions = model.repetitions().into_iter();
+        Self {
+            model,
+            cases,
+            names: repetitions.map(|repetition| repetition.name).collect(),
+            waiting: VecDeque::new(),
+            settles: false,
+            own: cases.iter().map(|_| None).collect(),
+            doubts: vec![None; cases.len()],
+        }
+    }
+
+    /// Keeps the history of a case, and asks for its repetitions if they may matter.
+    fn keep(&mut self, case: usize, own: Result<Summary, SimulationError>) {
+        let (_, request) = &self.cases[case];
+        if own
+            .as_ref()
+            .is_ok_and(|own| !is_plain(self.model, request, own))
+        {
+            self.repeat(case, 0);
+        }
+        self.own[case] = Some(own);
+    }
+
+    /// Asks for a repetition, if there is another one: next, since it is the last but not the least of its case.
+    fn repeat(&mut self, case: usize, repetition: usize) {
+        if repetition < self.names.len() {
+            self.waiting.push_front(Job {
+                case,
+                repetition: Some(repetition),
+                until: Until::Safe,
+            });
+        }
+    }
+
+    fn answers(self) -> Vec<Checked> {
+        let each = self.own.into_iter().zip(self.doubts).zip(self.cases);
+        each.map(|((own, doubt), (_, request))| {
+            let mut own = own.expect("every case was a job");
+            let mut safe_from_s = None;
+            if self.settles
+                && let Ok(own) = &mut own
+                && own.outcome == Outcome::StillRocking
+                && own.end_s < request.end_s
+            {
+                safe_from_s = Some(own.end_s);
+                own.outcome = Outcome::Rest;
+            }
+            Checked {
+                own,
+                safe_from_s,
+                doubt,
+            }
+        })
+        .collect()
+    }
+}
+
+impl Jobs for Checks<'_> {
+    fn next(&mut self) -> Option<Job> {
+        self.waiting.pop_front()
+    }
+
+    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+        let Job {
+            case, repetition, ..
+        } = job;
+        let Some(repetition) = repetition else {
+            self.keep(case, answer);
+            return;
+        };
+        if let Some(Ok(own)) = &self.own[case] {
+            self.doubts[case] = objection(own.outcome, self.names[repetition], &answer);
+        }
+        if self.doubts[case].is_none() {
+            self.repeat(case, repetition + 1);
+        }
+    }
 }
 
 /// If slip and crushing took more than this fraction of the barrier, elastic joints no longer lie as they did when it was found.
@@ -310,122 +409,5 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
             };
             ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
         }
-    }
-}
-
-/// On ground that stays quiet, a structure with less than this fraction of the energy barrier of its first mechanism cannot overturn
-/// any more. Rows overturn by other mechanisms as well: 125 histories of random rows that overturned never had less than 0.45 of the
-/// barrier on quiet ground before.
-const SAFE: f64 = 0.25;
-
-/// With less than this fraction of the largest energy that it had, a structure turns no block as far as it did.
-const DECAYED: f64 = 0.1;
-
-/// A history that may be ended early comes to rest before its end if this many times its last half cycle fit into the time that is
-/// left: half cycles shorten at least as fast as those of a block whose impacts leave 0.95 of the energy.
-const HALF_CYCLES_LEFT: f64 = 40.0;
-
-/// Histories for a study of many cases. One that cannot overturn any more, and has ample time to come to rest, is ended there and
-/// counts as coming to rest. Also returns when each was ended, in seconds; `None` where the history was followed to its end.
-pub(crate) fn until_safe(
-    model: &dyn Model,
-    cases: &[Case],
-) -> (Vec<Result<Summary, SimulationError>>, Vec<Option<f64>>) {
-    // If the result does not depend on how it is computed, the fast way serves.
-    if model.repetitions().is_empty() {
-        return (model.simulate_all(cases), vec![None; cases.len()]);
-    }
-    let resting = |mut own: Result<Summary, SimulationError>, ended: bool| {
-        let ended = own.as_mut().ok().filter(|_| ended);
-        let safe_from_s = ended.map(|summary| {
-            summary.outcome = Outcome::Rest;
-            summary.end_s
-        });
-        (own, safe_from_s)
-    };
-    if model.is_faster_together() {
-        let own = model.simulate_until(Until::Settled, cases);
-        let own = own.into_iter().zip(cases);
-        return own
-            .map(|(own, (_, request))| {
-                let before_its_end = |own: &Summary| {
-                    own.outcome == Outcome::StillRocking && own.end_s < request.end_s
-                };
-                let ended = own.as_ref().is_ok_and(before_its_end);
-                resting(own, ended)
-            })
-            .unzip();
-    }
-    let alone = |(ground, request): &Case| {
-        let mut until_safe = UntilSafe::new(ground, request.end_s);
-        let own = model.simulate(ground, request, Some(&mut until_safe));
-        resting(own, until_safe.ended)
-    };
-    cases.iter().map(alone).unzip()
-}
-
-/// Ends a history that cannot overturn any more.
-struct UntilSafe {
-    /// From when on the ground is quiet, in seconds.
-    quiet_s: f64,
-    /// By when it must have come to rest, in seconds; infinite where that does not matter.
-    rest_by_s: f64,
-    /// The side to which it sways, and since when, in seconds.
-    sways: Option<(Sway, f64)>,
-    /// How long the half cycle before took, in seconds.
-    half_cycle_s: f64,
-    /// The largest energy so far, over the barrier.
-    largest_ratio: f64,
-    ended: bool,
-}
-
-impl UntilSafe {
-    fn new(ground: &GroundMotion, rest_by_s: f64) -> Self {
-        Self {
-            quiet_s: ground.end_s(),
-            rest_by_s,
-            sways: None,
-            half_cycle_s: 0.0,
-            largest_ratio: 0.0,
-            ended: false,
-        }
-    }
-
-    /// How long a half cycle takes at most, from now on.
-    fn longest_half_cycle_s(&mut self, sample: &Sample) -> f64 {
-        let State::Rocking(sway) = sample.state else {
-            return f64::INFINITY;
-        };
-        let now_s = sample.time_s;
-        let (side, since_s) = *self.sways.get_or_insert((sway, now_s));
-        if side != sway {
-            self.half_cycle_s = now_s - since_s;
-            self.sways = Some((sway, now_s));
-        }
-        // The half cycle under way may be longer than the one before, which the ground drove.
-        self.half_cycle_s
-            .max(now_s - self.sways.map_or(now_s, |(_, since_s)| since_s))
-    }
-}
-
-impl Recorder for UntilSafe {
-    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        let half_cycle_s = self.longest_half_cycle_s(sample);
-        // A row that has slipped stands lower, and elastic joints overturn below the barrier of rigid joints: their energy says
-        // nothing.
-        let slips = !sample.offsets_m.is_empty() || !sample.pressures.is_empty();
-        let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
-        self.largest_ratio = self.largest_ratio.max(ratio);
-        let safe = ratio < SAFE;
-        if sample.time_s < self.quiet_s || !safe || slips {
-            return ControlFlow::Continue(());
-        }
-        let rests = sample.time_s + HALF_CYCLES_LEFT * half_cycle_s < self.rest_by_s;
-        let decayed = self.half_cycle_s > 0.0 && ratio < DECAYED * self.largest_ratio;
-        if self.rest_by_s < f64::INFINITY && !(rests && decayed) {
-            return ControlFlow::Continue(());
-        }
-        self.ended = true;
-        ControlFlow::Break(())
     }
 }

@@ -149,7 +149,7 @@ pub struct Runner {
 
 /// How many cases of a family are computed together: at least as many as fit side by side, but not so many that threads
 /// wait for one another.
-const TOGETHER: RangeInclusive<usize> = 8..=32;
+const TOGETHER: RangeInclusive<usize> = 8..=64;
 
 /// How often rows are written and progress is reported.
 const TICK: Duration = Duration::from_millis(100);

@@ -8,9 +8,12 @@ use super::stepper::{ElasticStepper, Group, Start};
 use crate::argument::{ArgumentError, short, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Shape, Summary};
-use crate::dynamics::model::{Case, Model, Recorder, Repetition, Request, SimulationError, Until};
+use crate::dynamics::model::{
+    Case, Job, Jobs, Model, Recorder, Repetition, Request, SimulationError, one_by_one,
+};
 use crate::dynamics::row::course::{self, Clock, LARGEST_ENERGY_ERROR, Task};
 use crate::dynamics::row::standing::RigidRow;
+use crate::dynamics::until::Until;
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::elastic_joint::{
@@ -190,6 +193,26 @@ impl ElasticJoints {
         ratio * structure.stable_step_s()
     }
 
+    /// The same with other steps.
+    fn other_steps(&self) -> [(&'static str, Self); 2] {
+        let others = if self.many_cases {
+            [
+                ("steps of nine tenths", 0.9),
+                ("steps of three quarters", 0.75),
+            ]
+        } else {
+            [("half steps", 0.5), ("steps of two thirds", 2.0 / 3.0)]
+        };
+        others.map(|(name, factor)| {
+            let steps_times = factor * self.steps_times;
+            let other = Self {
+                steps_times,
+                ..self.clone()
+            };
+            (name, other)
+        })
+    }
+
     /// The same structure with other properties that are equally likely: stiffer, softer, and with the stress summed in another
     /// way.
     #[must_use]
@@ -287,18 +310,12 @@ impl ElasticJoints {
         })
     }
 
-    fn start<'a>(
-        &'a self,
-        rest: &'a Rest,
-        barrier_j: &'a dyn Fn() -> Option<f64>,
-        until: Until,
-    ) -> Start<'a> {
+    fn start<'a>(&'a self, rest: &'a Rest, barrier_j: &'a dyn Fn() -> Option<f64>) -> Start<'a> {
         Start {
             structure: &self.structure,
             rest,
             may_halve: self.options.longest_step_s.is_none(),
             barrier_j,
-            until,
         }
     }
 
@@ -315,65 +332,50 @@ impl ElasticJoints {
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
         // A recorder of any lifetime serves for as long as the task.
         let recorder = recorder.map(|recorder| recorder as _);
-        let stepper = ElasticStepper::new(task, self.start(&rest, &barrier_j, until), recorder);
+        let stepper = ElasticStepper::new(task, self.start(&rest, &barrier_j), until, recorder);
         self.judged(course::run(stepper)?, &rest, gravity_m_s2)
     }
 
-    fn together(&self, cases: &[Case], until: Until) -> Vec<Result<Summary, SimulationError>> {
-        let Some((_, first)) = cases.first() else {
-            return Vec::new();
-        };
-        let gravity_m_s2 = first.gravity_m_s2;
-        let alike = |(_, request): &Case| request.gravity_m_s2 == gravity_m_s2;
-        let rest = match self.rest(gravity_m_s2) {
-            Ok(rest) if cases.len() > 1 && cases.iter().all(alike) => rest,
-            _ => {
-                let alone = |(ground, request): &Case| self.alone(ground, request, None, until);
-                return cases.iter().map(alone).collect();
-            }
-        };
+    /// Jobs on cases under one gravity, side by side.
+    fn together(&self, rest: &Rest, gravity_m_s2: f64, cases: &[Case], jobs: &mut dyn Jobs) {
+        let repeated: Vec<Self> = self.other_steps().map(|(_, model)| model).into();
+        let model_of = |job: Job| job.repetition.map_or(self, |index| &repeated[index]);
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
-        let start = self.start(&rest, &barrier_j, until);
+        let start = self.start(rest, &barrier_j);
         let mut group = Group::<SIDE_BY_SIDE>::new(self.row(), start, gravity_m_s2);
-        let mut answers: Vec<Option<Result<Summary, SimulationError>>> = vec![None; cases.len()];
-        let mut waiting = 0..cases.len();
         let mut running = [None; SIDE_BY_SIDE];
         loop {
-            let may_begin = group.is_at_mark();
+            let may_begin = group.may_begin();
             for (lane, running) in running.iter_mut().enumerate() {
-                if let Some(case) = *running
+                if let Some(job) = *running
                     && let Some(ended) = group.go_on(lane)
                 {
                     let ended = ended.map_err(SimulationError::from);
-                    answers[case] =
-                        Some(ended.and_then(|summary| self.judged(summary, &rest, gravity_m_s2)));
+                    let judged = |summary| model_of(job).judged(summary, rest, gravity_m_s2);
+                    jobs.ended(job, ended.and_then(judged));
                     *running = None;
                 }
                 while may_begin
                     && running.is_none()
-                    && let Some(case) = waiting.next()
+                    && let Some(job) = jobs.next()
                 {
-                    let (ground, request) = &cases[case];
-                    match self.task(ground, request) {
+                    let (ground, request) = &cases[job.case];
+                    match model_of(job).task(ground, request) {
                         Ok(task) => {
-                            group.begin(lane, task, None);
-                            *running = Some(case);
+                            group.begin(lane, task, job.until, None);
+                            *running = Some(job);
                             group.go_on(lane);
                         }
-                        Err(error) => answers[case] = Some(Err(error)),
+                        Err(error) => jobs.ended(job, Err(error)),
                     }
                 }
             }
             if running.iter().any(Option::is_some) {
                 group.stride();
-            } else if waiting.is_empty() {
+            } else if may_begin {
                 break;
             }
         }
-        let answers = answers.into_iter();
-        answers
-            .map(|answer| answer.expect("all cases have ended"))
-            .collect()
     }
 
     /// Refuses a motion whose energy does not balance.
@@ -411,22 +413,11 @@ impl ElasticJoints {
 
 impl Model for ElasticJoints {
     fn repetitions(&self) -> Vec<Repetition> {
-        let others: [(&'static str, f64); 2] = if self.many_cases {
-            [
-                ("steps of nine tenths", 0.9),
-                ("steps of three quarters", 0.75),
-            ]
-        } else {
-            [("half steps", 0.5), ("steps of two thirds", 2.0 / 3.0)]
+        let repetition = |(name, model): (&'static str, Self)| Repetition {
+            name,
+            model: Box::new(model),
         };
-        let repetition = |(name, factor): (&'static str, f64)| {
-            let model = Box::new(Self {
-                steps_times: factor * self.steps_times,
-                ..self.clone()
-            });
-            Repetition { name, model }
-        };
-        others.map(repetition).into()
+        self.other_steps().map(repetition).into()
     }
 
     fn bodies(&self) -> Vec<String> {
@@ -472,11 +463,22 @@ impl Model for ElasticJoints {
         true
     }
 
-    fn simulate_until(
-        &self,
-        until: Until,
-        cases: &[Case],
-    ) -> Vec<Result<Summary, SimulationError>> {
-        self.together(cases, until)
+    fn simulate_until(&self, until: Until, case: &Case) -> Result<Summary, SimulationError> {
+        let (ground, request) = case;
+        self.alone(ground, request, None, until)
+    }
+
+    fn work(&self, cases: &[Case], jobs: &mut dyn Jobs) {
+        let gravity_m_s2 = cases.first().map(|(_, request)| request.gravity_m_s2);
+        let alike = |(_, request): &Case| Some(request.gravity_m_s2) == gravity_m_s2;
+        if let Some(gravity_m_s2) = gravity_m_s2
+            && cases.len() > 1
+            && cases.iter().all(alike)
+            && let Ok(rest) = self.rest(gravity_m_s2)
+        {
+            self.together(&rest, gravity_m_s2, cases, jobs);
+            return;
+        }
+        one_by_one(self, cases, jobs);
     }
 }

@@ -422,6 +422,16 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Quantities at the places, with the velocities after half a kick more.
     pub(super) fn observe(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
+        let arch = self.arch;
+        arch.dispatch(Look {
+            motion: self,
+            half,
+            slides,
+        })
+    }
+
+    #[inline(always)]
+    fn look(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
         let zero = Lanes([0.0; L]);
         let structure = self.structure;
         let mut seen = Observed {
@@ -603,6 +613,22 @@ impl<const L: usize> WithSimd for Leap<'_, '_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         self.motion.leap(self.step, self.happens);
+    }
+}
+
+/// An observation, likewise.
+struct Look<'m, 'a, const L: usize> {
+    motion: &'m Motion<'a, L>,
+    half: &'m Step<L>,
+    slides: &'m [Slide],
+}
+
+impl<const L: usize> WithSimd for Look<'_, '_, L> {
+    type Output = Observed<Lanes<L>>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.motion.look(self.half, self.slides)
     }
 }
 

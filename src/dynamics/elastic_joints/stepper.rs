@@ -11,12 +11,13 @@ use crate::dynamics::history::{
     ElasticSummary, EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
     TieSummary,
 };
-use crate::dynamics::model::{Recorder, Until};
+use crate::dynamics::model::Recorder;
 use crate::dynamics::row::course::{
     Course, LARGEST_ENERGY_ERROR, LEAST_RETURN, Marks, OVERTURNED_RAD, OVERTURNED_RATIO,
     REST_ENERGY_RATIO, REST_TIME_RATIO, Stepper, Summit, Task, equal_step, open_hinge,
 };
 use crate::dynamics::spread::GONE;
+use crate::dynamics::until::Until;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::elastic_joint::{ElasticStructure, Place, Rest};
@@ -55,12 +56,12 @@ pub(super) struct Start<'a> {
     pub may_halve: bool,
     /// Energy above that at rest without which it does not overturn unless joints slip, where that is known; it takes time to find.
     pub barrier_j: &'a dyn Fn() -> Option<f64>,
-    pub until: Until,
 }
 
 /// One motion of a group.
 struct Lane<'a> {
     course: Course<'a>,
+    until: Until,
     velocity: GroundVelocity<'a>,
     /// Where the feet move differently: how far apart they go, and are.
     feet: Option<FeetApart<'a>>,
@@ -71,8 +72,10 @@ struct Lane<'a> {
     halved: usize,
     /// Time up to which it steps without pause.
     until_s: f64,
-    /// Steps since it was last observed.
-    strides: usize,
+    /// Steps since it began.
+    steps: usize,
+    /// Whether it is observed where it is.
+    is_seen: bool,
     /// Time up to which the kicks have acted, and the velocity of the ground then.
     kicked_s: f64,
     ground_m_s: Vector2<f64>,
@@ -119,10 +122,11 @@ pub(super) struct Group<'a, const L: usize> {
 }
 
 impl<'a> Lane<'a> {
-    fn new(task: Task<'a>, recorder: Option<&'a mut dyn Recorder>) -> Self {
+    fn new(task: Task<'a>, until: Until, recorder: Option<&'a mut dyn Recorder>) -> Self {
         let joints = task.row.joints().len();
         let velocity = GroundVelocity::new(task.ground);
         Self {
+            until,
             ground_m_s: velocity.at(0.0),
             velocity,
             feet: FeetApart::new(task.ground),
@@ -131,7 +135,8 @@ impl<'a> Lane<'a> {
             longest_step_s: task.clock.longest_step_s,
             halved: 0,
             until_s: 0.0,
-            strides: 0,
+            steps: 0,
+            is_seen: false,
             kicked_s: 0.0,
             rest_j: None,
             rest_sway_kg_m: 0.0,
@@ -177,7 +182,8 @@ impl<'a> Lane<'a> {
             self.apart_m = apart_m;
         }
         self.course.summary.cost.steps += 1;
-        self.strides += 1;
+        self.steps += 1;
+        self.is_seen = false;
         step
     }
 
@@ -202,7 +208,7 @@ impl<'a> Lane<'a> {
     }
 
     fn is_due(&self) -> bool {
-        self.strides >= STRIDE || self.course.time >= self.until_s
+        self.steps.is_multiple_of(STRIDE) || self.course.time >= self.until_s
     }
 }
 
@@ -238,10 +244,11 @@ impl<'a, const L: usize> Group<'a, L> {
         &mut self,
         lane: usize,
         task: Task<'a>,
+        until: Until,
         recorder: Option<&'a mut dyn Recorder>,
     ) {
         self.motion.start(lane, self.start.rest);
-        let mut begun = Lane::new(task, recorder);
+        let mut begun = Lane::new(task, until, recorder);
         let moved_m = |moved: &[f64; 3]| moved[0].hypot(moved[1]);
         let weighted = self.row.blocks().iter().zip(&self.start.rest.bent);
         let moved_kg_m: f64 = weighted
@@ -253,11 +260,10 @@ impl<'a, const L: usize> Group<'a, L> {
         self.note(lane, &seen);
     }
 
-    /// Whether motions may begin: if others are at a mark, or there are none. From there on most are observed together.
-    pub(super) fn is_at_mark(&self) -> bool {
-        let mut lanes = self.lanes.iter().flatten().peekable();
-        let at_mark = |lane: &Lane<'_>| lane.strides == 0 && lane.course.time >= lane.until_s;
-        lanes.peek().is_none() || lanes.any(at_mark)
+    /// Whether motions may begin: where the others, if there are any, end a stride. From there on most are observed together.
+    pub(super) fn may_begin(&self) -> bool {
+        let mut lanes = self.lanes.iter().flatten();
+        lanes.all(|lane| lane.steps.is_multiple_of(STRIDE))
     }
 
     /// Steps until a motion has been observed.
@@ -307,7 +313,7 @@ impl<'a, const L: usize> Group<'a, L> {
         };
         let of = |lanes: Lanes<L>| lanes.0[index];
         let course = &mut lane.course;
-        lane.strides = 0;
+        lane.is_seen = true;
         let time = course.time;
         let (kinetic, elastic) = (of(seen.kinetic_j), of(seen.elastic_j));
         let stored = of(seen.potential_j) + elastic;
@@ -394,7 +400,7 @@ impl<'a, const L: usize> Group<'a, L> {
             lane.mind_balance(barrier_j);
         }
         lane.largest_j = lane.largest_j.max(kinetic + potential);
-        if lane.is_decided(self.start.until, kinetic + potential, barrier_j) {
+        if lane.is_decided(kinetic + potential, barrier_j) {
             lane.course.stop();
         }
     }
@@ -403,7 +409,7 @@ impl<'a, const L: usize> Group<'a, L> {
     /// as if samples were made.
     pub(super) fn go_on(&mut self, index: usize) -> Option<Result<Summary, ElasticJointError>> {
         let lane = self.lanes[index].as_mut()?;
-        if lane.strides > 0 {
+        if !lane.is_seen {
             return None;
         }
         if let Some(error) = lane.lost.take() {
@@ -456,22 +462,17 @@ impl<'a> Lane<'a> {
     }
 
     /// Whether all that it is followed for is known, with this energy: on ground that is quiet for good it gains none.
-    fn is_decided(
-        &mut self,
-        until: Until,
-        energy_j: f64,
-        barrier_j: impl FnOnce() -> Option<f64>,
-    ) -> bool {
+    fn is_decided(&mut self, energy_j: f64, barrier_j: impl FnOnce() -> Option<f64>) -> bool {
         // Nothing is known of the barrier where the feet have gone apart.
         if self.feet.is_some() {
             return false;
         }
         // What has passed its barrier goes on to that side, whatever damping takes.
-        if until == Until::End || self.course.time < self.quiet_s || !self.returns {
+        if self.until == Until::End || self.course.time < self.quiet_s || !self.returns {
             return false;
         }
         let (quiet_s, quiet_j) = *self.quiet.get_or_insert((self.course.time, energy_j));
-        if until == Until::Settled {
+        if self.until == Until::Settled {
             // It decays at most that much slower from now on.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
             let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
@@ -506,10 +507,11 @@ impl<'a> ElasticStepper<'a> {
     pub(super) fn new(
         task: Task<'a>,
         start: Start<'a>,
+        until: Until,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
         let mut group = Group::new(task.row, start, task.gravity_m_s2);
-        group.begin(0, task, recorder);
+        group.begin(0, task, until, recorder);
         Self { group }
     }
 

@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Case, Model, Request, SimulationError};
+use crate::dynamics::model::{Case, Model, Request};
 pub use crate::dynamics::spread::Verdict;
-use crate::dynamics::spread::{doubts, until_safe};
+use crate::dynamics::spread::{Checked, checked};
+use crate::dynamics::until::Until;
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -147,31 +148,23 @@ impl Ending {
     /// The same for several cases, in their order. A case without a history, or with one that cannot be kept, has the reason instead.
     #[must_use]
     pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
-        let own = model.simulate_all(cases);
-        Self::repeated(own, vec![None; cases.len()], model, cases)
+        Self::checked(model, cases, Until::End)
     }
 
     /// The same, but a history ends once it cannot overturn any more and has ample time to come to rest.
     #[must_use]
     pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
-        let (own, safe_from_s) = until_safe(model, cases);
-        Self::repeated(own, safe_from_s, model, cases)
+        Self::checked(model, cases, Until::Settled)
     }
 
-    /// The endings of histories, repeated if that may matter.
-    fn repeated(
-        own: Vec<Result<Summary, SimulationError>>,
-        safe_from_s: Vec<Option<f64>>,
-        model: &dyn Model,
-        cases: &[Case],
-    ) -> Vec<Result<Self, String>> {
-        let doubts = doubts(model, cases, &own);
-        let endings = own.into_iter().zip(safe_from_s).zip(doubts);
-        endings
-            .map(|((own, safe_from_s), doubt)| {
-                let summary = own.map_err(|error| error.to_string())?;
-                Self::from_summary(&summary, safe_from_s, doubt)
-            })
+    fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Result<Self, String>> {
+        let ending = |checked: Checked| {
+            let summary = checked.own.map_err(|error| error.to_string())?;
+            Self::from_summary(&summary, checked.safe_from_s, checked.doubt)
+        };
+        checked(model, cases, until)
+            .into_iter()
+            .map(ending)
             .collect()
     }
 

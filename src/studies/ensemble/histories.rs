@@ -8,7 +8,7 @@ use super::statistics::{Share, band};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::dynamics::history::{Outcome, Sample};
 use crate::dynamics::model::Model;
-use crate::dynamics::spread::doubts;
+use crate::dynamics::spread::repeated;
 use crate::output::OutputError;
 use crate::scenario::Scenario;
 use crate::studies::ending::{Ending, Verdict};
@@ -117,11 +117,10 @@ impl Histories {
         };
         let failed = |error: String| NoAnswer::Failed(error);
         let case = (ground.clone(), request);
-        let own = [model.simulate(ground, &request, Some(&mut record))];
-        let doubt = doubts(model, &[case], &own).remove(0);
-        let [summary] = own;
-        let summary = summary.map_err(|error| failed(error.to_string()))?;
-        let ending = Ending::from_summary(&summary, None, doubt).map_err(failed)?;
+        let own = vec![model.simulate(ground, &request, Some(&mut record))];
+        let checked = repeated(model, &[case], own).remove(0);
+        let summary = checked.own.map_err(|error| failed(error.to_string()))?;
+        let ending = Ending::from_summary(&summary, None, checked.doubt).map_err(failed)?;
         Ok(Went {
             ending,
             peak_rotation_rad: summary.largest_rotation_rad(),

@@ -24,7 +24,8 @@ use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::spread::doubts;
+use crate::dynamics::spread::checked;
+use crate::dynamics::until::Until;
 
 /// Relative width to which an edge is bisected: far less than the uncertainty of any ground motion,
 /// and wide enough that integration errors do not decide.
@@ -133,10 +134,8 @@ impl FactorSample {
             .iter()
             .map(|factor| Ok((ground.scaled(*factor)?, *request)));
         let summaries = answered(cases, |cases| {
-            let own = model.simulate_all(cases);
-            let doubts = doubts(model, cases, &own);
-            let own = own.into_iter().zip(doubts);
-            own.map(|(own, doubt)| Ok((own?, doubt))).collect()
+            let checked = checked(model, cases, Until::End).into_iter();
+            checked.map(|case| Ok((case.own?, case.doubt))).collect()
         });
         let samples = factors.iter().zip(summaries);
         samples
