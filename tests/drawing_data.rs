@@ -158,7 +158,12 @@ fn exaggerated_snapshots_move_so_many_times_as_far() {
         run(
             folder.path(),
             "free-hinges.toml",
-            &[&["--no-spread", "--snapshots", "0.6"], more].concat(),
+            &[
+                &["--no-spread", "--snapshots", "0.6"][..],
+                &["--set", "simulation.duration_s=0.7"],
+                more,
+            ]
+            .concat(),
         );
         let picture = snapshots(folder.path());
         let document = Document::parse(&picture).unwrap();

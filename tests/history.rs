@@ -356,7 +356,7 @@ fn the_peak_is_not_below_any_sample() {
     let incipient_g = arch.incipient_g();
     let check = |kind: Pulse, amplitude_g: f64, duration_s: f64, end_s: f64| {
         let ground = pulse(kind, -amplitude_g, duration_s);
-        let history = run(&arch, &ground, &sampled(end_s, end_s / 10_000.0));
+        let history = run(&arch, &ground, &sampled(end_s, end_s / 2000.0));
         for sample in history.samples.iter() {
             let peaks = &history.summary.peak_rotations_rad;
             for (rotation, peak) in sample.rotations_rad.iter().zip(peaks) {

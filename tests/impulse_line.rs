@@ -150,14 +150,14 @@ fn refined_extremes_are_not_below_fine_samples() {
             let samples = || {
                 chain
                     .profile(0)
-                    .sections(100_000)
+                    .sections(20_000)
                     .into_iter()
                     .map(|angle| line.section(angle))
             };
             let least = samples()
                 .map(|section| section.normal)
                 .fold(f64::INFINITY, f64::min);
-            // A sample misses a smooth extreme by (PI/2e5)^2 times a curvature of at most about ten;
+            // A sample misses a smooth extreme by (PI/4e4)^2 times a curvature of at most about ten;
             // no line here has more, except at the poles that tension causes.
             let slack = 1e-7;
             assert!(extremes.normal.value <= least + 1e-15);

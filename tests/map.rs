@@ -587,7 +587,7 @@ fn start_long_work(folder: &Path, more: &[&str]) -> Child {
 
 #[test]
 fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
-    let folder = folder_with_map(60);
+    let folder = folder_with_map(36);
     let path = folder.path();
     let begun = Instant::now();
     done(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);

@@ -351,7 +351,7 @@ fn restitution(model: ImpactModel) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(160))]
 
     #[test]
     fn arches_of_any_numbers_are_arches_or_errors(

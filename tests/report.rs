@@ -307,7 +307,7 @@ fn samples_are_behind_the_history() {
     let run = ["run", path.to_str().unwrap(), "--out"];
     program::printed(
         at,
-        &[&run[..], &[".", "--set", "uncertain.samples=24"]].concat(),
+        &[&run[..], &[".", "--set", "uncertain.samples=21"]].concat(),
     );
     let page = fs::read_to_string(at.join("report.html")).unwrap();
     // Half a megabyte is the history itself.

@@ -281,11 +281,10 @@ fn plain_edge_g(column: &RockingColumn, pulse: Pulse, duration_s: f64) -> Option
 #[test]
 fn the_boundary_is_that_of_the_plain_search() {
     let mut edges = 0;
-    for width_m in [0.4, 1.7] {
+    for (width_m, durations_s) in [(0.4, [0.2, 2.0]), (1.7, [0.9, 5.5])] {
         let column = Column::new(4.0, width_m).unwrap();
         let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
         for pulse in Pulse::ALL {
-            let durations_s = [0.2, 0.9, 2.0, 5.5];
             let scenario = parsed(&format!(
                 "[column]\nheight_m = 4.0\nwidth_m = {width_m}\n\
                  [ground.{}]\namplitude_g = 1\nduration_s = 1\n[simulation]\nduration_s = 60\n\
@@ -314,5 +313,5 @@ fn the_boundary_is_that_of_the_plain_search() {
         }
     }
     // All but a few durations have an amplitude that overturns.
-    assert!(edges > 6 * Pulse::ALL.len(), "{edges}");
+    assert!(edges > 3 * Pulse::ALL.len(), "{edges}");
 }

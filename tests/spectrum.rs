@@ -168,8 +168,8 @@ fn the_equivalent_column_has_the_a_l_and_the_p_of_the_arch() {
             let [p_arch, p_column] =
                 blocks.map(|blocks| blocks.at_critical.unwrap().frequency_rad_s);
             assert!((p_arch / p_column - 1.0).abs() < 1e-10);
-            let duration_s = points.row(60).duration_s;
-            assert!((duration_s * p_arch / points.row(60).p_t - 1.0).abs() < 1e-14);
+            let row = points.row(60);
+            assert!((row.duration_s * p_arch / row.p_t - 1.0).abs() < 1e-14);
             let sin = blocks[0].slenderness_rad.sin();
             let expected = prescribed.unwrap_or((1.0 - 1.5 * sin * sin).powi(2));
             let restitution = column.restitution_after(1).unwrap();

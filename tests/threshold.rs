@@ -10,11 +10,11 @@ use std::time::Duration;
 
 use crate::common::pulse;
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
-use crate::program::{archrock, printed, refused, stderr};
+use crate::program::{archrock, printed, refused, stderr, stdout};
 use crate::results::{Row, Table};
 use archrock::dynamics::history::Cost;
-use archrock::dynamics::hybrid::engine::EngineError;
 use archrock::dynamics::model::Repetition;
+use archrock::dynamics::hybrid::engine::EngineError;
 use archrock::output::Figure;
 use archrock::studies::ending::Verdict;
 use archrock::studies::runner::{Progress, Runner, RunnerError};
@@ -628,13 +628,18 @@ fn what_has_no_threshold_is_refused() {
 
 /// The result of `threshold` for each model, by the name of the model.
 fn models(folder: &Path, arguments: &str) -> Vec<(String, Value)> {
+    models_and_remarks(folder, arguments).0
+}
+
+fn models_and_remarks(folder: &Path, arguments: &str) -> (Vec<(String, Value)>, String) {
     let all = format!("threshold s.toml --from 0.5 --to 8 --stride 1 --format json {arguments}");
-    let result = printed(folder, &all.split_whitespace().collect::<Vec<_>>());
-    let json: Value = serde_json::from_str(&result).unwrap();
+    let output = archrock(folder, &all.split_whitespace().collect::<Vec<_>>());
+    let json: Value = serde_json::from_str(&stdout(&output)).unwrap();
     let models = json["models"].as_array().unwrap().iter();
-    models
+    let models = models
         .map(|model| (model["model"].as_str().unwrap().to_owned(), model.clone()))
-        .collect()
+        .collect();
+    (models, stderr(&output))
 }
 
 fn names(models: &[(String, Value)]) -> Vec<&str> {
@@ -651,7 +656,7 @@ fn both_models_have_their_own_scenario() {
         folder,
         &SCENARIO.replace("[ground", &format!("voussoirs = 7\n{impact}[ground")),
     );
-    let both = models(folder, "--hinges both --out both");
+    let (both, said_of_both) = models_and_remarks(folder, "--hinges both --out both");
     assert_eq!(names(&both), ["four_links", "free_hinges"]);
     let [(_, four), (_, free)] = &both[..] else {
         panic!("two models")
@@ -661,16 +666,19 @@ fn both_models_have_their_own_scenario() {
     assert!(free["scenario"]["free_hinges"].is_object());
     assert_eq!(free["scenario"].get("impact"), None);
     assert_ne!(four["samples"], free["samples"]);
-    assert_eq!(models(folder, "--hinges four --out four"), both[..1]);
+    let (four, said_of_four) = models_and_remarks(folder, "--hinges four --out four");
+    let (free, said_of_free) = models_and_remarks(folder, "--hinges free --out free");
+    assert_eq!([&four[..], &free[..]], [&both[..1], &both[1..]]);
     assert_eq!(models(folder, "--out default"), both[..1]);
-    assert_eq!(models(folder, "--hinges free --out free"), both[1..]);
     let table = fs::read_to_string(folder.join("both/threshold.csv")).unwrap();
     let of = |model: &str| table.lines().filter(|line| line.starts_with(model)).count();
     assert_eq!((of("four_links,"), of("free_hinges,")), (5, 5));
     // The remark that the scenario's impact model is ignored appears if blocks decide impacts, and only then.
-    for (hinges, ignored) in [("four", false), ("free", true), ("both", true)] {
-        let arguments = ["threshold", "s.toml", "--stride", "1", "--hinges", hinges];
-        let said = stderr(&archrock(folder, &arguments));
+    for (said, ignored) in [
+        (said_of_four, false),
+        (said_of_free, true),
+        (said_of_both, true),
+    ] {
         assert_eq!(
             said.contains("[impact] is ignored: with free hinges"),
             ignored,

@@ -15,7 +15,7 @@ use archrock::mechanics::masonry::{
     Dimensions, EllipticArch, Masonry, Material, Piers, PointedArch, Shape,
 };
 use archrock::mechanics::stability::{falls, onset};
-use archrock::{Arch, Outcome, Sway};
+use archrock::{Arch, Outcome, Sway, Until};
 use std::f64::consts::PI;
 
 /// The least number from which a condition holds, to 1e-6.
@@ -185,7 +185,8 @@ fn the_failure_domain_of_the_page_is_that_of_the_command() {
                 .replace("duration_s = 0.35", &format!("duration_s = {duration}"));
             let scenario = parsed(&text);
             let model = scenario.model().unwrap();
-            let simulated = model.simulate(scenario.ground_motion(), &scenario.request(), None);
+            let case = (scenario.ground_motion().clone(), scenario.request());
+            let simulated = model.simulate_until(Until::Safe, &case);
             matches!(simulated.unwrap().outcome, Outcome::Overturned(_))
         };
         assert!(!overturns(shown - reach), "{duration} {shown}");

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use crate::browser;
 use crate::program::{printed, refused, says_what_it_shows, scenarios};
@@ -51,6 +52,9 @@ fn of_slv(structure: &str, records: &str) -> Histories {
         .find(|one| one.state == LimitState::Slv);
     slv.unwrap().histories.unwrap()
 }
+
+/// Of the semicircle, under seven records.
+static SEVEN: LazyLock<Histories> = LazyLock::new(|| of_slv(SEMICIRCLE, "'slv-*.at2'"));
 
 /// Sample interval and accelerations in m/s2 of an AT2 file, read by four lines of this test.
 fn at2(name: &str) -> (f64, Vec<f64>) {
@@ -307,7 +311,7 @@ fn peaks(records: &[RecordPeaks], side: usize) -> Vec<f64> {
 /// With seven records or more the mean counts, with fewer the largest; with FC and without.
 #[test]
 fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
-    let seven = of_slv(SEMICIRCLE, "'slv-*.at2'");
+    let seven = &*SEVEN;
     assert!(seven.is_mean() && seven.passes() == [true, true]);
     for (side, own) in seven.sides.iter().enumerate() {
         let mean_m = peaks(&seven.records, side).iter().sum::<f64>() / 7.0;
@@ -326,7 +330,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
         ("['slv-2.at2', 'slv-4.at2', 'slv-6.at2']", [true, true]),
         ("['slv-2.at2', 'slv-3.at2', 'slv-4.at2']", [true, false]),
         (
-            "['slv-1.at2', 'slv-2.at2', 'slv-3.at2', 'slv-4.at2', 'slv-5.at2', 'slv-6.at2']",
+            "['slv-1.at2', 'slv-2.at2', 'slv-4.at2', 'slv-5.at2']",
             [false, false],
         ),
     ] {
@@ -373,7 +377,7 @@ fn c8_7_1_2_1_9_d0_is_exceeded_in_no_record() {
     let check = check(folder.path());
     let own: HistorySide = check.states[0].histories.as_ref().unwrap().sides[0];
     assert!(own.demand_m.unwrap() < own.capacity_over_fc_m && own.passes == [false, false]);
-    let overturns = of_slv(SEMICIRCLE, "['slv-*.at2', 'wave-1.at2']");
+    let overturns = of_slv(SEMICIRCLE, "['slv-2.at2', 'slv-4.at2', 'wave-1.at2']");
     assert_eq!(overturns.sides[0].demand_m, None);
     assert_eq!(overturns.passes(), [false, false]);
     assert!(overturns.sides[0].exceeded[0] >= 1);
@@ -409,8 +413,7 @@ fn c8_7_1_2_1_9_both_sides_of_an_uneven_arch() {
 /// Twice the motion has twice the spectrum; the records of the repository fit that of SLV.
 #[test]
 fn par_3_2_3_6_the_mean_spectrum_of_the_records() {
-    let fit = of_slv(SEMICIRCLE, "'slv-*.at2'");
-    assert_eq!(fit.fits_the_spectrum(), Some(true));
+    assert_eq!(SEVEN.fits_the_spectrum(), Some(true));
     let text = format!("{COLUMN}{DEMAND}[verify]\nunit = 'g'\nslv_records = 'twice-*.csv'\n");
     let folder = folder(&text);
     for number in 1..=3 {

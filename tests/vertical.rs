@@ -232,7 +232,7 @@ fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// Short rough records, around the threshold and far beyond, in both directions: every history ends, and
     /// its energy balances.

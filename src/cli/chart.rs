@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use archrock::studies::chart::Chart;
+use archrock::studies::chart::{Chart, FILES};
 
 use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
@@ -32,9 +32,11 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let place = arguments
         .figure
         .printed(input.results(arguments.out.as_deref())?);
+    // Opened before the work starts, so that a folder that cannot be written costs no time.
+    let folder = place.open(&FILES)?;
     let law = scenario.motion().impact();
     let results = Chart::of(arch, law).tell(arguments.figure.get()?)?;
-    place.write(&results, true)?;
+    results.write(folder)?;
     if !quiet {
         say(&format!("{} in {}", results.words, place.holds(&results)));
     }
