@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
 use archrock::dynamics::model::Request;
-use archrock::output::dimensions::described;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
 use archrock::scenario::{Form, Format, Layout, Recorded, Scenario, Series};
@@ -77,7 +76,7 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
     if let Some(plot) = &arguments.plot {
         let scene = drawn(&scenario)?;
         let title = scenario.title().unwrap_or("Structure");
-        let mut text = described(scenario.structure());
+        let mut text = scenario.structure().described();
         if scene.has_settled() {
             text += "; dashed: as built; circles: open hinges";
         }

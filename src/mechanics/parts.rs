@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::arch::Arch;
 use super::blocks::Row;
 use super::column::Column;
-use super::geometry::ring::Edge;
+use super::geometry::ring::{Edge, Ring};
 
 /// Number of equal parts that stand for a continuous ring: the participating mass errs by the square of their size, 1e-6.
 const PARTS: usize = 720;
@@ -22,10 +22,51 @@ pub struct Part {
     pub centre_m: Vector2<f64>,
 }
 
+/// The bodies of a structure as they are drawn, in metres.
+#[derive(Clone, Debug)]
+pub enum Outline {
+    /// A ring that is cut at its hinges, drawn with these joints.
+    Ring {
+        /// The ring.
+        ring: Ring,
+        /// Its mean radius.
+        mean_radius_m: f64,
+        /// Its joints, in radians from the left springing; none where hinges open anywhere.
+        joints_rad: Vec<f64>,
+    },
+    /// One body.
+    Block {
+        /// Its corners.
+        outline_m: Vec<Vector2<f64>>,
+    },
+    /// One body per block.
+    Row {
+        /// The corners of each block.
+        outlines_m: Vec<Vec<Vector2<f64>>>,
+    },
+}
+
+/// A section at which the position of the line of thrust is known, in metres, undeformed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// Its midpoint.
+    pub middle_m: Vector2<f64>,
+    /// From its intrados end to its extrados end; in a column, from left to right.
+    pub across_m: Vector2<f64>,
+    /// For an arch that is cut at its hinges: its angle, in radians from the left springing.
+    pub angle_rad: Option<f64>,
+}
+
 /// What a structure consists of.
 pub trait Parts {
     /// Its parts from left to right, or upwards.
     fn parts(&self) -> Vec<Part>;
+
+    /// Its bodies as they are drawn.
+    fn outline(&self) -> Outline;
+
+    /// The sections at which the position of the line of thrust is known, from left to right, or upwards.
+    fn sections(&self) -> Vec<Section>;
 
     /// The parts in words.
     fn parts_in_words(&self) -> String;
@@ -51,6 +92,26 @@ impl Parts for Arch {
             }
         });
         parts.collect()
+    }
+
+    fn outline(&self) -> Outline {
+        let ring = self.ring();
+        Outline::Ring {
+            joints_rad: self.voussoirs().map_or_else(Vec::new, |n| ring.sections(n)),
+            ring,
+            mean_radius_m: self.mean_radius_m(),
+        }
+    }
+
+    fn sections(&self) -> Vec<Section> {
+        let (ring, mean_radius_m) = (self.ring(), self.mean_radius_m());
+        let sections = self.thrust_sections_rad().into_iter();
+        let sections = sections.map(|angle_rad| Section {
+            middle_m: ring.radial(angle_rad) * mean_radius_m,
+            across_m: ring.radial(angle_rad) * (ring.thickness_ratio() * mean_radius_m),
+            angle_rad: Some(angle_rad),
+        });
+        sections.collect()
     }
 
     fn parts_in_words(&self) -> String {
@@ -85,6 +146,36 @@ impl Parts for Column {
         }]
     }
 
+    /// One block, whatever its drums; or these, where ties hold them.
+    fn outline(&self) -> Outline {
+        if let Some(row) = self.tied_row() {
+            return row.outline();
+        }
+        let (half_m, height_m) = (0.5 * self.width_m(), self.height_m());
+        let corners = [
+            (-half_m, 0.0),
+            (-half_m, height_m),
+            (half_m, height_m),
+            (half_m, 0.0),
+        ];
+        Outline::Block {
+            outline_m: corners.map(|(x, y)| Vector2::new(x, y)).to_vec(),
+        }
+    }
+
+    fn sections(&self) -> Vec<Section> {
+        if let Some(row) = self.tied_row() {
+            return row.sections();
+        }
+        let sections = self.thrust_sections_m().into_iter();
+        let sections = sections.map(|height_m| Section {
+            middle_m: Vector2::new(0.0, height_m),
+            across_m: Vector2::new(self.width_m(), 0.0),
+            angle_rad: None,
+        });
+        sections.collect()
+    }
+
     fn parts_in_words(&self) -> String {
         "the column as one block".to_owned()
     }
@@ -100,6 +191,13 @@ impl Parts for Column {
     }
 }
 
+impl Column {
+    /// Its blocks, if it has ties.
+    fn tied_row(&self) -> Option<Row> {
+        self.row().ok().filter(|row| !row.ties().is_empty())
+    }
+}
+
 impl Parts for Row {
     fn parts(&self) -> Vec<Part> {
         let blocks = self.blocks().iter().enumerate();
@@ -109,6 +207,21 @@ impl Parts for Row {
             centre_m: block.centre_m,
         });
         parts.collect()
+    }
+
+    fn outline(&self) -> Outline {
+        Outline::Row {
+            outlines_m: self.outlines_m().to_vec(),
+        }
+    }
+
+    fn sections(&self) -> Vec<Section> {
+        let sections = self.joints().iter().map(|joint| Section {
+            middle_m: joint.middle_m(),
+            across_m: joint.extrados_m - joint.intrados_m,
+            angle_rad: None,
+        });
+        sections.collect()
     }
 
     fn parts_in_words(&self) -> String {

@@ -1,7 +1,7 @@
 //! One line that tells what a picture was computed from: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, Structure};
+use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, four_digits};
 
 /// The caption. It leaves out what varies along the axes.
 #[must_use]
@@ -10,7 +10,7 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
         axes.iter()
             .any(|axis| quantities.contains(&axis.quantity) || axis.key == key)
     };
-    let mut parts = structure(scenario, &varies);
+    let mut parts = vec![scenario.structure().caption(&varies)];
     parts.extend(ground(scenario, &varies));
     parts.push(model(scenario, &varies));
     parts.join("; ")
@@ -29,10 +29,10 @@ fn ground(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Op
     let right = match scenario.right_foot() {
         None => return Some(left),
         Some(RightFoot::Late(delay_s)) if !varies("delay_s") => {
-            format!("right foot {} s later", short(*delay_s))
+            format!("right foot {} s later", four_digits(*delay_s))
         }
         Some(RightFoot::Wave(velocity_m_s)) if !varies("apparent_velocity_m_s") => {
-            format!("right foot by a wave of {} m/s", short(*velocity_m_s))
+            format!("right foot by a wave of {} m/s", four_digits(*velocity_m_s))
         }
         Some(RightFoot::Late(_) | RightFoot::Wave(_)) => "right foot later".to_owned(),
         Some(RightFoot::Record(record)) => {
@@ -65,49 +65,11 @@ fn of_left_foot(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool)
             Some(match record.main.scaling {
                 _ if varied => name,
                 Scaling::Factor(1.0) => name,
-                Scaling::Factor(factor) => format!("{name} times {}", short(factor)),
-                Scaling::PeakG(peak_g) => format!("{name} scaled to {} g", short(peak_g)),
+                Scaling::Factor(factor) => format!("{name} times {}", four_digits(factor)),
+                Scaling::PeakG(peak_g) => format!("{name} scaled to {} g", four_digits(peak_g)),
             })
         }
     }
-}
-
-fn structure(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Vec<String> {
-    let mut words = Vec::new();
-    match scenario.structure() {
-        Structure::Arch(arch) => {
-            if !varies(&[Quantity::MeanRadius], "arch.mean_radius_m") {
-                words.push(format!("R {} m", short(arch.mean_radius_m())));
-            }
-            if !varies(&[Quantity::ThicknessRatio], "arch.thickness_ratio") {
-                words.push(format!("t/R {}", short(arch.thickness_ratio())));
-            }
-            if !varies(&[Quantity::Embrace], "arch.embrace_deg") {
-                words.push(format!("{} degrees", short(arch.embrace_deg())));
-            }
-            match arch.voussoirs() {
-                _ if varies(&[], "arch.voussoirs") => {}
-                Some(voussoirs) => words.push(format!("{voussoirs} voussoirs")),
-                None => words.push("hinges anywhere".to_owned()),
-            }
-            vec![format!("arch: {}", words.join(", "))]
-        }
-        Structure::Column(column) => {
-            if !varies(&[], "column.height_m") {
-                words.push(format!("{} m high", short(column.height_m())));
-            }
-            if !varies(&[], "column.width_m") {
-                words.push(format!("{} m wide", short(column.width_m())));
-            }
-            vec![format!("column: {}", words.join(", "))]
-        }
-        Structure::Masonry(_) => vec!["blocks".to_owned()],
-    }
-}
-
-/// Four digits are enough to identify a value.
-fn short(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 fn model(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> String {

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::dimensions::{Dimension, Side};
 use super::figure::{TEXT_PX, text_px};
 use super::scene::{Mark, Piece, Scene};
 use super::svg::{Anchor, Drawing, Figure, Stroke, color};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::pose::Pose;
+use crate::scenario::{Dimension, DimensionSide, metres};
 
 /// Blocks and what else is drawn of a structure.
 pub const STONE: &str = "#f3efe6";
@@ -59,7 +59,7 @@ impl Place {
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let mut drawing = Drawing::new(figure);
     let top = drawing.title(title) + 12.0;
-    let room = |side: Side| room_px(scene, side).max(24.0);
+    let room = |side: DimensionSide| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();
     let size_m = high_m - low_m;
     let above = if scene.loads(&[]).is_empty() {
@@ -68,12 +68,12 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         ARROW_PX + 26.0
     };
     // Supports go on a little beyond the structure.
-    let sides = (room(Side::Left) + 10.0) + (room(Side::Right) + 10.0);
+    let sides = (room(DimensionSide::Left) + 10.0) + (room(DimensionSide::Right) + 10.0);
     let scale = ((figure.width_px() - sides) / size_m.x)
         .min(figure.height_px(520.0) / size_m.y)
         .max(1e-9);
     let free_px = figure.width_px() - sides - scale * size_m.x;
-    let left = room(Side::Left) + 10.0 + 0.5 * free_px;
+    let left = room(DimensionSide::Left) + 10.0 + 0.5 * free_px;
     let place = Place {
         middle_m: Vector2::new(low_m.x, high_m.y),
         at: Vector2::new(left, top + above),
@@ -108,13 +108,13 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         drawing.circle("hinge", px(&mark), 3.2, HINGE);
     }
     joint_numbers(&mut drawing, &place, scene);
-    let end = drawing.caption(bottom + room(Side::Below) + 22.0, text);
+    let end = drawing.caption(bottom + room(DimensionSide::Below) + 22.0, text);
     drawing.finish(end + 10.0)
 }
 
 /// The room that the dimensions of a structure take on a side of it, in pixels.
 #[must_use]
-pub fn room_px(scene: &Scene, side: Side) -> f64 {
+pub fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
     let levels = levels(scene.dimensions());
     let own = scene.dimensions().iter().zip(&levels);
     let own = own.filter(|(dimension, _)| dimension.side == side);
@@ -198,7 +198,7 @@ pub fn draw_load(drawing: &mut Drawing, foot: Vector2<f64>, mass_kg: f64) {
 }
 
 fn mass_in_words(mass_kg: f64) -> String {
-    format!("{} kg", super::dimensions::metres(mass_kg))
+    format!("{} kg", metres(mass_kg))
 }
 
 fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {
@@ -251,8 +251,8 @@ fn levels(dimensions: &[Dimension]) -> Vec<u32> {
         let span = |dimension: &Dimension| {
             let [from, to] = dimension.ends_m;
             match dimension.side {
-                Side::Below => [from.x, to.x],
-                Side::Left | Side::Right => [from.y, to.y],
+                DimensionSide::Below => [from.x, to.x],
+                DimensionSide::Left | DimensionSide::Right => [from.y, to.y],
             }
         };
         let [low, high] = span(own);
@@ -283,9 +283,9 @@ fn draw_dimension(
     let ends = dimension.ends_m.map(|end| place.px(end));
     let tick = Vector2::new(4.0, -4.0);
     let feet = ends.map(|end| match dimension.side {
-        Side::Below => Vector2::new(end.x, low.y + away),
-        Side::Left => Vector2::new(low.x - away, end.y),
-        Side::Right => Vector2::new(high.x + away, end.y),
+        DimensionSide::Below => Vector2::new(end.x, low.y + away),
+        DimensionSide::Left => Vector2::new(low.x - away, end.y),
+        DimensionSide::Right => Vector2::new(high.x + away, end.y),
     });
     for (end, foot) in ends.into_iter().zip(feet) {
         drawing.line(end, foot, EXTENSION);
@@ -296,14 +296,16 @@ fn draw_dimension(
     let beside = 5.0;
     let (at, anchor, turn_deg) = match dimension.side {
         // What has no room between the ends stands at the right of them.
-        Side::Below if (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside => {
+        DimensionSide::Below
+            if (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside =>
+        {
             let end = feet[0].sup(&feet[1]);
             (end + Vector2::new(beside + 3.0, 4.5), Anchor::Start, 0.0)
         }
-        Side::Below => (middle - Vector2::new(0.0, beside), Anchor::Middle, 0.0),
+        DimensionSide::Below => (middle - Vector2::new(0.0, beside), Anchor::Middle, 0.0),
         // Vertical texts are on the outer side, where ticks do not reach them.
-        Side::Left => (middle - Vector2::new(beside, 0.0), Anchor::Middle, 90.0),
-        Side::Right => (
+        DimensionSide::Left => (middle - Vector2::new(beside, 0.0), Anchor::Middle, 90.0),
+        DimensionSide::Right => (
             middle + Vector2::new(beside + 0.75 * TEXT_PX, 0.0),
             Anchor::Middle,
             90.0,

@@ -3,7 +3,6 @@
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
 pub mod caption;
-pub mod dimensions;
 pub mod elevation;
 pub(crate) mod envelope;
 pub mod figure;

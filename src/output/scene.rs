@@ -5,23 +5,23 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::dimensions::{Dimension, dimensions, metres};
 use crate::dynamics::history::{OpenHinge, Sample};
-use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::column::Column;
 use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::masonry::FillColumn;
+use crate::mechanics::parts::{Outline, Parts, Section};
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::{Anchor, Tie};
-use crate::scenario::Structure;
+use crate::scenario::{Dimension, Structure, metres};
 
 /// A structure to be drawn, undeformed.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    shape: Shape,
+    outline: Outline,
+    /// Whether the blocks between two hinges form one body, and those outside the hinges stand still.
+    linked: bool,
     sections: Vec<Section>,
     /// Where the left and the right support of an arch are.
     supports: [Pose; 2],
@@ -44,34 +44,6 @@ pub struct Load {
     pub mass_kg: f64,
     /// Over which width it is spread, in metres; zero: a point.
     pub width_m: f64,
-}
-
-#[derive(Clone, Debug)]
-enum Shape {
-    /// A ring that is cut at its hinges, drawn with these joints.
-    Ring {
-        ring: Ring,
-        mean_radius_m: f64,
-        joints_rad: Vec<f64>,
-    },
-    /// One body.
-    Block { outline_m: Vec<Vector2<f64>> },
-    /// One body per block. If linked, the blocks between two hinges form one body, and those outside the hinges stand still.
-    Row {
-        outlines_m: Vec<Vec<Vector2<f64>>>,
-        linked: bool,
-    },
-}
-
-/// A section at which the position of the line of thrust is known, in metres, undeformed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
-    /// Its midpoint.
-    pub middle_m: Vector2<f64>,
-    /// From its intrados end to its extrados end; in a column, from left to right.
-    pub across_m: Vector2<f64>,
-    /// For an arch that is cut at its hinges: its angle, in radians from the left springing.
-    angle_rad: Option<f64>,
 }
 
 /// A point of a structure. The body that carries it may depend on which hinges are open.
@@ -166,16 +138,13 @@ fn moved(
 }
 
 impl Scene {
-    /// A structure that rocks as mechanisms; masonry is a row of linked blocks.
+    /// A structure that rocks as mechanisms; the blocks of an arch are linked.
     #[must_use]
     pub fn new(structure: &Structure) -> Self {
-        let scene = match structure {
-            Structure::Arch(arch) => Self::of_arch(arch),
-            Structure::Column(column) => match column.row() {
-                Ok(row) if !row.ties().is_empty() => Self::of_row(&row),
-                _ => Self::of_column(column),
-            },
-            Structure::Masonry(masonry) => Self::of_blocks(masonry.row(), true),
+        let scene = Self {
+            linked: structure.thrusts(),
+            ties: structure.ties().to_vec(),
+            ..Self::bare(structure.as_parts())
         };
         scene.of_structure(structure)
     }
@@ -183,11 +152,10 @@ impl Scene {
     /// The same with what the structure carries, and its dimensions.
     #[must_use]
     pub fn of_structure(mut self, structure: &Structure) -> Self {
-        self.dimensions = dimensions(structure);
-        if let Structure::Masonry(masonry) = structure {
-            let carried = masonry.carried();
+        self.dimensions = structure.dimensions();
+        if let Some((carried, loads)) = structure.carries() {
             self.fill_m.clone_from(&carried.fill_m);
-            let loads = masonry.loads().iter().zip(&carried.loads_m);
+            let loads = loads.iter().zip(&carried.loads_m);
             self.loads = loads
                 .map(|(load, (block, at_m))| Load {
                     block: *block,
@@ -200,11 +168,12 @@ impl Scene {
         self
     }
 
-    /// Of this shape, with nothing on it.
-    const fn bare(shape: Shape, sections: Vec<Section>) -> Self {
+    /// These parts, with nothing on them.
+    fn bare(parts: &dyn Parts) -> Self {
         Self {
-            shape,
-            sections,
+            outline: parts.outline(),
+            linked: false,
+            sections: parts.sections(),
             supports: [Pose::UNDEFORMED; 2],
             stands: (Vec::new(), Vec::new()),
             ties: Vec::new(),
@@ -214,61 +183,12 @@ impl Scene {
         }
     }
 
-    /// An arch that rocks as mechanisms.
-    fn of_arch(arch: &Arch) -> Self {
-        let (ring, mean_radius_m) = (arch.ring(), arch.mean_radius_m());
-        let sections = arch.thrust_sections_rad().into_iter();
-        let sections = sections.map(|angle_rad| Section {
-            middle_m: ring.radial(angle_rad) * mean_radius_m,
-            across_m: ring.radial(angle_rad) * (ring.thickness_ratio() * mean_radius_m),
-            angle_rad: Some(angle_rad),
-        });
-        let shape = Shape::Ring {
-            joints_rad: arch.voussoirs().map_or_else(Vec::new, |n| ring.sections(n)),
-            ring,
-            mean_radius_m,
-        };
-        Self::bare(shape, sections.collect())
-    }
-
-    /// A column that rocks as one block.
-    fn of_column(column: &Column) -> Self {
-        let (half_m, height_m) = (0.5 * column.width_m(), column.height_m());
-        let corners = [
-            (-half_m, 0.0),
-            (-half_m, height_m),
-            (half_m, height_m),
-            (half_m, 0.0),
-        ];
-        let sections = column.thrust_sections_m().into_iter();
-        let sections = sections.map(|height_m| Section {
-            middle_m: Vector2::new(0.0, height_m),
-            across_m: Vector2::new(column.width_m(), 0.0),
-            angle_rad: None,
-        });
-        let outline_m = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
-        Self::bare(Shape::Block { outline_m }, sections.collect())
-    }
-
     /// A row of blocks.
     #[must_use]
     pub fn of_row(row: &Row) -> Self {
-        Self::of_blocks(row, false)
-    }
-
-    fn of_blocks(row: &Row, linked: bool) -> Self {
-        let sections = row.joints().iter().map(|joint| Section {
-            middle_m: joint.middle_m(),
-            across_m: joint.extrados_m - joint.intrados_m,
-            angle_rad: None,
-        });
-        let shape = Shape::Row {
-            outlines_m: row.outlines_m().to_vec(),
-            linked,
-        };
         Self {
             ties: row.ties().to_vec(),
-            ..Self::bare(shape, sections.collect())
+            ..Self::bare(row)
         }
     }
 
@@ -301,7 +221,7 @@ impl Scene {
     /// The ends of the ties when these hinges are open.
     #[must_use]
     pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[Mark; 2]> {
-        let linked = matches!(self.shape, Shape::Row { linked: true, .. });
+        let linked = self.linked;
         let body = |block| {
             if linked {
                 linked_body(hinges, block)
@@ -326,10 +246,10 @@ impl Scene {
     /// as large; empty for a column, which stands on the ground.
     #[must_use]
     pub fn supports_m(&self, exaggeration: f64) -> Vec<[Vector2<f64>; 2]> {
-        let is_arch = match &self.shape {
-            Shape::Ring { .. } => true,
-            Shape::Block { .. } => false,
-            Shape::Row { outlines_m, .. } => self.sections.len() > outlines_m.len(),
+        let is_arch = match &self.outline {
+            Outline::Ring { .. } => true,
+            Outline::Block { .. } => false,
+            Outline::Row { outlines_m } => self.sections.len() > outlines_m.len(),
         };
         let ends = [self.sections.first(), self.sections.last()];
         let faces = ends.into_iter().zip(&self.supports);
@@ -444,8 +364,8 @@ impl Scene {
     /// hinges open anywhere.
     #[must_use]
     pub fn joints_m(&self) -> Vec<[Vector2<f64>; 2]> {
-        match &self.shape {
-            Shape::Ring {
+        match &self.outline {
+            Outline::Ring {
                 ring,
                 mean_radius_m,
                 joints_rad,
@@ -456,8 +376,8 @@ impl Scene {
                 };
                 joints_rad.iter().map(ends).collect()
             }
-            Shape::Block { .. } => Vec::new(),
-            Shape::Row { .. } => (0..)
+            Outline::Block { .. } => Vec::new(),
+            Outline::Row { .. } => (0..)
                 .map_while(|joint| self.corners(joint))
                 .map(|corners| corners.map(|corner| corner.moved(&self.stands.0, 1.0)))
                 .collect(),
@@ -466,8 +386,8 @@ impl Scene {
 
     /// The body that a block of a row is part of when these hinges are open.
     fn body_of(&self, block: usize, hinges: &[OpenHinge]) -> Option<usize> {
-        match self.shape {
-            Shape::Row { linked: true, .. } => linked_body(hinges, block),
+        match self.outline {
+            Outline::Row { .. } if self.linked => linked_body(hinges, block),
             _ => Some(block),
         }
     }
@@ -475,12 +395,12 @@ impl Scene {
     /// The bodies cut into pieces while these hinges are open. A ring is cut at its hinges and its joints.
     #[must_use]
     pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
-        match &self.shape {
-            Shape::Block { outline_m } => vec![Piece {
+        match &self.outline {
+            Outline::Block { outline_m } => vec![Piece {
                 body: Some(0),
                 outline_m: outline_m.clone(),
             }],
-            Shape::Row { outlines_m, .. } => {
+            Outline::Row { outlines_m } => {
                 let outlines = outlines_m.iter().enumerate();
                 outlines
                     .map(|(block, outline_m)| Piece {
@@ -489,7 +409,7 @@ impl Scene {
                     })
                     .collect()
             }
-            Shape::Ring {
+            Outline::Ring {
                 ring,
                 mean_radius_m,
                 joints_rad,
@@ -517,10 +437,10 @@ impl Scene {
     #[must_use]
     pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<Mark> {
         let hinges = hinges.iter().enumerate();
-        let marks = hinges.filter_map(|(index, open)| match (open.hinge, &self.shape) {
+        let marks = hinges.filter_map(|(index, open)| match (open.hinge, &self.outline) {
             (
                 Hinge::Section { angle_rad, edge },
-                Shape::Ring {
+                Outline::Ring {
                     ring,
                     mean_radius_m,
                     ..
@@ -530,7 +450,7 @@ impl Scene {
                 body: (index < LINKS).then_some(index),
                 at_m: ring.point(angle_rad, edge) * *mean_radius_m,
             }),
-            (Hinge::Toe(side), Shape::Block { outline_m }) => Some(Mark {
+            (Hinge::Toe(side), Outline::Block { outline_m }) => Some(Mark {
                 body: Some(0),
                 at_m: match side {
                     Sway::Left => outline_m[0],
@@ -542,13 +462,13 @@ impl Scene {
                     joint,
                     edge: Some(edge),
                 },
-                Shape::Row { linked, .. },
+                Outline::Row { .. },
             ) => self.corners(joint).map(|[intrados, extrados]| {
                 let mark = match edge {
                     Edge::Intrados => intrados,
                     Edge::Extrados => extrados,
                 };
-                if *linked {
+                if self.linked {
                     Mark {
                         body: (index < LINKS).then_some(index),
                         ..mark
@@ -566,14 +486,14 @@ impl Scene {
     /// blocks move as one body.
     #[must_use]
     pub fn joint(&self, joint: usize) -> Option<[Mark; 2]> {
-        match &self.shape {
-            Shape::Row { linked: false, .. } => self.corners(joint),
+        match &self.outline {
+            Outline::Row { .. } if !self.linked => self.corners(joint),
             _ => None,
         }
     }
 
     fn corners(&self, joint: usize) -> Option<[Mark; 2]> {
-        let Shape::Row { outlines_m, .. } = &self.shape else {
+        let Outline::Row { outlines_m } = &self.outline else {
             return None;
         };
         let Section {
@@ -619,7 +539,7 @@ impl Scene {
     /// Unit vector normal to an undeformed joint of a row, pointing into the block after it.
     #[must_use]
     pub fn across(&self, joint: usize) -> Option<Vector2<f64>> {
-        let Shape::Row { outlines_m, .. } = &self.shape else {
+        let Outline::Row { outlines_m } = &self.outline else {
             return None;
         };
         let Section {
@@ -644,10 +564,10 @@ impl Scene {
         sections
             .map(|(index, section)| match section.angle_rad {
                 Some(angle_rad) => link(&hinges_rad, angle_rad),
-                None => match self.shape {
-                    Shape::Block { .. } => Some(0),
-                    Shape::Row { linked: true, .. } => linked_body(hinges, index),
-                    Shape::Row { linked: false, .. } | Shape::Ring { .. } => {
+                None => match self.outline {
+                    Outline::Block { .. } => Some(0),
+                    Outline::Row { .. } if self.linked => linked_body(hinges, index),
+                    Outline::Row { .. } | Outline::Ring { .. } => {
                         self.joint(index).and_then(|[corner, _]| corner.body)
                     }
                 },
@@ -671,8 +591,8 @@ impl Scene {
         if away_m(&near_m) > BESIDE_RATIO * (high_m - low_m).amax() {
             return Err(near_m);
         }
-        let part = match &self.shape {
-            Shape::Ring { ring, .. } => {
+        let part = match &self.outline {
+            Outline::Ring { ring, .. } => {
                 let left = ring.radial(0.0);
                 let angle_rad = -left.perp(&at_m).atan2(left.dot(&at_m));
                 // Down to this angle a point lies just below the left springing; beyond, it has gone round the other way.
@@ -680,7 +600,7 @@ impl Scene {
                 let turns = if angle_rad < before_rad { TAU } else { 0.0 };
                 Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad()))
             }
-            Shape::Block { .. } | Shape::Row { .. } => Part::Block(index),
+            Outline::Block { .. } | Outline::Row { .. } => Part::Block(index),
         };
         Ok(Point { at_m, part })
     }
@@ -688,7 +608,7 @@ impl Scene {
     /// A point with the body that carries it while these hinges are open.
     #[must_use]
     pub fn mark(&self, point: &Point, hinges: &[OpenHinge]) -> Mark {
-        let body = match (point.part, &self.shape) {
+        let body = match (point.part, &self.outline) {
             (Part::Section(angle_rad), _) => link(&sections_rad(hinges), angle_rad),
             (Part::Block(block), _) => self.body_of(block, hinges),
         };

@@ -14,11 +14,11 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
-use crate::output::dimensions::Side;
 use crate::output::elevation::{self, FILL, FILL_LINE, draw_dimensions, draw_load, room_px};
 use crate::output::figure::text_px;
 use crate::output::scene::Scene;
 use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
+use crate::scenario::DimensionSide;
 
 /// Fraction of the way to the limit position at which a mechanism is drawn, so that it is visibly open.
 const DRAWN_PART: f64 = 0.25;
@@ -365,7 +365,7 @@ fn draw_limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>)
          turns",
         first.name()
     );
-    let below = left.bottom + sizes_px(scene, Side::Below);
+    let below = left.bottom + sizes_px(scene, DimensionSide::Below);
     let first_end = cells.caption(&mut drawing, middle, below, &text);
 
     let (right, middle) = cells.second(top, first_end);
@@ -392,7 +392,7 @@ struct Cells<'a> {
 }
 
 /// Room for the dimensions on a side, in pixels.
-fn sizes_px(scene: Option<&Scene>, side: Side) -> f64 {
+fn sizes_px(scene: Option<&Scene>, side: DimensionSide) -> f64 {
     scene.map_or(0.0, |scene| room_px(scene, side))
 }
 
@@ -425,7 +425,7 @@ impl<'a> Cells<'a> {
             chain,
             first,
             width: figure.width_px() / if side_by_side { 2.0 } else { 1.0 },
-            beside: [Side::Left, Side::Right].map(|side| sizes_px(chain.1, side)),
+            beside: [DimensionSide::Left, DimensionSide::Right].map(|side| sizes_px(chain.1, side)),
             side_by_side,
         }
     }
@@ -521,8 +521,12 @@ fn draw_impact(
     let second_end = cells.caption(&mut drawing, middle, place.bottom, &text);
 
     let lower_top = first_end.max(second_end) + ABOVE_PX + 14.0;
-    let [left, right, below] =
-        [Side::Left, Side::Right, Side::Below].map(|side| sizes_px(scene.filter(|_| wide), side));
+    let [left, right, below] = [
+        DimensionSide::Left,
+        DimensionSide::Right,
+        DimensionSide::Below,
+    ]
+    .map(|side| sizes_px(scene.filter(|_| wide), side));
     let width = (0.71 * figure.width_px()).min(figure.width_px() - left - right);
     let width = figure.squeezed_px(width);
     let middle = 0.5 * (figure.width_px() + left - right);

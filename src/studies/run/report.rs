@@ -25,12 +25,12 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
-use crate::output::dimensions::{Side, described, metres};
 use crate::output::envelope::Envelope;
 use crate::output::ground::curve_g;
 use crate::output::page::{escaped, filled, script_safe};
 use crate::output::scene::{FARTHEST, Mark, Piece, Scene};
 use crate::scenario::Scenario;
+use crate::scenario::{DimensionSide, metres};
 
 /// Largest size of the frames of a page, in bytes.
 const FRAME_BYTES: usize = 280_000;
@@ -158,7 +158,7 @@ impl Report {
         frames.extend(self.fall.frames());
         let what = format!(
             "{}; {}",
-            described(scenario.structure()),
+            scenario.structure().described(),
             ground_in_words(scenario)
         );
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
@@ -238,9 +238,9 @@ impl Report {
         let dimensions = self.scene.dimensions().iter().map(|dimension| {
             let [from, to] = dimension.ends_m;
             let side = match dimension.side {
-                Side::Below => "below",
-                Side::Left => "left",
-                Side::Right => "right",
+                DimensionSide::Below => "below",
+                DimensionSide::Left => "left",
+                DimensionSide::Right => "right",
             };
             json!({ "ends_m": [from.x, from.y, to.x, to.y], "side": side, "text": dimension.text })
         });

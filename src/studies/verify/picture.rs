@@ -7,10 +7,10 @@ use nalgebra::Vector2;
 use super::{Check, Mechanism, StateCheck, Way};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::field::turned;
-use crate::output::dimensions::Side;
 use crate::output::elevation::{Place, TIE, draw_carried, draw_dimensions, room_px};
 use crate::output::scene::{Piece, Scene};
 use crate::output::svg::{Anchor, Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use crate::scenario::DimensionSide;
 use crate::scenario::{LimitState, Structure};
 
 /// Colours of the bodies, one after another.
@@ -25,7 +25,8 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
     let scene = Scene::new(structure);
     let [low, high] = scene.frame_m();
     let size = high - low;
-    let [left, right] = [Side::Left, Side::Right].map(|side| room_px(&scene, side).max(40.0));
+    let [left, right] =
+        [DimensionSide::Left, DimensionSide::Right].map(|side| room_px(&scene, side).max(40.0));
     let width_px = figure.width_px() - left - right;
     let tall_px = figure.height_px(420.0);
     let scale = (width_px / size.x).min(tall_px / size.y);
@@ -93,7 +94,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
         let label = at + Vector2::new(side, if away.y < 0.0 { -3.0 } else { 15.0 });
         drawing.label(label, Anchor::Middle, 0.0, &name.to_string());
     }
-    drawing.finish(top + scale * size.y + room_px(&scene, Side::Below).max(26.0))
+    drawing.finish(top + scale * size.y + room_px(&scene, DimensionSide::Below).max(26.0))
 }
 
 fn pieces(structure: &Structure, mechanism: &Mechanism) -> Vec<Piece> {

@@ -1,5 +1,11 @@
 //! The structure on the ground: an arch, blocks, or `[column]`.
 
+mod caption;
+mod dimensions;
+
+pub(crate) use caption::four_digits;
+pub use dimensions::{Dimension, DimensionSide, metres};
+
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
@@ -24,7 +30,7 @@ use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
 use crate::mechanics::four_link::row::FourLinkRow;
-use crate::mechanics::masonry::{CircularArch, Masonry, Shape};
+use crate::mechanics::masonry::{Carried, CircularArch, Masonry, PlacedLoad, Shape};
 use crate::mechanics::parts::Parts;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::Tie;
@@ -162,6 +168,15 @@ impl Structure {
             Self::Arch(arch) => arch,
             Self::Column(column) => column,
             Self::Masonry(masonry) => masonry.row(),
+        }
+    }
+
+    /// What it carries, as it is drawn, with its loads; `None` where there can be nothing.
+    #[must_use]
+    pub fn carries(&self) -> Option<(&Carried, &[PlacedLoad])> {
+        match self {
+            Self::Arch(_) | Self::Column(_) => None,
+            Self::Masonry(masonry) => Some((masonry.carried(), masonry.loads())),
         }
     }
 

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector2;
 
+use super::Structure;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::column::Column;
 use crate::mechanics::masonry::{FillLevel, Masonry, Pier, Shape};
-use crate::scenario::Structure;
 
 /// A length of a structure.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Dimension {
     /// Its ends, in metres: of a width from left to right, of a height from below.
     pub ends_m: [Vector2<f64>; 2],
     /// Where it is drawn.
-    pub side: Side,
+    pub side: DimensionSide,
     /// Its value, with a name where its place does not tell which it is.
     pub text: String,
     /// Its name and value.
@@ -22,7 +22,7 @@ pub struct Dimension {
 
 /// Where a dimension is drawn: outside the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum DimensionSide {
     /// A width.
     Below,
     /// A height.
@@ -33,7 +33,7 @@ pub enum Side {
 
 impl Dimension {
     /// A dimension that has its name beside it.
-    fn named(side: Side, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
+    fn named(side: DimensionSide, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
         let own = Self::plain(side, ends_m, name);
         Self {
             text: own.words.clone(),
@@ -42,11 +42,11 @@ impl Dimension {
     }
 
     /// A dimension whose place tells which it is.
-    fn plain(side: Side, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
+    fn plain(side: DimensionSide, ends_m: [Vector2<f64>; 2], name: &str) -> Self {
         let [from, to] = ends_m;
         let length_m = match side {
-            Side::Below => to.x - from.x,
-            Side::Left | Side::Right => to.y - from.y,
+            DimensionSide::Below => to.x - from.x,
+            DimensionSide::Left | DimensionSide::Right => to.y - from.y,
         };
         let text = format!("{} m", metres(length_m));
         let words = format!("{name} {text}");
@@ -70,12 +70,43 @@ pub fn metres(length_m: f64) -> String {
     rounded.to_string()
 }
 
-/// The dimensions of a structure.
-pub(super) fn dimensions(structure: &Structure) -> Vec<Dimension> {
-    match structure {
-        Structure::Arch(arch) => of_arch(arch),
-        Structure::Column(column) => of_column(column),
-        Structure::Masonry(masonry) => of_masonry(masonry),
+impl Structure {
+    /// Its dimensions.
+    #[must_use]
+    pub fn dimensions(&self) -> Vec<Dimension> {
+        match self {
+            Self::Arch(arch) => of_arch(arch),
+            Self::Column(column) => of_column(column),
+            Self::Masonry(masonry) => of_masonry(masonry),
+        }
+    }
+
+    /// The structure in words, with what its drawing does not tell.
+    #[must_use]
+    pub fn described(&self) -> String {
+        let (depth_m, density_kg_m3) = self.depth_and_density();
+        let mut parts = Vec::new();
+        match self {
+            Self::Arch(arch) => {
+                let thick_m = arch.mean_radius_m() * arch.thickness_ratio();
+                parts.push(format!(
+                    "circular arch of {} degrees, {} m thick",
+                    metres(arch.embrace_deg()),
+                    metres(thick_m)
+                ));
+                if let Some(voussoirs) = arch.voussoirs() {
+                    parts.push(format!("{voussoirs} voussoirs"));
+                }
+            }
+            Self::Column(_) => parts.push("column".to_owned()),
+            Self::Masonry(masonry) => parts.extend(of_masonry_in_words(masonry)),
+        }
+        parts.push(format!(
+            "{} m deep, {} kg/m3",
+            metres(depth_m),
+            metres(density_kg_m3)
+        ));
+        parts.join("; ")
     }
 }
 
@@ -84,8 +115,8 @@ fn of_arch(arch: &Arch) -> Vec<Dimension> {
     let ends = [0.0, ring.embrace_rad()].map(|angle_rad| ring.radial(angle_rad) * radius_m);
     let crown = Vector2::new(ends[0].x, radius_m);
     vec![
-        Dimension::named(Side::Below, ends, "span"),
-        Dimension::named(Side::Left, [ends[0], crown], "rise"),
+        Dimension::named(DimensionSide::Below, ends, "span"),
+        Dimension::named(DimensionSide::Left, [ends[0], crown], "rise"),
     ]
 }
 
@@ -94,8 +125,8 @@ fn of_column(column: &Column) -> Vec<Dimension> {
     let [left, right] = [-half_m, half_m].map(|x| Vector2::new(x, 0.0));
     let top = Vector2::new(-half_m, column.height_m());
     vec![
-        Dimension::plain(Side::Below, [left, right], "width"),
-        Dimension::plain(Side::Left, [left, top], "height"),
+        Dimension::plain(DimensionSide::Below, [left, right], "width"),
+        Dimension::plain(DimensionSide::Left, [left, top], "height"),
     ]
 }
 
@@ -107,8 +138,16 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
             [low.inf(corner), high.sup(corner)]
         });
         return vec![
-            Dimension::plain(Side::Below, [low, Vector2::new(high.x, low.y)], "width"),
-            Dimension::plain(Side::Left, [low, Vector2::new(low.x, high.y)], "height"),
+            Dimension::plain(
+                DimensionSide::Below,
+                [low, Vector2::new(high.x, low.y)],
+                "width",
+            ),
+            Dimension::plain(
+                DimensionSide::Left,
+                [low, Vector2::new(low.x, high.y)],
+                "height",
+            ),
         ];
     };
     let ends = [left.middle_m(), right.middle_m()];
@@ -123,16 +162,20 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     };
     let crown = Vector2::new(ends[0].x, ends[0].y + rise_m);
     let mut dimensions = vec![
-        Dimension::named(Side::Below, ends, "span"),
-        Dimension::named(Side::Left, [ends[0], crown], "rise"),
+        Dimension::named(DimensionSide::Below, ends, "span"),
+        Dimension::named(DimensionSide::Left, [ends[0], crown], "rise"),
     ];
     let piers = [
-        (masonry.piers().left, left.intrados_m, Side::Left),
-        (masonry.piers().right, right.intrados_m, Side::Right),
+        (masonry.piers().left, left.intrados_m, DimensionSide::Left),
+        (
+            masonry.piers().right,
+            right.intrados_m,
+            DimensionSide::Right,
+        ),
     ];
     let same = masonry.piers().left == masonry.piers().right;
     for (pier, inner, side) in piers {
-        let Some(pier) = pier.filter(|_| !(same && side == Side::Right)) else {
+        let Some(pier) = pier.filter(|_| !(same && side == DimensionSide::Right)) else {
             continue;
         };
         dimensions.extend(of_pier(&pier, inner, side));
@@ -145,50 +188,22 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     if let Some(level_m) = level_m {
         let from = right.extrados_m;
         let to = Vector2::new(from.x, level_m);
-        dimensions.push(Dimension::named(Side::Right, [from, to], "fill"));
+        dimensions.push(Dimension::named(DimensionSide::Right, [from, to], "fill"));
     }
     dimensions
 }
 
 /// Height and width of a pier, whose inner corner at the springing is given.
-fn of_pier(pier: &Pier, inner: Vector2<f64>, side: Side) -> [Dimension; 2] {
+fn of_pier(pier: &Pier, inner: Vector2<f64>, side: DimensionSide) -> [Dimension; 2] {
     let foot = inner - Vector2::new(0.0, pier.height_m);
     let base = match side {
-        Side::Left => [foot - Vector2::new(pier.width_m, 0.0), foot],
+        DimensionSide::Left => [foot - Vector2::new(pier.width_m, 0.0), foot],
         _ => [foot, foot + Vector2::new(pier.width_m, 0.0)],
     };
     [
         Dimension::plain(side, [foot, inner], "pier height"),
-        Dimension::plain(Side::Below, base, "pier width"),
+        Dimension::plain(DimensionSide::Below, base, "pier width"),
     ]
-}
-
-/// A structure in words, with what its drawing does not tell.
-#[must_use]
-pub fn described(structure: &Structure) -> String {
-    let (depth_m, density_kg_m3) = structure.depth_and_density();
-    let mut parts = Vec::new();
-    match structure {
-        Structure::Arch(arch) => {
-            let thick_m = arch.mean_radius_m() * arch.thickness_ratio();
-            parts.push(format!(
-                "circular arch of {} degrees, {} m thick",
-                metres(arch.embrace_deg()),
-                metres(thick_m)
-            ));
-            if let Some(voussoirs) = arch.voussoirs() {
-                parts.push(format!("{voussoirs} voussoirs"));
-            }
-        }
-        Structure::Column(_) => parts.push("column".to_owned()),
-        Structure::Masonry(masonry) => parts.extend(of_masonry_in_words(masonry)),
-    }
-    parts.push(format!(
-        "{} m deep, {} kg/m3",
-        metres(depth_m),
-        metres(density_kg_m3)
-    ));
-    parts.join("; ")
 }
 
 fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
