@@ -6,13 +6,13 @@ use std::f64::consts::PI;
 
 use archrock::dynamics::free_hinges::{Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::internals::contact::{Load, Program};
+use archrock::internals::joints::Placement;
 use archrock::mechanics::blocks::Row;
-use archrock::mechanics::contact::{Load, Program};
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::Ring;
-use archrock::mechanics::joints::Placement;
 use archrock::scenario::Scenario;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::runner::Study as _;

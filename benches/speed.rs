@@ -5,8 +5,8 @@
 
 use std::sync::LazyLock;
 
-use archrock::dynamics::hybrid::engine::HybridSystem;
-use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
+use archrock::internals::hybrid::engine::HybridSystem;
+use archrock::internals::hybrid::rocking::{Rocking, RockingState};
 use archrock::{
     Arch, FourLinkArch, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sway,
 };

@@ -9,9 +9,7 @@
 
 use std::ops::ControlFlow;
 
-use archrock::studies::map::{CellResult, OverturningMap};
-use archrock::studies::runner::Runner;
-use archrock::{Outcome, Scenario};
+use archrock::{CellResult, Outcome, OverturningMap, Runner, Scenario};
 
 const SCENARIO: &str = r#"
 [arch]

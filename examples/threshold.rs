@@ -5,10 +5,9 @@
 
 use std::ops::ControlFlow;
 
-use archrock::studies::threshold::thresholds;
 use archrock::{
     Column, Factors, FreeHinges, GroundMotion, ImpactModel, Model, Pulse, Request, RockingColumn,
-    Runner,
+    Runner, thresholds,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

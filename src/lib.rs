@@ -18,8 +18,8 @@
 //!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms through which
 //!   impacts lead, and the certificate of its restitution; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
 //! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
-//!   their histories ([`dynamics::history`]); mechanisms with one degree of freedom at a time
-//!   ([`dynamics::hybrid`]), and rows of blocks ([`dynamics::free_hinges`]).
+//!   their histories ([`dynamics::history`]); rows of blocks on rigid joints ([`dynamics::free_hinges`]) and on joints that give way
+//!   ([`dynamics::elastic_joints`]).
 //! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
@@ -79,6 +79,32 @@ pub mod output;
 pub mod scenario;
 pub mod studies;
 
+/// What tests and benchmarks reach below the models of motion. It is not for users, and may change with any release.
+#[doc(hidden)]
+pub mod internals {
+    pub mod complementarity {
+        pub use crate::mechanics::complementarity::*;
+    }
+    pub mod contact {
+        pub use crate::mechanics::contact::*;
+    }
+    pub mod coulomb {
+        pub use crate::mechanics::coulomb::*;
+    }
+    pub mod hybrid {
+        pub use crate::dynamics::hybrid::*;
+    }
+    pub mod joints {
+        pub use crate::mechanics::joints::*;
+    }
+    pub mod lanes {
+        pub use crate::mechanics::lanes::*;
+    }
+    pub mod slip {
+        pub use crate::mechanics::slip::*;
+    }
+}
+
 pub use argument::ArgumentError;
 pub use dynamics::elastic_joints::{ElasticJoints, ElasticJointsError, ElasticOptions};
 pub use dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
@@ -105,6 +131,6 @@ pub use mechanics::geometry::pose::Pose;
 pub use mechanics::masonry::Masonry;
 pub use mechanics::sway::Sway;
 pub use scenario::{Scenario, Structure};
-pub use studies::map::OverturningMap;
+pub use studies::map::{CellResult, OverturningMap};
 pub use studies::runner::Runner;
-pub use studies::threshold::{Factors, Threshold};
+pub use studies::threshold::{Factors, Threshold, thresholds};

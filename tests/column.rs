@@ -3,8 +3,8 @@
 use crate::common::pulse;
 use std::f64::consts::PI;
 
-use archrock::dynamics::hybrid::engine::{EngineError, Observer, Settings, simulate};
-use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
+use archrock::internals::hybrid::engine::{EngineError, Observer, Settings, simulate};
+use archrock::internals::hybrid::rocking::{Rocking, RockingState};
 use archrock::mechanics::chain::MechanismChain as _;
 use archrock::{
     Column, EventKind, GroundMotion, History, ImpactModel, Initial, Model as _, Outcome, Pulse,

@@ -1,9 +1,9 @@
 //! A single elastic joint: forces from its energy, conservation of momenta, and stresses compared with sums over many points.
 
+use archrock::internals::lanes::Lanes;
 use archrock::mechanics::elastic_joint::{
     Body, ElasticJoint, ElasticStructure, Fibre, Link, Memory, Place,
 };
-use archrock::mechanics::lanes::Lanes;
 use archrock::{Contact, ElasticProperties};
 
 const ALONG: [f64; 2] = [0.6, 0.8];

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use archrock::mechanics::lanes::Lanes;
+use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::{Drum, Row, Supports};
 use archrock::mechanics::elastic_joint::{ElasticStructure, Place, RestError};
 use archrock::mechanics::geometry::ring::Ring;

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::program::{printed, refused};
 use crate::results::{self, Table};
+use archrock::internals::contact::{Load, Program};
 use archrock::mechanics::blocks::Row;
-use archrock::mechanics::contact::{Load, Program};
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::field::{Field, Side, Twist};
 use archrock::scenario::Structure;

@@ -8,7 +8,7 @@ use crate::common::{
     GRAVITY, four_links, number, run, run_sampled, sampled, semicircle, seven_voussoirs,
 };
 use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::hybrid::rocking::{Rocking, RockingState};
+use archrock::internals::hybrid::rocking::{Rocking, RockingState};
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::Ring;

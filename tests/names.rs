@@ -172,3 +172,41 @@ fn names_of_scenarios_are_shown_escaped() {
     fs::write(folder.path().join(name), format!("{ARCH}{PULSE}")).unwrap();
     assert_legible("run", &printed(folder.path(), &["run", name]));
 }
+
+/// What only tests need is behind one hidden module, which no example and no page shows.
+#[test]
+fn one_module_is_hidden_from_users() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut folders = ["src", "examples", "docs"]
+        .map(|folder| root.join(folder))
+        .to_vec();
+    let (mut hidden, mut read) = (Vec::new(), 0);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let Ok(text) = fs::read_to_string(&path) else {
+                continue;
+            };
+            read += 1;
+            let path = path.strip_prefix(root).unwrap().to_path_buf();
+            hidden.extend(text.matches("doc(hidden)").map(|_| path.clone()));
+            // Examples need what the root of the crate shows, and no more.
+            let deeper = ["studies", "dynamics", "mechanics", "scenario", "output"];
+            let deeper = deeper.map(|module| format!("archrock::{module}"));
+            let example = path.starts_with("examples");
+            assert!(
+                !example || deeper.iter().all(|name| !text.contains(name)),
+                "{}",
+                path.display()
+            );
+            let own = path == Path::new("docs/architecture.md");
+            assert!(own || !text.contains("internals::"), "{}", path.display());
+        }
+    }
+    assert!(read > 100, "{read} files");
+    assert_eq!(hidden, [Path::new("src/lib.rs")]);
+}

@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::three;
-use archrock::dynamics::hybrid::rocking::Rocking;
+use archrock::internals::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{

@@ -14,7 +14,7 @@ use crate::program::{archrock, printed, refused, stderr, stdout};
 use crate::results::{Row, Table};
 use archrock::dynamics::history::Cost;
 use archrock::dynamics::model::Repetition;
-use archrock::dynamics::hybrid::engine::EngineError;
+use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;
 use archrock::studies::ending::Verdict;
 use archrock::studies::runner::{Progress, Runner, RunnerError};

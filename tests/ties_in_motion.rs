@@ -8,8 +8,8 @@ use crate::common::{parsed, pulse, run_sampled, sampled};
 use crate::program::{done, printed, refused, says_what_it_shows, scenarios};
 use crate::results::{Table, named};
 use archrock::dynamics::history::EventKind;
+use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::{Drum, Row};
-use archrock::mechanics::lanes::Lanes;
 use archrock::mechanics::tie::{Anchor, Tie, TieMemory};
 use archrock::{
     Contact, ElasticJoints, ElasticOptions, ElasticProperties, FreeHinges, GroundMotion,

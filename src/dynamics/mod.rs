@@ -5,9 +5,7 @@ pub mod fall;
 pub mod free_hinges;
 pub mod ground;
 pub mod history;
-// Public for the tests and benchmarks of the engine; models are simulated through `model`.
-#[doc(hidden)]
-pub mod hybrid;
+pub(crate) mod hybrid;
 pub mod model;
 mod row;
 pub mod spread;

@@ -5,7 +5,7 @@
 //! free-standing stack, in which left and right are below and above. A joint is a plane face from its
 //! *intrados* corner to its *extrados* corner; in a stack these are the left and the right corner of a bed.
 //!
-//! Nothing here moves: [`super::joints`] places the blocks, [`super::contact`] finds their velocities.
+//! Nothing here moves: `joints` places the blocks, `contact` finds their velocities.
 
 use std::ops::Add;
 

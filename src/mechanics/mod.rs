@@ -4,27 +4,20 @@ pub mod blocks;
 pub mod capacity;
 pub mod chain;
 pub mod column;
-// Internals of rows of blocks, public for tests only.
-#[doc(hidden)]
-pub mod complementarity;
-#[doc(hidden)]
-pub mod contact;
-#[doc(hidden)]
-pub mod coulomb;
+pub(crate) mod complementarity;
+pub(crate) mod contact;
+pub(crate) mod coulomb;
 pub mod elastic_joint;
 pub mod equivalent;
 pub mod four_link;
 pub mod friction;
 pub mod geometry;
-#[doc(hidden)]
-pub mod joints;
-#[doc(hidden)]
-pub mod lanes;
+pub(crate) mod joints;
+pub(crate) mod lanes;
 pub mod masonry;
 pub mod parts;
 pub mod settling;
-#[doc(hidden)]
-pub mod slip;
+pub(crate) mod slip;
 pub mod stability;
 #[doc(hidden)]
 pub mod stance;

@@ -1,7 +1,7 @@
 //! Whether a row stands, and the push that starts it, by limit analysis with any number of hinges.
 //!
 //! A row gives way under a load per unit mass if the velocities nearest to that load, among those that its
-//! joints allow, are not zero ([`super::contact`]). These velocities then form a mechanism, and the load at
+//! joints allow, are not zero (`contact`). These velocities then form a mechanism, and the load at
 //! which it just does no work is an upper bound of the strength. Under that load the row either stands, and the
 //! bound is the strength, or another mechanism lowers the bound. There are finitely many mechanisms, and the
 //! bounds fall fast (Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967): it takes
