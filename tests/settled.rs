@@ -274,6 +274,12 @@ fn only_the_movement_of_one_springing_against_the_other_counts() {
     assert!(largest(&built.concat()) > 1e-2);
     // Places differ by their rounding, some 1e-16 of a metre and a half.
     assert!(apart(&built, &as_one, 25) < 1e-11);
+    let far = Movements {
+        left: movement(-20.0, 8.0, 0.0),
+        right: movement(20.0, 8.0, 0.0),
+    };
+    // And 1e-14 of a hundred.
+    assert!(apart(&built, &pushed(&far, 0.5, Sway::Right), 25) < 1e-9);
     let first = motion(&moved, Sway::Right);
     let elsewhere = motion(&shifted, Sway::Right);
     let mut image = motion(&mirrored, Sway::Left);

@@ -934,6 +934,19 @@ fn all_numbers_may_be_uncertain() {
              yield_stress_mpa = 235.0\nbreaks_at_strain = 0.05\n[[tie]]\nfrom_m = [-4.95, 1.0]\nto_m = [4.95, 1.0]\n\
              stiffness_n_m = 1e6\nyield_force_n = 1e4\n[free_hinges]\n"
         ),
+        // Blocks from a file.
+        "[blocks]\njoints = 'scenarios/straight-sided-voussoirs.csv'\ndepth_m = 1.2\ndensity_kg_m3 = 2700.0\n[free_hinges]\n".to_owned(),
+        "[blocks]\njoints = 'scenarios/straight-sided-voussoirs.csv'\ndensity_kg_m3 = 2700.0\n\
+         [elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.right]\ndelay_s = 0.05\n"
+            .to_owned(),
+        // Feet that move differently.
+        format!(
+            "{ARCH}voussoirs = 9\n[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.right]\napparent_velocity_m_s = 300.0\n"
+        ),
+        format!(
+            "{ARCH}voussoirs = 9\n[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.right.record]\nfile = 'scenarios/synthetic.at2'\n\
+             scale = 0.5\nstart_s = 0.1\n"
+        ),
         format!("{ARCH}[initial]\nsway = 'right'\nrotation_rad = 0.01\n[impact]\nrestitution_factor = 0.9\n"),
         format!("[pointed_arch]\nspan_m = 4.0\nrise_m = 3.0\n{voussoirs}[free_hinges]\n"),
         format!("[elliptic_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
@@ -1021,6 +1034,7 @@ fn all_numbers_may_be_uncertain() {
         "between",
         "model",
         "sway",
+        "record",
     ];
     let reference = document("scenario.md");
     for (heading, table) in [
@@ -1032,6 +1046,7 @@ fn all_numbers_may_be_uncertain() {
         ("supports.right", "supports"),
         ("[tie]", "tie"),
         ("ground.<kind>", "ground"),
+        ("ground.right", "ground"),
         ("impact", "impact"),
         ("initial", "initial"),
         ("simulation", "simulation"),

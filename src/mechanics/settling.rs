@@ -27,10 +27,10 @@ use super::blocks::{Row, Supports};
 use super::contact::ContactError;
 use super::geometry::pose::Pose;
 use super::joints::Placement;
-use super::stability::{StabilityError, onset_at};
+use super::stability::{StabilityError, falls_at, onset_at};
 use super::stance::Stance;
 use super::sway::Sway;
-use crate::bisection::{Width, bisect};
+use crate::bisection::{Width, bisect, try_bisect};
 
 /// A way is gone in steps of this part of the row's size, of a radian, or of gravity.
 const STEP: f64 = 1e-3;
@@ -117,12 +117,12 @@ impl Movements {
         *self == Self::default()
     }
 
-    /// Whether both supports of a row of this size have moved alike, without turning, but for rounding.
-    fn are_one_translation(&self, size_m: f64) -> bool {
-        let [left, right] = self.displacements();
-        let apart_m = (left[0] - right[0]).hypot(left[1] - right[1]);
-        let gone_m = left[0].hypot(left[1]);
-        apart_m <= ROUNDING * size_m.max(gone_m) && left[2] == 0.0 && right[2] == 0.0
+    /// Whether both supports of a row have moved as one body, but for rounding.
+    fn are_one_motion(&self, row: &Row) -> bool {
+        let [left, right] = self.poses(row);
+        let gone_m = left.translation.norm().max(row.size_m());
+        (left.translation - right.translation).norm() <= ROUNDING * gone_m
+            && (left.rotation_rad() - right.rotation_rad()).abs() <= ROUNDING
     }
 
     /// Displacements to the right and upwards, in metres, and rotations of the left and the right support.
@@ -312,18 +312,39 @@ impl<'a> Follower<'a> {
         if extent == 0.0 {
             return Ok(Reached::End);
         }
-        // Moved along as a whole it is as it was.
-        if self.hinges.is_none() && last.are_one_translation(row.size_m()) {
-            self.condition.supports = last.poses(row);
-            self.stance.placement.move_supports(self.condition.supports);
-            self.stance.placement.open(|_| [0.0; 2]);
-            return Ok(Reached::End);
+        if self.hinges.is_none() && last.are_one_motion(row) {
+            return Ok(self.move_along(&movements, [from, to])?);
         }
         let way = |at: f64| Condition {
             supports: movements(at).poses(row),
             force_g,
         };
         self.follow(&way, [from, to], (to - from) / extent)
+    }
+
+    /// Moves the undeformed row along as a whole, the left foot in a straight line: it is as it was, until gravity on what has turned opens
+    /// its joints.
+    fn move_along(
+        &mut self,
+        movements: &impl Fn(f64) -> Movements,
+        [from, to]: [f64; 2],
+    ) -> Result<Reached, ContactError> {
+        let row = self.row;
+        let there = |part: f64| {
+            let [pose, _] = movements(part).poses(row);
+            let mut stance = Stance::undeformed(row);
+            stance.placement.move_supports([pose; 2]);
+            stance.placement.open(|_| [0.0; 2]);
+            stance
+        };
+        let falls = |part: f64| falls_at(row, &there(part));
+        if falls(to)? {
+            let (last, _) = try_bisect(from, to, Width::Rounding, falls)?;
+            return Ok(Reached::Falls(last));
+        }
+        self.stance = there(to);
+        self.condition.supports = *self.stance.placement.support_poses();
+        Ok(Reached::End)
     }
 
     /// The push to a side, in units of gravity, that makes the row give way where it stands; `None` where none does. Zero where ties hold it
@@ -393,6 +414,10 @@ impl<'a> Follower<'a> {
             let next = (low + STEP * unit).min(to);
             if self.stands(&way(next)) {
                 low = next;
+                // What ties remember depends on the way.
+                if !self.row.ties().is_empty() {
+                    self.stand(&way(low));
+                }
                 continue;
             }
             let (last, _) = bisect(low, next, Width::Rounding, |at| !self.stands(&way(at)));

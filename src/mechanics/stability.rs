@@ -68,6 +68,15 @@ pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
         .map(|_| trial.openings()))
 }
 
+/// Whether a row that stands there falls under its own weight.
+///
+/// # Errors
+/// When the velocities under the weight are not found.
+pub fn falls_at(row: &Row, stance: &Stance) -> Result<bool, ContactError> {
+    let moves = Trial::new(row, stance).moves(Vector2::new(0.0, -1.0), true)?;
+    Ok(moves.is_some())
+}
+
 /// The least horizontal ground acceleration that starts the row swaying to a side, its ties pulling as they do at rest; `None` when no
 /// push moves it without sliding.
 ///

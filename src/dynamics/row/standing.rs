@@ -56,6 +56,18 @@ enum FirstMechanism {
     Base,
 }
 
+impl FirstMechanism {
+    fn of(row: &Row) -> Option<Self> {
+        match row.supports() {
+            Supports::Left => Some(Self::Base),
+            // The impact model is required, but not used: the first mechanism comes before any impact.
+            Supports::Both => FourLinkRow::new(row, ImpactModel::MaxRestitution)
+                .ok()
+                .map(Self::FourLinks),
+        }
+    }
+}
+
 impl RigidRow {
     /// A row, if it stands.
     ///
@@ -66,19 +78,12 @@ impl RigidRow {
             onset(&row, Sway::Right)?.map(|onset| onset.acceleration_g),
             onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
         ];
-        let first = match row.supports() {
-            Supports::Left => Some(FirstMechanism::Base),
-            // The impact model is required, but not used: the first mechanism comes before any impact.
-            Supports::Both => FourLinkRow::new(&row, ImpactModel::MaxRestitution)
-                .ok()
-                .map(FirstMechanism::FourLinks),
-        };
         Ok(Self {
+            first: FirstMechanism::of(&row),
             standing: Stance::undeformed(&row),
             row,
             incipient_g,
             with_friction_g: None,
-            first,
         })
     }
 
@@ -162,8 +167,12 @@ impl RigidRow {
         Ok(Self {
             incipient_g,
             with_friction_g: None,
-            first: self.first,
             standing: follower.stance().clone(),
+            // That of the blocks alone: energies are judged beside it.
+            first: match self.row.ties() {
+                [] => self.first,
+                _ => FirstMechanism::of(&self.row.clone().without_ties()),
+            },
             row: self.row,
         })
     }
@@ -172,16 +181,18 @@ impl RigidRow {
     /// not known.
     #[must_use]
     pub(in crate::dynamics) fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
-        if self.is_on_hinges() {
+        if self.is_on_hinges() || !self.row.ties().is_empty() {
             return None;
         }
         self.built_barrier_j(gravity_m_s2)
     }
 
-    /// Energy beside which errors of a motion's balance are judged, in J: the barrier, or that of the row as it was built. Where hinges are
-    /// open a small push sets it in a motion of hardly any energy.
+    /// Energy beside which errors of a motion's balance are judged, in J: the barrier, or that of the row as it was built, without its ties.
+    /// Where hinges are open a small push sets it in a motion of hardly any energy.
     pub(in crate::dynamics) fn energy_scale_j(&self, gravity_m_s2: f64) -> f64 {
-        self.built_barrier_j(gravity_m_s2).unwrap_or(0.0)
+        let known = self.is_on_hinges() || self.row.ties().is_empty();
+        let built_j = known.then(|| self.built_barrier_j(gravity_m_s2));
+        built_j.flatten().unwrap_or(0.0)
     }
 
     /// Whether it stands on hinges, of supports that have moved.
@@ -190,9 +201,6 @@ impl RigidRow {
     }
 
     fn built_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
-        if !self.row.ties().is_empty() {
-            return None;
-        }
         match &self.first {
             Some(FirstMechanism::FourLinks(row)) => {
                 let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));

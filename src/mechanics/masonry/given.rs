@@ -1,7 +1,7 @@
 //! Blocks of any shape, given by the corners of their joints.
 
 use nalgebra::Vector2;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use super::cut::{CutArch, Place};
@@ -71,6 +71,7 @@ pub struct GivenBlocks {
     /// Length out of plane, in metres.
     pub depth_m: f64,
     /// Densities in kg/m3: one for all, or one for each block.
+    #[serde(serialize_with = "one_or_more")]
     pub density_kg_m3: Vec<f64>,
     /// Both corners of every joint.
     #[serde(skip)]
@@ -80,10 +81,15 @@ pub struct GivenBlocks {
     pub outlines: Vec<(usize, Vec<Vector2<f64>>)>,
 }
 
-fn supports_name<S: serde::Serializer>(
-    supports: &Supports,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
+/// One number is written as such.
+fn one_or_more<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+    match numbers {
+        [one] => serializer.serialize_f64(*one),
+        all => serializer.collect_seq(all),
+    }
+}
+
+fn supports_name<S: Serializer>(supports: &Supports, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(supports.name())
 }
 
