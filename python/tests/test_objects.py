@@ -351,3 +351,35 @@ def test_tables_for_pandas(arch: Arch, pulse: Pulse) -> None:
         "energy_j",
     ]
     assert "rotation_rad" in simulate(Column(4.0, 0.8), Pulse.half_sine(0.5, 0.5), duration_s=0.5).to_pandas()
+
+
+def test_feet_springings_and_ties() -> None:
+    """What is given as keywords is what a file says: the right foot by a table or a record, springings that have moved, ties."""
+    arch = Structure(
+        arch={"mean_radius_m": 5.0, "thickness_ratio": 0.15, "embrace_deg": 180.0, "voussoirs": 12},
+        tie=[{"height_m": 2.0, "stiffness_n_m": 1e7, "prestress_n": 1e3}],
+    )
+    ground = Pulse.one_sine(amplitude_g=0.1, duration_s=0.2)
+    joints: dict[str, Any] = {"model": "elastic_joints", "normal_stiffness_gpa_m": 1.0, "duration_s": 0.3}
+    supports = {"right": {"spread_m": 0.02, "settlement_m": 0.01}}
+    late = Scenario.of(arch, ground, right={"delay_s": 0.05}, supports=supports, **joints)
+    text = (
+        "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 12\n"
+        "[[tie]]\nheight_m = 2.0\nstiffness_n_m = 1e7\nprestress_n = 1e3\n"
+        "[supports]\nright = { spread_m = 0.02, settlement_m = 0.01 }\n"
+        "[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.2\n[ground.right]\ndelay_s = 0.05\n"
+        "[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n[simulation]\nduration_s = 0.3\n"
+    )
+    history, other = late.run(), Scenario.parse(text).run()
+    assert np.array_equal(history.rotations, other.rotations)
+    assert np.array_equal(history.feet_apart, other.feet_apart) and np.abs(history.feet_apart).max() > 1e-3
+    assert np.array_equal(history.tie_forces, other.tie_forces) and history.tie_forces[0, 0] > 2e3
+    assert pickle.loads(pickle.dumps(late)) == late
+
+    time = np.array([0.0, 0.1, 0.2])
+    left, right = (Record(time, [0.0, peak, 0.0], unit="g") for peak in (0.1, 0.05))
+    two = Scenario.of(arch, left, right=right, **joints)
+    assert two.tables["ground"]["right"]["record"]["file"] == "right-record"
+    assert np.abs(two.run().feet_apart).max() > 1e-4
+    with pytest.raises(ValueError, match="give that too"):
+        Scenario.of(arch, right=right, **joints)

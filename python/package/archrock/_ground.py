@@ -337,6 +337,21 @@ class Record(Ground):
             table["file"] = f"vertical-{name}"
         return table, {table["file"]: self._files[name]}
 
+    def _as_right(self, beside: Ground) -> tuple[Tables, dict[str, bytes]]:
+        """The table ``[ground.right]`` of this record, with its files under names that another ground beside it does not have."""
+        table: Tables = dict(self._tables["record"])
+        files: dict[str, bytes] = {}
+
+        def held(name: str) -> str:
+            other = f"right-{name}" if name in beside._files else name
+            files[other] = self._files[name]
+            return other
+
+        table["file"] = held(table["file"])
+        if "vertical" in table:
+            table["vertical"] = {**table["vertical"], "file": held(table["vertical"]["file"])}
+        return {"record": table}, files
+
     @classmethod
     def read(
         cls,

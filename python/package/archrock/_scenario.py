@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Literal
 
 from ._described import Described
-from ._ground import Ground
+from ._ground import Ground, Record
 from ._hinge import Limit
 from ._history import History
 from ._native import MEMORY_GB
@@ -112,6 +112,8 @@ class Scenario(Described):
         structure: Structure,
         ground: Ground | None = None,
         *,
+        right: Record | Mapping[str, Any] | None = None,
+        supports: Mapping[str, Mapping[str, float]] | None = None,
         title: str | None = None,
         map: Mapping[str, Any] | None = None,
         spectrum: Mapping[str, Any] | None = None,
@@ -127,6 +129,10 @@ class Scenario(Described):
         Args:
             structure: the structure.
             ground: the ground motion.
+            right: how the ground under the right foot moves instead, with joints: a record of its own, or table ``[ground.right]``, such
+                as ``{"delay_s": 0.05}`` or ``{"apparent_velocity_m_s": 300.0}`` for the same motion later.
+            supports: table ``[supports]``: where the springings have gone before time begins, with joints, such as
+                ``{"right": {"spread_m": 0.02, "settlement_m": 0.01, "rotation_rad": 0.0}}``.
             title: free text for the results.
             map: table ``[map]``: two axes.
             spectrum: table ``[spectrum]``.
@@ -148,8 +154,17 @@ class Scenario(Described):
         tables: Tables = {"title": title, **structure._tables, **chosen.tables()}
         held = {**structure._files, **(files or {})}
         if ground is not None:
-            tables["ground"] = ground._tables
+            tables["ground"] = dict(ground._tables)
             held.update(ground._files)
+        if right is not None:
+            if ground is None:
+                raise ValueError("`right` is how one foot moves while the other does by `ground`: give that too")
+            if isinstance(right, Record):
+                own, files_of_right = right._as_right(ground)
+                held.update(files_of_right)
+                right = own
+            tables["ground"]["right"] = right
+        tables["supports"] = supports
         tables.update(map=map, spectrum=spectrum, suite=suite, demand=demand, verify=verify)
         tables.update(uncertain=uncertain)
         return cls(tables, files=held, model=_model(chosen.model))
@@ -223,7 +238,9 @@ def _names(tables: Tables) -> list[str]:
     """The files that the tables of a scenario name."""
     record = tables.get("ground", {}).get("record", {})
     blocks = tables.get("blocks", {})
-    names = [record.get("file"), record.get("vertical", {}).get("file")]
+    right = tables.get("ground", {}).get("right", {}).get("record", {})
+    names = [of.get("file") for of in (record, right)]
+    names += [of.get("vertical", {}).get("file") for of in (record, right)]
     names += [blocks.get("joints"), blocks.get("outlines")]
     names += tables.get("suite", {}).get("records", [])
     states = tables.get("demand", {}).values()

@@ -30,7 +30,7 @@ class Structure(Described):
 
     Args:
         tables: tables such as ``arch``, ``column``, ``pointed_arch``, ``elliptic_arch``, ``basket_arch``, ``blocks``,
-            ``piers``, ``fill`` and ``load`` (a list), with their keys; ``blocks`` may name files, which are read now.
+            ``piers``, ``fill``, ``load`` and ``tie`` (lists), with their keys; ``blocks`` may name files, which are read now.
 
     Raises:
         ValueError: when it is not a structure that stands; all errors are reported together.
@@ -63,7 +63,9 @@ class Structure(Described):
         self._model = "four_links" if four else "free_hinges"
         self._native = NativeScenario(to_toml(tables), None, files, self._model, ())
         self._bases = {}
-        self._describe(json.loads(self._native.structure_json()), files)
+        described = json.loads(self._native.structure_json())
+        ties = json.loads(self._native.to_json()).get("tie")
+        self._describe(described if ties is None else {**described, "tie": ties}, files)
 
     def _base(self, key: tuple[Any, ...]) -> NativeScenario:
         """The structure with these settings, on still ground."""
