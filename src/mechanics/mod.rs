@@ -19,8 +19,7 @@ pub mod parts;
 pub mod settling;
 pub(crate) mod slip;
 pub mod stability;
-#[doc(hidden)]
-pub mod stance;
+pub(crate) mod stance;
 pub mod sway;
 pub mod tie;
 pub mod virtual_work;
