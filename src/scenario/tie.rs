@@ -201,8 +201,8 @@ impl TieTable {
         match tie.check(row.blocks().len(), row.size_m()) {
             Ok(()) => Ok(tie),
             Err(TieError::OnSupports) if self.between.is_some() => Err(
-                "is between springings that both stand on rigid ground, which does not part: give [piers], or tie voussoirs with \
-                 `height_m`"
+                "is between springings that both stand on rigid ground, which moves as it is told whatever a tie does: give [piers], or \
+                 tie voussoirs with `height_m`"
                     .to_owned(),
             ),
             Err(TieError::OneBlock(block)) => Err(format!(
@@ -210,7 +210,7 @@ impl TieTable {
                 block + 1
             )),
             Err(TieError::OnSupports) => Err(
-                "has both ends on the ground, which does not part: give one of them on a block".to_owned(),
+                "has both ends on the ground, which moves as it is told, whatever a tie does: give one of them on a block".to_owned(),
             ),
             Err(TieError::NoLength) => {
                 Err("has both ends at one point: give two points that are apart".to_owned())
