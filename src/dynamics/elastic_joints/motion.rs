@@ -360,7 +360,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         let structure = self.structure;
         let damps = structure.damping_time_s() > 0.0;
         let damping = if damps { Some(damping) } else { None };
-        let each = structure.fibres();
+        let (law, each) = (structure.law(), structure.fibres());
         let (mut friction_j, mut damped_j, mut crushed_j) = (zero, zero, zero);
         for (part, joints) in structure.joints().chunks(TOGETHER).enumerate() {
             let first = part * TOGETHER;
@@ -375,7 +375,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             for (index, ((joint, memory), bearing)) in each_joint.enumerate() {
                 let from = (first + index) * each;
                 let fibres = &mut self.fibres[from..from + each];
-                let pressing = structure.press(joint, damping, &bearing.gap, memory, fibres);
+                let pressing = law.press(joint, damping, &bearing.gap, memory, fibres);
                 damped_j += pressing.damped_j;
                 crushed_j += pressing.crushed_j;
                 bearing.pressing = pressing;
@@ -383,7 +383,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *bearing);
             for ((joint, memory), bearing) in each_joint {
                 let (gap, pressing) = (&bearing.gap, &bearing.pressing);
-                let rubbing = structure.rub(joint, damping, gap, pressing, memory);
+                let rubbing = law.rub(joint, damping, gap, pressing, memory);
                 friction_j += rubbing.friction_j;
                 damped_j += rubbing.damped_j;
                 bearing.shear_n = rubbing.shear_n;

@@ -25,7 +25,7 @@ const CELLS: usize = 12;
 
 /// Where along a joint its stress is known.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Section {
+pub(crate) enum Section {
     /// At the edges, and so everywhere.
     Whole,
     /// At nodes, from edge 0 to edge 1, as fractions of the length; linear between two of them.
@@ -253,7 +253,7 @@ pub struct Rubbing<R> {
 
 /// What all joints of a structure have in common.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Law {
+pub(crate) struct Law {
     pub section: Section,
     pub crushes: bool,
     /// Coefficient of friction, and what is added to the bound: infinity where nothing slips.
@@ -321,17 +321,18 @@ impl Law {
         }
     }
 
-    /// How its faces rub with such a gap, as they press with this force; its memory is updated.
+    /// How its faces rub with such a gap as they press like this; its memory is updated.
     #[inline(always)]
     pub fn rub<R: Real>(
         &self,
         joint: &ElasticJoint,
         damping: Option<R>,
         gap: &Gap<R>,
-        pressing_n: R,
+        pressing: &Pressing<R>,
         memory: &mut Memory<R>,
     ) -> Rubbing<R> {
         let [coefficient, lock] = self.friction;
+        let pressing_n = pressing.edges_n[0] + pressing.edges_n[1];
         let bound = pressing_n * coefficient + R::of(lock);
         let kt = joint.shear_n_m;
         let slid = gap.slip_m - memory.slip_m;

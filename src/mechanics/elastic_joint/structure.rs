@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::contact::{Contact, Fibre, Law, Memory, Pressing, Rubbing, Section};
-use super::kinematics::{Action, Gap, Link, Place};
+use super::kinematics::{Action, Link, Place};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::blocks::{Row, Supports};
@@ -409,38 +409,13 @@ impl ElasticStructure {
         other
     }
 
-    pub(super) const fn law(&self) -> &Law {
+    /// The law of its joints.
+    pub(crate) const fn law(&self) -> &Law {
         &self.law
     }
 
-    /// How a joint presses with such a gap; its memory is updated. `damping` is the damping time over the length of the step.
-    #[inline(always)]
-    pub fn press<R: Real>(
-        &self,
-        joint: &ElasticJoint,
-        damping: Option<R>,
-        gap: &Gap<R>,
-        memory: &mut Memory<R>,
-        fibres: &mut [Fibre<R>],
-    ) -> Pressing<R> {
-        self.law.press(joint, damping, gap, memory, fibres)
-    }
-
-    /// How its faces then rub; its memory is updated.
-    #[inline(always)]
-    pub fn rub<R: Real>(
-        &self,
-        joint: &ElasticJoint,
-        damping: Option<R>,
-        gap: &Gap<R>,
-        pressing: &Pressing<R>,
-        memory: &mut Memory<R>,
-    ) -> Rubbing<R> {
-        let pressing_n = pressing.edges_n[0] + pressing.edges_n[1];
-        self.law.rub(joint, damping, gap, pressing_n, memory)
-    }
-
-    /// All of this one after the other, for a joint with its bodies at these places, and its action on them.
+    /// What a joint bears with its bodies at these places, and its action on them; its memory is updated. `damping` is the damping time over
+    /// the length of the step.
     #[inline(always)]
     pub fn act<R: Real>(
         &self,
@@ -451,8 +426,8 @@ impl ElasticStructure {
         fibres: &mut [Fibre<R>],
     ) -> (Action<R>, Pressing<R>, Rubbing<R>) {
         let gap = joint.link.gap(places[0], places[1]);
-        let pressing = self.press(joint, damping, &gap, memory, fibres);
-        let rubbing = self.rub(joint, damping, &gap, &pressing, memory);
+        let pressing = self.law.press(joint, damping, &gap, memory, fibres);
+        let rubbing = self.law.rub(joint, damping, &gap, &pressing, memory);
         let action = joint.link.action(&gap, pressing.edges_n, rubbing.shear_n);
         (action, pressing, rubbing)
     }
