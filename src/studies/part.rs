@@ -360,6 +360,14 @@ pub struct PartFile {
     file: File,
 }
 
+impl Drop for PartFile {
+    /// Gives up the lock. To close the file is not enough: a process that another thread starts just now has it open too.
+    fn drop(&mut self) {
+        // A file that cannot be locked was never locked.
+        drop(self.file.unlock());
+    }
+}
+
 impl PartFile {
     /// Begins a part, or continues it; returns the rows that it already has. A complete part need not be computed
     /// again. The folder must exist.
@@ -383,6 +391,10 @@ impl PartFile {
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
             return Err(unusable(path, "another program is at work on it"));
         }
+        let mut part = Self {
+            path: path.to_owned(),
+            file,
+        };
         let (text, length) = complete_lines(path, |path| fs::read(path))?;
         let rows = match header_of(path, &text)? {
             None => Rows::new(),
@@ -401,10 +413,6 @@ impl PartFile {
             let path = path.to_owned();
             return Err(PartError::Interrupted { path, done });
         }
-        let mut part = Self {
-            path: path.to_owned(),
-            file,
-        };
         let length = if rows.is_empty() { 0 } else { length };
         part.file.set_len(length).map_err(part.cannot("shorten"))?;
         if length == 0 {
