@@ -2,7 +2,7 @@
 
 use crate::common::parsed;
 use crate::program;
-use archrock::mechanics::capacity::Capacity;
+use archrock::mechanics::capacity::{Capacity, CurvePoint};
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::settling::Held;
 use archrock::mechanics::stability::onset;
@@ -221,7 +221,15 @@ fn control_points_must_be_on_the_structure_and_move() {
 #[test]
 fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
     let (stiffness, natural) = (1e5, 3.0 - 5e3 / 1e5);
-    for (yields_at, breaks_at) in [(5e3, f64::INFINITY), (8e3, f64::INFINITY), (8e3, 0.1)] {
+    // It breaks after it has yielded, before it could, and where nothing else holds the column.
+    let whole = f64::INFINITY;
+    for (yields_at, breaks_at) in [
+        (5e3, whole),
+        (8e3, whole),
+        (8e3, 0.1),
+        (8e3, 0.02),
+        (8e3, 0.3),
+    ] {
         let breaks = if breaks_at < 1.0 {
             format!("breaks_at_strain = {breaks_at}\n")
         } else {
@@ -248,8 +256,9 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
             ((back - weight * x) / (weight * y), length)
         };
         for point in &right.curve {
-            // Where it breaks, just before and just after.
-            let off = |more: f64| (point.acceleration_g - bears(point.q_rad + more).0).abs();
+            // Where it breaks, just before and just after; where that takes all strength, the curve ends at none.
+            let due_g = |more: f64| bears(point.q_rad + more).0.max(0.0);
+            let off = |more: f64| (point.acceleration_g - due_g(more)).abs();
             let off_g = off(0.0).min(off(-1e-13)).min(off(1e-13));
             assert!(off_g < 1e-9, "{}: {off_g:e}", point.q_rad);
         }
@@ -257,23 +266,26 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
         let gives_way = right.ties[0];
         // The bar pulls most where it yields, and drops to nothing where it breaks: there the curve has points.
         let at = |displacement_m: f64| {
-            let near = |point: &&archrock::mechanics::capacity::CurvePoint| {
-                (point.displacement_m - displacement_m).abs() < 1e-12
-            };
-            right
-                .curve
-                .iter()
-                .filter(near)
-                .map(|point| point.q_rad)
-                .collect::<Vec<_>>()
+            let near = |point: &&CurvePoint| (point.displacement_m - displacement_m).abs() < 1e-12;
+            right.curve.iter().filter(near).copied().collect::<Vec<_>>()
         };
-        let yields = at(gives_way.yields_at_m.unwrap());
-        assert!((bears(yields[0]).1 - natural - yields_at / stiffness).abs() < 1e-9);
+        let yields = gives_way.yields_at_m.map(at);
+        let yields_first = yields_at / stiffness < breaks_at * natural;
+        assert_eq!(yields.is_some(), yields_first, "{breaks_at}");
+        if let Some(yields) = yields {
+            let stretch = bears(yields[0].q_rad).1 - natural;
+            assert!((stretch - yields_at / stiffness).abs() < 1e-9);
+        }
         let breaks = gives_way.breaks_at_m.map(at);
         assert_eq!(breaks.is_some(), breaks_at < 1.0);
         if let Some(breaks) = breaks {
-            assert_eq!(breaks.len(), 2);
-            assert!((bears(breaks[0]).1 - natural * 1.1).abs() < 1e-9);
+            let [whole, broken] = breaks[..] else {
+                panic!("{breaks:?}");
+            };
+            assert!((bears(whole.q_rad).1 - natural * (1.0 + breaks_at)).abs() < 1e-9);
+            // All that the bar held at its lever arm, 3.5 m over the toe at first, about which the weight has 2 m.
+            assert!(whole.acceleration_g > broken.acceleration_g + 0.1);
+            assert_eq!(broken == *right.end(), breaks_at == 0.3);
         }
         // To the left it goes slack at once, and falls as it would without: from less than that by what it pulls at rest.
         let least = 0.2 - 5e3 * 3.5 / (weight * 2.0);

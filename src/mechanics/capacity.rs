@@ -205,6 +205,15 @@ pub struct Capacity {
     pub ties: Vec<TieOnTheWay>,
 }
 
+/// At which parts of the way to the unstable equilibrium a tie gives way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivesWay {
+    /// It yields for the first time, if it does.
+    pub yields: Option<f64>,
+    /// The last at which it is whole and the first at which it is broken, if it breaks.
+    pub breaks: Option<[f64; 2]>,
+}
+
 /// At which displacements of the control point a tie gives way, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieOnTheWay {
@@ -308,27 +317,24 @@ impl Capacity {
         Ok(capacity)
     }
 
-    /// The same with points where ties yield and break: parts of the way, tie by tie. A tie that breaks does so between two points.
+    /// The same with points where ties yield, and just before and after they break.
     #[must_use]
     pub fn with_ties(
         mut self,
-        gives_way: &[[Option<f64>; 2]],
+        give_way: &[GivesWay],
         displaced: impl Fn(f64) -> Displaced,
         gravity_m_s2: f64,
     ) -> Self {
-        for at in gives_way {
-            let points =
-                at.map(|part| part.map(|part| self.point(part, &displaced(part), gravity_m_s2)));
-            let [yields_at_m, breaks_at_m] =
-                points.map(|point| point.map(|point| point.displacement_m));
+        for GivesWay { yields, breaks } in give_way {
+            let point = |part: f64| self.point(part, &displaced(part), gravity_m_s2);
+            let yields = yields.map(point);
+            let breaks = breaks.map(|around| around.map(point));
             self.ties.push(TieOnTheWay {
-                yields_at_m,
-                breaks_at_m,
+                yields_at_m: yields.map(|point| point.displacement_m),
+                breaks_at_m: breaks.map(|[_, broken]| broken.displacement_m),
             });
-            let before = at[1].map(|part| part.next_down());
-            let before = before.map(|part| self.point(part, &displaced(part), gravity_m_s2));
-            self.curve
-                .extend(points.into_iter().flatten().chain(before));
+            let points = yields.into_iter().chain(breaks.into_iter().flatten());
+            self.curve.extend(points);
         }
         self.curve
             .sort_by(|one, other| one.q_rad.total_cmp(&other.q_rad));

@@ -8,17 +8,16 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use thiserror::Error;
 
-use super::pins::{Pins, two_bodies};
+use super::pins::{Pins, Pulls, two_bodies};
 use super::{Condition, Hinge};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::capacity::Displaced;
+use crate::mechanics::capacity::{Displaced, GivesWay};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stability::{RowOnset, StabilityError, onset};
-use crate::mechanics::stance::Stance;
 use crate::mechanics::sway::Sway;
-use crate::mechanics::tie::{Tie, TieMemory};
+use crate::mechanics::tie::TieMemory;
 
 /// The way of a mechanism is gone in steps of this many radians.
 const STEP_RAD: f64 = 1e-3;
@@ -62,8 +61,8 @@ pub struct Held<'a> {
     sense: f64,
     /// Where it has lost its strength.
     end_rad: f64,
-    /// By how much each tie has been stretched at most, step by step.
-    most_m: Vec<Vec<f64>>,
+    /// What its ties remember, step by step.
+    ties: Vec<Vec<TieMemory<Lanes<1>>>>,
 }
 
 impl<'a> Held<'a> {
@@ -79,30 +78,24 @@ impl<'a> Held<'a> {
             pins: pins(row, sway, &onset)?,
             sense: 1.0,
             end_rad: 0.0,
-            most_m: Vec::new(),
+            ties: vec![row.ties().iter().map(TieMemory::undeformed).collect()],
         };
         let first = held.pins.hinges()[0].joint;
         held.sense = onset.velocities[first].rate.signum();
-        let mut steps = 0_u32;
-        loop {
-            let q_rad = f64::from(steps) * STEP_RAD;
-            let (true, Some(stretch_m)) = (q_rad < FRAC_PI_2, held.stretch_m(q_rad)) else {
-                return Err(HeldError::Holds(sway));
+        for step in 1_u32.. {
+            let q_rad = f64::from(step) * STEP_RAD;
+            let Some(ties) = held.ties_at(q_rad).filter(|_| q_rad < FRAC_PI_2) else {
+                break;
             };
-            let before = held.most_m.last();
-            let most_m = stretch_m.iter().enumerate().map(|(tie, stretch_m)| {
-                before.map_or(*stretch_m, |before| stretch_m.max(before[tie]))
-            });
-            let most_m = most_m.collect();
-            held.most_m.push(most_m);
+            held.ties.push(ties);
             let bears = |q_rad: f64| held.bears_g(q_rad).is_some_and(|push_g| push_g > 0.0);
             if !bears(q_rad) {
                 let (_, end_rad) = bisect(q_rad - STEP_RAD, q_rad, Width::Rounding, |q| !bears(q));
                 held.end_rad = end_rad;
                 return Ok(held);
             }
-            steps += 1;
         }
+        Err(HeldError::Holds(sway))
     }
 
     /// Its hinges.
@@ -132,7 +125,7 @@ impl<'a> Held<'a> {
         let condition = self.condition(push_g);
         let state = self
             .pins
-            .state_at(self.row, &condition, &poses, &self.before(q_rad));
+            .state_at(self.row, &condition, &poses, self.before(q_rad));
         Displaced {
             q_rad,
             // A tie that breaks may take all strength at once.
@@ -143,34 +136,37 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// At which parts of its way each tie yields for the first time, and breaks.
+    /// Where on its way each tie gives way. One that has broken yields no more.
     #[must_use]
-    pub fn ties_give_way(&self) -> Vec<[Option<f64>; 2]> {
+    pub fn ties_give_way(&self) -> Vec<GivesWay> {
         let ties = self.row.ties().iter().enumerate();
         ties.map(|(index, tie)| {
-            let limits_m = [
-                tie.yield_force_n / tie.stiffness_n_m,
-                tie.breaks_at_strain * tie.slack_length_m(),
-            ];
-            limits_m.map(|limit_m| {
-                let reaches = |q_rad: f64| {
-                    let stretch_m = self.stretch_m(q_rad);
-                    stretch_m.is_some_and(|stretch_m| stretch_m[index] >= limit_m)
-                };
-                let step = self
-                    .most_m
-                    .iter()
-                    .position(|most_m| most_m[index] >= limit_m)?;
-                let last = u32::try_from(step).ok()?;
-                let q_rad = f64::from(last) * STEP_RAD;
-                let at_rad = match last {
-                    0 => 0.0,
-                    _ => bisect(q_rad - STEP_RAD, q_rad, Width::Rounding, reaches).1,
-                };
-                (at_rad < self.end_rad).then_some(at_rad / self.end_rad)
-            })
+            let yields_m = tie.yield_force_n / tie.stiffness_n_m;
+            let yields = self.first(index, |memory| {
+                memory.yielded_m.0[0] > 0.0 || memory.stretch_m.0[0] >= yields_m
+            });
+            let breaks = self.first(index, TieMemory::is_broken);
+            let yields = yields.map(|[_, yields]| yields);
+            let in_time = |yields: &f64| breaks.is_none_or(|[_, broken]| *yields < broken);
+            GivesWay {
+                yields: yields.filter(in_time),
+                breaks,
+            }
         })
         .collect()
+    }
+
+    /// The parts of its way between which a tie does for the first time what it does not undo: neighbouring numbers, or both the start.
+    fn first(&self, tie: usize, does: impl Fn(&TieMemory<Lanes<1>>) -> bool) -> Option<[f64; 2]> {
+        let does_at = |part: f64| {
+            let ties = self.ties_at(part * self.end_rad);
+            ties.is_some_and(|ties| does(&ties[tie]))
+        };
+        match [0.0, 1.0].map(does_at) {
+            [true, _] => Some([0.0; 2]),
+            [_, false] => None,
+            _ => Some(bisect(0.0, 1.0, Width::Rounding, does_at).into()),
+        }
     }
 
     /// Poses of its parts, before the first hinge, between them and after the last; `None` where they do not meet.
@@ -187,32 +183,27 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// By how much its ties are stretched.
-    fn stretch_m(&self, q_rad: f64) -> Option<Vec<f64>> {
+    /// What its ties remember there.
+    fn ties_at(&self, q_rad: f64) -> Option<Vec<TieMemory<Lanes<1>>>> {
         let poses = self.poses(q_rad)?;
-        let built = Stance::undeformed(self.row);
-        let (_, pulls) = self
-            .pins
-            .pulls(self.row, &[Pose::UNDEFORMED; 2], &poses, &built);
-        Some(pulls.iter().map(|(line, _)| line.stretch_m).collect())
+        Some(self.pulls(q_rad, &poses).0)
     }
 
-    /// What its ties remember on the way there.
-    fn before(&self, q_rad: f64) -> Stance {
-        let mut before = Stance::undeformed(self.row);
+    /// The same, and what they pull with and where.
+    fn pulls(&self, q_rad: f64, poses: &[Pose]) -> Pulls {
+        let built = [Pose::UNDEFORMED; 2];
+        self.pins.pulls(self.row, &built, poses, self.before(q_rad))
+    }
+
+    /// What its ties remember of the steps on the way there.
+    fn before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "steps of less than a quarter of a turn, from zero on"
         )]
-        let steps = (q_rad / STEP_RAD).max(0.0) as usize;
-        if let Some(most_m) = self.most_m.get(steps).or_else(|| self.most_m.last()) {
-            let ties = before.ties.iter_mut().zip(self.row.ties()).zip(most_m);
-            for ((memory, tie), most_m) in ties {
-                *memory = stretched(tie, *most_m);
-            }
-        }
-        before
+        let step = (q_rad / STEP_RAD).max(0.0) as usize;
+        &self.ties[step.min(self.ties.len() - 1)]
     }
 
     fn condition(&self, push_g: f64) -> Condition {
@@ -225,8 +216,7 @@ impl<'a> Held<'a> {
     /// The push, in units of gravity, with which it is in equilibrium: its loads have no moment about any pin.
     fn bears_g(&self, q_rad: f64) -> Option<f64> {
         let (row, poses) = (self.row, self.poses(q_rad)?);
-        let built = [Pose::UNDEFORMED; 2];
-        let (_, pulls) = self.pins.pulls(row, &built, &poses, &self.before(q_rad));
+        let (_, pulls) = self.pulls(q_rad, &poses);
         let held = self
             .pins
             .loads(row, &poses, Vector2::new(0.0, -1.0), &pulls);
@@ -252,11 +242,6 @@ impl<'a> Held<'a> {
         }
         Some(equations.lu().solve(&right)?.z)
     }
-}
-
-/// What a tie remembers that was stretched so far at most.
-fn stretched(tie: &Tie, most_m: f64) -> TieMemory<Lanes<1>> {
-    TieMemory::stretched(tie, 0.0, Lanes([most_m]))
 }
 
 /// The hinges that a push opens, if these are a mechanism of one degree of freedom.

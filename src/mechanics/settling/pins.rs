@@ -44,6 +44,9 @@ pub struct Pins {
     pub(super) pins_m: Vec<Vector2<f64>>,
 }
 
+/// What ties remember, and what they pull with, in N, and where.
+pub(super) type Pulls = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
+
 /// A row on hinges: positions and forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
@@ -173,7 +176,7 @@ impl Pins {
         let mut poses = vec![condition.supports[0]];
         poses.extend(self.bodies(row, condition, before)?);
         poses.push(condition.supports[1]);
-        self.state_at(row, condition, &poses, before)
+        self.state_at(row, condition, &poses, &before.ties)
     }
 
     /// Where the pins are, with the parts between them at these poses.
@@ -188,13 +191,14 @@ impl Pins {
         before.count()
     }
 
-    /// Forces of a row whose parts before, between and after the hinges have these poses; `None` where they carry none.
+    /// Forces of a row whose parts before, between and after the hinges have these poses, and whose ties remembered so much before; `None`
+    /// where they carry none.
     pub(super) fn state_at(
         &self,
         row: &Row,
         condition: &Condition,
         poses: &[Pose],
-        before: &Stance,
+        before: &[TieMemory<Lanes<1>>],
     ) -> Option<State> {
         let joints: Vec<usize> = self.hinges.iter().map(|hinge| hinge.joint).collect();
         let body_of = |block: usize| self.part_of(block);
@@ -277,10 +281,10 @@ impl Pins {
         row: &Row,
         supports: &[Pose; 2],
         poses: &[Pose],
-        before: &Stance,
-    ) -> (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>) {
+        before: &[TieMemory<Lanes<1>>],
+    ) -> Pulls {
         let lines = lines(row, supports, |block| poses[self.part_of(block)]);
-        let ties = row.ties().iter().zip(lines).zip(&before.ties);
+        let ties = row.ties().iter().zip(lines).zip(before);
         let ties = ties.map(|((tie, line), memory)| {
             let memory = memory.then(tie, line.stretch_m);
             (memory, (line, memory.force_n.0[0]))
