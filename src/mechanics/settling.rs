@@ -291,9 +291,13 @@ impl<'a> Follower<'a> {
     /// Its forces and rotations; none while it is undeformed, where they are not determined.
     #[must_use]
     pub fn state(&self) -> Option<State> {
-        self.hinges
-            .as_ref()
-            .and_then(|hinges| hinges.state(self.row, &self.condition, &self.stance))
+        self.state_in(&self.condition)
+    }
+
+    /// The same in another condition, on the present hinges.
+    fn state_in(&self, condition: &Condition) -> Option<State> {
+        let hinges = self.hinges.as_ref()?;
+        hinges.state(self.row, condition, &self.stance)
     }
 
     /// Moves the supports on from where they are, in a straight line, from this part of a movement to that.
@@ -412,47 +416,50 @@ impl<'a> Follower<'a> {
         }
         while low < to {
             let next = (low + STEP * unit).min(to);
-            if self.stands(&way(next)) {
+            let condition = way(next);
+            if let Some(state) = self.holds(&condition) {
                 low = next;
                 // What ties remember depends on the way.
                 if !self.row.ties().is_empty() {
-                    self.stand(&way(low));
+                    self.stand(&condition, state);
                 }
                 continue;
             }
-            let (last, _) = bisect(low, next, Width::Rounding, |at| !self.stands(&way(at)));
-            self.stand(&way(last));
+            let ends = |at: f64| self.holds(&way(at)).is_none();
+            let (last, _) = bisect(low, next, Width::Rounding, ends);
+            self.stand_in(&way(last));
             match self.give_way(way, last, unit)? {
                 Some(at) => low = at,
                 None => return Ok(Reached::Falls(last)),
             }
         }
-        self.stand(&way(to.max(low)));
+        self.stand_in(&way(to.max(low)));
         Ok(Reached::End)
     }
 
-    /// Whether the present hinges hold the row in a condition.
-    fn stands(&self, condition: &Condition) -> bool {
-        let state = self
-            .hinges
-            .as_ref()
-            .and_then(|hinges| hinges.state(self.row, condition, &self.stance));
-        state.is_some_and(|state| state.margin() >= -ROUNDING)
+    /// The row in a condition in which the present hinges hold it; `None` where they do not.
+    fn holds(&self, condition: &Condition) -> Option<State> {
+        self.state_in(condition).filter(State::holds)
     }
 
     /// Places the row on its hinges in a condition in which they hold it.
-    fn stand(&mut self, condition: &Condition) {
-        self.condition = *condition;
-        if let Some(state) = self.state() {
-            self.stance.placement.move_supports(condition.supports);
-            self.stance.placement.turn(&state.rotations_rad);
-            self.stance.ties = state.ties;
+    fn stand_in(&mut self, condition: &Condition) {
+        if let Some(state) = self.state_in(condition) {
+            self.stand(condition, state);
         }
+    }
+
+    /// The same where the state that they have in that condition is known.
+    fn stand(&mut self, condition: &Condition, state: State) {
+        self.condition = *condition;
+        self.stance.placement.move_supports(condition.supports);
+        self.stance.placement.turn(&state.rotations_rad);
+        self.stance.ties = state.ties;
     }
 
     /// Other hinges that hold the row in a condition beyond that of its own, where ties let it go there little by little: those that the last
     /// equilibrium lacks, without those that would shut.
-    fn exchanged(&self, condition: &Condition) -> Option<Pins> {
+    fn exchanged(&self, condition: &Condition) -> Option<(Pins, State)> {
         if self.row.ties().is_empty() {
             return None;
         }
@@ -461,7 +468,7 @@ impl<'a> Follower<'a> {
             let state = pins.state(self.row, condition, &self.stance)?;
             let wrong = state.beyond(-ROUNDING);
             if wrong.is_empty() {
-                return Some(pins);
+                return Some((pins, state));
             }
             pins = pins.exchanged(self.row, &wrong)?;
         }
@@ -480,9 +487,7 @@ impl<'a> Follower<'a> {
         for nudge in NUDGES {
             let beyond = at + nudge * unit;
             let condition = way(beyond);
-            let state = before
-                .as_ref()
-                .and_then(|hinges| hinges.state(self.row, &condition, &self.stance));
+            let state = self.state_in(&condition);
             let causes = state.map_or_else(Vec::new, |state| state.beyond(-ROUNDING));
             let snap = |after: Option<&Pins>| Snap {
                 at,
@@ -490,10 +495,10 @@ impl<'a> Follower<'a> {
                 after: after.map(|hinges| hinges.hinges().to_vec()),
                 causes: causes.clone(),
             };
-            if let Some(hinges) = self.exchanged(&condition) {
+            if let Some((hinges, state)) = self.exchanged(&condition) {
                 self.snaps.push(snap(Some(&hinges)));
                 self.hinges = Some(hinges);
-                self.stand(&condition);
+                self.stand(&condition, state);
                 return Ok(Some(beyond));
             }
             for tilt_g in TILTS_G {
@@ -509,11 +514,11 @@ impl<'a> Follower<'a> {
                     continue;
                 };
                 let state = hinges.state(self.row, &condition, &stance);
-                if state.is_some_and(|state| state.margin() >= -ROUNDING) {
+                if let Some(state) = state.filter(State::holds) {
                     self.snaps.push(snap(Some(&hinges)));
                     self.hinges = Some(hinges);
                     self.stance = stance;
-                    self.stand(&condition);
+                    self.stand(&condition, state);
                     return Ok(Some(beyond));
                 }
             }

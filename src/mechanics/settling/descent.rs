@@ -9,7 +9,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Condition, Pins, ROUNDING};
+use super::{Condition, Pins};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{ContactError, Load, Program};
@@ -132,7 +132,7 @@ impl<'a> Descent<'a> {
         state.is_some_and(|state| {
             let pairs = state.rotations_rad.iter().zip(stance.placement.poses());
             let mut turns = pairs.map(|(there, here)| (there - here.rotation_rad()).abs());
-            state.margin() >= -ROUNDING && turns.all(|turn_rad| turn_rad < NEAR_RAD)
+            state.holds() && turns.all(|turn_rad| turn_rad < NEAR_RAD)
         })
     }
 

@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use super::Condition;
+use super::{Condition, ROUNDING};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::geometry::field::{Momentum, turned};
 use crate::mechanics::geometry::pose::Pose;
@@ -82,6 +82,11 @@ impl State {
         // What is no number is no margin.
         let least = |least: f64, next: f64| if least <= next { least } else { next };
         openings.chain(forces).fold(f64::INFINITY, least)
+    }
+
+    /// Whether its hinges hold the row, but for rounding.
+    pub(super) fn holds(&self) -> bool {
+        self.margin() >= -ROUNDING
     }
 
     /// Where it has less than this margin: the corner at which the thrust line leaves a joint, or a hinge that shuts.
