@@ -431,11 +431,8 @@ impl<'a> Chain<'a> {
 
     /// Which body a block is of; `None` where it is of a support.
     fn body_of(&self, block: usize) -> Option<usize> {
-        let before = |hinge: &&Hinge| hinge.joint <= block;
-        let hinges = self.pins.hinges.iter().filter(before).count();
-        hinges
-            .checked_sub(1)
-            .filter(|body| *body < self.rotations_rad.len())
+        let body = self.pins.part_of(block).checked_sub(1)?;
+        (body < self.rotations_rad.len()).then_some(body)
     }
 
     /// Slopes and curvatures of the energy, with the force of the right support on the last pin.
@@ -470,14 +467,12 @@ impl<'a> Chain<'a> {
         let count = poses.len();
         let weight_n = self.row.mass_kg() * self.row.gravity_m_s2();
         let supports = &self.condition.supports;
-        let pose = |block: usize| match self.body_of(block) {
-            Some(body) => poses[body],
-            None => supports[usize::from(block >= self.pins.hinges[0].joint)],
-        };
-        let lines_now = lines(self.row, supports, pose);
-        for ((tie, line), memory) in self.row.ties().iter().zip(lines_now).zip(&self.before.ties) {
-            let memory = memory.then(tie, line.stretch_m);
-            let force = memory.force_n.0[0] / weight_n;
+        let parts = [&supports[..1], poses, &supports[1..]].concat();
+        let (memories, pulls) = self
+            .pins
+            .pulls(self.row, supports, &parts, &self.before.ties);
+        for ((tie, memory), (line, force_n)) in self.row.ties().iter().zip(memories).zip(pulls) {
+            let force = force_n / weight_n;
             let stiffness = memory.stiffness_n_m(tie) / weight_n;
             let length_m = (line.ends_m[1] - line.ends_m[0]).norm();
             // What of the line turns with each body.
