@@ -6,7 +6,7 @@ use crate::dynamics::history::{EventKind, TieSample, TieSummary};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
-use crate::mechanics::stance::Stance;
+use crate::mechanics::stance::{Stance, lines};
 use crate::mechanics::tie::{Tie, TieLine, TieMemory};
 
 /// A tie that moves.
@@ -74,13 +74,9 @@ impl<'a> Ties<'a> {
 
     /// The blocks have moved to these poses.
     pub fn stretch(&mut self, pose: impl Fn(usize) -> Pose) {
-        let feet_m = self.row.feet_m();
-        for tie in &mut self.ties {
-            let ends_m = tie.tie.ends.map(|anchor| {
-                let support = || self.supports[anchor.support(feet_m)];
-                anchor.block.map_or_else(support, &pose).of(anchor.at_m)
-            });
-            tie.line = tie.tie.line(ends_m);
+        let lines = lines(self.row, &self.supports, pose);
+        for (tie, line) in self.ties.iter_mut().zip(lines) {
+            tie.line = line;
             tie.memory.stretch(tie.tie, Lanes([tie.line.stretch_m]));
         }
     }
