@@ -395,11 +395,7 @@ impl<'a> Trial<'a> {
         if with_ties {
             let (blocks, centres_m) = (self.row.blocks(), self.centres_m);
             for (line, kg) in self.lines.iter().zip(&self.ties_kg) {
-                line.pull(blocks, centres_m, *kg, |block, velocity, turning| {
-                    let gained =
-                        Twist::translation(velocity) + Twist::rotation(centres_m[block], turning);
-                    self.free[block] = self.free[block] + gained;
-                });
+                line.add_to(blocks, centres_m, *kg, &mut self.free);
             }
         }
         let load_case = Load {

@@ -327,6 +327,20 @@ impl TieLine {
         }
     }
 
+    /// The same added to the velocities of the blocks.
+    pub fn add_to(
+        &self,
+        blocks: &[Block],
+        centres_m: &[Vector2<f64>],
+        impulse: f64,
+        velocities: &mut [Twist],
+    ) {
+        self.pull(blocks, centres_m, impulse, |block, velocity, turning| {
+            let gained = Twist::translation(velocity) + Twist::rotation(centres_m[block], turning);
+            velocities[block] = velocities[block] + gained;
+        });
+    }
+
     /// Rate at which it lengthens while blocks move so and supports do not.
     #[must_use]
     pub fn lengthening(&self, velocities: &[Twist]) -> f64 {

@@ -178,11 +178,7 @@ impl<'a> Descent<'a> {
         self.free.fill(Twist::translation(force_g * times));
         let (blocks, centres_m) = (self.row.blocks(), placement.centres_m());
         for (line, kg) in stance.lines(self.row).zip(&self.ties_kg) {
-            line.pull(blocks, centres_m, kg * times, |block, velocity, turning| {
-                let gained =
-                    Twist::translation(velocity) + Twist::rotation(centres_m[block], turning);
-                self.free[block] = self.free[block] + gained;
-            });
+            line.add_to(blocks, centres_m, kg * times, &mut self.free);
         }
         for (touching, gaps) in self.touching.iter_mut().zip(placement.gaps_m()) {
             *touching = gaps.map(|gap| gap == 0.0);
