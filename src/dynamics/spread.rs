@@ -323,7 +323,8 @@ impl<'a> Checks<'a> {
         self.own[case] = Some(own);
     }
 
-    /// Asks for a repetition, if there is another one: next, since it is the last but not the least of its case.
+    /// Asks for a repetition, if there is another one. It goes to the front of the queue: the repetitions of a case come one after the
+    /// other, and left to the end the last of them would run with nothing beside it.
     fn repeat(&mut self, case: usize, repetition: usize) {
         if repetition < self.names.len() {
             self.waiting.push_front(Job {

@@ -1,7 +1,7 @@
 //! How a row between two supports follows them when they move slowly, and what push it then bears.
 //!
 //! Rigid blocks without tension or sliding, at rest at every instant. Where supports have moved, the row stands on three hinges: two bodies between
-//! three pins, whose positions and forces are closed forms (`three_pins`). Such a state lasts while its joints open no way back and the thrust
+//! three pins, whose positions and forces are closed forms (`pins`). Such a state lasts while its joints open no way back and the thrust
 //! line stays inside all others. Where that ends, a joint cannot hand its hinge on little by little: with a fourth hinge the row is an unstable mechanism,
 //! which snaps to three other hinges, or falls (`descent`). So a path of equilibria is made of pieces, and which ones they are depends
 //! on where it began: here, at the undeformed row.
@@ -198,7 +198,7 @@ pub enum SettlingError {
     /// Velocities were not found.
     #[error(transparent)]
     Contact(#[from] ContactError),
-    /// No three hinges were found on which it stands.
+    /// No hinges were found on which it stands.
     #[error(
         "the hinges of the row were not found where they give way, {at:.3e} of the way on: choose another way or other joints"
     )]

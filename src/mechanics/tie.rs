@@ -66,7 +66,7 @@ pub enum TieError {
     #[error("both ends are on block {number}, which is rigid: such a tie does nothing", number = .0 + 1)]
     OneBlock(usize),
     /// Both ends are on supports.
-    #[error("both ends are on supports, which do not part: such a tie does nothing")]
+    #[error("both ends are on supports, which move as they are told: such a tie does nothing")]
     OnSupports,
     /// It would be nothing without its prestress.
     #[error(

@@ -248,7 +248,7 @@ pub(super) fn mechanisms(
     let why = if structure.ties().is_empty() {
         why
     } else {
-        "what ties pull with changes along the way, and no curve is computed with them".to_owned()
+        "what ties pull with changes along the way, which the verification does not follow; `archrock capacity` does".to_owned()
     };
     let row = structure.row();
     let row = &row.map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
