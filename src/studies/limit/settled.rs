@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::told::{forces, openings_text, row_json};
+use super::told::{forces, openings_text, starts_json};
 use super::{Answer, NoLimit};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::friction;
-use crate::mechanics::settling::{Follower, Hinge, Movements, Pins};
-use crate::mechanics::stability::{RowOnset, StabilityError, onset_at};
+use crate::mechanics::settling::{Follower, Hinge, Movements, Pins, SettlingError};
+use crate::mechanics::stability::{RowOnset, onset_at};
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
@@ -26,13 +26,14 @@ pub(super) fn limit(
     // That it follows them was seen when the scenario was read.
     follower.move_supports(|part| movements.times(part), 0.0, 1.0)?;
     let stance = follower.stance();
-    let [right, left] = SIDES.map(|sway| first_motion(row, &follower, sway));
-    let onsets = [right?, left?];
+    let starts = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
+    let starts_g = [starts(Sway::Right)?, starts(Sway::Left)?];
+    let onsets = SIDES.map(|sway| mechanism(row, &follower, sway));
     let [right, left] = SIDES.map(|sway| follower.pushes_g(sway));
     let falls_g = [right?, left?].map(|pushes| pushes.map(|[_, falls_g]| falls_g));
     let hinges = follower.hinges().map_or(&[][..], Pins::hinges);
 
-    let mut json = row_json(row, &onsets, scenario.gravity_m_s2());
+    let mut json = starts_json(row, starts_g, &onsets, scenario.gravity_m_s2());
     json["capacity_g"] = json!({ "right": falls_g[0], "left": falls_g[1] });
     json["hinges"] = hinges
         .iter()
@@ -49,21 +50,22 @@ pub(super) fn limit(
         json["ties"] = json!({ "forces_at_rest_n": forces_n });
     }
     text.push('\n');
-    for ((sway, onset), falls_g) in SIDES.into_iter().zip(&onsets).zip(falls_g) {
+    for (((sway, start_g), onset), falls_g) in
+        SIDES.into_iter().zip(starts_g).zip(&onsets).zip(falls_g)
+    {
         let side = sway.name();
-        let Some(onset) = onset else {
+        let Some(start_g) = start_g else {
             let _ = writeln!(text, "no push to the {side} moves it without sliding\n");
             continue;
         };
-        if follower.is_held_by_ties() {
-            let _ = writeln!(text, "any push to the {side} moves it");
-        } else {
+        if let Some(onset) = onset {
             let _ = writeln!(
                 text,
-                "first motion to the {side}, where hinges give way to others: {:.8} g; then hinges open at",
-                onset.acceleration_g
+                "first motion to the {side}, where hinges give way to others: {start_g:.8} g; then hinges open at"
             );
             text += &openings_text(row, onset);
+        } else {
+            let _ = writeln!(text, "any push to the {side} moves it");
         }
         let _ = match falls_g {
             Some(falls_g) => writeln!(
@@ -103,21 +105,13 @@ pub(super) fn limit(
     Ok(Answer { json, text })
 }
 
-/// The push at which its hinges give way, and the mechanism; none of these where ties hold it on more than three hinges.
-fn first_motion(
-    row: &Row,
-    follower: &Follower<'_>,
-    sway: Sway,
-) -> Result<Option<RowOnset>, StabilityError> {
-    if !follower.is_held_by_ties() {
-        return onset_at(row, follower.stance(), sway);
+/// The mechanism in which its hinges give way to a push; none where any push moves it: ties hold it on more than three hinges, or it is about
+/// to fall.
+fn mechanism(row: &Row, follower: &Follower<'_>, sway: Sway) -> Option<RowOnset> {
+    if follower.is_held_by_ties() {
+        return None;
     }
-    Ok(Some(RowOnset {
-        acceleration_g: 0.0,
-        openings: Vec::new(),
-        velocities: Vec::new(),
-        lengthening: Vec::new(),
-    }))
+    onset_at(row, follower.stance(), sway).ok().flatten()
 }
 
 /// What its ties do, in words.

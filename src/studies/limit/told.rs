@@ -285,15 +285,25 @@ fn friction_json(row: &Row, coefficient: f64) -> Result<Value, FrictionError> {
 /// joints that open.
 #[must_use]
 pub fn row_json(row: &Row, onsets: &[Option<RowOnset>; 2], gravity_m_s2: f64) -> Value {
-    let [right, left] = onsets;
+    let starts_g = onsets
+        .each_ref()
+        .map(|onset| onset.as_ref().map(|onset| onset.acceleration_g));
+    starts_json(row, starts_g, onsets, gravity_m_s2)
+}
+
+/// The same where it starts at these accelerations, with or without a mechanism to tell.
+pub(super) fn starts_json(
+    row: &Row,
+    [right_g, left_g]: [Option<f64>; 2],
+    [right, left]: &[Option<RowOnset>; 2],
+    gravity_m_s2: f64,
+) -> Value {
     let mechanism = |onset: &Option<RowOnset>| openings_json(row, onset.as_ref());
-    let acceleration_g =
-        |onset: &Option<RowOnset>| onset.as_ref().map(|onset| onset.acceleration_g);
     json!({
-        "incipient_acceleration_g": { "right": acceleration_g(right), "left": acceleration_g(left) },
+        "incipient_acceleration_g": { "right": right_g, "left": left_g },
         "incipient_acceleration_m_s2": {
-            "right": acceleration_g(right).map(|g| g * gravity_m_s2),
-            "left": acceleration_g(left).map(|g| g * gravity_m_s2),
+            "right": right_g.map(|g| g * gravity_m_s2),
+            "left": left_g.map(|g| g * gravity_m_s2),
         },
         "mechanism": { "right": mechanism(right), "left": mechanism(left) },
     })
