@@ -220,6 +220,31 @@ fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
     }
 }
 
+/// A tie that is stretched by a part more than it bears has broken where the arch is to stand, which is an error: its motion would begin
+/// without a tie that it has.
+#[test]
+fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
+    let movements = right(0.06, 0.0);
+    let row = tied(0.2, 0.05);
+    let mut follower = Follower::new(&row).unwrap();
+    follower
+        .move_supports(|part| movements.times(part), 0.0, 1.0)
+        .unwrap();
+    let stretch_m = follower.stance().ties[0].stretch_m.0[0];
+    let on_supports = |bears: f64| {
+        let tie = row.ties()[0];
+        let tie = Tie {
+            breaks_at_strain: bears * stretch_m / tie.slack_length_m(),
+            ..tie
+        };
+        let row = row.clone().with_ties(vec![tie], GRAVITY).unwrap();
+        FreeHinges::new(row).unwrap().on_supports(&movements)
+    };
+    assert!(on_supports(1.0 + 1e-9).is_ok());
+    let error = on_supports(1.0 - 1e-9).unwrap_err().to_string();
+    assert!(error.contains("tie 1 breaks before"), "{error}");
+}
+
 /// How the blocks are turned from where they stood, in samples of 10 ms.
 fn turned(history: &History) -> Vec<Vec<f64>> {
     let samples = history.samples.iter();

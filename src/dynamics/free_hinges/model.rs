@@ -148,7 +148,7 @@ impl FreeHinges {
     /// followed them, and its motion is told from there.
     ///
     /// # Errors
-    /// When it falls on the way, or slides there.
+    /// When it falls or a tie breaks on the way, or it slides there.
     pub fn on_supports(self, movements: &Movements) -> Result<Self, FreeHingesError> {
         if movements.is_none() {
             return Ok(self);

@@ -28,6 +28,12 @@ pub enum SettledError {
         /// At this part of the movement.
         f64,
     ),
+    /// A tie has broken where they are.
+    #[error("with rigid joints tie {number} breaks before its supports have moved all of the way", number = .0 + 1)]
+    Tie(
+        /// Which one.
+        usize,
+    ),
     /// It cannot be followed.
     #[error(transparent)]
     Settling(#[from] SettlingError),
@@ -152,7 +158,7 @@ impl RigidRow {
     /// hinges its first mechanism is none of one degree of freedom whose barrier is known.
     ///
     /// # Errors
-    /// When it falls on the way.
+    /// When it falls on the way, or a tie breaks.
     pub(in crate::dynamics) fn on_supports(
         self,
         movements: &Movements,
@@ -161,6 +167,9 @@ impl RigidRow {
         let way = |part: f64| movements.times(part);
         if let Reached::Falls(part) = follower.move_supports(way, 0.0, 1.0)? {
             return Err(SettledError::Falls(part));
+        }
+        if let Some(tie) = follower.stance().broken_tie() {
+            return Err(SettledError::Tie(tie));
         }
         let first_g = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
         let incipient_g = [first_g(Sway::Right)?, first_g(Sway::Left)?];
