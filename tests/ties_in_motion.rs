@@ -6,11 +6,13 @@ use std::os::unix::fs::symlink;
 
 use crate::common::{parsed, pulse, run_sampled, sampled};
 use crate::program::{done, printed, refused, says_what_it_shows, scenarios};
-use crate::results::{Table, named};
+use crate::results::{Table, json, named};
 use archrock::dynamics::history::EventKind;
 use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::{Drum, Row};
+use archrock::mechanics::capacity::TieOnTheWay;
 use archrock::mechanics::tie::{Anchor, Tie, TieMemory};
+use archrock::studies::capacity::capacity;
 use archrock::{
     Contact, ElasticJoints, ElasticOptions, ElasticProperties, FreeHinges, GroundMotion,
     JointStiffness, Model, Pulse, Request, RowOptions, Stiffness,
@@ -715,7 +717,34 @@ fn a_run_tells_of_its_ties() {
     };
     let four = "four links take no ties";
     refuses(&["run", "s.toml", "--hinges", "four"], four);
-    printed(folder.path(), &["capacity", "s.toml", "--out", "curve"]);
+    let words = printed(folder.path(), &["capacity", "s.toml", "--out", "curve"]);
+    let told = json(&folder.path().join("curve/capacity.json"));
+    let [right, left] = capacity(&parsed(text), None).unwrap();
+    for side in [&right, &left] {
+        let TieOnTheWay {
+            yields_at_m,
+            breaks_at_m,
+        } = side.ties[0];
+        let tie = &told["capacity"][side.sway.name()]["ties"];
+        let due = serde_json::json!([{ "yields_at_m": yields_at_m, "breaks_at_m": breaks_at_m }]);
+        assert_eq!(*tie, due);
+    }
+    // The crown is at 4 m, the tie at 3.5 m: it is longer by 0.7 mm as it yields, and by 0.4 % less its prestress as it breaks. To the left
+    // it goes slack.
+    let [yields_m, breaks_m] = [right.ties[0].yields_at_m, right.ties[0].breaks_at_m];
+    let due_m = [0.0007, 0.004 * 2.9995 - 0.0005].map(|longer_m| longer_m * 4.0 / 3.5);
+    for (told_m, due_m) in [yields_m, breaks_m].into_iter().zip(due_m) {
+        assert!((told_m.unwrap() / due_m - 1.0).abs() < 2e-3, "{told_m:?}");
+    }
+    let says = words
+        .lines()
+        .filter_map(|line| line.strip_prefix("  tie 1 "));
+    let due = format!(
+        "yields at {:.6} m and breaks at {:.6} m",
+        yields_m.unwrap(),
+        breaks_m.unwrap()
+    );
+    assert_eq!(says.collect::<Vec<_>>(), [due.as_str(), "holds"]);
     let released = "initial={sway='right', rotation_rad=0.01}";
     refuses(
         &["run", "s.toml", "--hinges", "free", "--set", released],
