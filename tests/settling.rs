@@ -10,14 +10,18 @@ use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::settling::{Follower, Movement, Movements, Reached};
 use archrock::mechanics::sway::Sway;
 use archrock::mechanics::tie::{Anchor, Tie};
+use archrock::studies::spread::{Springing, Way, spread};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
 };
+use nalgebra::Vector2;
+use roxmltree::Document;
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use crate::common::parsed;
 use crate::program::{printed, refused};
-use crate::results::{Table, json};
+use crate::results::{Table, json, named, points};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
     let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
@@ -487,8 +491,42 @@ fn both_pushes_are_those_of_programmes_in_moved_places() {
     }
 }
 
-/// A semicircle with a tie between its intrados corners at a quarter and three quarters of its joints; or from the first of these to the
-/// ground below, near the left foot.
+/// A bar between the intrados corners of a joint of an arch and of its mirror image; or from the first of these to the ground below, near
+/// the left foot.
+fn bar(
+    blocks: &Blocks,
+    joint: usize,
+    [stiffness, prestress, yields_at]: [f64; 3],
+    ground: bool,
+) -> Bar {
+    let other = blocks.joints.len() - 1 - joint;
+    let first = (joint + 1, blocks.joints[joint][0]);
+    let ends = if ground {
+        [(0, [-0.4, 0.0]), first]
+    } else {
+        [first, (other, blocks.joints[other][0])]
+    };
+    let length = (ends[1].1[0] - ends[0].1[0]).hypot(ends[1].1[1] - ends[0].1[1]);
+    Bar {
+        ends,
+        stiffness,
+        natural: length - prestress / stiffness,
+        yields_at,
+    }
+}
+
+/// A semicircle with such bars, as a row and as blocks.
+fn with_bars(voussoirs: usize, bars: impl Fn(&Blocks) -> Vec<Bar>) -> (Row, Blocks) {
+    let mut blocks = Blocks::new(180.0, 0.15, voussoirs);
+    blocks.bars = bars(&blocks);
+    let row = arch(180.0, 0.15, voussoirs);
+    let weight_n = row.mass_kg() * 9.81;
+    let ties = blocks.bars.iter().map(|bar| bar.tie(weight_n, voussoirs));
+    let ties = ties.collect();
+    (row.with_ties(ties, 9.81).unwrap(), blocks)
+}
+
+/// The same with one bar at a quarter of its joints.
 fn tied(
     voussoirs: usize,
     stiffness: f64,
@@ -496,27 +534,10 @@ fn tied(
     yields_at: f64,
     ground: bool,
 ) -> (Row, Blocks) {
-    let mut blocks = Blocks::new(180.0, 0.15, voussoirs);
-    let joint = voussoirs / 4;
-    let point = |joint: usize| blocks.joints[joint][0];
-    let first = (joint + 1, point(joint));
-    let second = (voussoirs - joint, point(voussoirs - joint));
-    let ends = if ground {
-        [(0, [-0.4, 0.0]), first]
-    } else {
-        [first, second]
-    };
-    let length = (ends[1].1[0] - ends[0].1[0]).hypot(ends[1].1[1] - ends[0].1[1]);
-    let bar = Bar {
-        ends,
-        stiffness,
-        natural: length - prestress / stiffness,
-        yields_at,
-    };
-    let row = arch(180.0, 0.15, voussoirs);
-    let tie = bar.tie(row.mass_kg() * 9.81, voussoirs);
-    blocks.bars.push(bar);
-    (row.with_ties(vec![tie], 9.81).unwrap(), blocks)
+    let law = [stiffness, prestress, yields_at];
+    with_bars(voussoirs, |blocks| {
+        vec![bar(blocks, voussoirs / 4, law, ground)]
+    })
 }
 
 /// A tied arch that follows its right foot has the least energy of blocks and bar at every step: three hinges with a soft tie, also on the
@@ -592,6 +613,158 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
         yielded = yielded.max(follower.stance().ties[0].yielded_m.0[0]);
     }
     assert!(most == 4 && yielded > 0.01, "{most} {yielded}");
+}
+
+/// Two stiff bars at different heights hold an arch on five hinges. Each pulls as its twin does where the energy of blocks and bars is
+/// least; where an arch has both, what one pulls with depends on the other.
+#[test]
+fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
+    let (mut most, mut pulling) = (3, 0);
+    for (stiffnesses, way, stride, steps) in [
+        ([150.0, 100.0], OUT, 0.005, 12),
+        ([150.0, 100.0], DOWN, 0.02, 20),
+    ] {
+        let (row, mut blocks) = with_bars(16, |blocks| {
+            let bars = [4, 2].into_iter().zip(stiffnesses);
+            bars.map(|(joint, stiffness)| {
+                bar(blocks, joint, [stiffness, 0.0, f64::INFINITY], false)
+            })
+            .collect()
+        });
+        let weight_n = row.mass_kg() * 9.81;
+        let mut follower = Follower::new(&row).unwrap();
+        for step in 1..=steps {
+            let [from, to] = [step - 1, step].map(|step| stride * f64::from(step));
+            let what = format!("{stiffnesses:?} {way:?} {to}");
+            let reached = follower.move_supports(right(way), from, to).unwrap();
+            assert_eq!(reached, Reached::End, "{what}");
+            blocks.support = way.map(|part| part * to);
+            assert!(blocks.settle(), "{what}");
+            let crown = row.joints()[8].extrados_m;
+            let drop = (crown - follower.placement().poses()[7].of(crown)).y;
+            assert!((drop - blocks.crown_drop()).abs() < 2e-6, "{what}: {drop}");
+            let forces = follower
+                .stance()
+                .forces_n()
+                .map(|force_n| force_n / weight_n);
+            let pairs: Vec<(f64, f64)> = forces
+                .zip(blocks.bars.iter().map(|bar| blocks.pull(bar)))
+                .collect();
+            // The judge rests where no block goes by more than 1e-7, which times the stiffness is force.
+            for ((force, due), stiffness) in pairs.iter().zip(stiffnesses) {
+                let loose = 1e-6 * (1.0 + stiffness);
+                assert!((force - due).abs() < loose, "{what}: {pairs:?}");
+            }
+            pulling += u32::from(pairs.iter().all(|(force, _)| *force > 0.01));
+            most = most.max(follower.hinges().unwrap().hinges().len());
+        }
+    }
+    assert!(most == 5 && pulling > 5, "{most} {pulling}");
+}
+
+/// What is told of an arch that its tie holds on four hinges, and on three once it yields, is what the library has: the force of the tie, the
+/// pushes, every hinge in the table and in the picture, and where the tie is.
+#[test]
+fn commands_tell_of_an_arch_that_its_tie_holds() {
+    let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 16\n[free_hinges]\n\
+                [[tie]]\nheight_m = 3.3\nstiffness_n_m = 7e6\nyield_force_n = 2.5e4\n\
+                [supports]\nright = { settlement_m = 0.3 }\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.toml"), text).unwrap();
+    let scenario = parsed(text);
+    let row = scenario.structure().row().unwrap();
+    let movements = scenario.motion().supports().unwrap();
+    let mut follower = Follower::new(&row).unwrap();
+    let way = |part: f64| movements.times(part);
+    follower.move_supports(way, 0.0, 1.0).unwrap();
+    let hinges = follower.hinges().unwrap().hinges();
+    assert_eq!(hinges.len(), 4);
+    let force_n = follower.stance().forces_n().next().unwrap();
+
+    let told = printed(folder.path(), &["limit", "a.toml", "--format", "json"]);
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let words = printed(folder.path(), &["limit", "a.toml"]);
+    assert_eq!(
+        told["ties"],
+        serde_json::json!({ "forces_at_rest_n": [force_n] })
+    );
+    let listed = hinges
+        .iter()
+        .map(|hinge| serde_json::json!({ "joint": hinge.joint, "edge": hinge.edge.name() }));
+    assert_eq!(told["hinges"], listed.collect::<serde_json::Value>());
+    let holds = format!(
+        "its tie pulls with {:.6} kN, and it holds it there: it is a mechanism without\n",
+        force_n / 1e3
+    );
+    assert!(words.contains(&holds), "{words}");
+    for sway in [Sway::Right, Sway::Left] {
+        let side = sway.name();
+        let [first_g, falls_g] = follower.pushes_g(sway).unwrap().unwrap();
+        assert_eq!(first_g, 0.0);
+        assert_eq!(told["incipient_acceleration_g"][side], first_g);
+        assert_eq!(told["capacity_g"][side], falls_g);
+        assert_eq!(told["mechanism"][side], serde_json::json!([]));
+        let pushes = format!(
+            "any push to the {side} moves it\ncapacity to the {side}, where it falls: {falls_g:.8} g\n"
+        );
+        assert!(words.contains(&pushes), "{words}");
+    }
+
+    let angles_deg = [90.0, 0.0];
+    let ways = angles_deg.map(|angle_deg| Way {
+        springing: Springing::Right,
+        angle_deg,
+    });
+    let found = spread(&scenario, &ways).unwrap();
+    printed(
+        folder.path(),
+        &["spread", "a.toml", "--angle", "90", "--angle", "0"],
+    );
+    let results = folder.path().join("results/a");
+    let table = Table::read(results.join("spread.csv"));
+    let picture = std::fs::read_to_string(results.join("spread.svg")).unwrap();
+    let picture = Document::parse(&picture).unwrap();
+    let stages = found.paths.iter().flat_map(|path| &path.stages);
+    let mut counts = Vec::new();
+    for (row, stage) in table.rows.iter().zip(stages) {
+        let state = stage.state.as_ref().unwrap();
+        counts.push(state.hinges().len());
+        let mut open = state.hinges().iter().zip(&state.turns_rad);
+        for number in 1..=4 {
+            let cell = |what: &str| &row[&format!("hinge_{number}_{what}")];
+            let (hinge, turn_rad) = open.next().unzip();
+            let joint = hinge.map(|hinge| hinge.joint.to_string());
+            assert_eq!(*cell("joint"), joint.unwrap_or_default());
+            assert_eq!(cell("edge"), hinge.map_or("", |hinge| hinge.edge.name()));
+            assert_eq!(cell("rotation_rad").parse().ok(), turn_rad.copied());
+        }
+    }
+    assert_eq!(counts.len(), table.rows.len());
+    assert!(
+        [3, 4].iter().all(|count| counts.contains(count)),
+        "{counts:?}"
+    );
+    let last = found.paths.iter().map(|path| path.stages.last().unwrap());
+    let due: usize = last.clone().map(|stage| stage.hinges().len()).sum();
+    assert_eq!(named(&picture, "hinge").len(), due);
+    let ties = named(&picture, "tie");
+    let blocks = named(&picture, "block 1");
+    assert_eq!((ties.len(), blocks.len()), (2, 2));
+    for ((tie, block), stage) in ties.iter().zip(&blocks).zip(last) {
+        let corner_m = |corner: usize| stage.poses[0].of(row.outlines_m()[0][corner]);
+        let (tie_px, block_px) = (points(tie), points(block));
+        let apart_m = corner_m(1) - corner_m(0);
+        let scale = (block_px[1] - block_px[0]).norm() / apart_m.norm();
+        for (end_px, anchor) in tie_px.iter().zip(row.ties()[0].ends) {
+            let end_m = stage.poses[anchor.block.unwrap()].of(anchor.at_m);
+            let from_m = end_m - corner_m(0);
+            let due_px = block_px[0] + Vector2::new(from_m.x, -from_m.y) * scale;
+            // Coordinates have two digits of a pixel, and the scale is that of a joint.
+            let off_px = (end_px - due_px).norm();
+            assert!(off_px < 1e-3 * from_m.norm() * scale, "{off_px}");
+        }
+        assert_eq!(tie_px.len(), 2);
+    }
 }
 
 /// A growing push is borne until the arch with its bar falls, by either computation within the same step.
