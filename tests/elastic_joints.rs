@@ -1,5 +1,6 @@
 //! Rows with elastic joints, compared with closed forms, tables of an independent program, and symmetries.
 
+use std::collections::HashSet;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
@@ -9,8 +10,8 @@ use archrock::mechanics::elastic_joint::{ElasticStructure, Place, RestError};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::{
     Contact, ElasticJoints, ElasticJointsError, ElasticOptions, ElasticProperties, GroundMotion,
-    JointStiffness, Materials, Model, Outcome, Pulse, Request, Sample, SimulationError, Stiffness,
-    Summary, Sway,
+    Job, Jobs, JointStiffness, Materials, Model, Outcome, Pulse, Request, Sample, SimulationError,
+    Stiffness, Summary, Sway, Until,
 };
 use nalgebra::Vector2;
 
@@ -350,6 +351,73 @@ fn histories_side_by_side_have_the_bits_of_each_alone() {
         let alone = model.simulate(ground, request, None).unwrap();
         assert_eq!(told.peak_rotations_rad, alone.peak_rotations_rad);
         assert!(samples > 80 && told.cost == alone.cost);
+    }
+}
+
+/// Asks for every case by the model and by its repetitions, followed to each end.
+struct Everything {
+    waiting: Vec<Job>,
+    answers: Vec<(Job, Summary)>,
+}
+
+impl Everything {
+    fn of(cases: usize) -> Self {
+        let mut waiting = Vec::new();
+        for case in 0..cases {
+            for repetition in [None, Some(0), Some(1)] {
+                let job = |until| Job {
+                    case,
+                    repetition,
+                    until,
+                };
+                waiting.extend([Until::End, Until::Settled, Until::Safe].map(job));
+            }
+        }
+        Self {
+            waiting,
+            answers: Vec::new(),
+        }
+    }
+}
+
+impl Jobs for Everything {
+    fn next(&mut self) -> Option<Job> {
+        self.waiting.pop()
+    }
+
+    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+        self.answers.push((job, answer.unwrap()));
+    }
+}
+
+/// Every job is that of the model or the repetition that it names, followed as far as it says.
+#[test]
+fn jobs_side_by_side_have_the_bits_of_each_alone() {
+    let properties = ElasticProperties {
+        damping_time_s: 1e-3,
+        friction_coefficient: None,
+        ..ElasticProperties::of_stiffness(2e9)
+    };
+    let model = ElasticJoints::new(semicircle(5), properties).unwrap();
+    let repetitions = model.repetitions();
+    let case = |amplitude| (push(Pulse::HalfSine, amplitude, 0.2), request(9.81, 8.0));
+    let cases = [2.0, 2.2].map(case);
+    let mut jobs = Everything::of(cases.len());
+    model.work(&cases, &mut jobs);
+    assert_eq!(jobs.answers.len(), 18);
+    for (job, together) in &jobs.answers {
+        let repeats = |index: usize| repetitions[index].model.as_ref();
+        let model = job.repetition.map_or(&model as &dyn Model, repeats);
+        let alone = model.simulate_until(job.until, &cases[job.case]).unwrap();
+        assert_eq!(alone, *together, "{job:?}");
+    }
+    // No two of a case are the same: all have other steps, or end elsewhere.
+    for case in 0..cases.len() {
+        let of_case = jobs.answers.iter().filter(|(job, _)| job.case == case);
+        let ends: HashSet<_> = of_case
+            .map(|(_, summary)| (summary.cost.steps, summary.end_s.to_bits()))
+            .collect();
+        assert_eq!(ends.len(), 9, "{ends:?}");
     }
 }
 
