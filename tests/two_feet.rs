@@ -10,9 +10,12 @@ use crate::common::{parsed, pulse, run_sampled, sampled};
 use crate::program::{done, files, printed, refused, says_what_it_shows, scenarios};
 use crate::results::{Table, named};
 use archrock::dynamics::model::SimulationError;
-use archrock::mechanics::blocks::Row;
+use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::settling::{Movement, Movements};
-use archrock::{ElasticJoints, ElasticOptions, ElasticProperties, GroundMotion, Model, Pulse};
+use archrock::{
+    ElasticJoints, ElasticOptions, ElasticProperties, FreeHinges, GroundMotion, Model, Pulse,
+    RowOptions, Until,
+};
 use nalgebra::Vector2;
 use roxmltree::Document;
 
@@ -279,6 +282,49 @@ fn feet_side_by_side_are_as_feet_alone() {
     for ((ground, request), together) in cases.iter().zip(model.simulate_all(&cases)) {
         let alone = model.simulate(ground, request, None).unwrap();
         assert_eq!(alone, together.unwrap());
+    }
+}
+
+/// A stack stands on the left foot, whatever the right one does: nothing of it changes, nor how early it is known to be safe.
+#[test]
+fn a_stack_has_one_foot() {
+    let drum = Drum {
+        height_m: 2.0,
+        base_width_m: 1.0,
+        top_width_m: 1.0,
+    };
+    let stack = |drums: usize| Row::stack(&vec![drum; drums], 1.0, 2000.0).unwrap();
+    let slipping = RowOptions {
+        friction_coefficient: Some(0.6),
+        ..RowOptions::default()
+    };
+    let rigid = FreeHinges::new(stack(1)).unwrap();
+    let elastic = |drums: usize| {
+        ElasticJoints::new(stack(drums), ElasticProperties::of_stiffness(1e9)).unwrap()
+    };
+    // Joints that may slip say nothing of safety.
+    let models: [(&dyn Model, bool); 4] = [
+        (&rigid, true),
+        (&rigid.clone().with_options(slipping).unwrap(), false),
+        (&elastic(1), true),
+        (&elastic(2), true),
+    ];
+    let left = pulse(Pulse::OneSine, 0.6, 0.4);
+    let both = left
+        .clone()
+        .with_right_foot(pulse(Pulse::HalfSine, -0.8, 0.4));
+    for (model, ends_early) in models {
+        let [end_s, safe_s] = [Until::End, Until::Safe].map(|until| {
+            let of = |ground: &GroundMotion| {
+                let case = (ground.clone(), sampled(1.0, 0.01));
+                model.simulate_until(until, &case).unwrap()
+            };
+            let alone = of(&left);
+            assert!(alone.largest_rotation_rad() > 1e-3);
+            assert_eq!(of(&both), alone, "{until:?}");
+            alone.end_s
+        });
+        assert_eq!(safe_s < end_s, ends_early, "{safe_s} {end_s}");
     }
 }
 

@@ -295,18 +295,14 @@ impl ElasticJoints {
         request: &Request,
     ) -> Result<Task<'a>, SimulationError> {
         self.check(request)?;
-        // Where its feet part the row overturns at another energy, if at any.
-        let barrier_j = match ground.right_foot() {
-            Some(_) => None,
-            None => self.barrier_j(request.gravity_m_s2),
-        };
+        let gravity_m_s2 = request.gravity_m_s2;
         Ok(Task {
             row: self.row(),
             ground,
-            gravity_m_s2: request.gravity_m_s2,
+            gravity_m_s2,
             clock: self.clock(request)?,
-            barrier_j,
-            energy_scale_j: barrier_j.unwrap_or(0.0),
+            barrier_j: self.rigid.barrier_on(ground, gravity_m_s2),
+            energy_scale_j: self.rigid.energy_scale_j(gravity_m_s2),
         })
     }
 

@@ -129,7 +129,7 @@ impl<'a> Lane<'a> {
             until,
             ground_m_s: velocity.at(0.0),
             velocity,
-            feet: FeetApart::new(task.ground),
+            feet: FeetApart::of(task.row, task.ground),
             apart_m: Vector2::zeros(),
             quiet_s: task.ground.end_s(),
             longest_step_s: task.clock.longest_step_s,

@@ -283,11 +283,7 @@ impl Model for FreeHinges {
             ground,
             gravity_m_s2: request.gravity_m_s2,
             clock: settings.clock(),
-            // Where its feet part the row overturns at another energy, if at any.
-            barrier_j: match ground.right_foot() {
-                Some(_) => None,
-                None => self.barrier_j(request.gravity_m_s2),
-            },
+            barrier_j: self.rigid.barrier_on(ground, request.gravity_m_s2),
             energy_scale_j: self.rigid.energy_scale_j(request.gravity_m_s2),
         };
         let standing = self.rigid.standing();

@@ -8,12 +8,12 @@
 use nalgebra::Vector2;
 
 use crate::dynamics::ground::{FeetApart, GroundMotion};
-use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
 
 /// The right support.
 pub(super) struct RightSupport<'a> {
-    /// `None` where both feet move alike.
+    /// `None` where both feet move alike, and of a row with only one.
     feet: Option<FeetApart<'a>>,
     /// How far it has gone away from where it was beside the left one.
     gone_m: Vector2<f64>,
@@ -27,12 +27,8 @@ pub(super) struct RightSupport<'a> {
 
 impl<'a> RightSupport<'a> {
     pub fn new(row: &Row, ground: &'a GroundMotion) -> Self {
-        let feet = match row.supports() {
-            Supports::Both => FeetApart::new(ground),
-            Supports::Left => None,
-        };
         Self {
-            feet,
+            feet: FeetApart::of(row, ground),
             gone_m: Vector2::zeros(),
             followed_m: Vector2::zeros(),
             velocity_m_s: Vector2::zeros(),

@@ -22,6 +22,7 @@ use nalgebra::Vector2;
 
 use crate::argument::{ArgumentError, within};
 use crate::bisection::{Width, bisect, middle};
+use crate::mechanics::blocks::{Row, Supports};
 pub use error::GroundError;
 use piece::Formula;
 pub use piece::Piece;
@@ -101,6 +102,14 @@ impl GroundMotion {
         self.right.as_deref()
     }
 
+    /// The motion under the right foot of this row, where it is another one: a stack has only a left one.
+    pub(in crate::dynamics) fn right_foot_of(&self, row: &Row) -> Option<&Self> {
+        match row.supports() {
+            Supports::Both => self.right_foot(),
+            Supports::Left => None,
+        }
+    }
+
     /// The same for a structure whose feet are to move differently: at its end the ground stops where it is, whatever velocity it has.
     #[must_use]
     pub fn stopping(self) -> Self {
@@ -133,10 +142,11 @@ impl GroundMotion {
     /// ascend from zero on; zero where both move alike.
     #[must_use]
     pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
-        match FeetApart::new(self) {
-            None => vec![Vector2::zeros(); times_s.len()],
-            Some(mut feet) => times_s.iter().map(|time_s| feet.at(*time_s)).collect(),
-        }
+        let Some(right) = self.right_foot() else {
+            return vec![Vector2::zeros(); times_s.len()];
+        };
+        let mut feet = FeetApart::between([self, right]);
+        times_s.iter().map(|time_s| feet.at(*time_s)).collect()
     }
 
     /// The pieces in order, without gaps, from zero to infinity.

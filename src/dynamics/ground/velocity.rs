@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::GroundMotion;
+use crate::mechanics::blocks::Row;
 
 /// Velocity of the ground that starts from rest at time zero.
 #[derive(Clone, Debug)]
@@ -112,13 +113,18 @@ pub(in crate::dynamics) struct FeetApart<'a> {
 }
 
 impl<'a> FeetApart<'a> {
-    /// `None` where both feet move alike.
-    pub(in crate::dynamics) fn new(ground: &'a GroundMotion) -> Option<Self> {
-        let right = ground.right_foot()?;
-        Some(Self {
-            ways: [ground, right].map(|ground| Way::new(GroundVelocity::new(ground))),
-            end_s: ground.end_s(),
-        })
+    /// `None` where both feet of the row move alike, or it has only one.
+    pub(in crate::dynamics) fn of(row: &Row, ground: &'a GroundMotion) -> Option<Self> {
+        let right = ground.right_foot_of(row)?;
+        Some(Self::between([ground, right]))
+    }
+
+    /// Between feet that move like this, the left and the right one.
+    pub(super) fn between(feet: [&'a GroundMotion; 2]) -> Self {
+        Self {
+            ways: feet.map(|ground| Way::new(GroundVelocity::new(ground))),
+            end_s: feet.map(GroundMotion::end_s).into_iter().fold(0.0, f64::max),
+        }
     }
 
     /// At a time that is not before the last one, to the right and upwards, in m.

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::argument::ArgumentError;
+use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Shape;
 use crate::dynamics::model::Initial;
 use crate::mechanics::blocks::{Row, Supports};
@@ -194,6 +195,18 @@ impl RigidRow {
             return None;
         }
         self.built_barrier_j(gravity_m_s2)
+    }
+
+    /// The same on this ground: where its feet part it overturns at another energy, if at any.
+    pub(in crate::dynamics) fn barrier_on(
+        &self,
+        ground: &GroundMotion,
+        gravity_m_s2: f64,
+    ) -> Option<f64> {
+        match ground.right_foot_of(&self.row) {
+            Some(_) => None,
+            None => self.barrier_j(gravity_m_s2),
+        }
     }
 
     /// Energy beside which errors of a motion's balance are judged, in J: the barrier, or that of the row as it was built, without its ties.
