@@ -13,8 +13,8 @@ use crate::dynamics::history::{
 };
 use crate::dynamics::model::Recorder;
 use crate::dynamics::row::course::{
-    Course, LARGEST_ENERGY_ERROR, LEAST_RETURN, Marks, OVERTURNED_RAD, OVERTURNED_RATIO,
-    REST_ENERGY_RATIO, REST_TIME_RATIO, Stepper, Summit, Task, equal_step, open_hinge,
+    Course, LARGEST_ENERGY_ERROR, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO,
+    Stepper, Summit, Task, equal_step, open_hinge,
 };
 use crate::dynamics::spread::GONE;
 use crate::dynamics::until::Until;
@@ -94,8 +94,6 @@ struct Lane<'a> {
     quiet: Option<(f64, f64)>,
     end_s: f64,
     quiet_since_s: f64,
-    /// How long it must be quiet to rest.
-    rest_time_s: f64,
     marks: Marks,
     overturned: bool,
     /// The error for which it cannot go on.
@@ -147,7 +145,6 @@ impl<'a> Lane<'a> {
             quiet: None,
             end_s: task.clock.end_s,
             quiet_since_s: 0.0,
-            rest_time_s: REST_TIME_RATIO * (task.row.size_m() / task.gravity_m_s2).sqrt(),
             marks: Marks::new(task.clock),
             overturned: false,
             lost: None,
@@ -384,11 +381,8 @@ impl<'a, const L: usize> Group<'a, L> {
         let far = OVERTURNED_RATIO * self.row.size_m();
         lane.overturned |=
             of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
-        let least = LEAST_RETURN * course.energy_unit;
-        match lane.feet {
-            Some(_) => lane.summit.note_between_feet(time, kinetic, least),
-            None => lane.summit.note(time, potential + taken, least),
-        }
+        let height = lane.feet.is_none().then_some(potential + taken);
+        lane.summit.note(course, height);
         let vibrates = kinetic < lane.still_j && potential < lane.still_j;
         // A row that is still but stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
@@ -434,8 +428,8 @@ impl<'a, const L: usize> Group<'a, L> {
 
 impl<'a> Lane<'a> {
     fn rests_since(&self) -> Option<f64> {
-        let quiet_s = self.course.time - self.quiet_since_s.max(self.quiet_s);
-        (quiet_s >= self.rest_time_s).then_some(self.quiet_since_s)
+        let quiet = self.course.is_quiet(self.quiet_since_s.max(self.quiet_s));
+        quiet.then_some(self.quiet_since_s)
     }
 
     fn overturned_s(&self) -> Option<f64> {
@@ -476,7 +470,8 @@ impl<'a> Lane<'a> {
             // It decays at most that much slower from now on.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
             let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
-            let rests = rate > 0.0 && self.course.time + rests_s + self.rest_time_s < self.end_s;
+            let rested_s = self.course.time + rests_s + self.course.rest_time_s();
+            let rests = rate > 0.0 && rested_s < self.end_s;
             if !(self.course.moved && rests && energy_j < DECAYED * self.largest_j) {
                 return false;
             }

@@ -19,8 +19,8 @@ use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{Sample, Sliding};
 use crate::dynamics::model::Recorder;
 use crate::dynamics::row::course::{
-    Course, LEAST_RETURN, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, REST_TIME_RATIO,
-    SWAY_RATIO, Stepper, Summit, Task, eccentricity_ratio, equal_step, only,
+    Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, SWAY_RATIO, Stepper, Summit, Task,
+    eccentricity_ratio, equal_step, only,
 };
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
@@ -361,13 +361,8 @@ impl<'a> SlidingStepper<'a> {
         self.course.observe(rotations, potential, kinetic, sway);
         self.overturned |= self.has_fallen();
         let height = potential + self.held_back + taken;
-        let least = LEAST_RETURN * self.course.energy_unit;
-        if self.right.moves() {
-            self.summit
-                .note_between_feet(self.course.time, kinetic, least);
-        } else {
-            self.summit.note(self.course.time, height, least);
-        }
+        let height = (!self.right.moves()).then_some(height);
+        self.summit.note(&self.course, height);
         if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
             self.quiet_since_s = self.course.time;
         }
@@ -473,12 +468,6 @@ impl<'a> SlidingStepper<'a> {
             .into_iter()
             .all(|(mode, stood)| mode.pressed == *stood)
             && !self.right_support_is_gone()
-    }
-
-    /// Whether it has hardly moved for a while.
-    fn is_quiet(&self) -> bool {
-        let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
-        self.course.time - self.quiet_since_s > long_s
     }
 
     /// Whether the right support is not where it stood beside the left one.
@@ -701,7 +690,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             .into_iter()
             .all(|joint| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint]);
         let lies = if self.right_support_is_gone() {
-            self.is_quiet()
+            self.course.is_quiet(self.quiet_since_s)
         } else {
             lies
         };
@@ -714,7 +703,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let rests = if undeformed {
             self.course.time > self.quiet_since_s
         } else {
-            self.is_quiet()
+            self.course.is_quiet(self.quiet_since_s)
         };
         rests.then_some(self.quiet_since_s)
     }

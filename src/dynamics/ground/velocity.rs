@@ -123,7 +123,10 @@ impl<'a> FeetApart<'a> {
     pub(super) fn between(feet: [&'a GroundMotion; 2]) -> Self {
         Self {
             ways: feet.map(|ground| Way::new(GroundVelocity::new(ground))),
-            end_s: feet.map(GroundMotion::end_s).into_iter().fold(0.0, f64::max),
+            end_s: feet
+                .map(GroundMotion::end_s)
+                .into_iter()
+                .fold(0.0, f64::max),
         }
     }
 

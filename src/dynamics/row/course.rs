@@ -24,13 +24,13 @@ pub(in crate::dynamics) const SWAY_RATIO: f64 = 1e-9;
 /// At rest, the kinetic energy is below this fraction of weight times size ...
 pub(in crate::dynamics) const REST_ENERGY_RATIO: f64 = 1e-9;
 /// ... for this many times the square root of size over gravity: longer than at any turning point.
-pub(in crate::dynamics) const REST_TIME_RATIO: f64 = 0.5;
+const REST_TIME_RATIO: f64 = 0.5;
 /// A block that has turned by this, in radians, has overturned ...
 pub(in crate::dynamics) const OVERTURNED_RAD: f64 = 0.8;
 /// ... and so has one that has moved by this fraction of the size, apart from the slide of the row along a support.
 pub(in crate::dynamics) const OVERTURNED_RATIO: f64 = 0.6;
 /// On the way down, a rise of less than this fraction of weight times size is no return.
-pub(in crate::dynamics) const LEAST_RETURN: f64 = 1e-3;
+const LEAST_RETURN: f64 = 1e-3;
 /// An energy balance that is wrong by more than this fraction of the largest energy of the motion is an error.
 pub(in crate::dynamics) const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 /// Energies below this fraction of weight times size are no motion: their balance is rounding.
@@ -437,21 +437,16 @@ impl Summit {
         }
     }
 
-    /// Notes the kinetic energy of a row whose feet part: as they work, its height says of no way back, but what hardly moves has not come
-    /// down.
-    pub(in crate::dynamics) const fn note_between_feet(
-        &mut self,
-        time: f64,
-        kinetic: f64,
-        least: f64,
-    ) {
-        if kinetic < least {
-            self.time = time;
-        }
-    }
-
-    /// Notes a height. If it rises again by `least` from where it was lowest, it had not come down for good.
-    pub(in crate::dynamics) fn note(&mut self, time: f64, height: f64, least: f64) {
+    /// Notes the height of a row after a step. If it rises again from where it was lowest, it had not come down for good. `None` where its
+    /// feet part: as they work, heights say of no way back, but what hardly moves has not come down.
+    pub(in crate::dynamics) fn note(&mut self, course: &Course<'_>, height: Option<f64>) {
+        let (time, least) = (course.time, LEAST_RETURN * course.energy_unit);
+        let Some(height) = height else {
+            if course.kinetic < least {
+                self.time = time;
+            }
+            return;
+        };
         self.lowest = self.lowest.min(height);
         if height >= self.highest || height >= self.lowest + least {
             *self = Self {
@@ -597,6 +592,16 @@ impl<'a> Course<'a> {
             });
         }
         (time >= self.task.clock.end_s).then_some((Outcome::StillRocking, time))
+    }
+
+    /// How long it must be quiet to rest, in seconds.
+    pub(in crate::dynamics) fn rest_time_s(&self) -> f64 {
+        REST_TIME_RATIO * (self.task.row.size_m() / self.task.gravity_m_s2).sqrt()
+    }
+
+    /// Whether a row that has hardly moved since then rests.
+    pub(in crate::dynamics) fn is_quiet(&self, since_s: f64) -> bool {
+        self.time - since_s > self.rest_time_s()
     }
 
     /// When it passed its last way back, if a potential energy of gravity says that it has overturned.

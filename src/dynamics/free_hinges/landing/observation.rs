@@ -6,8 +6,8 @@ use super::{LandingStepper, Piece};
 use crate::dynamics::free_hinges::FreeHingeError;
 use crate::dynamics::history::Sample;
 use crate::dynamics::row::course::{
-    Course, LEAST_RETURN, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, REST_TIME_RATIO,
-    Stepper, eccentricity_ratio, equal_step, only, open_hinge,
+    Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Stepper, eccentricity_ratio,
+    equal_step, only, open_hinge,
 };
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
@@ -80,16 +80,12 @@ impl LandingStepper<'_> {
     /// What says of a row that may end on hinges when it rests, and when it has overturned: it may come to rest on others, lower or
     /// higher, so its energy says neither. Between feet that part it lies far away if it is far from where either foot would have it.
     fn observe_hinges(&mut self, kinetic: f64) {
-        let (course, time) = (&self.course, self.course.time);
+        let course = &self.course;
         if kinetic >= REST_ENERGY_RATIO * course.energy_unit {
-            self.quiet_since_s = time;
+            self.quiet_since_s = course.time;
         }
-        let least = LEAST_RETURN * course.energy_unit;
-        if self.right.moves() {
-            self.summit.note_between_feet(time, kinetic, least);
-        } else {
-            self.summit.note(time, course.potential, least);
-        }
+        let height = (!self.right.moves()).then_some(course.potential);
+        self.summit.note(course, height);
         let far_m = OVERTURNED_RATIO * self.row.size_m();
         let stood = self.rest.placement();
         let moved_m = self.placement.centres_m().iter().zip(stood.centres_m());
@@ -101,12 +97,6 @@ impl LandingStepper<'_> {
         }) || self
             .turns()
             .any(|(rotation_rad, _)| rotation_rad.abs() >= OVERTURNED_RAD);
-    }
-
-    /// Whether it has hardly moved for a while.
-    fn is_quiet(&self) -> bool {
-        let long_s = REST_TIME_RATIO * (self.row.size_m() / self.gravity).sqrt();
-        self.course.time - self.quiet_since_s > long_s
     }
 
     /// Whether the row lies where it stood before it moved.
@@ -280,7 +270,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn stands(&self, sample: &Sample) -> bool {
-        let lies = self.lies_at_rest() || (self.may_end_on_hinges() && self.is_quiet());
+        let quiet = || self.course.is_quiet(self.quiet_since_s);
+        let lies = self.lies_at_rest() || (self.may_end_on_hinges() && quiet());
         lies || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
 
@@ -292,7 +283,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let least = REST_ENERGY_RATIO * self.course.energy_unit;
         let on_hinges = self.rest.is_on_hinges() || self.right_support_is_gone();
         if on_hinges && !self.lies_at_rest() {
-            return self.is_quiet().then_some(self.quiet_since_s);
+            let quiet = self.course.is_quiet(self.quiet_since_s);
+            return quiet.then_some(self.quiet_since_s);
         }
         // Ties that have yielded or broken hold another energy where the row rests.
         let height = self.height();
