@@ -54,6 +54,7 @@ pub(super) struct SlidingStepper<'a> {
     stood_m: Vec<Vector3<f64>>,
     course: Course<'a>,
     faces: Vec<Faces>,
+    thinnest_m: f64,
     /// Where the left and the right support are.
     supports: [Position; 2],
     positions: Vec<Position>,
@@ -115,6 +116,8 @@ impl<'a> SlidingStepper<'a> {
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
         let rest = Rest::new(row, &standing.placement);
         let faces = Faces::of_row(row);
+        let thicknesses_m = faces.iter().map(|faces| faces.thickness_m);
+        let thinnest_m = thicknesses_m.fold(f64::INFINITY, f64::min);
         let supports = placement.support_poses().map(|pose| Position::of(&pose));
         let contacts_at = |placement: &Placement| -> (Vec<Position>, Vec<Contact>) {
             let at = placement.centres_m().iter().zip(placement.poses());
@@ -174,6 +177,7 @@ impl<'a> SlidingStepper<'a> {
             centres: placement.centres_m().to_vec(),
             before: Vec::with_capacity(blocks),
             faces,
+            thinnest_m,
             positions,
             contacts,
         }
@@ -472,9 +476,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// Whether the right support is not where it stood beside the left one.
     fn right_support_is_gone(&self) -> bool {
-        let faces = self.faces.iter().map(|faces| faces.thickness_m);
-        let thinnest_m = faces.fold(f64::INFINITY, f64::min);
-        self.right.is_gone(APART_RATIO * thinnest_m)
+        self.right.is_gone(APART_RATIO * self.thinnest_m)
     }
 
     /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground; from between the
@@ -584,9 +586,6 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         for (joint, impulse) in self.program.impulses().iter().enumerate() {
             let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
             taken -= impulse.dot(&mean);
-            let carried_j = impulse.dot(&self.carried(joint, self.right.mean_m_s()));
-            taken -= carried_j;
-            self.right.works(-carried_j);
             // Friction at a joint that sticks does no work, except in an impact.
             if let Along::Slip(_) = self.program.modes()[joint].along {
                 let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
@@ -595,8 +594,12 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             }
         }
         if self.right.moves() {
+            let (last, mean_m_s) = (self.faces.len() - 1, self.right.mean_m_s());
+            let carried_j = self.program.impulses()[last].dot(&self.carried(last, mean_m_s));
+            taken -= carried_j;
+            self.right.works(-carried_j);
             let pulled = self.ties.on_right_support_n() * (to_s - self.kicked_s);
-            self.right.works(-pulled.dot(&self.right.mean_m_s()));
+            self.right.works(-pulled.dot(&mean_m_s));
         }
         taken -= rubbed;
         self.course.of_row.energy_taken_j += taken;

@@ -154,7 +154,7 @@ impl LandingStepper<'_> {
             gaps.filter(|(joint, _)| stood[*joint] == [true; 2])
                 .filter_map(|(joint, gaps)| open_hinge(joint, *gaps)),
         );
-        self.stands = opened.is_empty() && !self.right.is_gone(SHUT_RATIO * self.thinnest);
+        self.stands = opened.is_empty() && !self.right_support_is_gone();
         if !self.stands {
             // Until then it stood still.
             let blocks = self.row.blocks().len();
