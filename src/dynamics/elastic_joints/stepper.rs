@@ -26,7 +26,7 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
 
 /// Steps from one observation of a motion to the next: a little more than the period of the fastest vibration.
-const STRIDE: usize = 8;
+const STRIDE: u64 = 8;
 /// At rest a row may still vibrate, with energies below this fraction of the elastic energy under its own weight: by less than a
 /// third of its deflection under it ...
 const REST_STRAIN_RATIO: f64 = 0.1;
@@ -72,8 +72,6 @@ struct Lane<'a> {
     halved: usize,
     /// Time up to which it steps without pause.
     until_s: f64,
-    /// Steps since it began.
-    steps: usize,
     /// Whether it is observed where it is.
     is_seen: bool,
     /// Time up to which the kicks have acted, and the velocity of the ground then.
@@ -133,7 +131,6 @@ impl<'a> Lane<'a> {
             longest_step_s: task.clock.longest_step_s,
             halved: 0,
             until_s: 0.0,
-            steps: 0,
             is_seen: false,
             kicked_s: 0.0,
             rest_j: None,
@@ -179,7 +176,6 @@ impl<'a> Lane<'a> {
             self.apart_m = apart_m;
         }
         self.course.summary.cost.steps += 1;
-        self.steps += 1;
         self.is_seen = false;
         step
     }
@@ -204,8 +200,12 @@ impl<'a> Lane<'a> {
         self.kicked_s < self.quiet_s
     }
 
+    fn ends_stride(&self) -> bool {
+        self.course.summary.cost.steps.is_multiple_of(STRIDE)
+    }
+
     fn is_due(&self) -> bool {
-        self.steps.is_multiple_of(STRIDE) || self.course.time >= self.until_s
+        self.ends_stride() || self.course.time >= self.until_s
     }
 }
 
@@ -260,7 +260,7 @@ impl<'a, const L: usize> Group<'a, L> {
     /// Whether motions may begin: where the others, if there are any, end a stride. From there on most are observed together.
     pub(super) fn may_begin(&self) -> bool {
         let mut lanes = self.lanes.iter().flatten();
-        lanes.all(|lane| lane.steps.is_multiple_of(STRIDE))
+        lanes.all(Lane::ends_stride)
     }
 
     /// Steps until a motion has been observed.
