@@ -74,7 +74,7 @@ pub trait Model: Debug + Send + Sync {
         false
     }
 
-    /// Its motion, as [`Model::simulate`] gives it without a recorder, followed so far.
+    /// Its motion, as [`Model::simulate`] gives it without a recorder, followed as far as `until` says.
     ///
     /// # Errors
     /// As [`Model::simulate`].

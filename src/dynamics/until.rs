@@ -46,7 +46,7 @@ pub(super) struct UntilSafe {
 }
 
 impl UntilSafe {
-    /// Of a motion that is followed so far; `None` if it is followed to its end.
+    /// Of a motion that is followed as far as `until` says; `None` if that is to its end.
     pub(super) fn new(until: Until, ground: &GroundMotion, request: &Request) -> Option<Self> {
         let rest_by_s = match until {
             Until::End => return None,
@@ -82,9 +82,8 @@ impl UntilSafe {
 impl Recorder for UntilSafe {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let half_cycle_s = self.longest_half_cycle_s(sample);
-        // A row that has slipped stands lower, and elastic joints overturn below the barrier of rigid joints: their energy says
-        // nothing.
-        let slips = !sample.offsets_m.is_empty() || !sample.pressures.is_empty();
+        // A row that has slipped stands lower: its energy says nothing.
+        let slips = !sample.offsets_m.is_empty();
         let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
         self.largest_ratio = self.largest_ratio.max(ratio);
         let safe = ratio < SAFE;
