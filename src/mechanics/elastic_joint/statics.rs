@@ -6,7 +6,7 @@ use super::banded::Banded;
 use super::contact::{Fibre, Memory};
 use super::kinematics::{Action, Place};
 use super::structure::ElasticStructure;
-use crate::mechanics::lanes::{Dual, Lanes};
+use crate::mechanics::lanes::{Dual, Lanes, Real};
 use crate::mechanics::tie::TieMemory;
 
 /// The number type of a single motion.
@@ -415,12 +415,12 @@ impl<'a> Search<'a> {
         self
     }
 
-    /// Unbalanced forces (moments over the length); with a matrix, minus their derivatives with respect to the coordinates.
+    /// Unbalanced forces (moments over the length); with a matrix, minus their derivatives with respect to the coordinates as well.
     fn unbalanced(
         &self,
         moved: &[[f64; 3]],
         bonded: bool,
-        mut matrix: Option<&mut Banded>,
+        matrix: Option<&mut Banded>,
         forces: &mut [f64],
     ) {
         let bodies = self.structure.bodies();
@@ -429,9 +429,54 @@ impl<'a> Search<'a> {
             forces[3 * index + 1] = body.mass_kg * self.load_m_s2[1];
             forces[3 * index + 2] = 0.0;
         }
+        let units = [1.0, 1.0, self.length_m];
+        let Some(matrix) = matrix else {
+            let place = |body: usize, _| self.place(moved, body);
+            self.act(bonded, place, |row, _, force: Alone| {
+                forces[row] += force.0[0] / units[row % 3];
+            });
+            return;
+        };
+        let place = |body: usize, end| self.variable(moved, body, end);
+        self.act(bonded, place, |row, pair, force| {
+            forces[row] += force.value / units[row % 3];
+            for (end, of) in pair.into_iter().enumerate() {
+                for by in 0..3 {
+                    if of < bodies.len() {
+                        let slope = force.slope[3 * end + by];
+                        matrix.add(row, 3 * of + by, -slope / (units[row % 3] * units[by]));
+                    }
+                }
+            }
+        });
+    }
+
+    /// Finds what acts between the bodies of each joint and of each tie, of which the first and the second one are at these places: for
+    /// each coordinate of a body, the pair and the force or moment.
+    fn act<R: Real>(
+        &self,
+        bonded: bool,
+        place: impl Fn(usize, usize) -> Place<R>,
+        mut found: impl FnMut(usize, [usize; 2], R),
+    ) {
+        let bodies = self.structure.bodies().len();
+        let mut between = |pair: [usize; 2], action: &Action<R>| {
+            let [x, y] = action.force_n;
+            let on = [
+                [-x, -y, action.moments_n_m[0]],
+                [x, y, action.moments_n_m[1]],
+            ];
+            for (body, on) in pair.into_iter().zip(on) {
+                for (axis, force) in on.into_iter().enumerate() {
+                    if body < bodies {
+                        found(3 * body + axis, pair, force);
+                    }
+                }
+            }
+        };
         for joint in self.structure.joints() {
             let pair = joint.link.bodies();
-            let [first, second] = [0, 1].map(|end| self.variable(moved, pair[end], end));
+            let [first, second] = [0, 1].map(|end| place(pair[end], end));
             let section = &self.structure.law().section;
             let action = if bonded {
                 let gap = joint.link.gap(&first, &second);
@@ -446,20 +491,24 @@ impl<'a> Search<'a> {
                 let (action, ..) = self.structure.act(joint, places, None, &mut memory, fibres);
                 action
             };
-            self.add(pair, &action, matrix.as_deref_mut(), forces);
+            between(pair, &action);
         }
         for (bound, yielded_m) in self.structure.ties().iter().zip(&self.yielded_m) {
             let pair = bound.bodies;
-            let [first, second] = [0, 1].map(|end| self.variable(moved, pair[end], end));
+            let [first, second] = [0, 1].map(|end| place(pair[end], end));
             let span = bound.span([&first, &second]);
             let force_n = if bonded {
                 span.stretch_m * bound.tie.stiffness_n_m
             } else {
                 bound.tie.pull_n(*yielded_m, span.stretch_m)
             };
-            let action = bound.action([&first, &second], &span, force_n);
-            self.add(pair, &action, matrix.as_deref_mut(), forces);
+            between(pair, &bound.action([&first, &second], &span, force_n));
         }
+    }
+
+    /// Where a body or a support is.
+    fn place(&self, moved: &[[f64; 3]], body: usize) -> Place<Alone> {
+        Place::at(moved.get(body).unwrap_or(self.structure.support(body)))
     }
 
     /// Where the first or the second of two bodies is, with the derivatives by the coordinates of both.
@@ -478,43 +527,6 @@ impl<'a> Search<'a> {
         Place {
             moved_m: [variable(0), variable(1)],
             half_turn,
-        }
-    }
-
-    /// Adds what acts between two bodies to their forces; with a matrix, minus its derivatives.
-    fn add(
-        &self,
-        pair: [usize; 2],
-        action: &Action<Dual<6>>,
-        mut matrix: Option<&mut Banded>,
-        forces: &mut [f64],
-    ) {
-        let bodies = self.structure.bodies().len();
-        let units = [1.0, 1.0, self.length_m];
-        let [x, y] = action.force_n;
-        let on = [
-            [-x, -y, action.moments_n_m[0]],
-            [x, y, action.moments_n_m[1]],
-        ];
-        for (end, &body) in pair.iter().enumerate() {
-            if body >= bodies {
-                continue;
-            }
-            for axis in 0..3 {
-                let row = 3 * body + axis;
-                forces[row] += on[end][axis].value / units[axis];
-                let Some(matrix) = &mut matrix else {
-                    continue;
-                };
-                for (other, &of) in pair.iter().enumerate() {
-                    for by in 0..3 {
-                        if of < bodies {
-                            let slope = on[end][axis].slope[3 * other + by];
-                            matrix.add(row, 3 * of + by, -slope / (units[axis] * units[by]));
-                        }
-                    }
-                }
-            }
         }
     }
 
@@ -682,8 +694,7 @@ impl<'a> Search<'a> {
         let each = self.structure.fibres();
         let mut memories = vec![Memory::none(); joints.len()];
         let mut fibres = vec![Fibre::none(); joints.len() * each];
-        let place =
-            |body: usize| Place::at(moved.get(body).unwrap_or(self.structure.support(body)));
+        let place = |body: usize| self.place(&moved, body);
         let ties = self.structure.ties().iter().zip(&self.yielded_m);
         let ties = ties.map(|(bound, yielded_m)| {
             let [first, second] = bound.bodies.map(place);
