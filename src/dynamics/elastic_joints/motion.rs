@@ -3,7 +3,7 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::mechanics::elastic_joint::{
-    Body, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Pressing, Rest,
+    Body, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Rest,
 };
 use crate::mechanics::lanes::{Lanes, Real, both};
 use crate::mechanics::tie::TieMemory;
@@ -88,7 +88,7 @@ const TOGETHER: usize = 12;
 #[derive(Clone, Copy)]
 struct Bearing<R> {
     gap: Gap<R>,
-    pressing: Pressing<R>,
+    edges_n: [R; 2],
     shear_n: R,
 }
 
@@ -97,11 +97,7 @@ impl<R: Real> Bearing<R> {
         let zero = R::of(0.0);
         Self {
             gap: Gap::none(),
-            pressing: Pressing {
-                edges_n: [zero; 2],
-                damped_j: zero,
-                crushed_j: zero,
-            },
+            edges_n: [zero; 2],
             shear_n: zero,
         }
     }
@@ -378,19 +374,19 @@ impl<'a, const L: usize> Motion<'a, L> {
                 let pressing = law.press(joint, damping, &bearing.gap, memory, fibres);
                 damped_j += pressing.damped_j;
                 crushed_j += pressing.crushed_j;
-                bearing.pressing = pressing;
+                bearing.edges_n = pressing.edges_n;
             }
             let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *bearing);
             for ((joint, memory), bearing) in each_joint {
-                let (gap, pressing) = (&bearing.gap, &bearing.pressing);
-                let rubbing = law.rub(joint, damping, gap, pressing, memory);
+                let (gap, edges_n) = (&bearing.gap, bearing.edges_n);
+                let rubbing = law.rub(joint, damping, gap, edges_n, memory);
                 friction_j += rubbing.friction_j;
                 damped_j += rubbing.damped_j;
                 bearing.shear_n = rubbing.shear_n;
             }
             for (joint, bearing) in joints.iter().zip(&*bearing) {
-                let edges_n = bearing.pressing.edges_n;
-                let action = joint.link.action(&bearing.gap, edges_n, bearing.shear_n);
+                let (gap, edges_n) = (&bearing.gap, bearing.edges_n);
+                let action = joint.link.action(gap, edges_n, bearing.shear_n);
                 let [one, other] = ends(structure, joint);
                 self.bodies[one].feel(both!(i: -action.force_n[i]), action.moments_n_m[0]);
                 self.bodies[other].feel(action.force_n, action.moments_n_m[1]);

@@ -1,8 +1,8 @@
 //! The stress that a joint bears, summed over its length.
 //!
-//! Until the end, forces are six times those divided by the stiffness of the whole joint (N per N/m: metres). The penetration changes linearly from
-//! edge to edge, so the part that presses is an interval, found without branches, and Simpson's rule is exact for forces, moments
-//! and energies.
+//! The penetration changes linearly from edge to edge, so the part that presses is an interval, found without branches, and Simpson's
+//! rule is exact for forces, moments and energies. Its sixth, and the stiffness of the joint, are multiplied in at the end: until then a
+//! force is in metres.
 
 use std::f64::consts::PI;
 
@@ -321,19 +321,18 @@ impl Law {
         }
     }
 
-    /// How its faces rub with such a gap as they press like this; its memory is updated.
+    /// How its faces rub with such a gap as these forces press at its edges; its memory is updated.
     #[inline(always)]
     pub fn rub<R: Real>(
         &self,
         joint: &ElasticJoint,
         damping: Option<R>,
         gap: &Gap<R>,
-        pressing: &Pressing<R>,
+        edges_n: [R; 2],
         memory: &mut Memory<R>,
     ) -> Rubbing<R> {
         let [coefficient, lock] = self.friction;
-        let pressing_n = pressing.edges_n[0] + pressing.edges_n[1];
-        let bound = pressing_n * coefficient + R::of(lock);
+        let bound = (edges_n[0] + edges_n[1]) * coefficient + R::of(lock);
         let kt = joint.shear_n_m;
         let slid = gap.slip_m - memory.slip_m;
         let trial = memory.shear_n + slid * kt;

@@ -427,7 +427,7 @@ impl ElasticStructure {
     ) -> (Action<R>, Pressing<R>, Rubbing<R>) {
         let gap = joint.link.gap(places[0], places[1]);
         let pressing = self.law.press(joint, damping, &gap, memory, fibres);
-        let rubbing = self.law.rub(joint, damping, &gap, &pressing, memory);
+        let rubbing = self.law.rub(joint, damping, &gap, pressing.edges_n, memory);
         let action = joint.link.action(&gap, pressing.edges_n, rubbing.shear_n);
         (action, pressing, rubbing)
     }
