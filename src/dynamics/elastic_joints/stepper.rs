@@ -25,8 +25,8 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
 
-/// Steps from one observation of a motion to the next: a little more than the period of the fastest vibration.
-const STRIDE: u64 = 8;
+/// Steps from one observation of a motion to the next: a few periods of the fastest vibration, which nothing that is observed follows.
+const STRIDE: u64 = 16;
 /// At rest a row may still vibrate, with energies below this fraction of the elastic energy under its own weight: by less than a
 /// third of its deflection under it ...
 const REST_STRAIN_RATIO: f64 = 0.1;
