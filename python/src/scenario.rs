@@ -176,9 +176,13 @@ impl Scenario {
         self.inner.to_json().to_string()
     }
 
-    /// The structure that stands on the ground, as JSON.
+    /// The structure that stands on the ground, with its ties, as JSON.
     fn structure_json(&self) -> PyResult<String> {
-        serde_json::to_string(self.inner.structure()).map_err(refused)
+        let mut structure = serde_json::to_value(self.inner.structure()).map_err(refused)?;
+        if !self.inner.ties().is_empty() {
+            structure["tie"] = json!(self.inner.ties());
+        }
+        Ok(structure.to_string())
     }
 
     fn __eq__(&self, other: &Self) -> bool {

@@ -104,13 +104,21 @@ def test_scenarios_change_as_by_the_program() -> None:
 
 def test_what_is_sent_does_not_need_its_files(tmp_path: Path) -> None:
     """Pickles hold the files; read back on a machine without them, they are simulated with bit-identical results."""
-    (tmp_path / "r.at2").write_bytes((SCENARIOS / "synthetic.at2").read_bytes())
-    text = '[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.record]\nfile = "r.at2"\npeak_g = 0.5\n'
+    records = [tmp_path / f"{foot}-{way}.at2" for foot in ("left", "right") for way in ("x", "y")]
+    for record in records:
+        record.write_bytes((SCENARIOS / "synthetic.at2").read_bytes())
+    text = (
+        "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 5\n"
+        "[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n[simulation]\nduration_s = 0.5\n"
+        '[ground.record]\nfile = "left-x.at2"\npeak_g = 0.5\nvertical = { file = "left-y.at2", peak_g = 0.2 }\n'
+        '[ground.right.record]\nfile = "right-x.at2"\npeak_g = 0.4\nvertical = { file = "right-y.at2", peak_g = 0.3 }\n'
+    )
     (tmp_path / "s.toml").write_text(text)
     scenario = Scenario.read(tmp_path / "s.toml")
     history = scenario.run()
     data = pickle.dumps((scenario, history))
-    (tmp_path / "r.at2").unlink()
+    for record in records:
+        record.unlink()
     sent, told = pickle.loads(data)
     assert sent == scenario and told == history and sent.run() == history
     assert told.report_html() == history.report_html()
@@ -381,5 +389,15 @@ def test_feet_springings_and_ties() -> None:
     two = Scenario.of(arch, left, right=right, **joints)
     assert two.tables["ground"]["right"]["record"]["file"] == "right-record"
     assert np.abs(two.run().feet_apart).max() > 1e-4
+    # What the right foot does keeps its own files, whatever those of the left one are called.
+    up, down = (Record(time, [0.0, peak, 0.0], unit="g") for peak in (0.02, -0.03))
+    left, right = (
+        Record(time, [0.0, peak, 0.0], unit="g", vertical=vertical) for peak, vertical in ((0.1, up), (0.05, down))
+    )
+    both = Scenario.of(arch, left, right=right, **joints)
+    assert both.tables["ground"]["right"]["record"]["vertical"]["file"] == "right-vertical-record"
+    # Straight lines up and down for 0.1 s each leave a way of the square of that times the peak.
+    x_m, y_m = both.run().feet_apart[np.searchsorted(both.run().time, 0.2)]
+    assert x_m == pytest.approx(-0.05 * 9.81 * 0.01, rel=1e-6) and y_m == pytest.approx(-0.05 * 9.81 * 0.01, rel=1e-6)
     with pytest.raises(ValueError, match="give that too"):
         Scenario.of(arch, right=right, **joints)

@@ -63,9 +63,7 @@ class Structure(Described):
         self._model = "four_links" if four else "free_hinges"
         self._native = NativeScenario(to_toml(tables), None, files, self._model, ())
         self._bases = {}
-        described = json.loads(self._native.structure_json())
-        ties = json.loads(self._native.to_json()).get("tie")
-        self._describe(described if ties is None else {**described, "tie": ties}, files)
+        self._describe(json.loads(self._native.structure_json()), files)
 
     def _base(self, key: tuple[Any, ...]) -> NativeScenario:
         """The structure with these settings, on still ground."""
