@@ -23,6 +23,9 @@ def test_joints_bear_the_weight_at_first() -> None:
     assert np.all(history.joint_contacts[0] == 1.0)
     assert np.nanmax(np.abs(history.joint_eccentricities)) > 0.3
     assert history.joint_contacts.min() < 0.5
+    # Nothing counts the impacts of a contact that lasts.
+    assert repr(history) == f"<History: still rocking at 1.0000 s; {len(history)} samples>"
+    assert "still rocking at 1.0000 s" in history.report_html()
 
 
 def test_a_point_moves_with_its_block() -> None:

@@ -490,8 +490,10 @@ class History:
 
     def _words(self) -> str:
         impacts = self.summary["impacts"]
-        after = "without impact" if impacts == 0 else f"after {impacts} impact{'s'[: impacts > 1]}"
-        at = f"at {self.outcome_time_s:.4f} s {after}"
+        at = f"at {self.outcome_time_s:.4f} s"
+        # The contact of elastic joints lasts: nothing counts their impacts.
+        if impacts is not None:
+            at += " without impact" if impacts == 0 else f" after {impacts} impact{'s'[: impacts > 1]}"
         return {
             "never_moved": "never moved",
             "rest": f"came to rest {at}",
