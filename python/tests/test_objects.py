@@ -399,5 +399,13 @@ def test_feet_springings_and_ties() -> None:
     # Straight lines up and down for 0.1 s each leave a way of the square of that times the peak.
     x_m, y_m = both.run().feet_apart[np.searchsorted(both.run().time, 0.2)]
     assert x_m == pytest.approx(-0.05 * 9.81 * 0.01, rel=1e-6) and y_m == pytest.approx(-0.05 * 9.81 * 0.01, rel=1e-6)
+    # Even if one is called as another would be then.
+    taken = Record(time, [0.0, 0.1, 0.0], unit="g", vertical=Record(time, time, unit="g", name="right-record"))
+    assert set(Scenario.of(arch, taken, right=right, **joints).files) == {
+        "record",
+        "right-record",
+        "right-right-record",
+        "vertical-record",
+    }
     with pytest.raises(ValueError, match="give that too"):
         Scenario.of(arch, right=right, **joints)

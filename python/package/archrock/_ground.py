@@ -343,7 +343,9 @@ class Record(Ground):
         files: dict[str, bytes] = {}
 
         def held(name: str) -> str:
-            other = f"right-{name}" if name in beside._files else name
+            other = name
+            while other in beside._files or other in files:
+                other = f"right-{other}"
             files[other] = self._files[name]
             return other
 
